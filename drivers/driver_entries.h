@@ -9,14 +9,17 @@
 
 namespace gaitpad {
 
+class EventNode;
 class VirtualPad;
+struct VirtualPadShape;
 
 std::vector<DeviceListing> find_hidraw_devices();
 Result<std::unique_ptr<Device>> open_hidraw_device(const DeviceListing& listing, Detach detach);
 
 std::vector<DeviceListing> find_evdev_devices();
 Result<std::unique_ptr<Device>> open_evdev_device(const DeviceListing& listing, Detach detach);
-Result<std::unique_ptr<VirtualPad>> make_evdev_virtual_pad();
+Result<std::unique_ptr<EventNode>> open_event_node(const DeviceListing& listing);
+Result<std::unique_ptr<VirtualPad>> make_evdev_virtual_pad(const VirtualPadShape& shape);
 
 std::vector<DeviceListing> find_usb_devices();
 Result<std::unique_ptr<Device>> open_usb_device(const DeviceListing& listing, Detach detach);

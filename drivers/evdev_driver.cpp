@@ -22,6 +22,7 @@
 #include <utility>
 
 #include "drivers/driver_entries.h"
+#include "drivers/event_node.h"
 #include "drivers/posix.h"
 #include "drivers/system_nodes.h"
 #include "hid/evdev_layout.h"
@@ -100,49 +101,50 @@ EvdevLayout input_node_layout(const InputNode& opened, const std::string& node) 
 
 // ---- The device
 
+int error_of(int status) noexcept { return status < 0 ? errno : 0; }
+
 // One force-feedback effect, kept in the kernel and changed in place.
-class Motors {
+class OwnEffect {
  public:
-  // Uploads a silent effect. False: the device has no motors, or may not be written to.
-  bool upload(int fd, const libevdev* device) {
-    if (!libevdev_has_event_code(device, EV_FF, FF_RUMBLE)) return false;
-    fd_ = fd;
-    effect_.type = FF_RUMBLE;
-    effect_.id = -1;
-    if (::ioctl(fd_, EVIOCSFF, &effect_) == 0) return true;
-    fd_ = -1;
-    return false;
+  // Uploads a silent effect. False: the device refuses it.
+  bool upload(EffectTarget& target) {
+    ff_effect effect{};
+    effect.type = FF_RUMBLE;
+    effect.id = -1;
+    if (target.upload(effect) != 0) return false;
+    target_ = &target;
+    id_ = effect.id;
+    return true;
   }
   void remove() noexcept {
-    if (fd_ >= 0) ::ioctl(fd_, EVIOCRMFF, static_cast<long>(effect_.id));
-    fd_ = -1;
+    if (target_ != nullptr) static_cast<void>(target_->erase(id_));
+    target_ = nullptr;
   }
   // Runs until it is changed or stopped, or the handle closes.
   bool set(const Rumble& rumble) noexcept {
-    if (fd_ < 0) return false;
+    if (target_ == nullptr) return false;
     if (rumble.strong == 0 && rumble.weak == 0) return play(0);
-    effect_.u.rumble.strong_magnitude = rumble.strong;
-    effect_.u.rumble.weak_magnitude = rumble.weak;
-    return ::ioctl(fd_, EVIOCSFF, &effect_) == 0 && play(1);
+    ff_effect effect{};
+    effect.type = FF_RUMBLE;
+    effect.id = id_;
+    effect.u.rumble.strong_magnitude = rumble.strong;
+    effect.u.rumble.weak_magnitude = rumble.weak;
+    return target_->upload(effect) == 0 && play(1);
   }
 
  private:
   bool play(int times) noexcept {
     if (times != 0 && is_playing_) return true;  // a changed effect runs on by itself
-    input_event event{};
-    event.type = EV_FF;
-    event.code = static_cast<std::uint16_t>(effect_.id);
-    event.value = times;
-    if (::write(fd_, &event, sizeof event) != sizeof event) return false;
+    if (target_->send(static_cast<std::uint16_t>(id_), times) != 0) return false;
     is_playing_ = times != 0;
     return true;
   }
-  int fd_ = -1;
-  ff_effect effect_{};
+  EffectTarget* target_ = nullptr;  // null: there is no such effect
+  std::int16_t id_ = -1;
   bool is_playing_ = false;
 };
 
-class EvdevDevice final : public Device {
+class EvdevDevice final : public EventNode {
  public:
   EvdevDevice(DeviceInfo info, InputNode node, EvdevLayout layout)
       : info_(std::move(info)), node_(std::move(node)), layout_(std::move(layout)) {
@@ -155,16 +157,24 @@ class EvdevDevice final : public Device {
     lost_ = 0;  // events from before the opening are not lost
     start_motors();
   }
-  ~EvdevDevice() override { motors_.remove(); }
+  ~EvdevDevice() override { own_effect_.remove(); }
 
   const DeviceInfo& info() const noexcept override { return info_; }
   std::span<const pollfd> poll_fds() const noexcept override {
     return {poll_fds_.data(), is_first_ ? std::size_t{2} : std::size_t{1}};
   }
   Status read(Report& report) noexcept override;
-  bool rumble(const Rumble& rumble) noexcept override { return motors_.set(rumble); }
+  bool rumble(const Rumble& rumble) noexcept override { return own_effect_.set(rumble); }
   std::int64_t lost() const noexcept override { return lost_; }
   std::vector<std::string> take_remarks() override { return std::exchange(remarks_, {}); }
+
+  int grab() noexcept override;
+  const EvdevState& state() const noexcept override { return state_; }
+  const EvdevLayout& layout() const noexcept override { return layout_; }
+  std::vector<std::uint16_t> effect_codes() const override;
+  int upload(ff_effect& effect) noexcept override;
+  int erase(int id) noexcept override;
+  int send(std::uint16_t code, std::int32_t value) noexcept override;
 
  private:
   Status next_packet() noexcept;
@@ -178,7 +188,7 @@ class EvdevDevice final : public Device {
   InputNode node_;
   EvdevLayout layout_;
   EvdevState state_;
-  Motors motors_;
+  OwnEffect own_effect_;
   Bell wake_;  // readable until the first report, which has the present state, is read
   std::array<pollfd, 2> poll_fds_{};
   bool is_first_ = true;
@@ -195,12 +205,45 @@ void EvdevDevice::start_motors() {
     }
     return;
   }
+  if (!libevdev_has_event_code(node_.device.get(), EV_FF, FF_RUMBLE)) return;
   // A virtual device is answered by a program, which may take long for each change.
   const auto start = std::chrono::steady_clock::now();
-  if (!motors_.upload(node_.fd.get(), node_.device.get())) return;
+  if (!own_effect_.upload(*this)) return;
   if (std::chrono::steady_clock::now() - start <= kMaxUpload) return;
-  motors_.remove();
+  own_effect_.remove();
   remarks_.push_back(info_.name + ": takes too long to set its motors, so it does not rumble");
+}
+
+int EvdevDevice::grab() noexcept {
+  own_effect_.remove();
+  return error_of(::ioctl(node_.fd.get(), EVIOCGRAB, 1));
+}
+
+std::vector<std::uint16_t> EvdevDevice::effect_codes() const {
+  std::vector<std::uint16_t> codes;
+  if (!node_.may_write) return codes;
+  for (std::uint16_t code = 0; code <= FF_MAX; ++code) {
+    // The samples of a custom wave lie in the memory of the program that uploads it.
+    if (code != FF_CUSTOM && libevdev_has_event_code(node_.device.get(), EV_FF, code))
+      codes.push_back(code);
+  }
+  return codes;
+}
+
+int EvdevDevice::upload(ff_effect& effect) noexcept {
+  return error_of(::ioctl(node_.fd.get(), EVIOCSFF, &effect));
+}
+
+int EvdevDevice::erase(int id) noexcept {
+  return error_of(::ioctl(node_.fd.get(), EVIOCRMFF, static_cast<long>(id)));
+}
+
+int EvdevDevice::send(std::uint16_t code, std::int32_t value) noexcept {
+  input_event event{};
+  event.type = EV_FF;
+  event.code = code;
+  event.value = value;
+  return error_of(static_cast<int>(::write(node_.fd.get(), &event, sizeof event)));
 }
 
 void EvdevDevice::take_state() noexcept {
@@ -391,7 +434,7 @@ std::vector<DeviceListing> find_evdev_devices() {
   return listings;
 }
 
-Result<std::unique_ptr<Device>> open_evdev_device(const DeviceListing& listing, Detach) {
+Result<std::unique_ptr<EventNode>> open_event_node(const DeviceListing& listing) {
   auto opened = open_input_node(listing.node, O_RDWR);
   if (!opened) opened = open_input_node(listing.node, O_RDONLY);
   if (!opened) return opened.error();
@@ -399,8 +442,14 @@ Result<std::unique_ptr<Device>> open_evdev_device(const DeviceListing& listing, 
     return Error{listing.node + ": is another device by now"};
   }
   EvdevLayout layout = input_node_layout(*opened, listing.node);
-  return std::unique_ptr<Device>(
+  return std::unique_ptr<EventNode>(
       std::make_unique<EvdevDevice>(listing.info, std::move(*opened), std::move(layout)));
+}
+
+Result<std::unique_ptr<Device>> open_evdev_device(const DeviceListing& listing, Detach) {
+  auto node = open_event_node(listing);
+  if (!node) return node.error();
+  return std::unique_ptr<Device>(std::move(*node));
 }
 
 }  // namespace gaitpad

@@ -1,4 +1,5 @@
 #include "drivers/driver_entries.h"
+#include "drivers/event_node.h"
 #include "drivers/virtual_pad.h"
 #include "gaitpad/drivers.h"
 #include "hid/sdl_lines.h"
@@ -62,9 +63,18 @@ const DriverEntry* find_driver(std::string_view name) noexcept {
   return nullptr;
 }
 
-Result<std::unique_ptr<VirtualPad>> VirtualPad::create() {
+Result<std::unique_ptr<EventNode>> EventNode::open([[maybe_unused]] const DeviceListing& listing) {
 #ifdef GAITPAD_HAS_EVDEV
-  return make_evdev_virtual_pad();
+  return open_event_node(listing);
+#else
+  return Error{listing.node + ": cannot be read: the program was built without libevdev"};
+#endif
+}
+
+Result<std::unique_ptr<VirtualPad>> VirtualPad::create(
+    [[maybe_unused]] const VirtualPadShape& shape) {
+#ifdef GAITPAD_HAS_EVDEV
+  return make_evdev_virtual_pad(shape);
 #else
   return Error{"no pad can be made: the program was built without libevdev"};
 #endif

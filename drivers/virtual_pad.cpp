@@ -9,7 +9,8 @@
 namespace gaitpad {
 namespace {
 
-constexpr int kFullStick = 32767, kFullTrigger = 1023;
+// No USB device has this vendor's id: it is none.
+constexpr int kOwnVendor = 0x6761, kOwnProduct = 0x7470;
 
 // By PadButton, as far as Linux's gamepads name them.
 constexpr std::array<std::uint16_t, kButtonDpadUp> kCodes = {
@@ -17,21 +18,17 @@ constexpr std::array<std::uint16_t, kButtonDpadUp> kCodes = {
     BTN_START, BTN_THUMBL, BTN_THUMBR, BTN_TL, BTN_TR,
 };
 
-// 0: a direction of the hat.
-std::uint16_t code_of(int button) {
+// 0: a direction of the hat, or a button that the kind does not have.
+std::uint16_t code_of(int button, XboxKind kind) {
   if (button < kButtonDpadUp) return kCodes[static_cast<std::size_t>(button)];
-  if (button < kButtonMisc1) return 0;
+  if (button < kButtonMisc1 || kind == XboxKind::xbox_360) return 0;
   return static_cast<std::uint16_t>(BTN_TRIGGER_HAPPY1 + button - kButtonMisc1);
 }
 
-constexpr VirtualPadAxis kAxes[] = {{ABS_X, -kFullStick - 1, kFullStick},
-                                    {ABS_Y, -kFullStick - 1, kFullStick},
-                                    {ABS_Z, 0, kFullTrigger},
-                                    {ABS_RX, -kFullStick - 1, kFullStick},
-                                    {ABS_RY, -kFullStick - 1, kFullStick},
-                                    {ABS_RZ, 0, kFullTrigger},
-                                    {ABS_HAT0X, -1, 1},
-                                    {ABS_HAT0Y, -1, 1}};
+int full_trigger(XboxKind kind) { return kind == XboxKind::xbox_360 ? 255 : 1023; }
+
+constexpr std::array<std::uint16_t, 8> kAxes = {ABS_X,  ABS_Y,  ABS_Z,     ABS_RX,
+                                                ABS_RY, ABS_RZ, ABS_HAT0X, ABS_HAT0Y};
 
 bool is_pressed(const VirtualPadState& state, PadButton button) {
   return ((state.buttons >> button) & 1u) != 0;
@@ -42,28 +39,58 @@ std::int32_t counts(double value, int full) {
 }
 
 // In the order of kAxes.
-std::array<std::int32_t, std::size(kAxes)> axis_values(const VirtualPadState& s) {
+std::array<std::int32_t, std::size(kAxes)> axis_values(const VirtualPadState& s, XboxKind kind) {
   const auto direction = [&s](PadButton towards, PadButton away) {
     return static_cast<int>(is_pressed(s, towards)) - static_cast<int>(is_pressed(s, away));
   };
   return {counts(s.stick.left.x, kFullStick),           counts(-s.stick.left.y, kFullStick),
-          counts(s.trigger[0], kFullTrigger),           counts(s.stick.right.x, kFullStick),
-          counts(-s.stick.right.y, kFullStick),         counts(s.trigger[1], kFullTrigger),
+          counts(s.trigger[0], full_trigger(kind)),     counts(s.stick.right.x, kFullStick),
+          counts(-s.stick.right.y, kFullStick),         counts(s.trigger[1], full_trigger(kind)),
           direction(kButtonDpadRight, kButtonDpadLeft), direction(kButtonDpadDown, kButtonDpadUp)};
 }
 
 }  // namespace
 
-std::vector<VirtualPadEvent> events_between(const VirtualPadState& from,
-                                            const VirtualPadState& to) {
+bool is_virtual_pad(const DeviceInfo& info) noexcept {
+  return info.physical_path.starts_with(kVirtualPort) ||
+         (info.vendor == kOwnVendor && info.product == kOwnProduct);
+}
+
+VirtualPadShape shape_of(XboxKind kind) {
+  VirtualPadShape shape = {
+      .name = "gaitpad calibrated pad", .vendor = kOwnVendor, .product = kOwnProduct, .version = 1};
+  if (kind == XboxKind::xbox_360)
+    shape = {.name = "Microsoft X-Box 360 pad",
+             .bus = BusType::usb,
+             .vendor = 0x045e,
+             .product = 0x028e,
+             .version = 0x0114};
+  const int trigger = full_trigger(kind);
+  for (const std::uint16_t code : kAxes) {
+    if (code == ABS_HAT0X || code == ABS_HAT0Y) {
+      shape.axes.push_back({code, -1, 1});
+    } else if (code == ABS_Z || code == ABS_RZ) {
+      shape.axes.push_back({code, 0, trigger});
+    } else {
+      shape.axes.push_back({code, -kFullStick - 1, kFullStick});
+    }
+  }
+  for (int b = 0; b < kButtonCount; ++b) {
+    if (code_of(b, kind) != 0) shape.keys.push_back(code_of(b, kind));
+  }
+  return shape;
+}
+
+std::vector<VirtualPadEvent> events_between(const VirtualPadState& from, const VirtualPadState& to,
+                                            XboxKind kind) {
   std::vector<VirtualPadEvent> events;
-  const auto before = axis_values(from), after = axis_values(to);
+  const auto before = axis_values(from, kind), after = axis_values(to, kind);
   for (std::size_t i = 0; i < after.size(); ++i) {
-    if (after[i] != before[i]) events.push_back({EV_ABS, kAxes[i].code, after[i]});
+    if (after[i] != before[i]) events.push_back({EV_ABS, kAxes[i], after[i]});
   }
   for (int b = 0; b < kButtonCount; ++b) {
     const auto button = static_cast<PadButton>(b);
-    const std::uint16_t code = code_of(b);
+    const std::uint16_t code = code_of(b, kind);
     const bool is_down = is_pressed(to, button);
     if (code != 0 && is_down != is_pressed(from, button))
       events.push_back({EV_KEY, code, is_down ? 1 : 0});
@@ -71,26 +98,16 @@ std::vector<VirtualPadEvent> events_between(const VirtualPadState& from,
   return events;
 }
 
-bool is_virtual_pad(const DeviceInfo& info) noexcept {
-  return info.vendor == kVirtualPadVendor && info.product == kVirtualPadProduct;
+Result<XboxPad> XboxPad::create() {
+  auto pad = VirtualPad::create(shape_of(XboxKind::calibrated));
+  if (!pad) return pad.error();
+  return XboxPad(std::move(*pad));
 }
 
-std::span<const VirtualPadAxis> virtual_pad_axes() noexcept { return kAxes; }
-
-std::vector<std::uint16_t> virtual_pad_keys() {
-  std::vector<std::uint16_t> keys;
-  for (int b = 0; b < kButtonCount; ++b) {
-    if (code_of(b) != 0) keys.push_back(code_of(b));
-  }
-  return keys;
-}
-
-bool VirtualPad::set(const VirtualPadState& state) {
-  std::vector<VirtualPadEvent> events = events_between(state_, state);
+bool XboxPad::set(const VirtualPadState& state) noexcept {
+  const std::vector<VirtualPadEvent> events = events_between(state_, state);
   state_ = state;
-  if (events.empty()) return true;
-  events.push_back({EV_SYN, SYN_REPORT, 0});
-  return write(events);
+  return pad_->write(events);
 }
 
 }  // namespace gaitpad

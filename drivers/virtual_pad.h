@@ -1,25 +1,23 @@
 // A pad that the kernel shows to every program, made by uinput: what gaitpad makes of a real or
-// recorded pad. It states the layout of Linux's gamepads (Documentation/input/gamepad.rst in the
-// kernel) with the codes of the Xbox pads' driver, which games and SDL know without a mapping.
+// recorded pad. XboxPad states the layout of Linux's gamepads (Documentation/input/gamepad.rst in
+// the kernel) with the codes of the Xbox pads' driver, which games and SDL know without a mapping.
 #pragma once
+#include <poll.h>
+
 #include <array>
 #include <cstdint>
 #include <memory>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "drivers/effect_table.h"
 #include "gaitpad/report.h"
 #include "gaitpad/result.h"
 #include "gaitpad/stick.h"
 
 namespace gaitpad {
-
-struct VirtualPadState {
-  Stick stick{};                    // calibrated
-  std::array<double, 2> trigger{};  // left, right; 0 released .. 1 pressed
-  std::uint32_t buttons = 0;        // as PadState::buttons
-};
 
 // An event of Linux's evdev.
 struct VirtualPadEvent {
@@ -27,36 +25,76 @@ struct VirtualPadEvent {
   std::int32_t value = 0;
   bool operator==(const VirtualPadEvent&) const = default;
 };
-// What turns one state into the other, without the SYN_REPORT at the end. A stick's full deflection
-// is 32767, y grows backwards; a pressed trigger is 1023; the D-pad is a hat.
-std::vector<VirtualPadEvent> events_between(const VirtualPadState& from, const VirtualPadState& to);
-
-// Whether such a pad is seen: gaitpad must not read its own output.
-bool is_virtual_pad(const DeviceInfo& info) noexcept;
-
-// Its ids. No USB device has them: it is none.
-inline constexpr int kVirtualPadVendor = 0x6761, kVirtualPadProduct = 0x7470;
-// What it can report.
 struct VirtualPadAxis {
-  std::uint16_t code;
-  int min, max;
+  std::uint16_t code = 0;
+  std::int32_t min = 0, max = 0;
+  bool operator==(const VirtualPadAxis&) const = default;
 };
-std::span<const VirtualPadAxis> virtual_pad_axes() noexcept;
-std::vector<std::uint16_t> virtual_pad_keys();
+
+// What programs see of a virtual pad. Its axes begin at 0 and its keys released.
+struct VirtualPadShape {
+  std::string name;
+  BusType bus = BusType::virtual_bus;
+  std::uint16_t vendor = 0, product = 0, version = 0;
+  std::string port;  // the kernel's `phys`; VirtualPad::create() puts kVirtualPort in front
+  std::vector<VirtualPadAxis> axes;
+  std::vector<std::uint16_t> keys;
+  std::vector<std::uint16_t> effects;  // codes of EV_FF
+  bool operator==(const VirtualPadShape&) const = default;
+};
+
+// Whether such a pad is seen, whatever its ids: gaitpad must not read its own output.
+bool is_virtual_pad(const DeviceInfo& info) noexcept;
+// Where it is plugged in, in place of a port.
+inline constexpr std::string_view kVirtualPort = "gaitpad/";
 
 // Made in the kernel; destroying it unplugs it.
 class VirtualPad {
  public:
   // Error: there is no /dev/uinput or no permission, or gaitpad was built without libevdev.
-  static Result<std::unique_ptr<VirtualPad>> create();
+  static Result<std::unique_ptr<VirtualPad>> create(const VirtualPadShape& shape);
   virtual ~VirtualPad() = default;
 
   virtual std::string node() const = 0;  // /dev/input/event7
+  // Sends a packet and its SYN_REPORT; nothing if it is empty. False: the kernel has refused it.
+  virtual bool write(std::span<const VirtualPadEvent> events) noexcept = 0;
+  // Readable when a program asks for an effect: it waits until serve_effects() has answered.
+  virtual pollfd fd() const noexcept = 0;
+  virtual void serve_effects(EffectTable& effects) noexcept = 0;
+};
+
+// ---- The Xbox pads' layout
+
+struct VirtualPadState {
+  Stick stick{};                    // calibrated
+  std::array<double, 2> trigger{};  // left, right; 0 released .. 1 pressed
+  std::uint32_t buttons = 0;        // as PadState::buttons
+};
+
+enum class XboxKind {
+  calibrated,  // under gaitpad's own name and ids, with every button; triggers are 0..1023
+  xbox_360,    // as the kernel shows an Xbox 360 pad; triggers are 0..255
+};
+VirtualPadShape shape_of(XboxKind kind);
+// A stick's full deflection.
+inline constexpr int kFullStick = 32767;
+
+// What turns one state into the other, without the SYN_REPORT at the end. y grows backwards; the
+// D-pad is a hat.
+std::vector<VirtualPadEvent> events_between(const VirtualPadState& from, const VirtualPadState& to,
+                                            XboxKind kind = XboxKind::calibrated);
+
+// XboxKind::calibrated in the kernel.
+class XboxPad {
+ public:
+  static Result<XboxPad> create();  // as VirtualPad::create()
+  std::string node() const { return pad_->node(); }
   // Sends what has changed. False: the kernel has refused it.
-  bool set(const VirtualPadState& state);
+  bool set(const VirtualPadState& state) noexcept;
 
  private:
-  virtual bool write(std::span<const VirtualPadEvent> events) = 0;
+  explicit XboxPad(std::unique_ptr<VirtualPad> pad) : pad_(std::move(pad)) {}
+  std::unique_ptr<VirtualPad> pad_;
   VirtualPadState state_;
 };
 

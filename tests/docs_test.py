@@ -15,13 +15,39 @@ import sys
 
 import pytest
 
-from support import slices
+from support import pages, slices
 
 ROOT = pathlib.Path(__file__).resolve().parents[1]
 PAGES = sorted([*ROOT.glob("*.md"), *ROOT.glob("docs/*.md"), ROOT / "config" / "README.md",
                 *ROOT.glob("src/*/README.md"), *ROOT.glob("drivers/README.md")])
 NAMED = re.compile(r"`((?:src|drivers|tools|tests|config|docs)/[A-Za-z0-9_./*]+)`")
 PLACEHOLDERS = {"tests/data/pads/VVVV_PPPP.hid"}
+
+
+# What the pages name and neither the sources nor the program's help have, and why. With a page: only there.
+FOREIGN = {
+    # Examples of the style guide.
+    "SmallerWeightTurnsThatJointLess|stride_length_m|ankle_world_m|PascalCase|snake_case|trailing_|"
+    "Reject truncated report descriptors": "shows how to name things",
+    # What the reader makes.
+    r"tests/data/pads/VVVV_PPPP\.hid": "VVVV and PPPP are the pad's ids",
+    r"walk_01(_02)?\.(asf|amc)": "a captured motion of the reader's",
+    r"(FOLDER/)?walks/.*|\.github/workflows/walks\.yml|sbatch walks\.sbatch": "another project's recordings and jobs",
+    r"out/my_walk\.toml": "the tutorial writes it",
+    # Other programs, libraries and standards.
+    r"ffe5:[13]000": "HID usages that the kernel's hid-input makes up",
+    "std::experimental::simd": "what src/base/lanes.h replaces",
+    "HumanBodyBones": "Unity's names of bones",
+    r"Skeleton3D|Transform3D|JSON\.parse_string": "Godot's types and functions",
+    "SDL_GAMECONTROLLER_IGNORE_DEVICES=0x054c/0x09cc|SDL_NO_SIGNAL_HANDLERS": "SDL's names of hints",
+    "hid_open": "hidapi's function",
+    "MCL_FUTURE": "a flag of mlockall() that is not used",
+    "-ffast-math": "a compiler's option that is not used",
+    "ssh( -X)?": "the shell's",
+    # Captured motions and recordings, which are no part of the repository.
+    r"cmu_m21_\*|cmu_006_01|git grep cmu_": "names of motions in the data folder",
+    r"docs/data\.md: [\w.-]+/[\w.-]+": "where the data come from: repositories on GitHub",
+}
 
 
 def text_of(page):
@@ -51,6 +77,76 @@ def test_files_that_are_named_exist():
             continue  # names what was
         for name in set(NAMED.findall(text_of(page))) - PLACEHOLDERS:
             assert list(ROOT.glob(name.rstrip("/"))), f"{page}: {name}"
+
+
+@pytest.fixture(scope="module")
+def judge(program):
+    return pages.Judge(program, FOREIGN)
+
+
+def test_what_is_named_exists(judge):
+    """Each function, type, constant, file, command, option and key in backticks, where the page says that it is."""
+    faults = [f for page in PAGES if page.name != "CHANGELOG.md" for f in judge.faults_of(page)]
+    assert not faults, "\n".join(faults)
+
+
+def test_every_exception_is_needed(judge):
+    text = {page: {span for span, _ in pages.spans_of(page.read_text())} for page in PAGES if page.name != "CHANGELOG.md"}
+    for name in FOREIGN:
+        assert any(judge.is_foreign(span, page, [name]) for page, spans in text.items() for span in spans), name
+
+
+def banned_words():
+    page = (ROOT / "docs/glossary.md").read_text()
+    table = page[page.index("## Words that are not used"):]
+    return [word for row in re.findall(r"^\| ([^|]+) \| [^|]+ \|$", table, flags=re.M) for word in row.split(", ")
+            if word != "not"]
+
+
+def test_the_glossary_has_thirty_terms_and_its_banned_words_occur_nowhere():
+    page = (ROOT / "docs/glossary.md").read_text()
+    assert len(re.findall(r"^\| (?!term|not|---)", page, flags=re.M)) >= 30
+    words = re.compile(r"\b(?:" + "|".join(banned_words()) + r")\b", flags=re.I)
+    for path in PAGES:
+        if path.name not in ("CHANGELOG.md", "glossary.md"):
+            assert not (found := words.search(" ".join(text_of(path).split()))), f"{path}: {found.group()}"
+
+
+SABOTAGES = [  # page, what it says, what is false
+    ("docs/path.md", "`Pads::take_report()`", "`Pads::take_packet()`"),
+    ("docs/path.md", "`assign_ticks()`", "`assign_tick()`"),
+    ("docs/path.md", "| `src/hid/decode.cpp` |", "| `src/hid/descriptor.cpp` |"),  # another file of the room
+    ("docs/path.md", "`src/pads/pad_stream.cpp`", "`src/pads/pad_reader.cpp`"),
+    ("docs/path.md", "`GaitParams`", "`GaitParameters`"),
+    ("docs/walk.md", "`cycle_on_skeleton()`", "`retargeted_cycle()`"),
+    ("docs/walk.md", "`walk_changes.cpp`", "`walk_stops.cpp`"),
+    ("docs/crowd.md", "`Crowd::advance()`", "`Crowd::step()`"),
+    ("docs/pads.md", "`frame_us_p99`", "`frame_ms_p99`"),
+    ("docs/pads.md", "`model_of()`", "`model_for()`"),
+    ("docs/pads.md", "`sony.cpp`", "`dualshock.cpp`"),
+    ("docs/library.md", "`PadWish::driver`", "`PadWish::drivers`"),
+    ("docs/library.md", "`gaitpad::session`", "`gaitpad::sessions`"),
+    ("docs/ci.md", "`GAITPAD_SHARD_TOTAL`", "`GAITPAD_SHARD_COUNT`"),
+    ("docs/ci.md", "`--strict`", "`--severe`"),
+    ("docs/replay.md", "`play --commands`", "`play --max-hours`"),  # an option of another command
+    ("docs/calibration.md", "`monitor --json`", "`monitor --plot`"),
+    ("docs/my-pad.md", "`gaitpad calibrate --export-sdl`", "`gaitpad calibrate --export`"),
+    ("docs/troubleshooting.md", "`build/gaitpad monitor`", "`build/gaitpad watch`"),
+    ("config/README.md", "`left_leg.flight_height`", "`left_leg.lift_height`"),
+    ("README.md", "`pose_hash`", "`pose_digest`"),
+    ("CONTRIBUTING.md", "`kMaxJoints`", "`kMostJoints`"),
+    ("CONTRIBUTING.md", "`tools/realtime.sh`", "`tools/punctual.sh`"),
+    ("src/strides/README.md", "`StrideSolver::solve()`", "`StrideSolver::run()`"),
+    ("src/session/README.md", "`SimulationConfig`", "`SimulationOptions`"),
+    ("src/stick/README.md", "`guide.cpp`", "`guided_calibration.cpp`"),  # a file of another room
+]
+
+
+@pytest.mark.parametrize("page, said, false", SABOTAGES, ids=[false for _, _, false in SABOTAGES])
+def test_what_does_not_exist_is_found(judge, page, said, false):
+    text = (ROOT / page).read_text()
+    assert said in text, f"{page} no longer says {said}"
+    assert list(judge.faults_of(ROOT / page, text.replace(said, false)))
 
 
 # What is not run here, and why.

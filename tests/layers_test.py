@@ -61,7 +61,8 @@ DRIVER_VENDORS = {
     "src/strides/stride_solver.cpp": ["Eigen/"],
     "src/session/pose_stream.cpp": ["lo/"],
     "drivers/virtual_pad.cpp": ["linux/"],
-    "drivers/evdev_virtual_pad.cpp": ["libevdev"],
+    "drivers/effect_table.h": ["linux/"],
+    "drivers/evdev_virtual_pad.cpp": ["libevdev", "linux/"],
     "drivers/uhid_device.cpp": ["linux/"],
     "drivers/hidraw_driver.cpp": ["hidapi", "linux/"],
     "drivers/usb_driver.cpp": ["libusb"],
@@ -74,6 +75,7 @@ DRIVER_VENDORS = {
     "tools/rig/plain_sdl.cpp": ["SDL2/"],
     "tools/soak/soak.cpp": ["SDL2/", "malloc.h"],
     "src/bench/bench_work.cpp": ["malloc.h"],
+    "tools/fuzz/fuzz_stream.cpp": ["lo/"],
     "tools/gaitpad/window_module.cpp": ["dlfcn.h"],
 }
 TOOL_VENDORS = ["fmt/", "nlohmann/", "CLI/"]

@@ -6,7 +6,7 @@
   measured.py                        writes the texts round the tables anew
   measured.py --check                writes nothing; says where the page is not as this script writes it
 
-Sections: walk kept terrain bench window frames pads latency sticks worn claims. A section that is not
+Sections: walk kept people clips terrain bench window frames pads latency sticks worn claims fuzz soak. A section that is not
 measured in this run keeps the table of the page and its date. `--build` names the build folder (default
 build), `--data` the folder of captured motions and recordings (default ../shared/data); sections
 that need them say so on the page.
@@ -352,6 +352,33 @@ def measure_sticks(options, text=None):
     return {"sticks": rows}
 
 
+def measure_by(script):
+    """What measures by a script of tests/ that prints rows with --json."""
+    def measure(options, text=None):
+        return {"rows": read_rows(text or output_of(PYTHON, script, needed(options.build / "gaitpad"), "--json", may_fail=True))}
+    return measure
+
+
+def measure_fuzz(options, text=None):
+    text = text or needed(ROOT / "build-fuzz" / "executed.tsv").read_text()
+    runs = [line.split("\t") for line in text.splitlines()]
+    targets = sorted({target for target, *_ in runs})
+    rows = []
+    for target in targets:
+        own = [list(map(int, run[1:])) for run in runs if run[0] == target and run[3]]
+        rows.append((target, sum(n for _, n, _ in own), sum(s for s, _, _ in own) / 60, max(e for _, _, e in own)))
+    return {"targets": rows, "note": f"{sum(n for _, n, _, _ in rows):,} executions in all; no finding is open."}
+
+
+def fuzz_rows(section):
+    return [[f"`{target}`", f"{runs:,}", f"{minutes:.0f}", f"{edges:,}"] for target, runs, minutes, edges in section["targets"]]
+
+
+def measure_soak(options, text=None):
+    text = text or needed(options.build / "soak.txt").read_text()
+    return {"rows": read_rows(next(line for line in reversed(text.splitlines()) if line.startswith("[{")))}
+
+
 def measure_worn(options, text=None):
     text = text or output_of(needed(options.build / "tests" / "test_session"),
                              "--gtest_filter=WornStick.*")
@@ -505,6 +532,17 @@ a leg joint, degrees a tick²: in the steady walk (0.7; built-in 0.5), and where
 stops and changes its stride (1).""", """\
 A walk keeps neither a knee that a file bends backwards nor the gap of a stride that does not end
 as it began."""),
+    "people": (measure_by("tests/session/people.py"), runs_rows, "Beside people", True, """\
+`tests/session/people.py build/gaitpad` walks the built-in motion and sets it beside what others measured of people. The
+curves are the mean of healthy people at free speed (Schwartz, Rozumalski & Trost 2008) at every 4 % of a cycle, after the
+mean of each curve is laid on theirs; allowed is about their standard deviation. Toe clearance: Winter 1991, Moosabhoy & Gard
+2006. Cadence, the first landing interval (from the first landing to the second), and the U-turn (`--stick points`, from ahead
+to back, until the heading is within ten degrees) are those of 19 healthy people.""", """\
+A bound that is missed is a fact about this walk, not a failed test: at small sticks it takes slow steps on purpose."""),
+    "clips": (measure_by("tests/tools/clips.py"), runs_rows, "Exported clips", True, """\
+`tests/tools/clips.py build/gaitpad` exports thirty walks as `pose.glb` at 60 frames a second and judges each as the import of
+a game would; when a point is planted `frames.csv` says (`tests/support/clip_lint.py`). A loop is one to four strides, as many as end
+nearest to a whole frame. Khronos' validator and Blender read exported files in `tests/tools/gltf_test.py`.""", ""),
     "terrain": (measure_terrain, runs_rows, "Walks over terrain", False, """\
 `build/tests/terrain_sweep MOTION ...` (`cmake --build build --target terrain_sweep`) walks the
 course from its beginning to a stop after its end and judges every tick by a grid of points over
@@ -561,6 +599,14 @@ is calibrated and walked with by `build/tests/test_session --gtest_filter='WornS
     "claims": (measure_claims, claims_rows, "The paper's claims", True, """\
 `build/gaitpad figures --out out/figures`, the built-in motion: how many assertions hold.
 [paper.md](paper.md) lists each one, and why some fail.""", ""),
+    "fuzz": (measure_fuzz, fuzz_rows, "Bad input", True, """\
+`bash tools/fuzz.sh --hours N` runs the targets of `tools/fuzz` in turn under AddressSanitizer and
+UndefinedBehaviorSanitizer, beginning with the inputs of `tools/fuzz/corpus`; `tools/measured.py fuzz` counts what ran in
+`build-fuzz` so far. Edges: of the control flow, as libFuzzer counts them.""", ""),
+    "soak": (measure_soak, bounds_rows, "A long run", True, """\
+`bash tools/soak.sh --hours N` lets four characters walk in the window, drawn by software, while a pad is plugged in and out,
+styles, panels and themes change; the session is recorded and replayed at the end. The caches fill in the first ten minutes;
+after them the first quarter of the rest is compared with the last.""", ""),
 }
 
 ONE_RUN, MANY_RUNS = ["", "measured", "allowed"], ["", "worst", "allowed", "runs", "worst run"]
@@ -576,6 +622,8 @@ SHAPES = {
     "latency": (["way", "to the program", "99th percentile", "over the bare read", "to the tick's begin",
                  "99th percentile"], None),
     "sticks": (["", "left", "right"], [name for _, name, _ in STICK]),
+    "people": (MANY_RUNS, None), "clips": (MANY_RUNS, None), "soak": (ONE_RUN, None),
+    "fuzz": (["target", "executions", "minutes", "edges"], None),
     "claims": (["mode", "hold", "fail", "cannot be tested with this motion"], list(MODES)),
 }
 

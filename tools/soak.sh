@@ -1,10 +1,15 @@
 #!/usr/bin/env bash
-# soak.sh [SECONDS]: runs the window for ten minutes (600) while a pad is plugged in and out, styles change and
-# motions are loaded again, and checks that its memory stays flat. Then runs a tenth of that time under the
-# sanitizers and ThreadSanitizer.
+# soak.sh [--hours N | SECONDS]: runs the window for that long (default: ten minutes) while a pad is plugged in and out,
+# and styles, panels and themes change. The session is recorded, and replays to the same hash at the end; its memory stays
+# flat, and the machine causes every late tick. Beside it, another window loads motions again and again, for a tenth of
+# that time also under the sanitizers and ThreadSanitizer. `tools/measured.py soak` puts the table into docs/measured.md.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 seconds=${1:-600}
+if [ "$seconds" = --hours ]; then
+  seconds=$(awk -v hours="${2:-}" 'BEGIN { print int(3600 * hours) }')
+  [ "$seconds" -gt 0 ] || { echo "soak.sh: --hours needs a number above 0" >&2; exit 2; }
+fi
 bash "$root/tools/install.sh"
 export SDL_VIDEODRIVER=${SDL_VIDEODRIVER:-offscreen} XDG_CONFIG_HOME
 XDG_CONFIG_HOME=$(mktemp -d)
@@ -18,7 +23,10 @@ for character in adult child; do
     --out "$XDG_CONFIG_HOME/$character" >/dev/null
   motions+=("$XDG_CONFIG_HOME/$character/pose.bvh")
 done
-"$root/build/tools/soak/soak" "$seconds" "${motions[@]}"
+"$root/build/tools/soak/soak" "$seconds" "${motions[@]}" >"$root/build/soak_loading.txt" &
+loading=$!
+"$root/build/tools/soak/soak" "$seconds" --record "$XDG_CONFIG_HOME/soak.hid" | tee "$root/build/soak.txt"
+wait $loading || { cat "$root/build/soak_loading.txt"; exit 1; }
 
 short=$((seconds / 10 > 30 ? seconds / 10 : 30))
 bash "$root/tools/build.sh" "$root/build-asan" soak -DCMAKE_CXX_COMPILER=clang++ \

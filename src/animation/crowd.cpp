@@ -3,7 +3,10 @@
 #include <algorithm>
 #include <map>
 
+#include "animation/placement.h"
+#include "animation/sound_input.h"
 #include "animation/walk_parts.h"
+#include "base/ranges.h"
 
 namespace gaitpad {
 namespace {
@@ -45,9 +48,36 @@ Crowd::Crowd(std::span<const CrowdMember> members, IkMode mode)
   for (std::size_t i = 0; i < members.size(); ++i) restart(static_cast<int>(i), members[i].place_m);
 }
 
+Result<Crowd> Crowd::create(std::span<const CrowdMember> members, IkMode mode) {
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const std::string member = "members[" + std::to_string(i) + "]";
+    if (!members[i].model) return Error{member + ".model is null"};
+    for (int axis = 0; axis < 3; ++axis) {
+      if (auto problem = range_problem(member + ".place_m." + "xyz"[axis], members[i].place_m[axis],
+                                       -kFarthest_m, kFarthest_m))
+        return *problem;
+    }
+  }
+  return Crowd(members, mode);
+}
+
 void Crowd::restart(int member, const vec3& place_m) noexcept {
   Pose pose;
   states_[member] = standing(*models_[member], place_m, pose);
+  store_pose(member, pose);
+}
+
+void Crowd::move(int member, const Placement& by) noexcept {
+  Pose pose;
+  copy_pose(member, pose);
+  move_walk(by, states_[member], pose);
+  store_pose(member, pose);
+}
+
+void Crowd::put(int member, const vec3& place_m, double heading_rad) noexcept {
+  Pose pose;
+  copy_pose(member, pose);
+  put_walk(place_m, heading_rad, states_[member], pose);
   store_pose(member, pose);
 }
 
@@ -79,20 +109,37 @@ void Crowd::advance_block(int number, double dt_s) noexcept {
     }
     return;
   }
+  if (!is_sound_tick(dt_s)) {
+    for (const int member : block) mended_tick(states_[member]);
+    dt_s = states_[block[0]].clock.tick_s;
+  }
   std::array<Walking, kTogether> walks;
   for (std::size_t i = 0; i < block.size(); ++i) {
     const int member = block[i];
+    if (!is_sound(params_[member]))
+      params_[member] = mended_params(params_[member], states_[member]);
+    states_[member].clock.tick_s = dt_s;
     const std::size_t first = first_joint_[member];
     walks[i] = {&params_[member], &states_[member], &roots_m_[member], local_.data() + first,
                 first_joint_[member + 1] - first};
   }
   const std::span<const Walking> all(walks.data(), block.size());
-  if (lanes_in_use() >= 8) {
-    advance_all<8>(model, dt_s, all);
-  } else if (lanes_in_use() >= 4) {
-    advance_all<4>(model, dt_s, all);
-  } else {
-    advance_all<2>(model, dt_s, all);
+  const int parts = tick_parts(dt_s);
+  std::array<RootBefore, kTogether> before;
+  for (std::size_t i = 0; i < block.size(); ++i) before[i] = root_of(*walks[i].state);
+  for (int part = 0; part < parts; ++part) {
+    if (lanes_in_use() >= 8) {
+      advance_all<8>(model, dt_s / parts, all);
+    } else if (lanes_in_use() >= 4) {
+      advance_all<4>(model, dt_s / parts, all);
+    } else {
+      advance_all<2>(model, dt_s / parts, all);
+    }
+  }
+  for (std::size_t i = 0; i < block.size(); ++i) {
+    WalkState& state = *walks[i].state;
+    report_root(before[i], state);
+    place_in_world(state.placed, state.frame, *walks[i].root_m, walks[i].local[0]);
   }
 }
 

@@ -349,6 +349,10 @@ double random_share(std::uint32_t seed) noexcept {
 }  // namespace
 
 Ground ground_at(const Terrain& terrain, double x_m, double z_m) noexcept {
+  if (terrain.asked.ask != nullptr) {
+    const Ground ground = terrain.asked.ask(terrain.asked.game, x_m, z_m);
+    return std::isfinite(ground.height_m) ? ground : Ground{};
+  }
   const double z = bounded_place(z_m);
   const TerrainSection* s = section_at(terrain, z);
   if (!s) return {};
@@ -377,6 +381,7 @@ Stretch piece_at(const Terrain& terrain, double z_m) noexcept {
 }
 
 bool is_flat(const Terrain& terrain) noexcept {
+  if (terrain.asked.ask != nullptr) return false;
   return std::all_of(terrain.sections.begin(), terrain.sections.end(), [](const TerrainSection& s) {
     return std::holds_alternative<FlatSection>(s.shape);
   });
@@ -435,6 +440,28 @@ std::optional<Error> add_section(Terrain& terrain, const SectionShape& shape) {
   if (section.begin_m + section.length_m > kFar_m) return Error{"the terrain is too long"};
   section.end_m = section.base_m + rise_of(shape);
   terrain.sections.push_back(std::move(section));
+  return std::nullopt;
+}
+
+std::optional<Error> check(const Terrain& terrain) {
+  if (terrain.asked.ask != nullptr && !terrain.sections.empty())
+    return Error{terrain.name + ": has sections and a ground that is asked for: one of them"};
+  Terrain laid;
+  for (std::size_t i = 0; i < terrain.sections.size(); ++i) {
+    const std::string what = terrain.name + ": sections[" + std::to_string(i) + "]";
+    const TerrainSection& is = terrain.sections[i];
+    if (auto problem = add_section(laid, is.shape)) return Error{what + ": " + problem->message};
+    const TerrainSection& should = laid.sections.back();
+    if (is.begin_m != should.begin_m || is.length_m != should.length_m ||
+        is.base_m != should.base_m || is.end_m != should.end_m || is.piece != should.piece)
+      return Error{what + " does not begin where the one before ends: lay it with add_section()"};
+  }
+  if (terrain.zones.size() > static_cast<std::size_t>(kMaxZones))
+    return Error{terrain.name + ": there are too many zones"};
+  for (const TerrainZone& zone : terrain.zones) {
+    if (!(zone.from_m <= zone.to_m && zone.right_m <= zone.left_m))
+      return Error{terrain.name + ": a zone ends before it begins, or a bound is not a number"};
+  }
   return std::nullopt;
 }
 

@@ -8,6 +8,7 @@
 #include <bit>
 #include <cstdint>
 
+#include "animation/floor.h"
 #include "animation/walk_figure.h"
 #include "motion/leg_pose.h"
 
@@ -60,11 +61,12 @@ void follow_rail(const Tick& tick, Side side, WalkState& state) noexcept {
   const vec3 forward = heading_direction(state.path.heading_rad), left = glm::cross(kUp, forward);
   const vec3 under = state.path.hips_m + state.path.pelvis_m.v * (2.0 * smoothing_s / tick.dt_s) +
                      left * (scale * (side == kLeftSide ? hand.rail_side_m : -hand.rail_side_m));
+  const Floor floor{*tick.model.terrain, tick.placed};
   double sum = 0.0, weights = 0.0;
   for (int i = -kRailProbes; i <= kRailProbes && !tick.flat; ++i) {
     const vec3 at = under + forward * (i * kRailProbe_m * tick.model.size);
     const double weight = kRailProbes + 1.0 - std::abs(i);
-    sum += weight * ground_at(*tick.model.terrain, at.x, at.z).height_m;
+    sum += weight * ground_at(floor, at.x, at.z).height_m;
     weights += weight;
   }
   const double mean_m = tick.flat ? 0.0 : sum / weights;
@@ -95,7 +97,7 @@ void hold_posture(const Tick& tick, WalkState& state) noexcept {
   body.out_rad = {};
   if (tick.mode == IkMode::paper) return;
   for (int side : {0, 1}) body.out_rad[side] = body.now.arm_out_deg[side] * kDegree;
-  body.forward_rad = trunk.lean_deg * kDegree + body.push_rad.x;
+  body.forward_rad = trunk.lean_deg * kDegree + body.push_rad.x - state.idle.breath_rad;
   if (trunk.over_left_deg == 0.0 && trunk.over_right_deg == 0.0) return;
   body.left_rad = presence(state) * kDegree *
                   (trunk.over_left_deg * stands_alone(tick.model, state, kLeftSide) -
@@ -133,6 +135,42 @@ void lean_trunk(const WalkModel& model, const WalkState& state, const PosePart& 
     if (arm.is_there)
       turn_joint(model.cycle.skeleton, state.path.heading_rad, back, arm.joints.shoulder, pose);
   }
+}
+
+// Where a walk begins, changes or ends the data's chest and head may jump: their second differences
+// are bounded. What that differs by the spine's joints share, and neck and head.
+constexpr double kMostChest_s2 = 260.0 * kDegree, kMostHead_s2 = 145.0 * kDegree,
+                 kTrunkEases_s = 0.25;
+
+// How far the segment is turned from standing, as a rotation vector in the walker's axes.
+vec3 turn_of(const quat& world, const quat& standing, double heading_rad) noexcept {
+  return rotation_vector(rotation_y(-heading_rad) * world * glm::conjugate(standing));
+}
+
+// The turn that it is to have.
+vec3 eased_turn(const Tick& tick, const WalkState& state, const vec3& goal, double most_s2,
+                EasedOf<vec3, double>& eased) noexcept {
+  const double changes = state.body.push_rad.x != 0.0 ? 1.0 : state.path.unsteady;
+  const vec3 value =
+      ease<double>(goal, most_s2 * tick.dt_s * tick.dt_s, 0.0,
+                   kTrunkEases_s * tick.model.time_scale / tick.dt_s, changes, eased);
+  keep(value, eased);
+  return value;
+}
+
+void ease_chest(const Tick& tick, WalkState& state, const PosePart& pose) noexcept {
+  const UpperBodyModel& build = tick.model.body;
+  const std::vector<int>& spine = build.joints.spine;
+  if (tick.mode == IkMode::paper || spine.empty() || build.head_path.empty()) return;
+  const Skeleton& skeleton = tick.model.cycle.skeleton;
+  const double heading = state.path.heading_rad;
+  const quat chest = rotation_above(skeleton, pose, build.head_path[build.neck_at]);
+  const vec3 goal = turn_of(chest, build.chest_standing, heading),
+             value = eased_turn(tick, state, goal, kMostChest_s2, state.body.eased_chest);
+  if (value == goal) return;
+  const vec3 off = rotation_vector(from_rotation_vector(value) * from_rotation_vector(-goal));
+  const quat turn = from_rotation_vector(off / static_cast<double>(spine.size()));
+  for (const int joint : spine) turn_joint(skeleton, heading, turn, joint, pose);
 }
 
 void spread_arms(const WalkModel& model, const WalkState& state, const PosePart& pose) noexcept {
@@ -549,8 +587,9 @@ bool is_head_free(const HeadParams& head) noexcept {
   return head.look <= 0.0 && head.look_at <= 0.0 && head.lead <= 0.0;
 }
 
-void pose_head(const WalkModel& model, const WalkState& state, const PosePart& pose,
+void pose_head(const Tick& tick, WalkState& state, const PosePart& pose,
                JointFrames& world) noexcept {
+  const WalkModel& model = tick.model;
   const UpperBodyModel& body = model.body;
   const Skeleton& skeleton = model.cycle.skeleton;
   const HeadParams& now = state.body.now.head;
@@ -558,19 +597,31 @@ void pose_head(const WalkModel& model, const WalkState& state, const PosePart& p
   const int head = body.head_path.back();
   const int chest = skeleton.joints[body.head_path[body.neck_at]].parent;
   const quat trunk = world.rotation[chest] * glm::conjugate(body.chest_standing);
-  const auto look = [&](const vec3& direction, double share) {
+  // `from`: the head's rotation without this look.
+  const auto look = [&](const quat& from, const vec3& direction, double share) {
     const Gaze to = gaze(body, trunk, direction);
-    const quat& own = world.rotation[head];
-    const quat wanted = nlerp(own, to.head, std::clamp(share, 0.0, 1.0) * to.share);
-    turn_head(body, skeleton, wanted * glm::conjugate(own), pose, world);
+    const quat wanted = nlerp(from, to.head, std::clamp(share, 0.0, 1.0) * to.share);
+    turn_head(body, skeleton, wanted * glm::conjugate(world.rotation[head]), pose, world);
   };
   const UpperBodyState& ahead_of = state.body;
-  const double turns = ahead_of.head_ahead_rad.x - ahead_of.chest_ahead_rad.x,
-               nods = kHeadStays * ahead_of.push_rad.x;
+  const IdleState& idle = state.idle;
+  const double turns = ahead_of.head_ahead_rad.x - ahead_of.chest_ahead_rad.x + idle.glance_rad,
+               nods = kHeadStays * (ahead_of.push_rad.x - idle.breath_rad) - idle.nod_rad;
   if (turns != 0.0 || nods != 0.0) {
     const quat to = rotation_y(state.path.heading_rad);
     turn_head(body, skeleton, to * rotation_y(turns) * rotation_x(-nods) * glm::conjugate(to), pose,
               world);
+  }
+  if (tick.mode != IkMode::paper) {
+    const double heading = state.path.heading_rad;
+    const vec3 goal = turn_of(world.rotation[head], body.head_standing, heading),
+               value = eased_turn(tick, state, goal, kMostHead_s2, state.body.eased_head);
+    if (value != goal) {
+      const quat to = rotation_y(heading);
+      turn_head(body, skeleton,
+                to * from_rotation_vector(value) * from_rotation_vector(-goal) * glm::conjugate(to),
+                pose, world);
+    }
   }
   if (now.lead > 0.0) {
     const quat ahead = rotation_y(now.lead * kLead_s * state.gait.turn_rate.x);
@@ -578,14 +629,18 @@ void pose_head(const WalkModel& model, const WalkState& state, const PosePart& p
   }
   if (now.look > 0.0) {
     const SinCos p = sin_cos(now.pitch_deg * kDegree);
-    look(rotation_y(state.path.heading_rad + now.yaw_deg * kDegree) * vec3(0.0, p.sin, p.cos),
+    look(world.rotation[head],
+         rotation_y(state.path.heading_rad + now.yaw_deg * kDegree) * vec3(0.0, p.sin, p.cos),
          now.look);
   }
   // The head moves as it turns, so a near place is aimed at twice.
+  const quat own = world.rotation[head];
+  vec3 place_m(now.x_m, now.y_m, now.z_m);
+  if (state.placed != Placement{}) place_m = from_world(state.placed, place_m);
   for (int pass = 0; now.look_at > 0.0 && pass < 2; ++pass) {
-    const vec3 way = vec3(now.x_m, now.y_m, now.z_m) - world.position_m[head];
+    const vec3 way = place_m - world.position_m[head];
     const double far = glm::length(way);
-    if (far > 1e-3) look(way / far, pass == 0 || now.look_at >= 1.0 ? now.look_at : 0.0);
+    if (far > 1e-3) look(own, way / far, now.look_at);
   }
 }
 
@@ -593,12 +648,13 @@ void pose_head(const WalkModel& model, const WalkState& state, const PosePart& p
 
 namespace {
 
-// A trunk leans into a speed that it does not have yet, and back from one that it is to lose; head
-// and chest turn before the pelvis does (people: by 0.3 s and less). Times in seconds at the
-// reference leg.
-constexpr double kPush = 3.0 * kDegree;  // for 1 m/s
+// A trunk leans into a speed that it does not have yet, a little also into a slow one, and back
+// from one that it is to lose; head and chest turn before the pelvis does (people: by 0.3 s and
+// less). Times in seconds at the reference leg.
+constexpr double kPush = 3.0 * kDegree;                                          // for 1 m/s
+constexpr double kFirstPush = 2.0 * kDegree, kFirstFrom = 0.4, kFirstAll = 0.8;  // of what lacks
 constexpr double kCalm = 0.25, kSoftCalm_m_s = 0.1;
-constexpr double kPushSmoothing = 0.07, kSpeedSmoothing = 0.15;
+constexpr double kPushSmoothing = 0.04, kSpeedSmoothing = 0.15;
 constexpr double kHeadAhead_s = 0.30, kHeadSmoothing = 0.07;
 constexpr double kChestAhead_s = 0.13, kChestSmoothing = 0.10;
 constexpr double kStill_rad = 1e-7;
@@ -623,7 +679,12 @@ void look_and_lean_ahead(const Tick& tick, WalkState& state) noexcept {
   const double lacks = asked - body.speed_m_s.x;
   const double calm = kCalm * std::max(std::abs(asked), std::abs(body.speed_m_s.x));
   const double size = soft_positive(std::abs(lacks) - calm - kSoftCalm_m_s, kSoftCalm_m_s);
-  settle(kPush * (lacks < 0.0 ? -size : size), kPushSmoothing * scale, dt, body.push_rad);
+  const double first = asked == 0.0
+                           ? 0.0
+                           : kFirstPush * smoothstep(kFirstFrom * std::abs(asked),
+                                                     kFirstAll * std::abs(asked), std::abs(lacks)),
+               push = kPush * size + first;
+  settle(lacks < 0.0 ? -push : push, kPushSmoothing * scale, dt, body.push_rad);
   const double turn = walks ? params.turn_rate_rad_s : 0.0;
   settle(kChestAhead_s * turn, kChestSmoothing * scale, dt, body.chest_ahead_rad);
   settle(kHeadAhead_s * turn, kHeadSmoothing * scale, dt, body.head_ahead_rad);
@@ -647,6 +708,7 @@ void pose_upper_body(const Tick& tick, WalkState& state, const PosePart& pose) n
   const UpperBodyParams& now = state.body.now;
   const Skeleton& skeleton = model.cycle.skeleton;
   lean_trunk(model, state, pose);
+  ease_chest(tick, state, pose);
   spread_arms(model, state, pose);
   const bool moves_spine = model.body.spine.size() > 1 && !is_spine_even(now);
   std::array<bool, 2> moves_arm;
@@ -655,7 +717,14 @@ void pose_upper_body(const Tick& tick, WalkState& state, const PosePart& pose) n
   const bool moves_head =
       !model.body.head_path.empty() &&
       (!is_head_free(now.head) || state.body.push_rad.x != 0.0 ||
-       state.body.head_ahead_rad.x != 0.0 || state.body.chest_ahead_rad.x != 0.0);
+       state.body.head_ahead_rad.x != 0.0 || state.body.chest_ahead_rad.x != 0.0 ||
+       state.idle.share != 0.0 || state.path.unsteady != 0.0 || state.body.eased_head.ticks > 0.0);
+  if (!moves_head && !model.body.head_path.empty() && tick.mode != IkMode::paper) {
+    const int head = model.body.head_path.back();
+    keep(turn_of(rotation_above(skeleton, pose, head) * pose.local[head], model.body.head_standing,
+                 state.path.heading_rad),
+         state.body.eased_head);
+  }
   if (!moves_spine && !moves_arm[0] && !moves_arm[1] && !moves_head) return;
 
   JointFrames world;
@@ -677,7 +746,7 @@ void pose_upper_body(const Tick& tick, WalkState& state, const PosePart& pose) n
   for (const Side side : {kLeftSide, kRightSide}) {
     if (moves_arm[side]) pose_arm(model, state, side, shoulders, own_m[side], pose, world);
   }
-  if (moves_head) pose_head(model, state, pose, world);
+  if (moves_head) pose_head(tick, state, pose, world);
 }
 
 }  // namespace gaitpad

@@ -14,6 +14,9 @@
 // 3.3.2), and everything else comes from the data at this phase.
 #include "gaitpad/walk.h"
 
+#include "animation/floor.h"
+#include "animation/placement.h"
+#include "animation/sound_input.h"
 #include "animation/walk_figure.h"
 
 namespace gaitpad {
@@ -128,12 +131,27 @@ double time_share(const WalkModel& model, const WalkState& state, Stage stage,
   return stage == Stage::roll ? rolls : roll + flight - rolls;
 }
 
+// Stages last whole beats: a steady gait is then exactly periodic, and has the same rhythm at every
+// rate. At 240 Hz a beat is a tick. At another rate a stage ends at the tick that is nearest to its
+// end in beats, so what is rounded does not add up.
+constexpr double kBeat_s = 1.0 / 240.0;
+constexpr int kLeastRoll = 6, kLeastFlight = 12;  // beats
+constexpr int kLeastTicks = 2;
+
+int ticks_of(double time_s, double dt_s) noexcept { return static_cast<int>(time_s / dt_s + 0.5); }
+double on_beat(double time_s) noexcept { return kBeat_s * ticks_of(time_s, kBeat_s); }
+
+double stage_time(const WalkModel& model, const WalkState& state, Stage stage,
+                  Side swing) noexcept {
+  const double beats = 2.0 * state.gait.time_s[swing] * state.clock.slowness *
+                       time_share(model, state, stage, swing) / kBeat_s;
+  return kBeat_s *
+         std::max(stage == Stage::roll ? kLeastRoll : kLeastFlight, static_cast<int>(beats + 0.5));
+}
+
 int stage_length(const WalkModel& model, const WalkState& state, Stage stage, Side swing,
                  double dt_s) noexcept {
-  // Whole ticks: a steady gait is then exactly periodic.
-  const double ticks = 2.0 * state.gait.time_s[swing] * state.clock.slowness *
-                       time_share(model, state, stage, swing) / dt_s;
-  return std::max(stage == Stage::roll ? 6 : 12, static_cast<int>(ticks + 0.5));
+  return std::max(kLeastTicks, ticks_of(stage_time(model, state, stage, swing), dt_s));
 }
 
 void begin_stage(Stage stage, Side swing, int ticks, WalkState& state) noexcept {
@@ -176,13 +194,27 @@ double slowness_of_step(const WalkModel& model, const WalkState& state, Side swi
   return std::max(level * (1.0 + kSlowerOnStairs * rise), slower * stair) / own;
 }
 
+// Both stages of the running step. It makes up for what the steps before it were too short or long.
+void time_step(const Tick& tick, double roll_s, double flight_s, StepClock& clock) noexcept {
+  clock.roll_s = roll_s;
+  clock.step_s = roll_s + flight_s;
+  clock.roll_ticks = std::max(kLeastTicks, ticks_of(roll_s + clock.late_s, tick.dt_s));
+  const double left_s = clock.step_s + clock.late_s - clock.roll_ticks * tick.dt_s;
+  clock.flight_ticks = std::max(kLeastTicks, ticks_of(left_s, tick.dt_s));
+  clock.step_ticks = clock.roll_ticks + clock.flight_ticks;
+}
+
 // Begins a step: `rolling` has just landed, the other foot flies next.
 void begin_step(const Tick& tick, Side rolling, WalkState& state) noexcept {
+  // A step that was changed on its way owes nothing.
+  if (state.clock.step_ticks == state.clock.roll_ticks + state.clock.flight_ticks)
+    state.clock.late_s =
+        std::clamp(state.clock.late_s + state.clock.step_s - state.clock.step_ticks * tick.dt_s,
+                   -tick.dt_s, tick.dt_s);
   state.clock.last_step_ticks = state.clock.roll_ticks + state.clock.flight_ticks;
   state.clock.slowness = slowness_of_step(tick.model, state, other(rolling));
-  state.clock.roll_ticks = stage_length(tick.model, state, Stage::roll, rolling, tick.dt_s);
-  state.clock.flight_ticks =
-      stage_length(tick.model, state, Stage::flight, other(rolling), tick.dt_s);
+  time_step(tick, stage_time(tick.model, state, Stage::roll, rolling),
+            stage_time(tick.model, state, Stage::flight, other(rolling)), state.clock);
   state.clock.stage_phase = rolling == kRightSide ? 0.0 : tick.model.share[0] + tick.model.share[1];
   // The phase may have come out a whole turn off.
   state.clock.phase = state.clock.stage_phase;
@@ -190,17 +222,18 @@ void begin_step(const Tick& tick, Side rolling, WalkState& state) noexcept {
   aim_phase(tick, state);
 }
 
-int ticks_of(double time_s, double dt_s) noexcept { return static_cast<int>(time_s / dt_s + 0.5); }
-
 // The first flight follows the stick until the foot lifts off: a thumb takes some time.
 void time_first_flight(const Tick& tick, WalkState& state) noexcept {
   const double scale = tick.model.time_scale;
   const Side first = other(state.clock.swing);
-  const double steady_s =
-      tick.dt_s * stage_length(tick.model, state, Stage::flight, first, tick.dt_s);
-  state.clock.flight_ticks = ticks_of(
-      std::clamp(kFirstFlight * steady_s, kLeastFirstFlight_s * scale, kMostFirstFlight_s * scale),
-      tick.dt_s);
+  const double steady_s = stage_time(tick.model, state, Stage::flight, first);
+  const double flight_s =
+      std::clamp(kFirstFlight * steady_s, kLeastFirstFlight_s * scale, kMostFirstFlight_s * scale);
+  StepClock& clock = state.clock;
+  const int roll_ticks = ticks_of(clock.roll_s, tick.dt_s);
+  clock.step_s = clock.roll_s + on_beat(flight_s);
+  clock.flight_ticks = ticks_of(clock.step_s - roll_ticks * tick.dt_s, tick.dt_s);
+  clock.step_ticks = roll_ticks + clock.flight_ticks;
   aim_phase(tick, state);
 }
 
@@ -214,11 +247,11 @@ void begin_walk(const Tick& tick, WalkState& state) noexcept {
   state.clock.stopping = state.clock.closing = false;
   state.clock.backward = tick.params.backward;
   state.gait.ratio_behind = 0.0;
-  state.clock.flight_ticks = 0;
-  state.clock.roll_ticks = 0;
+  state.clock.flight_ticks = state.clock.roll_ticks = state.clock.step_ticks = 0;
+  state.clock.step_s = state.clock.late_s = 0.0;
   begin_step(tick, other(first), state);
-  state.clock.stage_ticks = state.clock.roll_ticks =
-      ticks_of((moves ? kFirstRollOn_s : kFirstRoll_s) * tick.model.time_scale, tick.dt_s);
+  state.clock.roll_s = on_beat((moves ? kFirstRollOn_s : kFirstRoll_s) * tick.model.time_scale);
+  state.clock.stage_ticks = state.clock.roll_ticks = ticks_of(state.clock.roll_s, tick.dt_s);
   time_first_flight(tick, state);
   state.clock.phase_rate = 0.0;
   state.clock.led = true;
@@ -387,7 +420,7 @@ namespace {
 
 void report_ground(const Tick& tick, WalkFrame& frame) noexcept {
   if (tick.flat) return;
-  const Terrain& terrain = *tick.model.terrain;
+  const Floor terrain{*tick.model.terrain, tick.placed};
   for (int side : {0, 1}) {
     const vec3 &heel = frame.heel_m[side], &toe = frame.toe_m[side];
     frame.heel_ground_m[side] = ground_at(terrain, heel.x, heel.z).height_m;
@@ -427,8 +460,16 @@ void fill_report(const vec3& pelvis_m, double dt_s, WalkState& state) noexcept {
 }  // namespace
 
 WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noexcept {
+  return standing(model, place_m, 0.0, pose);
+}
+
+WalkState standing(const WalkModel& model, const vec3& place_m, double heading_rad,
+                   Pose& pose) noexcept {
   WalkState state;
-  state.path.hips_m = vec3(place_m.x, 0.0, place_m.z);
+  const double yaw_rad = wrapped(mended_place(heading_rad, state));
+  const quat yaw = rotation_y(yaw_rad);
+  state.path.heading_rad = state.path.landing_heading_rad = state.path.last_heading_rad = yaw_rad;
+  state.path.hips_m = vec3(mended_place(place_m.x, state), 0.0, mended_place(place_m.z, state));
   state.path.pelvis_m.x = state.path.last_pelvis_m = state.path.hips_m;
   state.gait.flight_height = {Damped<double>{1.0, 0.0}, Damped<double>{1.0, 0.0}};
   state.gait.bounce.x = state.gait.sway.x = state.gait.ground_share.x = 1.0;
@@ -438,9 +479,11 @@ WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noex
     FootState& foot = state.foot[side];
     for (Damped<double>& w : state.gait.weight[side]) w.x = 1.0;
     state.gait.time_s[side] = 0.5;
-    foot.heel_anchor_m = state.path.hips_m + vec3(leg.track_m, 0.0, -model.rest_lead_m);
+    foot.lift_yaw_rad = yaw_rad;
+    foot.pose.yaw = yaw;
+    foot.heel_anchor_m = state.path.hips_m + yaw * vec3(leg.track_m, 0.0, -model.rest_lead_m);
     if (!is_flat(*model.terrain)) {
-      foot.plane = standing_plane(model, side, foot.heel_anchor_m, 0.0);
+      foot.plane = standing_plane(model, side, foot.heel_anchor_m, yaw_rad);
       foot.heel_anchor_m = foot.plane.place_m;
       foot.pose.tilt = foot.plane.tilt;
     }
@@ -455,7 +498,10 @@ WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noex
   state.path.base.height_m = state.path.base.level_m =
       std::min(state.foot[kLeftSide].plane.place_m.y, state.foot[kRightSide].plane.place_m.y);
   advance(model, GaitParams{}, IkMode::robust, 1.0 / 240.0, state, pose);
+  // What may not jump has come to its place in that tick, without a rate.
   state.path.eased_height.rate = state.path.eased_height.bend = 0.0;
+  for (auto* turn : {&state.body.eased_chest, &state.body.eased_head})
+    turn->rate = turn->bend = vec3(0.0);
   state.legs.mean_rad = state.legs.lagging_rad = state.legs.even_rad;
   return state;
 }
@@ -481,6 +527,7 @@ void begin_tick(const Tick& tick, WalkState& state, Moment& at) noexcept {
   if (state.clock.started && walks && state.clock.stopping) walk_on(tick, state);
   if (state.clock.starting && state.clock.stage == Stage::roll) time_first_flight(tick, state);
   smooth_upper_body(tick, state);
+  advance_idle(tick, state);
   if (!tick.flat && tick.mode != IkMode::paper) lean_into_slope(tick, state);
   advance_clock(tick, state);
   at = moment_of(tick.model, state);
@@ -569,11 +616,21 @@ void finish_tick(const PlannedTick& planned, Pose& pose) noexcept {
 
 void advance(const WalkModel& model, const GaitParams& params, IkMode mode, double dt_s,
              WalkState& state, Pose& pose) noexcept {
-  const Tick tick = {model, params, mode, dt_s, is_flat(*model.terrain)};
+  if (!is_sound_tick(dt_s)) return advance(model, params, mode, mended_tick(state), state, pose);
+  if (!is_sound(params))
+    return advance(model, mended_params(params, state), mode, dt_s, state, pose);
+  state.clock.tick_s = dt_s;
+  const int parts = tick_parts(dt_s);
+  const Tick tick = {model, params, mode, dt_s / parts, is_flat(*model.terrain), state.placed};
+  const RootBefore before = root_of(state);
   static thread_local PlannedTick planned;  // kept, for clearing it costs more than a leg
-  plan_tick(tick, state, planned);
-  pose_legs(planned);
-  finish_tick(planned, pose);
+  for (int part = 0; part < parts; ++part) {
+    plan_tick(tick, state, planned);
+    pose_legs(planned);
+    finish_tick(planned, pose);
+  }
+  report_root(before, state);
+  place_in_world(state.placed, state.frame, pose.root_m, pose.local[0]);
 }
 
 }  // namespace gaitpad

@@ -3,6 +3,7 @@
 // A stop chooses among three ends the first that brakes softly: the flying foot closes beside the
 // standing one; it lands ahead and the other foot closes; one more step comes between. The hips go
 // to their place between the feet along a quintic, whose time is chosen for the least braking.
+#include "animation/sound_input.h"
 #include "animation/walk_flow.h"
 
 namespace gaitpad {
@@ -36,7 +37,7 @@ struct Behind {
 };
 
 // The time in which hips come to rest most softly, neither beyond their place nor back, and not
-// before their feet.
+// before their feet. Hips that move away from it turn round soon.
 double best_rest_s(double way_m, double speed_m_s, double bend_m_s2, double scale,
                    std::span<const Behind> landings) noexcept {
   constexpr int kTimes = 20, kPoints = 40;
@@ -45,7 +46,7 @@ double best_rest_s(double way_m, double speed_m_s, double bend_m_s2, double scal
   double best_s = kLeastRest_s * scale, least = std::numeric_limits<double>::infinity();
   for (int k = 0; k < kTimes; ++k) {
     const double share = kLeastShare + kShare * k;
-    const double time_s = std::clamp(way_m / (share * std::max(speed_m_s, 0.05)),
+    const double time_s = std::clamp(way_m / (share * std::max(std::abs(speed_m_s), 0.05)),
                                      kLeastRest_s * scale, kMostRest_s * scale);
     const double point_s = time_s / kPoints;
     SmoothFade<double> off{-way_m, speed_m_s * point_s, bend_m_s2 * point_s * point_s};
@@ -53,7 +54,7 @@ double best_rest_s(double way_m, double speed_m_s, double bend_m_s2, double scal
     for (int n = kPoints; n > 1; --n) {
       off.move(static_cast<double>(n));
       brakes = std::max(brakes, std::abs(off.a) / (point_s * point_s));
-      over = std::max(over, off.x);
+      over = std::max({over, off.x, -way_m - off.x});
       back = std::max(back, -off.v / point_s);
       const double now_s = (kPoints - n + 1) * point_s;
       for (const Behind& landing : landings) {
@@ -147,7 +148,9 @@ void replan(double time_s, const Tick& tick, WalkState& state) noexcept {
 }
 
 int ticks_to_lift_off(const WalkModel& model, const WalkState& state) noexcept {
-  constexpr int kMost = 240;
+  constexpr double kLongest_s = 1.0;
+  const double part_s = state.clock.tick_s / tick_parts(state.clock.tick_s);
+  const int most = static_cast<int>(kLongest_s / part_s + 0.5);
   const Side stands = state.clock.swing;
   const double phase = moment_of(model, state).step_phase + stage_share(model, Stage::roll, stands);
   const StridePlace lifts = stride_of(model, state.clock.backward, phase, state.gait.ratio_behind);
@@ -158,11 +161,11 @@ int ticks_to_lift_off(const WalkModel& model, const WalkState& state) noexcept {
   const vec3 ahead = heading_direction(foot.lift_yaw_rad) * (state.clock.backward ? -1.0 : 1.0);
   const SmoothFade<vec3>& pelvis = state.path.pelvis_m;
   SmoothFade<vec3> off{pelvis.x - state.path.rest_m, pelvis.v, pelvis.a};
-  for (int n = 1; n < std::min(kMost, state.clock.rest_ticks); ++n) {
+  for (int n = 1; n < std::min(most, state.clock.rest_ticks); ++n) {
     off.move(static_cast<double>(state.clock.rest_ticks + 1 - n));
     if (glm::dot(state.path.rest_m + off.x - place, ahead) >= 0.0) return n;
   }
-  return kMost;
+  return most;
 }
 
 void plan_rest_place(const Tick& tick, WalkState& state) noexcept {

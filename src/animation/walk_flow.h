@@ -383,6 +383,9 @@ inline constexpr double kReach = 0.9994;  // of the leg: a knee bent by 4 degree
 inline constexpr double kUnsteadyReach = 0.997, kUnsteadySoft_m = 0.016;  // and by 11
 inline constexpr double kSoftReach_m = 0.006, kKnown_m = 0.0015, kWiderReach = 0.6,
                         kWidest_m = 0.06;
+// So far hips sink at most: a leg that is asked for more, as a step that jumps while it turns may,
+// stays short of its foot.
+inline constexpr double kMostSunk_m = 0.34, kSoftSunk_m = 0.12;
 inline constexpr double kFreeze = 0.55;  // of the flight: after it the landing place is settled
 
 // A power to a whole number, at least 0.
@@ -1395,7 +1398,7 @@ PelvisOf<V> pelvis_over_ground(const WalkModel& model, const StateOf<V>& state,
   const Quat<V>& heading = pelvis.heading = rotation_about_y(state.path.heading_rad);
   const Vec<V> left{heading.w * heading.w - heading.y * heading.y, V{},
                     -2.0 * heading.w * heading.y};
-  pelvis.position_m = state.path.pelvis_m.x;
+  pelvis.position_m = state.path.pelvis_m.x + state.path.sway_m;
   // In a turn the body leans as a whole, about the ground below the hips.
   const V height_m = model.stand_m + cell.pelvis_m.y;
   V sine, cosine;
@@ -1462,7 +1465,7 @@ V pelvis_height(const WalkModel& model, double tick_s, StateOf<V>& state, const 
   }
   // What a foot asked that has just left the ground fades.
   PathFlow<V>& path = state.path;
-  const V drop = sqrt_of(squares);
+  const V drop = soft_min(sqrt_of(squares), kMostSunk_m * model.size, kSoftSunk_m * model.size);
   path.sunk_m.advance(drop, Damping(kRises_s * model.time_scale, tick_s));
   const auto holds = (path.unsteady > V{}) & (path.sunk_m.x > drop);
   path.sunk_m.x = holds ? path.sunk_m.x : drop;

@@ -1,5 +1,6 @@
 #include "gaitpad/walk_model.h"
 
+#include "base/ranges.h"
 #include "motion/leg_pose.h"
 #include "motion/pose_rows.h"
 #include "motion/stride_lanes.h"
@@ -390,9 +391,23 @@ void keep_trunk_upright(double roll_rad, GaitCycle& cycle) {
 
 }  // namespace
 
+std::optional<Error> check(const Character& character) {
+  constexpr double kLeast = 0.05, kMost = 20.0;
+  const std::string name = character.name + ": ";
+  if (auto problem = range_problem(name + "scale", character.scale, kLeast, kMost)) return problem;
+  if (auto problem = range_problem(name + "leg_ratio", character.leg_ratio, kLeast, kMost))
+    return problem;
+  return range_problem(name + "scale times leg_ratio", character.scale * character.leg_ratio,
+                       kLeast, kMost);
+}
+
 Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character) {
+  if (auto problem = check(character)) return *problem;
+  if (auto problem = check(cycle)) return *problem;
   if (!cycle.strides) return Error{cycle.name + ": has no clean strides, see with_clean_strides()"};
   const StrideFamily& strides = *cycle.strides;
+  if (strides.table.size() != kStrideRatios || strides.back.size() != kBackRatios)
+    return Error{cycle.name + ": its clean strides are not those of with_clean_strides()"};
   if (!character.skeleton.empty()) {
     return Error{character.name + ": a character with a skeleton of its own is not supported yet"};
   }

@@ -13,7 +13,8 @@ struct Tick {
   const GaitParams& params;
   IkMode mode;
   double dt_s;
-  bool flat;  // no terrain: all that walk_terrain.cpp does is left out
+  bool flat;              // no terrain: all that walk_terrain.cpp does is left out
+  Placement placed = {};  // of the walk
 };
 
 // --- One walk, or several side by side -----------------------------------------------------------
@@ -225,6 +226,9 @@ void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept;
 // A foot that lands stands on its heel from now on.
 void plant_foot(WalkState& state, Side side) noexcept;
 void begin_roll(const Tick& tick, WalkState& state, Side side) noexcept;
+
+// --- idle.cpp: breath, sway and glances of a person who stands -----------------------------------
+void advance_idle(const Tick& tick, WalkState& state) noexcept;
 
 // --- upper_body.cpp: what is above the hips ------------------------------------------------------
 // Where a pose is written: the root's place, and the local rotations by joint.

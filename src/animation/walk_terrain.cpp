@@ -21,6 +21,7 @@
 // second spline moves the foot along z, away from the riser. Down stairs that second spline moves
 // the foot ahead instead, and the first one is drawn taut over the edges, so that the foot sinks
 // early.
+#include "animation/floor.h"
 #include "animation/walk_flow.h"
 
 namespace gaitpad {
@@ -76,6 +77,8 @@ struct Step {
   vec3 forward{0.0, 0.0, 1.0}, wanted_m{0.0};
   double leg_m = 0.0;
   Extent sole;
+  vec3 middle_m{
+      0.0};  // from the heel: of the sole, along z, or along the step where nothing lies so
   double wanted_length_m() const noexcept { return glm::dot(wanted_m - from_m, forward); }
 };
 
@@ -110,7 +113,7 @@ bool is_stuck(const Step& step, double length_m) noexcept {
   return sign * wanted > kLeastStep * step.leg_m && sign * length_m < kStuck * sign * wanted;
 }
 
-double cost_of(const Terrain& terrain, const Step& step, const Stretch& piece) noexcept {
+double cost_of(const Floor& terrain, const Step& step, const Stretch& piece) noexcept {
   const Room room = room_on(piece, step.sole, step.leg_m);
   const vec3 near = wanted_on(step, piece);
   const double dz = std::clamp(near.z, room.low_m, room.high_m) - near.z;
@@ -136,7 +139,7 @@ double cost_of(const Terrain& terrain, const Step& step, const Stretch& piece) n
 
 // Tries the pieces from the one that the wanted place is on back to the standing foot's. Where that
 // is the same one, and its edge is in the way, the one behind this edge is tried, too.
-Stretch best_piece(const Terrain& terrain, const Step& step, const Stretch* settled) noexcept {
+Stretch best_piece(const Floor& terrain, const Step& step, const Stretch* settled) noexcept {
   const double middle = 0.5 * (step.sole.back_m + step.sole.front_m);
   const double stands = step.from_m.z + middle;
   Stretch piece = piece_at(terrain, step.wanted_m.z + middle), best = piece;
@@ -187,11 +190,11 @@ void look_ahead(const Tick& tick, const Step& landing, const vec3& across_m,
                 state.path.foothold.share
           : 0.0;
   step.wanted_m = step.from_m + step.forward * wanted - across_m;
-  const Terrain& terrain = *tick.model.terrain;
+  const Floor terrain{*tick.model.terrain, tick.placed};
   bool fits = false;
   const vec3 place = place_on(step, best_piece(terrain, step, nullptr), fits);
-  const double middle = 0.5 * (step.sole.back_m + step.sole.front_m);
-  const double next_m = ground_at(terrain, place.x, place.z + middle).height_m;
+  const vec3 middle = place + step.middle_m;
+  const double next_m = ground_at(terrain, middle.x, middle.z).height_m;
   // Of the rise to the next landing and the rest of the flying foot's rise, the greater one.
   const double step_m = std::abs(next_m - state.path.landing_m.y),
                way_m = std::abs(next_m - landing.from_m.y);
@@ -199,7 +202,7 @@ void look_ahead(const Tick& tick, const Step& landing, const vec3& across_m,
 }
 
 // The share of its length that a step keeps on a slope.
-double slope_share(const Terrain& terrain, const Step& step, const Stretch& stands) noexcept {
+double slope_share(const Floor& terrain, const Step& step, const Stretch& stands) noexcept {
   const double length =
       glm::distance(vec2(step.wanted_m.x, step.wanted_m.z), vec2(step.from_m.x, step.from_m.z));
   if (length < kMoved_m || step.wanted_m.z < stands.from_m || step.wanted_m.z > stands.to_m)
@@ -210,8 +213,8 @@ double slope_share(const Terrain& terrain, const Step& step, const Stretch& stan
 
 // The best fit to the ground under a sole: the ground is as far above the plane as below it. Ground
 // beyond the risers around `piece` does not count.
-FootPlane plane_under(const Terrain& terrain, const LegBuild& leg, const vec3& heel_m,
-                      double yaw_rad, const Stretch& piece) noexcept {
+FootPlane plane_under(const Floor& terrain, const LegBuild& leg, const vec3& heel_m, double yaw_rad,
+                      const Stretch& piece) noexcept {
   const quat yaw = rotation_y(yaw_rad);
   const vec3 sole = yaw * (leg.tip_m - leg.model.heel_m), across = yaw * leg.side;
   const double length = horizontal_length(sole), half = leg.half_width_m;
@@ -267,12 +270,13 @@ FootPlane standing_plane(const WalkModel& model, Side side, const vec3& heel_m,
   const Stretch piece =
       piece_at(*model.terrain, heel_m.z + 0.5 * (step.sole.back_m + step.sole.front_m));
   bool fits = false;
-  return plane_under(*model.terrain, leg, place_on(step, piece, fits), yaw_rad, piece);
+  return plane_under({*model.terrain, Placement{}}, leg, place_on(step, piece, fits), yaw_rad,
+                     piece);
 }
 
 void choose_foothold(const Tick& tick, WalkState& state, const vec3& forward,
                      const vec3& across_m) noexcept {
-  const Terrain& terrain = *tick.model.terrain;
+  const Floor terrain{*tick.model.terrain, tick.placed};
   const Side swing = step_foot(state), stand = other(swing);
   Foothold& landing = state.path.foothold;
   const bool flies = state.clock.stage == Stage::flight,
@@ -286,7 +290,12 @@ void choose_foothold(const Tick& tick, WalkState& state, const vec3& forward,
   step.forward = forward;
   step.leg_m = tick.model.leg_length_m;
   const double yaw = state.path.landing_heading_rad;
-  step.sole = sole_extent(tick.model.leg[swing], yaw);
+  const LegBuild& leg = tick.model.leg[swing];
+  step.sole = sole_extent(leg, yaw);
+  const auto middle = [](const Extent& sole) { return 0.5 * (sole.back_m + sole.front_m); };
+  step.middle_m = tick.model.terrain->asked.ask == nullptr
+                      ? kForward * middle(step.sole)
+                      : forward * middle(sole_extent(leg, yaw - heading_of(forward)));
   const double length =
       step_length<double>(moment_of(tick.model, state), state.gait.length_m[swing].x);
   const auto wanted = [&] { return step.from_m + forward * (length * landing.share) + across_m; };
@@ -324,8 +333,8 @@ constexpr double kSlopeLeanSmoothing = 0.3;
 constexpr double kShortStep = 0.1;  // of the data's step: shorter ones say nothing about the ground
 constexpr double kLeastShare = 0.3;  // the ground leaves at least this much of a step's length
 constexpr double kGroundSmoothing_s = 0.3;
-constexpr double kRatioJump = 0.01;       // a tick: sticks are slower,
-constexpr double kFirstRatioJump = 0.06;  // but for a first step
+constexpr double kRatioJump_1_s = 2.4;        // sticks change the ratio slower,
+constexpr double kFirstRatioJump_1_s = 14.4;  // but for a first step
 
 // A step that is to end on another tread than it was has another ratio at once. The tables are read
 // for one that goes there until the flight begins.
@@ -335,7 +344,8 @@ void keep_ratio_smooth(const Tick& tick, WalkState& state) noexcept {
   state.gait.step_ratio = ratio;
   if (state.clock.stage == Stage::roll && state.clock.tick == 1) {
     state.gait.off_ratio = {};
-  } else if (std::abs(change) > (state.clock.starting ? kFirstRatioJump : kRatioJump)) {
+  } else if (std::abs(change) >
+             tick.dt_s * (state.clock.starting ? kFirstRatioJump_1_s : kRatioJump_1_s)) {
     state.gait.off_ratio.x -= change;
   }
   state.gait.off_ratio.advance(
@@ -686,13 +696,15 @@ double base_under(const FlightPoint& point, const vec3& p) noexcept {
 
 // How far to move along z so that no part of the sole is inside a riser that leads up from
 // `height_m` at either end of `piece`.
-double way_back(const Terrain& terrain, const Sole& sole, const Stretch& piece, double height_m,
+double way_back(const Floor& terrain, const Sole& sole, const Stretch& piece, double height_m,
                 double room, double size) noexcept {
   double shift = 0.0;
   for (const vec3& p : sole) {
     const bool ahead_up =
+        std::isfinite(piece.to_m) &&
         ground_at(terrain, p.x, piece.to_m + kRiser_m).height_m > height_m + kRiser_m;
     const bool behind_up =
+        std::isfinite(piece.from_m) &&
         ground_at(terrain, p.x, piece.from_m - kRiser_m).height_m > height_m + kRiser_m;
     if (ahead_up) shift = std::min(shift, piece.to_m - room - p.z);
     if (behind_up) shift = std::max(shift, piece.from_m + room - p.z);
@@ -750,7 +762,7 @@ Flight planned_flight(const Tick& tick, const WalkState& state, Side side) noexc
 // ground.
 Wanted wanted_raise(const Tick& tick, const Flight& flight, bool crosses_riser,
                     const FlightSpline& shift) noexcept {
-  const Terrain& terrain = *tick.model.terrain;
+  const Floor terrain{*tick.model.terrain, tick.placed};
   const double above_m = kRoomAbove_m * tick.model.size;
   Wanted above;
   for (int i = 0; i <= kProbes; ++i) {
@@ -793,7 +805,7 @@ FlightSpline lead_in(const Flight& flight, Wanted& beside) noexcept {
 void plan_over(const Tick& tick, const WalkState& state, const FootState& foot,
                const Flight& flight, FlightRoom& room) noexcept {
   const double size = tick.model.size;
-  const Terrain& terrain = *tick.model.terrain;
+  const Floor terrain{*tick.model.terrain, tick.placed};
   const Wanted above = wanted_raise(tick, flight, foot.crosses_riser, FlightSpline{});
   Wanted beside{};
   // Start gentle; sharpen until the riser is cleared.
@@ -820,7 +832,7 @@ void plan_over(const Tick& tick, const WalkState& state, const FootState& foot,
 // Smallest advance that puts the sole past all ground that is higher than the ground line with
 // `raise` and lies before the landing's piece.
 double way_on(const Tick& tick, const Flight& flight, int i, double raise) noexcept {
-  const Terrain& terrain = *tick.model.terrain;
+  const Floor terrain{*tick.model.terrain, tick.placed};
   const double room = kRoomBeside_m * tick.model.size, least = kLeastWanted_m * tick.model.size;
   const bool ahead = flight.left[i] > 0.0;
   double on = 0.0;

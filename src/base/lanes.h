@@ -186,7 +186,10 @@ inline void sin_cos_of(const V& angle_rad, V& sine, V& cosine) noexcept {
   V quarters{};
   if (turned) {
     constexpr double kRound = 6755399441055744.0;  // 1.5 * 2^52: adding it rounds to a whole number
-    quarters = (angle_rad * kTwoOverPi + kRound) - kRound;
+    // To the nearest, halves away from 0, as sin_cos() does.
+    const V scaled = angle_rad * kTwoOverPi, above = abs_of(scaled) + 0.5;
+    const V near = (above + kRound) - kRound, whole = near > above ? near - 1.0 : near;
+    quarters = scaled < V{} ? -whole : whole;
     x = ((angle_rad - quarters * kHalfPi1) - quarters * kHalfPi2) - quarters * kHalfPi3;
     const V s = sin_kernel(x), c = cos_kernel(x);
     const auto is_odd = [](const V& n) {

@@ -7,6 +7,8 @@
 #include <cstdint>
 #include <cstring>
 
+#include "base/ranges.h"
+
 namespace gaitpad {
 
 std::string_view trimmed(std::string_view text, std::string_view blanks) noexcept {
@@ -165,21 +167,26 @@ constexpr auto kDigitPairs = [] {
 }();
 
 // |value| times 10^decimals, rounded to the nearest integer, a tie to the even one. The product of
-// the 53-bit significand and the power of ten has at most 83 bits, so nothing is lost before that.
+// the 53-bit significand and the power of ten has at most 83 bits: two words of which the lower one
+// has 32, so that nothing is lost before the rounding.
 std::uint64_t scaled_exactly(double value, int decimals) noexcept {
-  __extension__ using Product = unsigned __int128;
   constexpr int kSignificand = 52, kBias = 1023 + kSignificand;
+  constexpr std::uint64_t kLower = 0xffffffff;
   const auto bits = std::bit_cast<std::uint64_t>(value);
   const int biased = static_cast<int>(bits >> kSignificand & 0x7ff);
   const std::uint64_t fraction = bits & ((std::uint64_t{1} << kSignificand) - 1);
   const std::uint64_t significand =
       biased == 0 ? fraction : fraction | std::uint64_t{1} << kSignificand;
   const int shift = kBias - std::max(biased, 1);  // at least 23, since the value is below 1e9
-  if (shift > 100) return 0;                      // less than half
-  const Product product = Product{significand} * kPowersOfTen[decimals];
-  const auto whole = static_cast<std::uint64_t>(product >> shift);
-  const Product rest = product & ((Product{1} << shift) - 1), half = Product{1} << (shift - 1);
-  return whole + (rest > half || (rest == half && whole % 2 == 1));
+  if (shift > 84) return 0;                       // less than half
+  const std::uint64_t power = kPowersOfTen[decimals], lower = (significand & kLower) * power;
+  const std::uint64_t upper = (significand >> 32) * power + (lower >> 32);
+  const std::uint64_t halves =
+      shift > 32 ? upper >> (shift - 33) : upper << (33 - shift) | (lower & kLower) >> (shift - 1);
+  const std::uint64_t whole = halves >> 1;
+  // 10^decimals ends in as many zero bits as decimals.
+  const bool is_beyond_half = std::countr_zero(significand) + decimals < shift - 1;
+  return whole + ((halves & 1) == 1 && (is_beyond_half || whole % 2 == 1));
 }
 
 // The same. A product below 2^40 is off by at most 2^-14, which matters only near a tie.
@@ -235,6 +242,13 @@ std::string fixed(double value, int decimals) {
   std::string text;
   append_fixed(text, value, decimals);
   return text;
+}
+
+std::string short_number(double value) {
+  std::array<char, 32> text;
+  const auto written =
+      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 6);
+  return {text.data(), written.ptr};
 }
 
 }  // namespace gaitpad

@@ -318,6 +318,7 @@ std::optional<Error> check(const CheckedTrace& trace, const CheckOptions& option
       session_of(expectation, fs::path(trace.path).parent_path().string(), trace.recording());
   session.config_folders = options.config_folders;
   session.replay.max_hours = options.max_hours;
+  session.replay.user_styles = options.user_styles;
   auto prepared = prepared_trace(session);
   if (!prepared) return prepared.error();
   const auto files = files_of(trace, *prepared, options.config_folders);
@@ -333,6 +334,8 @@ std::optional<Error> check(const CheckedTrace& trace, const CheckOptions& option
   }
   result.curves = std::move(parting.curves);
   result.details.insert(result.details.end(), parting.details.begin(), parting.details.end());
+  const std::vector<std::string>& remarks = prepared->config.remarks;
+  result.details.insert(result.details.end(), remarks.begin(), remarks.end());
   blame_files(changed_files(expectation, *files), result);
   return std::nullopt;
 }

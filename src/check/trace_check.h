@@ -16,6 +16,7 @@ struct CheckOptions {
   bool updates = false;             // writes the expectations that are not met or are missing
   bool with_curves = false;         // of the joint that differs first
   std::optional<double> max_hours;  // as SessionSpec::Replay's
+  bool user_styles = false;         // as SessionSpec::Replay's
 };
 
 // A recording and what stands beside it.

@@ -23,6 +23,7 @@ template <double StrideFactors::*number>
 std::span<double> of_stride(StyleValues& style, int side) {
   return {&(style.stride[side].*number), 1};
 }
+std::span<double> of_idle(StyleValues& style, int) { return {&style.body.idle, 1}; }
 std::span<double> of_arm_swing(StyleValues& style, int side) {
   return {&style.body.arm_swing[side], 1};
 }
@@ -63,6 +64,7 @@ constexpr StyleField kWholeFields[] = {
     {"fatigue", "", 0.0, 1.0, &of_whole<&StyleValues::fatigue>},
     {"hip_sway", "x", 0.0, kMostFactor, &of_whole<&StyleValues::hip_sway>},
     {"hip_bounce", "x", 0.0, kMostFactor, &of_whole<&StyleValues::hip_bounce>},
+    {"idle", "", 0.0, 1.0, &of_idle},
     {"blend_s", "s", 0.0, 10.0, &of_whole<&StyleValues::blend_s>},
     {"fatigue_model.per_100_m", "", 0.0, 10.0, &of_whole<&StyleValues::fatigue_per_100_m>},
     {"fatigue_model.recovery_per_s", "1/s", 0.0, 1.0,

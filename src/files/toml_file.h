@@ -1,7 +1,6 @@
 // A strict reader of TOML files. A syntax error, a wrong type, a value out of range and a key that
-// the caller did not ask for all become one sentence, `FILE:LINE: unknown key "inner_zome"; did you
-// mean
-// ...?`. Size and depth are bounded, and nothing is thrown, so that any file may be read.
+// the caller did not ask for all become one sentence: `FILE:LINE: unknown key "inner_zome"; did
+// you mean ...?`. Size and depth are bounded, and nothing is thrown, so that any file may be read.
 //
 // Ask every table for every key that it may hold, then look at problem() once:
 //   auto file = TomlFile::load(path);

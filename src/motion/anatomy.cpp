@@ -158,8 +158,7 @@ NamedJoint named_joint(std::string_view name) {
 
 namespace {
 
-// --- Legs and arms alike: two bones of like length
-// ------------------------------------------------
+// --- Legs and arms alike: two bones of like length -----------------------------------------------
 
 // A skeleton and the places of its joints in one pose.
 struct Figure {
@@ -228,8 +227,7 @@ std::vector<int> path_below(const Skeleton& skeleton, int top, int joint) {
   return path;
 }
 
-// --- Legs
-// -----------------------------------------------------------------------------------------
+// --- Legs ----------------------------------------------------------------------------------------
 
 using Legs = std::array<LegJoints, 2>;
 
@@ -417,6 +415,7 @@ int pelvis_of(const Skeleton& skeleton, const std::array<LegJoints, 2>& legs) {
 
 Result<std::array<LegJoints, 2>> find_legs(const Motion& motion,
                                            const std::array<LegNames, 2>& given) {
+  if (auto problem = check(motion)) return *problem;
   const std::vector<JointFrames> frames = spread_frames(motion);
   const Figure figure{motion.skeleton, frames[frames.size() / 2].position_m};
   Legs legs;
@@ -449,8 +448,7 @@ Result<std::array<LegJoints, 2>> find_legs(const Motion& motion,
 
 namespace {
 
-// --- Arms, spine, neck and head
-// -------------------------------------------------------------------
+// --- Arms, spine, neck and head ------------------------------------------------------------------
 
 constexpr std::size_t kMostLeaves = 96;  // looked at for a shape: fingers and faces have many
 

@@ -335,6 +335,8 @@ double walking_rate_hz(const Motion& motion) {
 }  // namespace
 
 Result<GaitCycle> gait_cycle(const Motion& motion) {
+  if (auto problem = check(motion)) return *problem;
+  if (!has_legs(motion)) return Error{motion.name + ": legs are not set, see find_legs()"};
   Result<GaitCycle> cycle = looped_cycle_of(motion);
   if (cycle) return cycle;
   std::string reason = cycle.error().message;

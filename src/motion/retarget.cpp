@@ -431,6 +431,9 @@ double mean_leg_m(const GaitCycle& cycle) noexcept {
 }
 
 Result<GaitCycle> cycle_on_skeleton(const GaitCycle& source, const Motion& character) {
+  if (auto problem = check(source)) return *problem;
+  if (auto problem = check(character)) return *problem;
+  if (!has_legs(character)) return Error{character.name + ": legs are not set, see find_legs()"};
   Result<GaitCycle> out = body_of(character);
   if (!out) return out;
   const double ratio = mean_leg_m(*out) / mean_leg_m(source);

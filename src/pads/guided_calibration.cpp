@@ -47,7 +47,7 @@ void GuidedCalibration::take_report(const Report& report) {
 void GuidedCalibration::end_recording() {
   has_ended_ = true;
   if (!guide_ || guide_->step() == GuideStep::done) return;
-  remarks_.emplace_back("the recording has ended: what it did not show is left out");
+  remarks_.emplace_back("the recording has ended: the steps that it does not show are skipped");
   while (guide_->step() != GuideStep::done) guide_->skip();
 }
 
@@ -131,9 +131,10 @@ std::vector<std::string> calibration_comments(const PadAnalysis& analysis) {
       "keys mean. Edit it as you like."};
   for (std::size_t i = 0; i < 2; ++i) {
     if (!analysis.stick[i]) continue;
-    comments.push_back(fmt::format("{} stick: {}. {}", kSides[i],
-                                   name_of(analysis.stick[i]->advice.verdict),
-                                   analysis.stick[i]->advice.reason));
+    comments.push_back(
+        fmt::format("{} stick: {}. {}{}", kSides[i], name_of(analysis.stick[i]->advice.verdict),
+                    analysis.stick[i]->advice.reason,
+                    is_known(analysis, i) ? "" : "; its calibration stays as it was"));
   }
   return comments;
 }

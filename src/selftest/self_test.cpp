@@ -737,7 +737,7 @@ bool SelfTest::calibrate() {
   }
   report_["calibration"] = std::move(sticks);
   if (!is_useful(analysis)) {
-    fail("no stick was seen at rest, so there is no calibration");
+    fail(why_useless(analysis));
     return true;
   }
   calibration_ = calibration_for(pad_->info(), pad_->has_factory_sticks());

@@ -402,10 +402,8 @@ void LiveLoop::publish(std::int64_t shown_ns) noexcept {
     copy_tick(simulation_, options_.stream->writable());
     options_.stream->publish();
   }
-  if (options_.forward != nullptr) {
-    options_.forward->writable() = forwarded_tick(simulation_.pads(), simulation_.stick());
-    options_.forward->publish();
-  }
+  if (options_.forward != nullptr)
+    options_.forward->put(forwarded_tick(simulation_.pads(), simulation_.stick()));
 }
 
 // A full ring drops the sample: nobody takes samples, or not fast enough.

@@ -1,10 +1,17 @@
 #include "session/pad_forward.h"
 
+#include <poll.h>
 #include <pthread.h>
 
-#include <chrono>
+#include <utility>
 
 namespace gaitpad {
+
+bool is_same(const ForwardedTick& a, const ForwardedTick& b) noexcept {
+  return a.state.stick.left == b.state.stick.left && a.state.stick.right == b.state.stick.right &&
+         a.state.trigger == b.state.trigger && a.state.buttons == b.state.buttons &&
+         a.presses == b.presses;
+}
 
 ForwardedTick forwarded_tick(const Pads& pads, const Stick& stick) noexcept {
   ForwardedTick tick;
@@ -31,7 +38,7 @@ VirtualPadState between(const ForwardedTick& before, const ForwardedTick& after)
 }
 
 Result<std::unique_ptr<PadForward>> PadForward::open() {
-  auto pad = VirtualPad::create();
+  auto pad = XboxPad::create();
   if (!pad) return pad.error();
   return std::unique_ptr<PadForward>(new PadForward(std::move(*pad)));
 }
@@ -42,20 +49,31 @@ void PadForward::start() {
 
 void PadForward::stop() {
   is_ending_ = true;
+  bell_.ring();
   if (thread_.joinable()) thread_.join();
+}
+
+void PadForward::put(const ForwardedTick& tick) noexcept {
+  if (is_same(tick, put_)) return;
+  put_ = tick;
+  newest_.writable() = tick;
+  newest_.publish();
+  bell_.ring();
 }
 
 void PadForward::run() {
   ::pthread_setname_np(::pthread_self(), "gaitpad-forward");
   ForwardedTick sent;
   while (!is_ending_) {
-    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    pollfd ready = {bell_.fd(), POLLIN, 0};
+    ::poll(&ready, 1, -1);
+    bell_.clear();
     bool is_new = false;
     const ForwardedTick& tick = newest_.read(is_new);
     if (!is_new) continue;
     // An event that the kernel refuses is lost; the next one comes with the next change.
-    static_cast<void>(pad_->set(between(sent, tick)));
-    static_cast<void>(pad_->set(tick.state));
+    static_cast<void>(pad_.set(between(sent, tick)));
+    static_cast<void>(pad_.set(tick.state));
     sent = tick;
   }
 }

@@ -1,7 +1,7 @@
 // The driving pad of a live session for other programs: its calibrated state goes to a virtual pad.
 //
-// A thread of its own looks at what the loop has published a thousand times a second and sends what
-// has changed, so a stick reaches other programs at most a tick and a millisecond late.
+// A thread of its own sends what a tick has changed; the loop wakes it only then. A stick reaches
+// other programs at most a tick late. `gaitpad forward` has no ticks: pads/stand_in.h.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -9,6 +9,7 @@
 #include <thread>
 
 #include "base/latest.h"
+#include "drivers/posix.h"
 #include "drivers/virtual_pad.h"
 #include "gaitpad/pads.h"
 #include "gaitpad/result.h"
@@ -20,6 +21,7 @@ struct ForwardedTick {
   VirtualPadState state;
   PressCounts presses{};
 };
+bool is_same(const ForwardedTick& a, const ForwardedTick& b) noexcept;
 // `stick`: of that tick.
 ForwardedTick forwarded_tick(const Pads& pads, const Stick& stick) noexcept;
 // The state to send between two ticks so that no press is missed: a button that is as it was, but
@@ -28,22 +30,25 @@ VirtualPadState between(const ForwardedTick& before, const ForwardedTick& after)
 
 class PadForward {
  public:
-  // The errors of VirtualPad::create().
+  // The errors of XboxPad::create().
   static Result<std::unique_ptr<PadForward>> open();
   ~PadForward() { stop(); }
 
   void start();
   void stop();
-  std::string node() const { return pad_->node(); }
-  // Where the loop writes.
-  Latest<ForwardedTick>& newest() noexcept { return newest_; }
+  std::string node() const { return pad_.node(); }
+  // From the loop, after each tick. Without heap or lock; a system call where something has
+  // changed.
+  void put(const ForwardedTick& tick) noexcept;
 
  private:
-  explicit PadForward(std::unique_ptr<VirtualPad> pad) : pad_(std::move(pad)) {}
+  explicit PadForward(XboxPad pad) : pad_(std::move(pad)) {}
   void run();
 
-  std::unique_ptr<VirtualPad> pad_;
+  XboxPad pad_;
+  ForwardedTick put_;  // the loop's
   Latest<ForwardedTick> newest_;
+  Bell bell_;
   std::atomic<bool> is_ending_{false};
   std::thread thread_;
 };

@@ -61,8 +61,13 @@ Result<PreparedTrace> prepared_trace(const SessionSpec& asked) {
   config->pads = std::move(*pads);
   config->pad_rules = trace->version < 2 ? PadRules::version_1 : PadRules::version_2;
   if (auto problem = settle_pads(*trace, config->pads)) return *problem;
+  const std::vector<std::string> left_out = left_out_styles(spec, *trace, *config);
+  config->remarks.insert(config->remarks.end(), left_out.begin(), left_out.end());
   auto start = Simulation::create(*config);
-  if (!start) return start.error();
+  if (!start) {  // a zone's style may be one of these
+    const std::string cause = left_out.empty() ? "" : "; " + left_out.front();
+    return Error{start.error().message + cause};
+  }
   auto changes = style_changes(*trace, start->styles());
   if (!changes) return changes.error();
   auto script = script_for(*start, spec.walk.script);

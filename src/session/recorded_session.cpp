@@ -16,6 +16,7 @@ namespace gaitpad {
 namespace fs = std::filesystem;
 namespace {
 
+constexpr const char* kStylesFolder = "styles";
 constexpr std::string_view kStyles = "styles/";
 
 std::string held_name(const std::string& path, const std::vector<std::string>& folders) {
@@ -131,9 +132,12 @@ std::uint64_t bytes_hash(std::string_view bytes) {
   return hash;
 }
 
-std::vector<UsedFile> used_files(const std::vector<InputFile>& read, const Trace& trace,
-                                 const SimulationConfig& config, const PadOverrides& overrides) {
-  std::set<std::string, std::less<>> styles, pads;
+namespace {
+
+// Styles that characters walk in, and that zones and the recording's commands name.
+std::set<std::string, std::less<>> named_styles(const Trace& trace,
+                                                const SimulationConfig& config) {
+  std::set<std::string, std::less<>> styles;
   for (const WalkerConfig& walker : config.walkers)
     styles.insert(config.styles[static_cast<std::size_t>(walker.style)].name);
   for (const TerrainZone& zone : config.terrain->zones) styles.insert(zone.style);
@@ -143,16 +147,41 @@ std::vector<UsedFile> used_files(const std::vector<InputFile>& read, const Trace
     const auto command = parsed_command({text, event.size});
     if (command && command->verb == Command::Verb::style) styles.emplace(command->name);
   }
+  return styles;
+}
+
+}  // namespace
+
+std::vector<UsedFile> used_files(const std::vector<InputFile>& read, const Trace& trace,
+                                 const SimulationConfig& config, const PadOverrides& overrides) {
+  const auto styles = named_styles(trace, config);
+  std::set<std::string, std::less<>> pads;
   for (const TraceDevice& device : trace.devices) pads.insert(pad_file_of(overrides, device.info));
   std::vector<UsedFile> used;
   for (const InputFile& file : read) {
     const fs::path folder = fs::path(file.path).parent_path().filename();
-    const bool is_spare =
-        (folder == "styles" && config.crowd == 0 && !styles.contains(config_name(file.path))) ||
-        (folder == "pads" && !pads.contains(file.path));
+    const bool is_spare = (folder == kStylesFolder && config.crowd == 0 &&
+                           !styles.contains(config_name(file.path))) ||
+                          (folder == "pads" && !pads.contains(file.path));
     if (!is_spare) used.push_back({file.path, bytes_hash(file.bytes)});
   }
   return used;
+}
+
+std::vector<std::string> left_out_styles(const SessionSpec& spec, const Trace& trace,
+                                         const SimulationConfig& config) {
+  std::vector<std::string> sentences;
+  if (!spec.recording.empty() || spec.replay.user_styles) return sentences;
+  const auto named = named_styles(trace, config);
+  for (const std::string& path : config_files({user_config_folder()}, kStylesFolder)) {
+    const std::string name = config_name(path);
+    if (!named.contains(name) || std::ranges::count(config.styles, name, &Style::name) > 0)
+      continue;
+    sentences.push_back(
+        fmt::format("{} is a style of your own ({}), which a replay reads with --user-styles alone",
+                    in_quotes(name), path));
+  }
+  return sentences;
 }
 
 Result<std::vector<StyleChange>> style_changes(const Trace& trace, std::vector<Style> styles) {

@@ -42,6 +42,11 @@ std::uint64_t bytes_hash(std::string_view bytes);
 std::vector<UsedFile> used_files(const std::vector<InputFile>& read, const Trace& trace,
                                  const SimulationConfig& config, const PadOverrides& overrides);
 
+// Styles of the user's folder that commands or zones name and that the replay did not read, because
+// nobody asked for them: a sentence each.
+std::vector<std::string> left_out_styles(const SessionSpec& spec, const Trace& trace,
+                                         const SimulationConfig& config);
+
 // From a tick on, before its reports, the styles are these.
 struct StyleChange {
   std::int64_t tick = 0;

@@ -19,6 +19,14 @@ std::vector<std::string> folders_of_lists(const SessionSpec& spec) {
   return spec.recording.empty() ? spec.config_folders : std::vector{spec.recording};
 }
 
+// Where the styles are that no option names.
+std::vector<std::string> style_folders(const SessionSpec& spec) {
+  std::vector<std::string> folders = folders_of_lists(spec);
+  const bool is_live = spec.replay.trace.empty();
+  if (!is_live && !spec.replay.user_styles) std::erase(folders, user_config_folder());
+  return folders;
+}
+
 // The chosen files come first, so that they win over equal names in the folders of configuration.
 // `remarks` gets a sentence on each file that no option names and that cannot be read.
 Result<std::vector<Style>> all_styles(const SessionSpec& spec, std::vector<int>& chosen,
@@ -41,7 +49,7 @@ Result<std::vector<Style>> all_styles(const SessionSpec& spec, std::vector<int>&
     chosen.push_back(0);
     styles.emplace_back().name = "even";
   }
-  for (const std::string& path : config_files(folders_of_lists(spec), "styles")) {
+  for (const std::string& path : config_files(style_folders(spec), "styles")) {
     if (auto problem = load(path))
       remarks.push_back(problem->message + "; the session goes on without this style");
   }

@@ -149,7 +149,11 @@ std::vector<PadConfig> unknown_pads(std::size_t count) {
   return pads;
 }
 
-Result<Simulation> Simulation::create(const SimulationConfig& config) {
+std::optional<Error> check(const SimulationConfig& config) {
+  if (config.rate_hz < kLeastRateHz || config.rate_hz > kMaxRateHz) {
+    return Error{fmt::format("SimulationConfig: rate_hz is {}, outside [{}, {}]", config.rate_hz,
+                             kLeastRateHz, kMaxRateHz)};
+  }
   if (config.walkers.empty() || config.walkers.size() > kMaxWalkers) {
     return Error{
         fmt::format("{} characters: 1 to {} can walk", config.walkers.size(), kMaxWalkers)};
@@ -158,6 +162,25 @@ Result<Simulation> Simulation::create(const SimulationConfig& config) {
     return Error{
         fmt::format("a crowd of {}: 0 to {} can walk behind", config.crowd, kMaxFollowers)};
   }
+  if (!config.terrain) return Error{"SimulationConfig: terrain is null, see flat_terrain()"};
+  if (auto problem = check(*config.terrain)) return problem;
+  if (config.styles.empty()) return Error{"SimulationConfig: styles is empty, one is needed"};
+  for (const Style& style : config.styles) {
+    if (auto problem = check(static_cast<const StyleValues&>(style)))
+      return Error{fmt::format("style {}: {}", in_quotes(style.name), problem->message)};
+  }
+  for (std::size_t i = 0; i < config.walkers.size(); ++i) {
+    const int style = config.walkers[i].style, styles = static_cast<int>(config.styles.size());
+    if (style < 0 || style >= styles) {
+      return Error{fmt::format("SimulationConfig: walkers[{}].style is {}, outside [0, {}]", i,
+                               style, styles - 1)};
+    }
+  }
+  return std::nullopt;
+}
+
+Result<Simulation> Simulation::create(const SimulationConfig& config) {
+  if (auto problem = check(config)) return *problem;
   Simulation s;
   s.dt_s_ = 1.0 / config.rate_hz;
   s.ik_ = config.ik;

@@ -493,6 +493,15 @@ StickMeasured measured(const StickStatistics& s) {
   return measured;
 }
 
+void take_stick(const StickAnalysis& stick, StickCalibration& calibration) {
+  if (stick.advice.has_range) {
+    calibration = stick.advice.calibration;
+  } else {
+    update_centre(stick.advice.calibration, calibration);
+  }
+  make_readable(calibration);
+}
+
 }  // namespace
 
 PadAnalysis analysis_of(const PadLayout& layout, const PadTracks& tracks,
@@ -514,9 +523,31 @@ PadAnalysis analysis_of(const PadLayout& layout, const PadTracks& tracks,
   return analysis;
 }
 
+bool has_a_centre(const PadAnalysis& analysis) noexcept {
+  return std::ranges::any_of(analysis.stick,
+                             [](const auto& stick) { return stick && stick->advice.has_centre; });
+}
+
+bool is_known(const PadAnalysis& analysis, std::size_t side) noexcept {
+  const auto& stick = analysis.stick[side];
+  return stick && stick->advice.has_centre && stick->advice.verdict != Verdict::unknown;
+}
+
 bool is_useful(const PadAnalysis& analysis) noexcept {
-  const auto is_known = [](const auto& stick) { return stick && stick->advice.has_centre; };
-  return is_known(analysis.stick[0]) || is_known(analysis.stick[1]);
+  return is_known(analysis, 0) || is_known(analysis, 1);
+}
+
+std::string why_useless(const PadAnalysis& analysis) {
+  constexpr const char* kSides[] = {"left", "right"};
+  std::string text = "no stick is known well enough to be calibrated";
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto& stick = analysis.stick[i];
+    if (!stick || is_known(analysis, i)) continue;
+    const Reasons missing_are = missing(stick->statistics);
+    text += fmt::format("; {}: {}", kSides[i],
+                        missing_are.empty() ? stick->advice.reason : missing_are.front());
+  }
+  return text;
 }
 
 void take_advice(const PadAnalysis& analysis, CalibrationFile& file) {
@@ -525,18 +556,27 @@ void take_advice(const PadAnalysis& analysis, CalibrationFile& file) {
                                           &file.calibration.right_trigger};
   for (std::size_t i = 0; i < 2; ++i) {
     const auto& stick = analysis.stick[i];
-    if (stick && stick->advice.has_centre) {
-      if (stick->advice.has_range) {
-        *sticks[i] = stick->advice.calibration;
-      } else {
-        update_centre(stick->advice.calibration, *sticks[i]);
-      }
-      make_readable(*sticks[i]);
+    if (is_known(analysis, i)) {
+      take_stick(*stick, *sticks[i]);
       file.measured[i] = measured(stick->statistics);
     }
     if (analysis.trigger[i] && analysis.trigger[i]->pressed)
       *triggers[i] = readable(trigger_advice(*analysis.trigger[i]));
   }
+}
+
+CalibrationFile seen_today(const PadAnalysis& analysis, const CalibrationFile& then) {
+  CalibrationFile now;
+  now.calibration = then.calibration;
+  take_advice(analysis, now);
+  StickCalibration* const sticks[] = {&now.calibration.left, &now.calibration.right};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto& stick = analysis.stick[i];
+    if (!stick || is_known(analysis, i) || !stick->advice.has_centre) continue;
+    take_stick(*stick, *sticks[i]);
+    now.measured[i] = measured(stick->statistics);
+  }
+  return now;
 }
 
 }  // namespace gaitpad

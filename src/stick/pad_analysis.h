@@ -20,7 +20,7 @@ struct StickAdvice {
   double outer_zone = 0.0;       // raw
   Verdict verdict = Verdict::unknown;
   std::string reason;  // one sentence with its numbers
-  // Parts of `calibration` that were seen and are not doubted: what a file may take over.
+  // Parts of `calibration` that were seen and are not doubted.
   bool has_centre = false, has_range = false;
 };
 // `statistics` are in `frame`.
@@ -41,11 +41,19 @@ struct PadAnalysis {  // left, right; none if the pad has no such control
 PadAnalysis analysis_of(const PadLayout& layout, const PadTracks& tracks,
                         const std::array<StickFrame, 2>& frames);
 
-// Whether it can calibrate anything: the advice for a stick has a centre.
+// Whether a centre is known, so that the stick can be compared with an earlier calibration.
+bool has_a_centre(const PadAnalysis& analysis) noexcept;
+// Whether the verdict on the stick (0 left, 1 right) is not `unknown`: a file takes it over.
+bool is_known(const PadAnalysis& analysis, std::size_t side) noexcept;
+// Whether it can calibrate anything: a stick is known.
 bool is_useful(const PadAnalysis& analysis) noexcept;
-// Writes the advice into `file`. The calibration that `file` holds stays where nothing was
-// measured: a stick without a sure centre, the range of a stick that was not turned along its rim,
-// a trigger that was never pressed.
+// Why it is not useful, in a sentence without a full stop.
+std::string why_useless(const PadAnalysis& analysis);
+// Writes the advice for sticks whose verdict is not `unknown` into `file`, and triggers that were
+// pressed. The rest of the calibration that `file` holds stays: an unknown stick, the range of a
+// stick that was not turned along its rim, a trigger that was never pressed.
 void take_advice(const PadAnalysis& analysis, CalibrationFile& file);
+// The calibration `then` with all that was seen today, of unknown sticks too: for a comparison.
+CalibrationFile seen_today(const PadAnalysis& analysis, const CalibrationFile& then);
 
 }  // namespace gaitpad

@@ -304,7 +304,6 @@ struct Builder {
 
 // What forbids to solve for this cycle, so that the solver meets nothing but walks.
 std::optional<std::string> fault_of(const GaitCycle& cycle) {
-  if (cycle.samples.size() != kCycleSamples) return "has no samples of a whole cycle";
   for (const double number : solver_input(cycle)) {
     if (!std::isfinite(number)) return "holds a number that is not finite";
   }
@@ -361,6 +360,7 @@ std::vector<double> solver_input(const GaitCycle& cycle) {
 }
 
 Result<StrideFamily> stride_family(const GaitCycle& cycle) {
+  if (auto problem = check(cycle)) return *problem;
   if (const auto fault = fault_of(cycle)) return Error{cycle.name + ": " + *fault};
   const GaitCycle backwards = run_back(cycle);
   Builder builder(cycle), back(backwards);

@@ -18,7 +18,8 @@ namespace {
 
 constexpr double kCalibrationWidth = 900.0, kCalibrationHeight = 600.0;  // at scale 1
 constexpr double kWaitingHeight = 150.0;
-constexpr double kPlane = 150.0;  // side of a control's picture, at scale 1
+constexpr double kPlane = 150.0, kLeastPlane = 64.0;  // side of a control's picture, at scale 1
+constexpr double kButtonsWidth = 690.0;               // of the guide's buttons in one row
 constexpr const char* kTitles[] = {"Left stick", "Right stick"};
 
 std::string shown_name(const DeviceInfo& info) {
@@ -27,6 +28,13 @@ std::string shown_name(const DeviceInfo& info) {
 }
 
 ImVec2 operator+(const ImVec2& a, const ImVec2& b) { return {a.x + b.x, a.y + b.y}; }
+
+// The next button stands beside the last one, or below it where the dialog is too narrow.
+void go_beside_or_below(const Ui& ui, const char* label) {
+  const float end =
+      ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + button_width(ui, label, {});
+  if (end <= ImGui::GetWindowPos().x + ImGui::GetWindowContentRegionMax().x) ImGui::SameLine();
+}
 
 // Draws a stick's raw position in a circle, or a trigger's as a bar.
 void draw_place(Ui& ui, const GuideProgress& control, bool is_stick, const ImVec2& at, float size) {
@@ -65,8 +73,8 @@ class CalibrationView final : public PadDialog {
  private:
   void read_pad(std::vector<std::string>& messages);
   void finish(std::vector<std::string>& messages);
-  void draw_guide(Ui& ui, CalibrationGuide& guide);
-  void draw_control(Ui& ui, const GuideProgress& control, bool is_stick);
+  void draw_guide(Ui& ui, CalibrationGuide& guide, float height_px);
+  void draw_control(Ui& ui, const GuideProgress& control, bool is_stick, float size_px);
   void draw_result(Ui& ui, float height_px);
   void draw_guide_buttons(Ui& ui, CalibrationGuide& guide);
   void draw_result_buttons(Ui& ui, std::vector<std::string>& messages);
@@ -116,8 +124,7 @@ void CalibrationView::finish(std::vector<std::string>& messages) {
   guided_.reset();
   analysis_ = analysis_of(pad_.layout, pad_.tracks, pad_.frame);
   for (std::string& question : axes_questions(pad_)) messages.push_back(std::move(question));
-  if (!is_useful(*analysis_))
-    problem_ = "no stick was seen at rest with hands off, so no centre is known";
+  if (!is_useful(*analysis_)) problem_ = "no stick is known well enough: nothing to save";
   file_ = calibration_for(pad_.info, pad_.has_factory_sticks);
   const std::string own = options_.calibration_folder.empty()
                               ? ""
@@ -159,11 +166,11 @@ void CalibrationView::upload_picture() {
   glBindTexture(GL_TEXTURE_2D, 0);
 }
 
-void CalibrationView::draw_control(Ui& ui, const GuideProgress& control, bool is_stick) {
-  const float size = ui.px(kPlane);
+void CalibrationView::draw_control(Ui& ui, const GuideProgress& control, bool is_stick,
+                                   float size_px) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
-  draw_place(ui, control, is_stick, at, size);
-  ImGui::Dummy(ImVec2(size, size));
+  draw_place(ui, control, is_stick, at, size_px);
+  ImGui::Dummy(ImVec2(size_px, size_px));
   ImGui::SameLine(0.0f, ui.px(16));
   ImGui::BeginGroup();
   text_line(ui, ui.fonts.heading, ui.theme.text, control.control);
@@ -172,7 +179,9 @@ void CalibrationView::draw_control(Ui& ui, const GuideProgress& control, bool is
   ImGui::EndGroup();
 }
 
-void CalibrationView::draw_guide(Ui& ui, CalibrationGuide& guide) {
+// Scrolls where the window is lower than the text and the smallest pictures.
+void CalibrationView::draw_guide(Ui& ui, CalibrationGuide& guide, float height_px) {
+  ImGui::BeginChild("guide", ImVec2(0.0f, height_px - ImGui::GetCursorPosY()));
   draw_step(ui,
             fmt::format("Step {} of {}: {}", guide.index() + 1, guide.steps().size() - 1,
                         name_of(guide.step())),
@@ -180,10 +189,17 @@ void CalibrationView::draw_guide(Ui& ui, CalibrationGuide& guide) {
             guided_->is_plugged() ? guide.instruction()
                                   : "Unplugged: plug it in again to continue from here.");
   const bool is_of_sticks = guide.step() != GuideStep::triggers;
-  for (const GuideProgress& control : guide.progress()) {
-    draw_control(ui, control, is_of_sticks);
-    ImGui::Dummy(ImVec2(0.0f, ui.px(8)));
+  const auto controls = guide.progress();
+  const float gap_px = ui.px(8), spacing_px = gap_px + 2.0f * ImGui::GetStyle().ItemSpacing.y;
+  const float each_px = ImGui::GetContentRegionAvail().y /
+                            static_cast<float>(std::max<std::size_t>(controls.size(), 1)) -
+                        spacing_px;
+  const float size_px = std::clamp(each_px, ui.px(kLeastPlane), ui.px(kPlane));
+  for (const GuideProgress& control : controls) {
+    draw_control(ui, control, is_of_sticks, size_px);
+    ImGui::Dummy(ImVec2(0.0f, gap_px));
   }
+  ImGui::EndChild();
 }
 
 void CalibrationView::draw_result(Ui& ui, float height_px) {
@@ -236,9 +252,12 @@ PadDialog::State CalibrationView::draw(Ui& ui, const ImVec2& window_px,
   const bool is_waiting = guide == nullptr && !analysis_;  // for a pad
   const ImVec2 size = begin_modal(ui, "calibration", kCalibrationWidth,
                                   is_waiting ? kWaitingHeight : kCalibrationHeight, window_px);
-  const float buttons_y = size.y - ImGui::GetFrameHeight() - ImGui::GetStyle().WindowPadding.y;
+  const ImGuiStyle& style = ImGui::GetStyle();
+  const bool has_two_rows = guide != nullptr && size.x < ui.px(kButtonsWidth);
+  const float buttons_y = size.y - ImGui::GetFrameHeight() - style.WindowPadding.y -
+                          (has_two_rows ? ImGui::GetFrameHeightWithSpacing() : 0.0f);
   if (guide != nullptr) {
-    draw_guide(ui, *guide);
+    draw_guide(ui, *guide, buttons_y - ui.px(8));
   } else if (analysis_) {
     draw_result(ui, buttons_y - ui.px(8));
   } else {
@@ -247,16 +266,17 @@ PadDialog::State CalibrationView::draw(Ui& ui, const ImVec2& window_px,
          "No pad is connected: plug one in. If one does not work, run `gaitpad doctor` in a "
          "terminal.");
   }
-  go_to_buttons(size.y);
+  ImGui::SetCursorPosY(buttons_y);
   if (guide != nullptr) draw_guide_buttons(ui, *guide);
   if (analysis_) draw_result_buttons(ui, messages);
   if (guide != nullptr || analysis_) ImGui::SameLine();
   if (button(ui, "calibration give up", "Give up  (Esc)")) state_ = State::ended;
   if (guide != nullptr) {
-    ImGui::SameLine();
-    if (button(ui, "calibration map", "Controls are wrong")) state_ = State::wants_map;
-    ImGui::SameLine();
-    if (button(ui, "calibration test", "Test this pad")) state_ = State::wants_test;
+    constexpr const char *kMap = "Controls are wrong", *kTest = "Test this pad";
+    go_beside_or_below(ui, kMap);
+    if (button(ui, "calibration map", kMap)) state_ = State::wants_map;
+    go_beside_or_below(ui, kTest);
+    if (button(ui, "calibration test", kTest)) state_ = State::wants_test;
   }
   if (!problem_.empty()) {
     ImGui::SameLine();

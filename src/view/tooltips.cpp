@@ -130,6 +130,7 @@ constexpr KeyWords kKeys[] = {
     {"hip_sway", "hip sway", "How far the hips move sideways; 1 as in the motion."},
     {"hip_bounce", "hip bounce", "How far the hips move up and down; 1 as in the motion."},
     {"fatigue", "fatigue", "0 fresh, 1 exhausted: shortens and slows each step."},
+    {"idle", "life in a stand", "How much breath, sway and glances a stand shows; 0 none, 1 all."},
     {"blend_s", "blending, s", "How long a change of style takes, in seconds."},
     {"fatigue_model.per_100_m", "tiring per 100 m", "How much fatigue 100 metres add."},
     {"fatigue_model.recovery_per_s", "recovery per s", "How much fatigue a second of rest takes."},

@@ -360,6 +360,7 @@ bool WindowLoop::draw_frame() {
   const bool is_seen = (SDL_GetWindowFlags(surface_->window()) & SDL_WINDOW_MINIMIZED) == 0;
   const bool is_drawn = !surface_->is_lost() && (is_seen || makes_pictures());
   if (is_drawn) draw_window(is_last);
+  if (is_drawn && result_.first_frame_ns == 0) result_.first_frame_ns = now_ns();
   show_->end_frame(is_drawn ? FrameEnd::handed_over : FrameEnd::not_shown);
   if (surface_->is_lost()) fail_without_display();
   ++result_.frames;

@@ -64,7 +64,8 @@ struct WindowResult {
   std::optional<LiveStatus> status;  // of the last session; none if it was a playback
   std::int64_t frames = 0;
   double frames_per_second = 0.0;
-  bool is_cut_off = false;  // before its pictures were complete: none was written
+  std::int64_t first_frame_ns = 0;  // CLOCK_MONOTONIC, when it was handed to the display; 0: none
+  bool is_cut_off = false;          // before its pictures were complete: none was written
   std::vector<std::string> remarks;
 };
 // Call it from the main thread. Fails if the session or the window cannot be opened, before

@@ -26,11 +26,17 @@ StyleValues with_hip_weight(double weight) {
   return style;
 }
 
+StyleValues statue() {
+  StyleValues style;
+  style.body.idle = 0.0;
+  return style;
+}
+
 TEST(Walk, AStopEndsStandingStillWithTheFeetTogether) {
   for (int ticks = 300; ticks < 420; ticks += 13) {  // in every part of a step
     MadeWalker walker;
-    walker.walk(0, 0.8, ticks);
-    walker.walk(0, 0, 700);
+    walker.walk(0, 0.8, ticks, statue());
+    walker.walk(0, 0, 700, statue());
     const WalkFrame& end = walker.last();
     EXPECT_EQ(end.stage, Stage::idle);
     EXPECT_EQ(end.speed_m_s, 0.0);
@@ -72,9 +78,9 @@ TEST(Walk, ALittleStickThatIsHeldBeginsAWalk) {
 
 TEST(Walk, StandingStillChangesNothing) {
   MadeWalker walker;
-  walker.walk(0, 0, 2);
+  walker.walk(0, 0, 10 * kRate, statue());  // the style is in force
   const WalkFrame first = walker.last();
-  walker.walk(0, 0, 480);
+  walker.walk(0, 0, 480, statue());
   EXPECT_LT(glm::distance(walker.last().pelvis_m, first.pelvis_m), 1e-9);
   EXPECT_EQ(walker.last().stage, Stage::idle);
 }
@@ -226,6 +232,50 @@ TEST(Range, SidewaysAloneTurnsOnTheSpotWithSmallSteps) {
   EXPECT_LT(walker.drift_m(), 1e-4);
   walker.walk(0, 0, 480);
   EXPECT_EQ(walker.last().stage, Stage::idle);
+}
+
+// A start, a walk, a stop: what its ticks come to at 20 times a second.
+struct RateRun {
+  double walked_m = 0.0;
+  std::vector<Pose> poses;
+};
+RateRun run_at(int rate_hz, const vec2& stick) {
+  RateRun run;
+  Pose pose;
+  WalkState state = standing(adult(), vec3(0.0), pose);
+  const GaitLimits limits = gait_limits(adult());
+  for (int tick = 1; tick <= 20 * rate_hz; ++tick) {
+    const Stick asks{.left = tick <= 16 * rate_hz ? stick : vec2(0.0)};
+    const vec3 before_m = state.path.hips_m;
+    advance(adult(), gait_params(asks, StyleValues{}, limits), IkMode::robust, 1.0 / rate_hz, state,
+            pose);
+    run.walked_m += glm::distance(state.path.hips_m, before_m);
+    if (tick * 10 % rate_hz == 0) run.poses.push_back(pose);
+  }
+  EXPECT_EQ(state.frame.bad_inputs, 0);
+  return run;
+}
+double rms_deg(const RateRun& a, const RateRun& b) {
+  double squares = 0.0, count = 0.0;
+  for (std::size_t i = 0; i < a.poses.size(); ++i) {
+    for (int j = 1; j < a.poses[i].joint_count; ++j, ++count) {
+      const quat off = glm::conjugate(a.poses[i].local[j]) * b.poses[i].local[j];
+      const double turn = glm::length(rotation_vector(off)) / kDegree;
+      squares += turn * turn;
+    }
+  }
+  return std::sqrt(squares / count);
+}
+
+TEST(Walk, GoesEquallyFarAndLooksAlikeAtAnyRate) {
+  for (const vec2 stick : {vec2(0.0, 0.3), vec2(0.4, 0.6), vec2(0.0, 0.8), vec2(0.0, 1.0)}) {
+    const RateRun usual = run_at(240, stick);
+    for (const int rate_hz : {10, 20, 30, 60, 120, 1000}) {
+      const RateRun run = run_at(rate_hz, stick);
+      EXPECT_NEAR(run.walked_m / usual.walked_m, 1.0, 0.005) << rate_hz << " Hz, " << stick.y;
+      EXPECT_LT(rms_deg(run, usual), 1.0) << rate_hz << " Hz, " << stick.y;
+    }
+  }
 }
 
 }  // namespace

@@ -35,5 +35,26 @@ TEST(VirtualPad, ButtonsHaveTheCodesOfTheXboxPadsAndTheDpadIsAHat) {
             (Events{{EV_ABS, ABS_HAT0X, 1}, {EV_ABS, ABS_HAT0Y, -1}}));
 }
 
+TEST(VirtualPad, AnXbox360PadHasTheKernelsCodesAndTriggers) {
+  const VirtualPadShape shape = shape_of(XboxKind::xbox_360);
+  EXPECT_EQ(shape.keys.size(), 11u);
+  for (const VirtualPadAxis& axis : shape.axes) {
+    if (axis.code == ABS_RZ) EXPECT_EQ(axis.max, 255);
+  }
+  EXPECT_EQ(events_between({}, {.trigger = {1.0, 0.0}}, XboxKind::xbox_360),
+            (Events{{EV_ABS, ABS_Z, 255}}));
+  EXPECT_TRUE(events_between({}, with_button(kButtonPaddle1), XboxKind::xbox_360).empty());
+}
+
+TEST(VirtualPad, IsKnownByItsPortWhateverItsIds) {
+  DeviceInfo info;
+  info.vendor = 0x045e;
+  info.product = 0x028e;
+  info.physical_path = "usb-0000:00:14.0-1/input0";
+  EXPECT_FALSE(is_virtual_pad(info));
+  info.physical_path = std::string(kVirtualPort) + info.physical_path;
+  EXPECT_TRUE(is_virtual_pad(info));
+}
+
 }  // namespace
 }  // namespace gaitpad

@@ -48,5 +48,15 @@ TEST(PadForward, APressBetweenTwoTicksIsNotMissed) {
   EXPECT_EQ(between(down, pressed_again).buttons, 0u);
 }
 
+TEST(PadForward, ATickThatChangesNothingWakesNobody) {
+  ForwardedTick tick;
+  EXPECT_TRUE(is_same(tick, ForwardedTick{}));
+  ForwardedTick moved = tick, pressed = tick;
+  moved.state.stick.right.y = 1e-9;
+  pressed.presses[kButtonA] = 1;  // and released again
+  EXPECT_FALSE(is_same(tick, moved));
+  EXPECT_FALSE(is_same(tick, pressed));
+}
+
 }  // namespace
 }  // namespace gaitpad

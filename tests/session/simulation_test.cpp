@@ -79,6 +79,44 @@ TEST(Simulation, ACharacterWalksOnTheSkeletonThatItBrings) {
   EXPECT_GT(w.state.frame.pelvis_m.z, 4.0);
 }
 
+TEST(Simulation, AConfigurationThatCannotRunIsRefusedWithOneSentence) {
+  const auto said_of = [](const auto& spoil) {
+    SimulationConfig config = made_config(2);
+    spoil(config);
+    const auto simulation = Simulation::create(config);
+    return simulation ? "" : simulation.error().message;
+  };
+  using Config = SimulationConfig;
+  EXPECT_EQ(said_of([](Config&) {}), "");
+  EXPECT_EQ(said_of([](Config& c) { c.styles.clear(); }),
+            "SimulationConfig: styles is empty, one is needed");
+  EXPECT_EQ(said_of([](Config& c) { c.walkers[1].style = 5; }),
+            "SimulationConfig: walkers[1].style is 5, outside [0, 1]");
+  EXPECT_EQ(said_of([](Config& c) { c.walkers[0].style = -1; }),
+            "SimulationConfig: walkers[0].style is -1, outside [0, 1]");
+  for (const int rate_hz : {0, -60, 1, 1'000'000}) {
+    EXPECT_NE(said_of([&](Config& c) { c.rate_hz = rate_hz; }).find("rate_hz is "),
+              std::string::npos)
+        << rate_hz;
+  }
+  EXPECT_EQ(said_of([](Config& c) { c.styles[1].hip_sway = -2.0; }),
+            "style \"limp\": StyleValues: hip_sway is -2, outside [0, 3]");
+  EXPECT_EQ(said_of([](Config& c) { c.terrain = nullptr; }),
+            "SimulationConfig: terrain is null, see flat_terrain()");
+  EXPECT_EQ(said_of([](Config& c) { c.walkers.clear(); }), "0 characters: 1 to 16 can walk");
+  EXPECT_EQ(said_of([](Config& c) { c.walkers[0].character.scale = 0.0; }),
+            "as in the motion file: scale is 0, outside [0.05, 20]");
+  EXPECT_EQ(
+      said_of([](Config& c) {
+        Terrain torn;
+        add_section(torn, FlatSection{2.0});
+        add_section(torn, FlatSection{2.0});
+        torn.sections[1].begin_m = 3.0;
+        c.terrain = std::make_shared<const Terrain>(torn);
+      }),
+      "flat: sections[1] does not begin where the one before ends: lay it with add_section()");
+}
+
 TEST(Simulation, OneGroundForAllGrowsWithTheLongestFoot) {
   SimulationConfig config = made_config(2);
   auto stairs = std::make_shared<Terrain>();
@@ -374,13 +412,14 @@ std::string any_command(std::mt19937& random) {
 // Sends a random command every quarter of a second and a random stick every two seconds; `check`
 // gets each walker of each tick.
 template <class Check>
-void walk_at_random(IkMode mode, std::string (*command)(std::mt19937&), const Check& check) {
-  std::mt19937 random(11);
+void walk_at_random(IkMode mode, std::string (*command)(std::mt19937&), const Check& check,
+                    unsigned seed = 11, int ticks = 12000) {
+  std::mt19937 random(seed);
   SimulationConfig config = made_config(2);
   config.walkers[1].style = 0;
   config.ik = mode;
   Simulation s = made_simulation(config);
-  for (int tick = 0; tick < 12000; ++tick) {
+  for (int tick = 0; tick < ticks; ++tick) {
     std::vector<Report> reports;
     if (tick % 60 == 0) reports.push_back(made_command(command(random)));
     if (tick % 500 == 0) {
@@ -390,7 +429,7 @@ void walk_at_random(IkMode mode, std::string (*command)(std::mt19937&), const Ch
     s.step(reports);
     for (const Walker& w : s.walkers()) {
       check(w);
-      if (testing::Test::HasFailure()) FAIL() << "tick " << tick;
+      if (testing::Test::HasFailure()) FAIL() << "seed " << seed << ", tick " << tick;
     }
   }
   EXPECT_LT(s.counts().bad_commands, s.counts().commands / 10)
@@ -413,11 +452,22 @@ TEST(Simulation, LegsFollowRandomGaitCommands) {
 TEST(Simulation, RandomCommandsKeepThePoseValid) {
   for (const IkMode mode : {IkMode::robust, IkMode::paper}) {
     walk_at_random(mode, any_command, [](const Walker& w) {
-      EXPECT_GT(w.state.frame.pelvis_m.y, 0.3 * w.model->stand_m);
+      EXPECT_GT(w.state.frame.pelvis_m.y, 0.3 * w.model->stand_m);  // with a bounce of 3
       EXPECT_LT(w.state.frame.pelvis_m.y, 1.15 * w.model->stand_m);
       for (int j = 0; j < w.pose.joint_count; ++j)
         ASSERT_NEAR(glm::length(w.pose.local[j]), 1.0, 1e-9);
     });
+  }
+}
+
+// Hips that were on their way back when a stop was planned went on for 0.8 m, and dived below the
+// floor for their feet.
+TEST(Simulation, NoCommandsMakeTheHipsDive) {
+  for (unsigned seed = 1; seed <= 60; ++seed) {
+    const auto check = [](const Walker& w) {
+      EXPECT_GT(w.state.frame.pelvis_m.y, 0.5 * w.model->stand_m);
+    };
+    walk_at_random(IkMode::robust, any_command, check, seed, 5000);
   }
 }
 

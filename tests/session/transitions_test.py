@@ -34,7 +34,7 @@ def measured(player):
 def test_a_start_answers_at_once_and_is_a_walk_after_two_steps(rows):
     starts = [row["start"] for row in rows.values()]
     median = lambda key: np.median([start[key] for start in starts])
-    assert median("response") <= 0.15
+    assert median("response") <= 0.1
     assert median("off") <= 0.35
     assert median("speed90") <= 1.0
 
@@ -53,6 +53,12 @@ def test_the_hips_neither_dip_nor_go_back(rows):
         for change in (row["start"], *row["stops"]):
             assert change["back"] <= 1.0
             assert change["below"] <= 1.3
+
+
+def test_chest_and_head_do_not_jump(rows):
+    for row in rows.values():
+        for change in (row["start"], *row["stops"]):
+            assert max(change["chest"], change["head"]) <= 2.05
 
 
 def test_a_stop_at_full_stick_takes_less_than_a_metre(rows):

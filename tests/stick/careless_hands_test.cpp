@@ -146,7 +146,7 @@ class CarelessHand {
 // Whether what a file would take over is wrong for the stick: its rest walks, or its full
 // deflection comes far before its rim, or not at all.
 bool is_wrong(const MadeStick& stick, const StickAdvice& advice) {
-  if (!advice.has_centre) return false;
+  if (!advice.has_centre || advice.verdict == Verdict::unknown) return false;
   const StickCalibration& c = advice.calibration;
   const vec2 off = vec2(c.x.centre, c.y.centre) - stick.centre;
   if (glm::length(off) > 0.04 + 0.5 * stick.hysteresis) return true;

@@ -68,21 +68,10 @@ def files(tmp_path):
     return lambda: {path.name: path.read_text() for path in (tmp_path / "gaitpad/calibration").glob("*")}
 
 
-def skip_to_the_question(terminal):
-    terminal.wait_for("Step 1 of 7")
-    time.sleep(0.7)
-    terminal.press("sssssss")
-    terminal.wait_for("Enter writes")
-    time.sleep(0.2)
-
-
 @pytest.fixture
-def written(at_terminal, rest_trace, files):
+def written(run, round_trace, environment, files):
     """A calibration is there already: the file that the tool itself would write."""
-    with at_terminal(rest_trace) as terminal:
-        skip_to_the_question(terminal)
-        terminal.press("\n")
-        terminal.wait_end()
+    run("calibrate", "--trace", round_trace, env=environment)
     assert len(files()) == 1
     return files()
 
@@ -129,7 +118,7 @@ def test_a_line_never_is_wider_than_the_screen_and_the_screen_never_fuller(at_te
 
 
 GIVE_UP = {"ctrl-c": lambda t: t.press("\x03"), "sigterm": lambda t: t.send_signal(signal.SIGTERM),
-           "ctrl-d": lambda t: t.press("\x04"), "q, at the question": lambda t: (skip_to_the_question(t), t.press("q"))}
+           "ctrl-d": lambda t: t.press("\x04")}
 
 
 @pytest.mark.parametrize("give_up", GIVE_UP.values(), ids=GIVE_UP)
@@ -141,6 +130,29 @@ def test_giving_up_leaves_the_old_file_and_the_terminal_as_they_were(at_terminal
         assert terminal.wait_end() == 1
         assert terminal.is_as_before()
         assert "nothing written" in terminal.text
+    assert files() == written
+
+
+def test_q_at_the_question_leaves_the_old_file(at_terminal, round_trace, files, written):
+    with at_terminal(round_trace) as terminal:
+        terminal.wait_for("Enter writes")
+        time.sleep(0.2)
+        terminal.press("q")
+        assert terminal.wait_end() == 1
+        assert terminal.is_as_before()
+        assert "nothing written" in terminal.text
+    assert files() == written
+
+
+def test_steps_that_are_skipped_leave_the_sticks_unknown(at_terminal, rest_trace, files, written):
+    with at_terminal(rest_trace) as terminal:
+        terminal.wait_for("Step 1 of 7")
+        time.sleep(0.7)
+        terminal.press("sssssss")
+        assert terminal.wait_end() == 1
+        assert terminal.is_as_before()
+        assert "Enter writes" not in terminal.text
+        assert "nothing is written" in " ".join(terminal.text.split())
     assert files() == written
 
 

@@ -20,6 +20,13 @@ from support.traces import lines
 SERIAL = "AA:BB:01"
 
 
+class Turning(Stick):
+    """One that is turned along its rim all the time."""
+
+    def position(self, time, place, side):
+        return math.cos(9 * time), math.sin(9 * time)
+
+
 class User:
     """Somebody with a folder, a pad's recordings and calibrations of their own."""
 
@@ -36,8 +43,8 @@ class User:
         path.write_text(trace_text(left or Stick(), right or Stick(seed=2), steps or thumb(), **options))
         return path
 
-    def calibrated(self, *arguments):
-        return json.loads(self.run("calibrate", "--json", *arguments).stdout)
+    def calibrated(self, *arguments, status=0):
+        return json.loads(self.run("calibrate", "--json", *arguments, status=status).stdout)
 
     def written(self):
         files = list(self.own.glob("*.toml"))
@@ -80,7 +87,7 @@ def test_finds_what_the_sticks_are(user):
 
 def test_says_null_for_what_a_recording_cannot_tell(user):
     still = [(i / 250, (0, 0), (0, 0)) for i in range(500)]
-    found = user.calibrated("--trace", user.trace(steps=still))["sticks"]["left"]
+    found = user.calibrated("--trace", user.trace(steps=still), status=1)["sticks"]["left"]
     assert found["centre_x"] == pytest.approx(0, abs=1e-4)
     for key in ("hysteresis", "min_x", "max_y", "circularity_error", "outer_zone"):
         assert found[key] is None, key
@@ -88,14 +95,20 @@ def test_says_null_for_what_a_recording_cannot_tell(user):
 
 
 def test_what_was_not_seen_is_neither_printed_nor_stored(user):
-    """Half a turn: the range is not known, so the file keeps the one of a stick that nobody measured."""
+    """Half a turn of the left stick, and a right one that rests: both are unknown."""
     half = [(i / 250, (0, 0), (0, 0)) for i in range(500)]
     half += [(2 + i / 250, (math.cos(i / 250), math.sin(i / 250)), (0, 0)) for i in range(700)]
-    trace = user.trace(Stick(reach=(0.8, 0.8)), steps=half, serial=SERIAL)
-    printed = user.run("calibrate", "--trace", trace).stdout
-    left = user.table()["left"]
+    trace = user.trace(Stick(reach=(0.8, 0.8)), Stick(reach=(0, 0)), steps=half, serial=SERIAL)
+    done = user.run("calibrate", "--trace", trace, status=1)
+    printed = done.stdout
     assert re.search(r"outer zone +not known", printed), printed
-    assert (left["x"]["min"], left["x"]["max"]) == (-1, 1) and left["outer"] == 0.95
+    assert len(done.stderr.strip().splitlines()) == 1
+    for part in ("left: its rim was not seen to the", "right: it was never turned", "nothing is written"):
+        assert part in done.stderr
+    assert not user.own.exists() or not list(user.own.iterdir())
+    user.refused("--trace", trace, "--out", user.folder / "out.toml", says="nothing is written")
+    assert user.refused("--trace", trace, "--out", "-", says="nothing is written").stdout == ""
+    assert not (user.folder / "out.toml").exists()
     # Columns: two blanks at least between a label, its numbers and what they are from.
     for row in (line for line in printed.splitlines() if line.startswith("  ") and "reports" in line):
         assert re.fullmatch(r"  [a-z][a-z(), ]+?  .*\S  +\S.*", row), row
@@ -103,7 +116,7 @@ def test_what_was_not_seen_is_neither_printed_nor_stored(user):
 
 def test_both_sticks_of_a_pad_report_at_one_rate(user):
     """Of a pad that reports changes only, every 8 ms, the right stick rests while the left one moves."""
-    sticks = user.calibrated("--trace", ROUND)["sticks"]
+    sticks = user.calibrated("--trace", ROUND, status=1)["sticks"]  # its left stick is not turned round
     assert sticks["left"]["rate_hz"] == pytest.approx(125, abs=1)
     for key in ("rate_hz", "jitter_ms", "gaps"):
         assert sticks["left"][key] == sticks["right"][key], key
@@ -133,12 +146,13 @@ def test_writes_the_devices_own_file_and_keeps_the_old_one(user):
 def test_a_stick_that_was_not_seen_keeps_its_calibration(user):
     user.calibrated("--trace", user.trace(Stick(centre=(0.1, 0), reach=(0.8, 0.8)), serial=SERIAL))
     before = user.table()["left"]
-    turning = [(t, (math.cos(9 * t), math.sin(9 * t)), (0, 0)) for t in (i / 250 for i in range(800))]
-    still = Stick(centre=(0, 0.1), reach=(0, 0))
-    user.calibrated("--trace", user.trace(Stick(), still, steps=turning, serial=SERIAL))
-    after = user.table()
-    assert after["right"]["y"]["centre"] == pytest.approx(0.1, abs=0.001)
-    assert after["left"] == before  # `measured` too
+    for left, centre in ((Turning(), 0.1), (Stick(reach=(0, 0)), -0.1)):  # it rests nowhere; it only rests
+        trace = user.trace(left, Stick(centre=(0, centre)), serial=SERIAL)
+        done = user.run("calibrate", "--trace", trace)
+        assert "the left stick is unknown: its calibration stays as it was" in done.stderr
+        after = user.table()
+        assert after["right"]["y"]["centre"] == pytest.approx(centre, abs=0.001)
+        assert after["left"] == before  # `measured` too
 
 
 def test_play_and_record_use_it_and_the_recording_carries_it(user):
@@ -175,6 +189,10 @@ def test_checks_todays_stick_against_its_file(user):
     told = user.calibrated("--trace", moved, "--check", user.written())["changes"]
     assert any("left" in c and "centre" in c for c in told), told
     assert not any("right" in c for c in told), told
+    # A pad that is only laid down is enough to see that a centre has moved.
+    resting = [(i / 250, (0, 0), (0, 0)) for i in range(1000)]
+    laid = user.trace(Stick(centre=(0.08, 0)), steps=resting, serial=SERIAL)
+    assert any("left" in c and "centre" in c for c in user.calibrated("--trace", laid, "--check", user.written())["changes"])
     assert user.written().read_text() == before
 
 

@@ -304,6 +304,25 @@ def test_a_lost_expectation_is_a_failure_if_it_is_asked_for(run, tmp_path):
 
 
 # ---- renewing --------------------------------------------------------------------------------
+def test_styles_of_the_users_folder_are_checked_only_if_they_are_asked_for(run, tmp_path):
+    """One with a bundled name, a damaged one, and one with a name of its own that the recording asks for."""
+    trace = write_trace(tmp_path / "old.hid", [(0.2, *raw_stick(0, 0.8))], [(0.5, "style limp_left"), (1.0, "style mine")],
+                        end_s=2.0)
+    run("check", "--update", trace)
+    styles = tmp_path / "gaitpad/styles"
+    styles.mkdir(parents=True)
+    for name, text in (("limp_left", "hip_sway = 3\n"), ("even", "hip_sway =\n"), ("mine", "hip_sway = 3\n")):
+        (styles / f"{name}.toml").write_text(text)
+    environment = {**os.environ, "XDG_CONFIG_HOME": str(tmp_path)}
+    run("check", trace, env=environment)
+    told = tap(run("check", trace, "--user-styles", env=environment, status=1).stdout)[0][2]
+    assert re.search(r"first different in tick 2\d\d ", " | ".join(told["details"])), told
+    run("check", "--update", trace, "--user-styles", env=environment)
+    told = tap(run("check", trace, env=environment, status=1).stdout)[0][2]
+    assert any("mine.toml), which a replay reads with --user-styles alone" in line for line in told["details"]), told
+    run("check", trace, "--user-styles", env=environment)
+
+
 def test_update_says_what_changed_and_keeps_the_rest(one, run):
     edit(expectation(one), r"^# .*", "# The walk to the door.")
     edit(expectation(one), r"^(speed_m_s = .*within = )[\d.]+", r"\g<1>0.123")

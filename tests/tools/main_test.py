@@ -15,7 +15,7 @@ def test_version_is_three_numbers(run):
     assert re.fullmatch(r"gaitpad \d+\.\d+\.\d+\n", run("--version").stdout)
 
 
-COMMANDS = ["play", "replay", "record", "pads", "doctor", "decode", "monitor", "calibrate", "motion", "ik", "figures", "bench",
+COMMANDS = ["play", "replay", "record", "pads", "doctor", "decode", "monitor", "calibrate", "forward", "motion", "ik", "figures", "bench",
             "list", "map"]
 
 

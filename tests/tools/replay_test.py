@@ -380,9 +380,10 @@ def test_long_gaps_take_the_time_of_their_ticks_and_show_progress(program, made)
 
 # ---- a replay depends on its recording alone -------------------------------------------------
 def test_files_of_the_users_folder_change_no_replay(run, tmp_path):
-    """round.hid names limp_left in a command; a user has a style of that name, and a damaged one."""
-    def hash_of(**environment):
-        done = run("replay", ROUND, "--json", env={**os.environ, **environment})
+    """round.hid names limp_left in a command; a user has a style of that name, and a damaged one. A crowd walks in all
+    styles that there are."""
+    def hash_of(*options, **environment):
+        done = run("replay", ROUND, "--crowd", 3, "--json", *options, env={**os.environ, **environment})
         return json.loads(done.stdout)["pose_hash"], done.stderr
     bundled = hash_of()
     styles = tmp_path / "gaitpad/styles"
@@ -390,12 +391,38 @@ def test_files_of_the_users_folder_change_no_replay(run, tmp_path):
     (styles / "limp_left.toml").write_text("hip_sway = 3\n")
     (styles / "even.toml").write_text("hip_sway =\n")
     assert hash_of(XDG_CONFIG_HOME=str(tmp_path)) == bundled
+    (styles / "a_fine_one.toml").write_text("hip_sway = 3\n")
     (styles / "mine.toml").write_text("hip_sway =\n")
-    pose_hash, said = hash_of(XDG_CONFIG_HOME=str(tmp_path))
-    assert pose_hash == bundled[0]
+    assert hash_of(XDG_CONFIG_HOME=str(tmp_path)) == bundled
+    pose_hash, said = hash_of("--user-styles", XDG_CONFIG_HOME=str(tmp_path))
+    assert pose_hash != bundled[0]
     assert f"{styles}/mine.toml:1: " in said and "the session goes on without this style" in said
     assert "mine.toml" in run("replay", ROUND, "--style", "mine", env={**os.environ, "XDG_CONFIG_HOME": str(tmp_path)},
                               status=1).stderr
+
+
+def test_a_users_style_that_a_recording_names_is_read_if_it_is_asked_for(run, refuse, tmp_path):
+    trace = write_trace(tmp_path / "old.hid", [(0.2, 0, 100)], [(0.4, "style mine")], end_s=1.5)
+    ground = tmp_path / "zone.toml"
+    ground.write_text('[[section]]\nkind = "flat"\nlength_m = 9\n[[zone]]\nfrom_m = 1\nto_m = 2\nstyle = "mine"\n')
+    environment = {**os.environ, "XDG_CONFIG_HOME": str(tmp_path)}
+    (tmp_path / "gaitpad/styles").mkdir(parents=True)
+    mine = tmp_path / "gaitpad/styles/mine.toml"
+    def replayed(*options):
+        done = run("replay", trace, "--json", *options, env=environment)
+        return json.loads(done.stdout), done.stderr
+    without, said = replayed()
+    assert without["bad_commands"] == 1 and "--user-styles" not in said
+    mine.write_text("hip_sway = 3\n")
+    left_out, said = replayed()
+    assert left_out["pose_hash"] == without["pose_hash"] and left_out["bad_commands"] == 1
+    sentence = f'"mine" is a style of your own ({mine}), which a replay reads with --user-styles alone'
+    assert sentence in said
+    taken, said = replayed("--user-styles")
+    assert taken["pose_hash"] != without["pose_hash"] and taken["bad_commands"] == 0 and not said
+    named, _ = replayed("--style", "mine")
+    assert named["bad_commands"] == 0, "what the command line names is read"
+    refuse("replay", trace, "--terrain", ground, env=environment, says=[f"zone.toml:7: there is no style \"mine\"; {sentence}"])
 
 
 def test_a_recorded_session_replays_without_its_options(run, tmp_path):

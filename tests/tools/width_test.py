@@ -7,13 +7,14 @@ import pytest
 from support.program import ROOT, ROUND
 from support.terminal import Terminal
 
-COMMANDS = ("play", "replay", "record", "pads", "doctor", "decode", "monitor", "calibrate", "selftest", "motion", "ik", "figures",
+COMMANDS = ("play", "replay", "record", "pads", "doctor", "decode", "monitor", "calibrate", "forward", "selftest", "motion", "ik", "figures",
             "bench", "check", "list", "map")
-WALK = ROOT / "config/motions/keyframe_walk.toml"
+WALK, WORN = ROOT / "config/motions/keyframe_walk.toml", ROOT / "config/traces/worn.hid"
 OUTPUTS = (
     *([command, "--help"] for command in COMMANDS), ["--help"], ["list"], ["pads"], ["doctor"],
     ["decode", ROUND, "--descriptor"], ["decode", ROUND], ["motion", WALK], ["replay", ROUND],
-    ["calibrate", "--trace", ROUND, "--out", "out.toml"], ["calibrate", "--compare", "out.toml", "out.toml"],
+    ["calibrate", "--trace", WORN, "--out", "out.toml"], ["calibrate", "--compare", "out.toml", "out.toml"],
+    ["calibrate", "--trace", ROUND],
     # Errors, with a long list and with a suggestion.
     ["replay", ROUND, "--style", "sideways"], ["replay", ROUND, "--style", "limp_lefft"], ["replay", ROUND, "--no-such-option"],
     ["dance"], ["replay", ROUND, "--rate", "many"], ["replay", ROUND, "--view"], ["play"])

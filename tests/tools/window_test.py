@@ -9,6 +9,7 @@ import shutil
 import signal
 import subprocess
 import sys
+import time
 
 import pytest
 
@@ -175,11 +176,13 @@ def test_clean_pictures_have_no_bars(window):
 
 def test_a_signal_ends_it_in_good_order(window, tmp_path):
     record = tmp_path / "signal.hid"
+    start = time.monotonic()
     with window.started("play", ROUND, "--record", record, "--json") as process:
         wait_until_recorded(record)
         out, _ = end_by(process, signal.SIGTERM)
     summary = json.loads(out)[0]
     assert summary["frames"] > 0
+    assert 0 < summary["first_frame_s"] < time.monotonic() - start
     again = json.loads(window.run("replay", record, *FOUR, "--json").stdout)[0]
     assert again["pose_hash"] == summary["pose_hash"]
 

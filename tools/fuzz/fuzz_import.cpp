@@ -3,9 +3,10 @@
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>
+#include <utility>
 
-#include "hid/evdev_layout.h"
 #include "stick/calibration_import.h"
+#include "tools/fuzz/made_pads.h"
 
 namespace {
 
@@ -15,14 +16,8 @@ struct Pad {
 };
 
 Pad made_pad(std::int32_t min, std::int32_t max) {
-  const gaitpad::EvdevAbilities abilities{
-      {{0x00, min, max}, {0x01, min, max}, {0x02, min, max}, {0x05, min, max}, {0x09, 0, max}},
-      {0x130, 0x131, 0x133, 0x134}};
   Pad pad;
-  pad.device.vendor = 0x1209;
-  pad.device.product = 0x0001;
-  pad.device.driver = "evdev";
-  pad.device.descriptor = gaitpad::evdev_layout(abilities, {}).descriptor;
+  pad.device = gaitpad::made_evdev_pad(min, max);
   auto layout = gaitpad::pad_layout(pad.device, {});
   if (!layout) std::abort();
   pad.layout = std::move(*layout);

@@ -2,6 +2,7 @@
 """Writes the fuzzers' first inputs from the repository's own files: seeds.py OUT_FOLDER"""
 import math
 import pathlib
+import struct
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
@@ -126,17 +127,77 @@ def write_imports(out):
         (out / "fuzz_import" / name).write_text(text)
 
 
+def write_expectations(out):
+    for path in ROOT.rglob("config/**/*.expect.toml"):
+        (out / "fuzz_expectation" / path.name).write_bytes(path.read_bytes())
+    (out / "fuzz_expectation" / "every_table.toml").write_text(
+        '# mine\npose_hash = "0123456789abcdef"\nkeep_poses = false\nticks = 240\nbad_commands = 0\n'
+        '[replay]\nmotion = "walk.toml"\npace = "adult"\ncharacter = ["build.toml", "adult"]\nstyle = ["./mine.toml"]\n'
+        'crowd = 2\nterrain = "g.toml"\nscript = "s.toml"\nik = "paper"\nstick = "points"\ncalibration = "c.toml"\n'
+        'map = "m.toml"\nrate = 240\nlenient = true\n[files]\n"config/styles/even.toml" = "0123456789abcdef"\n'
+        '[[character]]\nsteps_left = 3\nspeed_m_s = { value = 1.25, within = 0.05 }\n')
+
+
+def write_pad_files(out):
+    for path in sorted((ROOT / "config/pads").glob("*.toml")):
+        (out / "fuzz_pad_file" / path.name).write_bytes(path.read_bytes())
+
+
+def write_mappings(out):
+    base = "030000000912000001000000{version},Pad,a:b0,b:b1,x:b2,y:b3,back:b8,start:b9,leftx:a0,lefty:a1~,rightx:a2,righty:a3,"
+    for name, line in {
+            "plain": base.format(version="11010000") + "dpup:h0.1,dpdown:h0.4,platform:Linux,",
+            "halves": base.format(version="00000000") + "lefttrigger:+a2,righttrigger:-a2~,-leftx:b4,+leftx:b5,crc:12ab,",
+            "two": base.format(version="11010000") + "\n" + base.format(version="00000000") + "hint:SDL_GAMECONTROLLER_USE_BUTTON_LABELS:=1,"}.items():
+        (out / "fuzz_mapping" / name).write_text(line + "\n")
+
+
+def write_commands(out):
+    (out / "fuzz_command" / "all").write_text(
+        "style limp\nstyle 2 even\nset hip_sway 2\nset 1 arm_swing 0.5\ngait step_length_m 0.5\ngait 2 speed stick\ngait stick\n"
+        "stick steers\nstick points 90\nreset\nreset 2\nik paper\nik robust\nmark\n")
+    (out / "fuzz_command" / "script.toml").write_text(
+        '[[event]]\nat_s = 1.5\ncommand = "style 1 limp"\n[[event]]\nat_s = 0\ncommand = "mark"\n')
+
+
+def write_streams(out):
+    numbers = struct.pack("<29d", *(0.1 * i for i in range(29)))
+    for name, address in {"osc": "osc://127.0.0.1:39539", "six": "json://[::1]:39540", "plain": "json"}.items():
+        (out / "fuzz_stream" / name).write_bytes(f"{address}\nA \"walker\" \\ ü\n".encode() + numbers)
+
+
+def write_forwards(out):
+    """fuzz_forward's frame round the bytes of recordings, and two nodes of evdev."""
+    for path in sorted((ROOT / "tests/data/pads").glob("*.hid"))[::3]:
+        text = path.read_text()
+        descriptor = bytes_behind(lines_of(text, "R")[0], 2)
+        reports = b"".join(bytes([min(len(r), 65)]) + r[:65] for r in
+                           (bytes_behind(line, 3) for line in lines_of(text, "E")[:4]))
+        head = bytes([0, len(descriptor) & 255, len(descriptor) >> 8])
+        (out / "fuzz_forward" / path.stem).write_bytes(head + descriptor + reports)
+    for name, shift in (("node", 0), ("wide_node", 16)):
+        axes = b"".join(struct.pack("<BBhh", code, shift, -32768, 32767) for code in (0, 1, 3, 4, 0x10, 0x11))
+        keys = b"\xff" + b"".join(struct.pack("<H", code) for code in (0x130, 0x131, 0x133, 0x220))
+        reports = bytes([16]) + b"\xff\x7f\x00\x80" * 4 + bytes([0xff, 1, 0xfe, 2, 3, 4])
+        (out / "fuzz_forward" / name).write_bytes(struct.pack("<BH", 3, len(axes + keys)) + axes + keys + reports)
+
+
 def main():
     out = pathlib.Path(sys.argv[1])
-    for name in ("fuzz_trace", "fuzz_descriptor", "fuzz_bvh", "fuzz_acclaim", "fuzz_calibration", "fuzz_import",
-                 "fuzz_terrain"):
-        (out / name).mkdir(parents=True, exist_ok=True)
+    for target in pathlib.Path(__file__).parent.glob("fuzz_*.cpp"):
+        (out / target.stem).mkdir(parents=True, exist_ok=True)
     write_pads(out)
     write_session(out)
     write_walk(out)
     write_acclaim(out)
     write_calibrations(out)
     write_imports(out)
+    write_expectations(out)
+    write_pad_files(out)
+    write_mappings(out)
+    write_commands(out)
+    write_streams(out)
+    write_forwards(out)
     for path in (ROOT / "config/terrain").iterdir():
         (out / "fuzz_terrain" / path.name).write_bytes(path.read_bytes())
 

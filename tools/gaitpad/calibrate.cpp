@@ -258,7 +258,7 @@ void print_advice(const StickAnalysis& stick) {
     print_row("outer zone", fmt::format("{:>9.3f}", a.outer_zone),
               fmt::format("{:.3f} of the deflection, sideways zone {:.3f}", c.outer, c.sideways));
   } else {
-    print_row("outer zone", kUnknown, "range and outer zone stay as they were");
+    print_row("outer zone", kUnknown, "");
   }
   if (c.frame == StickFrame{}) return;
   constexpr const char* kRaw[] = {"x", "-x", "y", "-y"};
@@ -594,7 +594,7 @@ std::optional<Error> show(const CalibrateArguments& arguments, const GuidedPad& 
     print_json_line(json);
   } else if (arguments.out != "-") {
     print_analysis(pad.info, analysis);
-    if (changes && is_useful(analysis))
+    if (changes && has_a_centre(analysis))
       print_changes(*changes,
                     "nothing that was seen has changed since " + printable(arguments.check));
   }
@@ -602,8 +602,7 @@ std::optional<Error> show(const CalibrateArguments& arguments, const GuidedPad& 
   if (!arguments.plot.empty()) {
     if (auto problem = draw(arguments, pad, analysis)) return problem;
   }
-  if (is_useful(analysis)) return std::nullopt;
-  return Error{"no stick was seen at rest with hands off, so no centre is known; nothing written"};
+  return std::nullopt;
 }
 
 int check(const CalibrateArguments& arguments, const GuidedPad& pad, const PadAnalysis& analysis) {
@@ -616,11 +615,11 @@ int check(const CalibrateArguments& arguments, const GuidedPad& pad, const PadAn
                                arguments.check, printable(then->name), printable(pad.info.name),
                                pad.info.vendor, pad.info.product)});
   }
-  CalibrationFile now;
-  now.calibration = then->calibration;
-  take_advice(analysis, now);
-  const auto problem = show(arguments, pad, analysis, changes_since(*then, now));
-  return problem ? fail(kCalibrateCommand, problem->message) : 0;
+  const auto changes = changes_since(*then, seen_today(analysis, *then));
+  if (const auto problem = show(arguments, pad, analysis, changes))
+    return fail(kCalibrateCommand, problem->message);
+  if (has_a_centre(analysis)) return 0;
+  return fail(kCalibrateCommand, "no stick was seen at rest with hands off: nothing to compare");
 }
 
 // Shows what was measured and writes the file. If somebody is at the terminal (`asked` is not
@@ -637,6 +636,15 @@ int keep(const CalibrateArguments& arguments, const PadFiles& files, const Guide
   file.measured_on = today();
   if (const auto problem = show(arguments, pad, analysis, std::nullopt))
     return fail(kCalibrateCommand, problem->message);
+  if (!is_useful(analysis))
+    return fail(kCalibrateCommand, why_useless(analysis) + "; nothing is written");
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (analysis.stick[i] && !is_known(analysis, i)) {
+      print_remarks(
+          kCalibrateCommand,
+          {fmt::format("the {} stick is unknown: its calibration stays as it was", kSideNames[i])});
+    }
+  }
   if (asked && *target != "-" &&
       !confirmed(fmt::format("Enter writes {}, q leaves it as it was.", printable(*target)),
                  *asked))

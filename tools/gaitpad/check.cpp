@@ -35,7 +35,7 @@ struct Shard {
 
 struct CheckArguments {
   std::vector<std::string> paths;
-  bool updates = false, is_strict = false;
+  bool updates = false, is_strict = false, user_styles = false;
   int jobs = machine_threads();
   std::string shard, junit, plot;
   std::optional<double> max_hours;
@@ -213,7 +213,7 @@ int run(const CheckArguments& arguments) {
     traces.push_back(found->traces[i]);
 
   const CheckOptions options = {config_folders(), arguments.updates, !arguments.plot.empty(),
-                                arguments.max_hours};
+                                arguments.max_hours, arguments.user_styles};
   const int jobs = std::min(arguments.jobs, std::max(1, static_cast<int>(traces.size())));
   JunitReport junit;
   int failures = 0;
@@ -277,6 +277,7 @@ void add_check(CLI::App& app, int& status) {
                    "folder for a picture of each pose that differs: both courses of the joint")
       ->check(joints_plot_problem);
   add_max_hours_option(*command, arguments->max_hours);
+  add_user_styles_option(*command, arguments->user_styles);
   command->footer(
       "Results are TAP on standard output. Exit status: 0 all are met, 1 one is not, 2 wrong "
       "usage.\n"

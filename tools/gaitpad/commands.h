@@ -19,6 +19,7 @@ void add_doctor(CLI::App& app, int& status);
 void add_decode(CLI::App& app, int& status);
 void add_monitor(CLI::App& app, int& status);
 void add_calibrate(CLI::App& app, int& status);
+void add_forward(CLI::App& app, int& status);
 void add_selftest(CLI::App& app, int& status);
 void add_motion(CLI::App& app, int& status);
 void add_ik(CLI::App& app, int& status);

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -105,7 +104,7 @@ std::string permission_fix(const RulesFile& shipped, const PadHardware& pad,
     return fmt::format("{} (no rule for this pad in {}{})", install_command(), installed->path,
                        line);
   return fmt::format("sudo sh -c '{}', or plug it in again ({} is there, but was not applied)",
-                     kApplyRules, installed->path);
+                     kPadRules.apply, installed->path);
 }
 
 // True if the node can be used.
@@ -419,33 +418,14 @@ std::string rules_text(const Machine& machine, const RulesFile& shipped) {
   return text;
 }
 
-bool is_agreed(const DoctorArguments& arguments) {
-  if (arguments.is_agreed) return true;
-  fmt::print(stderr, "Write this to {} and let udev apply it? [y/N] ", kRulesTarget);
-  std::string answer;
-  std::getline(std::cin, answer);
-  return answer == "y" || answer == "Y" || answer == "yes";
-}
-
-int install(const DoctorArguments& arguments, const Machine& machine, const RulesFile& shipped) {
-  const std::string text = rules_text(machine, shipped);
-  fmt::print("{}", text);
-  std::fflush(stdout);
-  if (::geteuid() != 0)
-    return fail("doctor", fmt::format("{} needs root: {}", kRulesTarget, install_command()));
-  if (!is_agreed(arguments)) return fail("doctor", "nothing was changed");
-  if (const auto problem = install_rules(text)) return fail("doctor", problem->message);
-  fmt::print(stderr, "gaitpad doctor: {} is installed and applied\n", kRulesTarget);
-  return 0;
-}
-
 int run(const DoctorArguments& arguments) {
   const auto shipped = shipped_rules();
   if (!shipped) return fail("doctor", shipped.error().message);
   const auto machine = look(*shipped);
   if (!machine) return fail("doctor", machine.error().message);
-  return arguments.installs_rules ? install(arguments, *machine, *shipped)
-                                  : diagnose(arguments, *machine, *shipped);
+  if (!arguments.installs_rules) return diagnose(arguments, *machine, *shipped);
+  return install_rules("doctor", kPadRules, rules_text(*machine, *shipped), arguments.is_agreed,
+                       install_command());
 }
 
 }  // namespace

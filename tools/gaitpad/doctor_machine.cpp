@@ -11,6 +11,7 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <iostream>
 #include <iterator>
 #include <map>
 
@@ -19,6 +20,7 @@
 #include "gaitpad/config_files.h"
 #include "gaitpad/decode.h"
 #include "tools/gaitpad/options.h"
+#include "tools/gaitpad/print.h"
 
 namespace gaitpad {
 namespace fs = std::filesystem;
@@ -177,7 +179,6 @@ std::string own_user_name() {
 
 namespace {
 
-constexpr const char* kRulesName = "60-gaitpad.rules";
 constexpr const char* kGrant = R"(MODE="0660", GROUP="input", TAG+="uaccess")";
 
 std::optional<std::string> text_of(const fs::path& path) {
@@ -220,7 +221,8 @@ bool line_fits(std::string_view line, std::string_view hid_device) {
   return has_key;
 }
 
-// How a user starts this program: by its name if the shell finds it, else by its path.
+}  // namespace
+
 std::string program() {
   std::error_code error;
   const fs::path self = fs::read_symlink("/proc/self/exe", error);
@@ -235,20 +237,18 @@ std::string program() {
   return self.empty() ? "gaitpad" : self.string();
 }
 
-}  // namespace
-
-Result<RulesFile> shipped_rules() {
+Result<RulesFile> shipped_rules(const RulesTarget& target) {
+  const std::string name = fs::path(target.path).filename().string();
   for (const std::string& folder : config_folders()) {
-    const fs::path path = fs::path(folder) / "udev" / kRulesName;
+    const fs::path path = fs::path(folder) / "udev" / name;
     if (auto text = text_of(path)) return RulesFile{path.string(), std::move(*text)};
   }
-  return Error{
-      fmt::format("config/udev/{}: no such file in the folders of configuration", kRulesName)};
+  return Error{fmt::format("config/udev/{}: no such file in the folders of configuration", name)};
 }
 
 std::optional<RulesFile> installed_rules() {
   for (const char* folder : {"/etc", "/run", "/usr/local/lib", "/usr/lib", "/lib"}) {
-    const fs::path path = fs::path(folder) / "udev/rules.d" / kRulesName;
+    const fs::path path = fs::path(folder) / "udev/rules.d" / fs::path(kPadRules.path).filename();
     if (auto text = text_of(path)) return RulesFile{path.string(), std::move(*text)};
   }
   return std::nullopt;
@@ -281,15 +281,39 @@ std::string usb_rule(const RuleSubject& subject) {
 std::string install_command() { return fmt::format("sudo {} doctor --install-rules", program()); }
 
 std::string manual_install_command(const RulesFile& rules) {
-  return fmt::format("sudo cp {} {} && sudo sh -c '{}'", rules.path, kRulesTarget, kApplyRules);
+  return fmt::format("sudo cp {} {} && sudo sh -c '{}'", rules.path, kPadRules.path,
+                     kPadRules.apply);
 }
 
-std::optional<Error> install_rules(const std::string& text) {
-  if (auto problem = write_file(kRulesTarget, text)) return problem;
-  if (::chmod(kRulesTarget, 0644) != 0) return write_error(kRulesTarget, errno);
-  if (std::system(kApplyRules) == 0) return std::nullopt;
+namespace {
+
+bool asks_to_install(const RulesTarget& target) {
+  fmt::print(stderr, "Write this to {} and let udev apply it? [y/N] ", target.path);
+  std::string answer;
+  std::getline(std::cin, answer);
+  return answer == "y" || answer == "Y" || answer == "yes";
+}
+
+std::optional<Error> write_rules(const RulesTarget& target, const std::string& text) {
+  if (auto problem = write_file(target.path, text)) return problem;
+  if (::chmod(target.path, 0644) != 0) return write_error(target.path, errno);
+  if (std::system(target.apply) == 0) return std::nullopt;
   return Error{fmt::format("{}: is written, but udev was not told; do: sudo sh -c '{}'",
-                           kRulesTarget, kApplyRules)};
+                           target.path, target.apply)};
+}
+
+}  // namespace
+
+int install_rules(std::string_view command, const RulesTarget& target, const std::string& text,
+                  bool is_agreed, const std::string& as_root) {
+  fmt::print("{}", text);
+  std::fflush(stdout);
+  if (::geteuid() != 0)
+    return fail(command, fmt::format("{} needs root: {}", target.path, as_root));
+  if (!is_agreed && !asks_to_install(target)) return fail(command, "nothing was changed");
+  if (const auto problem = write_rules(target, text)) return fail(command, problem->message);
+  fmt::print(stderr, "gaitpad {}: {} is installed and applied\n", command, target.path);
+  return 0;
 }
 
 }  // namespace gaitpad

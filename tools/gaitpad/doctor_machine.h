@@ -43,13 +43,21 @@ Machine look_at_machine(std::vector<PadSighting> sightings, const PadOverrides& 
 std::string users_of(const std::string& node);
 std::string own_user_name();
 
-// --- config/udev/60-gaitpad.rules
+// --- the rules of config/udev
 
-inline constexpr const char* kRulesTarget = "/etc/udev/rules.d/60-gaitpad.rules";
-// Makes udev read its rules again and apply them to the devices that are plugged in.
-inline constexpr const char* kApplyRules =
+struct RulesTarget {
+  const char* path;
+  // Makes udev read its rules again and apply them to the devices that are plugged in.
+  const char* apply;
+};
+// Who may use pads (60-gaitpad.rules), and who may make virtual ones (60-gaitpad-uinput.rules).
+inline constexpr RulesTarget kPadRules = {
+    "/etc/udev/rules.d/60-gaitpad.rules",
     "udevadm control --reload && udevadm trigger --subsystem-match=hidraw --subsystem-match=input "
-    "--subsystem-match=usb";
+    "--subsystem-match=usb"};
+inline constexpr RulesTarget kUinputRules = {
+    "/etc/udev/rules.d/60-gaitpad-uinput.rules",
+    "udevadm control --reload && udevadm trigger --subsystem-match=misc --sysname-match=uinput"};
 
 // A device as a rule sees it.
 struct RuleSubject {
@@ -61,8 +69,8 @@ struct RuleSubject {
 struct RulesFile {
   std::string path, text;
 };
-Result<RulesFile> shipped_rules();
-// The rules file that udev reads: the one in the first of its folders that has it.
+Result<RulesFile> shipped_rules(const RulesTarget& target = kPadRules);
+// The rules file for pads that udev reads: the one in the first of its folders that has it.
 std::optional<RulesFile> installed_rules();
 
 // Whether a line for hidraw nodes fits the device.
@@ -71,11 +79,15 @@ bool opens_hidraw(std::string_view rules, const RuleSubject& subject);
 std::string hidraw_rule(const RuleSubject& subject);
 std::string usb_rule(const RuleSubject& subject);
 
-// Commands that do what `--install-rules` does.
+// How a user starts this program: by its name if the shell finds it, else by its path.
+std::string program();
+// Commands that do what `doctor --install-rules` does.
 std::string install_command();                               // by this program
 std::string manual_install_command(const RulesFile& rules);  // without it
 
-// Replaces kRulesTarget by the text in one step and makes udev apply it.
-std::optional<Error> install_rules(const std::string& text);
+// Prints the text, asks unless the user has agreed already, replaces the target in one step and
+// makes udev apply it. The exit status. `as_root`: the command that the user has to give as root.
+int install_rules(std::string_view command, const RulesTarget& target, const std::string& text,
+                  bool is_agreed, const std::string& as_root);
 
 }  // namespace gaitpad

@@ -56,6 +56,7 @@ constexpr Example kExamples[] = {
     {"decode", "gaitpad decode mine.hid --descriptor\ngaitpad decode /dev/hidraw0\n"},
     {"monitor", "gaitpad monitor\n"},
     {"calibrate", "gaitpad calibrate\ngaitpad calibrate --trace mine.hid --out mine.toml\n"},
+    {"forward", "gaitpad forward\ngaitpad forward --as xbox360 --install\n"},
     {"motion", "gaitpad motion keyframe_walk\ngaitpad motion walk.bvh --json\n"},
     {"ik", "gaitpad ik chain.toml --mode paper\n"},
     {"figures", "gaitpad figures --out figures\n"},
@@ -169,6 +170,7 @@ int main(int argc, char** argv) {
   gaitpad::add_decode(app, status);
   gaitpad::add_monitor(app, status);
   gaitpad::add_calibrate(app, status);
+  gaitpad::add_forward(app, status);
   gaitpad::add_selftest(app, status);
   gaitpad::add_motion(app, status);
   gaitpad::add_ik(app, status);

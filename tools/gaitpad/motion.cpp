@@ -139,7 +139,7 @@ std::string gait_text(const Result<GaitCycle>& cycle) {
       cycle->step_m[kRightSide], cycle->stride_m / cycle->duration_s, turn_deg, stick_text(*cycle));
 }
 
-void print_table(const Motion& motion, const Result<GaitCycle>& cycle) {
+void print_motion(const Motion& motion, const Result<GaitCycle>& cycle) {
   const double rate_hz = 1.0 / motion.frame_time_s;
   const std::size_t frames = motion.frames.size();
   say("motion        {}\n", printable(motion.name));
@@ -177,7 +177,7 @@ int run_motion(const MotionArguments& arguments) {
   const Result<GaitCycle> cycle =
       arguments.file == "procedural" ? procedural_gait() : gait_cycle(*motion);
   if (!arguments.as_json) {
-    print_table(*motion, cycle);
+    print_motion(*motion, cycle);
     return 0;
   }
   print_json(motion_json(*motion, cycle));

@@ -81,6 +81,12 @@ void add_max_hours_option(CLI::App& command, std::optional<double>& hours) {
       ->check(CLI::PositiveNumber);
 }
 
+void add_user_styles_option(CLI::App& command, bool& user_styles) {
+  command.add_flag(
+      "--user-styles", user_styles,
+      "commands may name styles of your own folder, too; another machine has them not");
+}
+
 Result<PadFiles> pad_files(const std::string& map, const std::string& calibration) {
   return load_pad_files(config_folders(), map, calibration);
 }

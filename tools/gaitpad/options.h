@@ -29,6 +29,7 @@ void add_pad_options(CLI::App& command, PadWish& wish);  // PAD and --driver
 bool is_choosy(const PadWish& wish);
 void add_seconds_option(CLI::App& command, double& seconds);
 void add_max_hours_option(CLI::App& command, std::optional<double>& hours);  // of a recording
+void add_user_styles_option(CLI::App& command, bool& user_styles);           // of a replay
 
 // --map and --calibration (empty: none), and what config/ says about pads.
 Result<PadFiles> pad_files(const std::string& map, const std::string& calibration);

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/files.h"
+#include "drivers/posix.h"
 #include "gaitpad/live.h"
 #include "session/walk_export.h"
 #include "tools/gaitpad/commands.h"
@@ -191,6 +192,9 @@ WindowOptions options_of_window(const PlayArguments& arguments, InputLines& inpu
   return options;
 }
 
+// Before main(), once the libraries are loaded: where the time to the first frame begins.
+const std::int64_t kStarted_ns = now_ns();
+
 // Of a playback in the window only these keys are known.
 ordered_json playback_json(const RunSummary& run, std::size_t walker) {
   return {{"ticks", run.ticks},
@@ -207,6 +211,7 @@ void print_window_json(const WindowResult& result) {
         result.status ? summary_json(result.summary, i) : playback_json(result.summary, i));
     summary["frames"] = result.frames;
     summary["frames_per_second"] = result.frames_per_second;
+    summary["first_frame_s"] = 1e-9 * static_cast<double>(result.first_frame_ns - kStarted_ns);
     if (result.status) add_status(*result.status, summary);
   }
   print_summaries_json(summaries);

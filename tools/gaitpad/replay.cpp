@@ -118,6 +118,7 @@ void add_replay(CLI::App& app, int& status) {
       ->needs(out);
   command->add_flag("--lenient", arguments->is_lenient, "skip damaged lines and count them");
   add_max_hours_option(*command, wanted.max_hours);
+  add_user_styles_option(*command, wanted.user_styles);
   auto* in_window = command->add_flag("--view", arguments->view,
                                       "open the window: a time line to scrub, any speed");
   for (CLI::Option* option : add_window_options(*command, arguments->window))

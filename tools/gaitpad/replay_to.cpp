@@ -126,9 +126,9 @@ Result<std::int64_t> play_to_uinput(const SessionSpec& spec, Trace trace, double
     return Error{trace.path + ": none of its devices is a pad"};
   const auto ticks = assign_ticks(trace, rate_hz);
   if (!ticks) return ticks.error();
-  auto pad = VirtualPad::create();
+  auto pad = XboxPad::create();
   if (!pad) return pad.error();
-  print_remarks(kReplayCommand, {"it plays to " + (*pad)->node()});
+  print_remarks(kReplayCommand, {"it plays to " + pad->node()});
   Pads pads(std::move(*configs), rate_hz);
   const std::int64_t start_ns = now_ns() + nanoseconds(delay_s);
   std::int64_t reports = 0;
@@ -147,8 +147,8 @@ Result<std::int64_t> play_to_uinput(const SessionSpec& spec, Trace trace, double
       ++reports;
     }
     const ForwardedTick now = forwarded_tick(pads, pads.finish_tick());
-    if (!(*pad)->set(between(sent, now)) || !(*pad)->set(now.state))
-      return Error{(*pad)->node() + ": the kernel refuses its events"};
+    if (!pad->set(between(sent, now)) || !pad->set(now.state))
+      return Error{pad->node() + ": the kernel refuses its events"};
     sent = now;
   }
   wait_until(now_ns() + nanoseconds(delay_s), end);

@@ -25,6 +25,7 @@ class RunEnd {
   bool is_reached() noexcept;
   // Of a command that was cut off: 128 and the signal that ended it, as shells count; 0: none has.
   int cut_off_status() const noexcept { return signal_ == 0 ? 0 : 128 + signal_; }
+  pollfd fd() const noexcept { return {signals_.get(), POLLIN, 0}; }  // of the signals
   // Sleeps until the end, until one of `others` is ready, or for `time`.
   void wait(std::chrono::milliseconds time, std::span<const pollfd> others = {});
 

@@ -1,16 +1,26 @@
-"""A pad for other programs: forwarded with its calibration by `play --forward`, and played into the kernel from a
-recording by `replay --to`. SDL, evdev and hidraw read what came out."""
+"""A pad for other programs: the calibrated one in place of the real one by `forward`, the driving one of a session by
+`play --forward`, and a recording by `replay --to`. SDL, evdev and hidraw read what came out."""
+import contextlib
 import ctypes
+import errno
+import fcntl
+import json
 import math
+import os
+import signal
+import statistics
+import struct
 import subprocess
 import time
 
 import pytest
 
-from nodes import EventNode, HidrawNode
-from pads import PATIENCE, Nodes, Pad, wait_for
-from session import IDS, PROGRAM, Session, remark
+from nodes import EV_FF, EventNode, HidrawNode, ioctl_number
+from pads import PATIENCE, Nodes, Pad, settle, wait_for
+from session import HAS_SANITIZERS, IDS, PROGRAM, Session, remark, run
 from support import traces
+from test_latency import ATTEMPTS, BLOCKS, RATE_HZ, SECONDS, bare_block, latencies_us, quartiles, written
+from uhid_pad import UhidPad
 
 FULL = 32767
 NAME = b"gaitpad calibrated pad"
@@ -41,7 +51,7 @@ class SdlPad:
     AXES = {"left_x": 0, "left_y": 1, "right_x": 2, "right_y": 3, "left_trigger": 4, "right_trigger": 5}
     BUTTONS = ("a", "b", "x", "y")
 
-    def __init__(self):
+    def __init__(self, wanted=NAME):
         self.sdl = ctypes.CDLL("libSDL2-2.0.so.0")
         self.sdl.SDL_GameControllerOpen.restype = ctypes.c_void_p
         self.sdl.SDL_JoystickNameForIndex.restype = ctypes.c_char_p
@@ -50,8 +60,8 @@ class SdlPad:
         self.sdl.SDL_SetHint(b"SDL_JOYSTICK_HIDAPI", b"0")
         assert self.sdl.SDL_Init(0x2000) == 0  # SDL_INIT_GAMECONTROLLER
         names = [self.sdl.SDL_JoystickNameForIndex(i) for i in range(self.sdl.SDL_NumJoysticks())]
-        assert names.count(NAME) == 1, names
-        index = names.index(NAME)
+        assert names.count(wanted) == 1, names
+        index = names.index(wanted)
         assert self.sdl.SDL_IsGameController(index), "SDL knows it without a mapping"
         self.pad = ctypes.c_void_p(self.sdl.SDL_GameControllerOpen(index))
 
@@ -122,6 +132,201 @@ def test_gaitpad_does_not_read_its_own_output():
         wait_for(virtual_pad, 10, "the virtual pad")
         time.sleep(2)
     assert session.plugged() == 1, session.lines("H:")
+
+
+class Forward:
+    """`gaitpad forward` while the block lasts; `remarks` afterwards."""
+
+    def __init__(self, *arguments):
+        self._command = [PROGRAM, "forward", *map(str, arguments)]
+
+    def __enter__(self):
+        print("$", *self._command, flush=True)
+        self.process = subprocess.Popen(self._command, stderr=subprocess.PIPE, text=True)
+        try:
+            self.node = wait_for(virtual_pad, 20, "the virtual pad")
+        except BaseException:
+            self.process.kill()
+            print(self.process.communicate()[1])
+            raise
+        return self
+
+    def __exit__(self, kind, *_):
+        self.process.send_signal(signal.SIGINT if kind is None else signal.SIGKILL)
+        self.remarks = self.process.communicate(timeout=20 * PATIENCE)[1]
+        print(self.remarks)
+        if kind is None:
+            assert self.process.returncode == 0, self.remarks
+            assert virtual_pad() is None, "the virtual pad ends with the program"
+
+    def handles(self):
+        return len(os.listdir(f"/proc/{self.process.pid}/fd"))
+
+
+def ids_of(node):
+    """bus, vendor, product, version"""
+    return struct.unpack("4H", fcntl.ioctl(node.fd, ioctl_number(2, "E", 0x02, 8), bytes(8)))
+
+
+def play_effect(node, number, times):
+    os.write(node.fd, struct.pack("llHHi", 0, 0, EV_FF, number, times))
+
+
+def motors(pad, since_ns):
+    """(strong, weak) of each packet of a DualSense over Bluetooth."""
+    return [(packet.data[6], packet.data[5]) for packet in pad.out_packets(since_ns) if packet.data[0] == 0x31]
+
+
+CORNERS = [(140, 128), (255, 128), (0, 128), (128, 0), (128, 255), (200, 60), (30, 220), (90, 128), (141, 128)]
+
+
+def assert_calibrated(pad, node, places):
+    for place in places:
+        pad.set(lx=place[0], ly=place[1])
+        x, y = (round(v * FULL) for v in calibrated(*place))
+        wait_for(lambda: node.events(0.02) is not None and abs(node.absolute(0).value - x) <= 1
+                 and abs(node.absolute(1).value + y) <= 1, 10,
+                 f"{x} {-y} of {place}, not {node.absolute(0)} {node.absolute(1)}")
+
+
+@pytest.mark.timeout(180)
+def test_the_forwarded_pad_stands_in_for_the_real_one(tmp_path):
+    (tmp_path / "rig.toml").write_text(CALIBRATION.replace("054c:09cc", "054c:0ce6"))
+    with UhidPad("dualsense_bt") as pad, Forward("--calibration", tmp_path / "rig.toml") as forward:
+        with EventNode(forward.node) as node:
+            with EventNode(pad.joystick) as real:
+                assert (node.name(), ids_of(node)) == (real.name(), ids_of(real))
+                with pytest.raises(OSError) as refused:
+                    fcntl.ioctl(real.fd, ioctl_number(1, "E", 0x90, 4), 1)  # EVIOCGRAB
+                assert refused.value.errno == errno.EBUSY
+                assert_calibrated(pad, node, CORNERS)
+                pad.set(a=1, rt=200)
+                wait_for(lambda: any(e.code == 0x130 and e.value == 1 for e in node.events(0.02)), 10, "the button")
+                node.until_absolute(10, RZ=200)
+                assert not real.events(0.1), "nobody else sees the real one"
+
+            # The motors: uploaded, changed, played, ended by the kernel after its length.
+            start_ns = time.monotonic_ns()
+            effect = node.rumble(0xc000, 0x4000, 300)
+            wait_for(lambda: (0xc0, 0x40) in motors(pad, start_ns), 10, "the rumble at the pad")
+            wait_for(lambda: motors(pad, start_ns)[-1] == (0, 0), 10, "the rumble's end at the pad")
+
+            pad.set(lx=255, a=1)
+            node.until_absolute(10, X=FULL)
+            handles = forward.handles()
+            for _ in range(3):
+                pad.unplug()
+                node.until_absolute(10, X=0, RZ=0)
+                assert virtual_pad() == forward.node, "programs keep their pad"
+                pad.set(a=0, rt=0, lx=128)
+                pad.plug()
+                pad.set(lx=255)
+                node.until_absolute(20, X=FULL)
+                pad.set(lx=128)
+                node.until_absolute(10, X=0)
+            assert_calibrated(pad, node, CORNERS[:4])
+            start_ns = time.monotonic_ns()
+            play_effect(node, effect, 1)
+            wait_for(lambda: (0xc0, 0x40) in motors(pad, start_ns), 10, "the effect from before the unplugging")
+            wait_for(lambda: motors(pad, start_ns)[-1] == (0, 0), 10, "its end")
+            assert wait_for(lambda: forward.handles() == handles, 10, f"{handles} handles, not {forward.handles()}")
+    remark(f"forward: {len(CORNERS)} positions exact, rumble passed back, 3 unpluggings survived")
+
+
+@pytest.mark.timeout(180)
+def test_games_know_the_forwarded_pad_as_an_xbox_360_pad():
+    seen = {}
+    with Pad("generic") as pad, Forward(IDS["generic"], "--as", "xbox360"):
+        settle()
+        with SdlPad(b"Microsoft X-Box 360 pad") as sdl:
+            for corner in (0, 255):
+                pad.set(lx=corner, ly=corner)
+                wait_for(lambda: min(map(abs, sdl.left())) > FULL / 2, 20, "both axes of the stick in SDL")
+            pad.set(lx=255, ly=128)
+            wait_for(lambda: sdl.left()[0] == FULL and abs(sdl.left()[1]) < 300, 20, f"full stick, not {sdl.left()}")
+        # gaitpad itself takes the real pad, and never the virtual one.
+        seen = {row["name"]: row for row in json.loads(run("gaitpad", "pads", "--json").stdout) if row["driver"] == "evdev"}
+        assert not seen["Microsoft X-Box 360 pad"]["usable"], seen
+        with Session("--no-rumble", name="beside") as session:
+            time.sleep(2)
+        assert session.plugged() == 1, session.lines("H:")
+
+
+@pytest.mark.timeout(120)
+def test_forward_waits_for_a_pad_and_sleeps_while_nothing_moves():
+    with contextlib.ExitStack() as stack:
+        process = stack.enter_context(subprocess.Popen([PROGRAM, "forward", IDS["generic"]], stderr=subprocess.PIPE, text=True))
+        stack.callback(process.kill)
+        assert "is not there; waiting for it" in process.stderr.readline()
+        pad = stack.enter_context(Pad("generic"))
+        wait_for(virtual_pad, 20, "the virtual pad")
+        settle()
+        pad.set(lx=255)
+        with EventNode(virtual_pad()) as node:
+            node.until_absolute(10, X=FULL)
+
+        def switches():
+            with open(f"/proc/{process.pid}/status") as file:
+                return sum(int(line.split()[1]) for line in file if "voluntary_ctxt_switches" in line)
+        before = switches()
+        time.sleep(2)
+        slept = switches() - before
+        process.send_signal(signal.SIGINT)
+        assert process.wait(20 * PATIENCE) == 0
+    assert slept <= 4, f"{slept} wake-ups in 2 s"
+    remark(f"forward at rest: {slept} wake-ups in 2 s")
+
+
+# Every count is another position, so that no report is lost in a zone.
+PLAIN = """name = "plain"
+devices = ["1209:0001"]
+
+[left]
+x = { min = -1.0, centre = 0.0, max = 1.0 }
+y = { min = -1.0, centre = 0.0, max = 1.0 }
+shape = "axial"
+inner = 0.0
+outer = 1.0
+"""
+MOST_OVER_BARE_US = 300
+
+
+def forwarded_block(pad, calibration):
+    """[latency in us] of one block through the virtual pad: the n-th of its packets is the n-th report."""
+    with Forward(IDS["generic"], "--as", "xbox360", "--calibration", calibration):
+        before = len(pad.sent())
+        pad.set(lx=100, ly=100)
+        time.sleep(0.3)
+        received, _ = bare_block(pad, "bare_evdev", "045e:028e")
+        pad.wait_burst()
+        sent = written(pad, before + 1)
+    received = received[-len(sent):]
+    assert len(received) == len(sent) and len(sent) > RATE_HZ * SECONDS / 2, (len(received), len(sent))
+    return [(there - ns) / 1000 for (there, _), (ns, _) in zip(received, sent)]
+
+
+@pytest.mark.timeout(400)
+def test_forwarding_adds_little_to_the_bare_node(tmp_path):
+    if HAS_SANITIZERS:
+        pytest.skip("a program with sanitizers is slower by design")
+    (tmp_path / "plain.toml").write_text(PLAIN)
+    bare, forwarded = [], []
+    with Pad("generic") as pad:
+        for attempt in range(1 + ATTEMPTS):
+            for _ in range(BLOCKS):
+                before = len(pad.sent())
+                received, _ = bare_block(pad, "bare_evdev")
+                pad.wait_burst()
+                bare.append(quartiles(latencies_us(written(pad, before), received)))
+                forwarded.append(quartiles(forwarded_block(pad, tmp_path / "plain.toml")))
+                print(f"bare {bare[-1]}, forwarded {forwarded[-1]} us", flush=True)
+            over = [statistics.median(f[q] - b[q] for f, b in zip(forwarded, bare)) for q in (0, 1)]
+            if over[1] <= MOST_OVER_BARE_US:
+                break
+    remark(f"forward: {over[1] / 1000:.3f} ms over the bare node in the median ({over[0] / 1000:.3f} in the first quartile); "
+           f"bare {statistics.median(b[1] for b in bare) / 1000:.3f} ms, forwarded "
+           f"{statistics.median(f[1] for f in forwarded) / 1000:.3f} ms, {len(bare)} blocks each")
+    assert over[1] <= MOST_OVER_BARE_US, f"{over} us over the bare read, {1 + ATTEMPTS} times in a row"
 
 
 def play_into(target, trace, reader):

@@ -50,10 +50,10 @@ def written(pad, before):
     return [(s.ns, s.data[0] + 256 * s.data[1]) for s in pad.sent()[before:]][WARM_UP:]
 
 
-def bare_block(pad, way):
-    """[(ns of the arrival, number)] of one block by a reader that does nothing else."""
+def bare_block(pad, way, ids=GENERIC):
+    """[(ns of the arrival, number)] of one block by a reader that does nothing else. `ids`: of the node."""
     program = [f"{BUILD}/tools/rig/rig_plain_sdl"] if way == "plain_sdl" else [f"{BUILD}/tools/rig/rig_latency", way]
-    with subprocess.Popen([*program, GENERIC, "1000"], stdout=subprocess.PIPE, text=True) as reader:
+    with subprocess.Popen([*program, ids, "1000"], stdout=subprocess.PIPE, text=True) as reader:
         if reader.stdout.readline() != "ready\n":
             raise RuntimeError(f"{way} did not open the pad")
         pad.burst(RATE_HZ, SECONDS, at=0)

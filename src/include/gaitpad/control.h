@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "gaitpad/gait_params.h"
+#include "gaitpad/result.h"
 #include "gaitpad/stick.h"
 #include "gaitpad/style.h"
 
@@ -47,6 +48,8 @@ struct GaitLimits {
   double turn_step_time_s = kTurnInPlaceStepTime_s;  // of a turn in place and of a closing step
   double max_turn_rate_rad_s = kMaxTurnRate_rad_s;   // equal for all, so walkers stay side by side
 };
+// `GaitLimits: max_speed_m_s is -1, outside [0.001, 50]`.
+std::optional<Error> check(const GaitLimits& limits);
 // The limits for a leg length (hip to ankle). Lengths scale with the leg, as in the paper. Step
 // times scale with its fourth root and speeds with length over time. That is half-way between the
 // paper's proportion and equal Froude numbers, at which the legs of a child would move too quickly
@@ -126,11 +129,9 @@ struct GaitOverrides {
 //   faster or slower than any stick and style let it (in the sharpest turn: than a stick). Speed 0
 //   stands, whatever else is set.
 // - The turn rate replaces the sideways deflection, and is bounded as that is. Without speed and
-// with a neutral stick it turns
-//   in place.
+//   with a neutral stick it turns in place.
 // - A stride length counts only when stick or speed ask for strides; standing and turning in place
-// do
-//   not. Without a speed the step keeps the stick's time.
+//   do not. Without a speed the step keeps the stick's time.
 // - Parameters that are not overridden pass through bit-identically.
 GaitParams gait_params(const Stick& stick, const StyleValues& style, const GaitOverrides& overrides,
                        const GaitLimits& limits) noexcept;

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "gaitpad/gait_params.h"
+#include "gaitpad/result.h"
 #include "gaitpad/walk.h"
 
 namespace gaitpad {
@@ -24,6 +25,8 @@ struct CrowdMember {
 class Crowd {
  public:
   Crowd() = default;  // nobody
+  // The same, or `members[3].model is null`.
+  static Result<Crowd> create(std::span<const CrowdMember> members, IkMode mode = IkMode::robust);
   // Everybody stands.
   explicit Crowd(std::span<const CrowdMember> members, IkMode mode = IkMode::robust);
 
@@ -47,6 +50,9 @@ class Crowd {
   void copy_pose(int member, Pose& pose) const noexcept;
   // Puts a member back to where it stands at first.
   void restart(int member, const vec3& place_m) noexcept;
+  // move_walk() and put_walk() of gaitpad/walk.h.
+  void move(int member, const Placement& by) noexcept;
+  void put(int member, const vec3& place_m, double heading_rad) noexcept;
 
  private:
   void store_pose(int member, const Pose& pose) noexcept;

@@ -5,23 +5,20 @@
 // Threads  `find` is called by one thread (the finder's), `open` by a thread for each pad: of one
 //          pad never twice at once, of several at any time. It may take time: two seconds to start
 //          a pad, three more until the kernel's driver has started it, five for a request that the
-//          pad does not answer. An open Device belongs to the I/O thread, which
-//          makes all further calls; another thread may destroy it. A driver never calls back from a
-//          thread of its own; a thread that only talks to the pad is allowed (hidraw).
+//          pad does not answer. An open Device belongs to the I/O thread, which makes all further
+//          calls; another thread may destroy it. A driver never calls back from a thread of its
+//          own; a thread that only talks to the pad is allowed (hidraw).
 // Blocking No call of Device waits for a report: the I/O thread sleeps in poll() over the
-// `poll_fds`
-//          of all devices. A few calls take as long as the system takes: clearing a stalled
-//          endpoint (usb), a joystick that SDL has just found (sdl), closing.
+//          `poll_fds` of all devices. A few calls take as long as the system takes: clearing a
+//          stalled endpoint (usb), a joystick that SDL has just found (sdl), closing.
 // Memory   Everything may allocate: nothing here runs on the loop thread.
-// Owning   A Device owns its handles and closes them in its destructor. What it took from the
-// kernel
-//          (a detached driver, running motors) it gives back there.
+// Owning   A Device owns its handles and closes them in its destructor. There it also gives back
+//          what it took from the kernel: a detached driver, running motors.
 // Unplug   `read` returns `gone` after everything that came before it was read. A stall, a refused
 //          packet or an interrupted call is no unplugging: the device recovers or counts it as
 //          lost. A device that is plugged in again is a new Device.
 // Time     Report::time_ns is CLOCK_MONOTONIC: the kernel's stamp if the source has one (evdev),
-// else
-//          the time at which the report was seen.
+//          else the time at which the report was seen.
 #pragma once
 #include <poll.h>
 

@@ -91,6 +91,9 @@ struct GaitCycle {
   std::shared_ptr<const StrideFamily> strides;
 };
 
+// `NAME: samples are 0, not 128`. Lists have their lengths, joints exist, numbers are finite.
+std::optional<Error> check(const GaitCycle& cycle);
+
 // The local rotations of some of a cycle's joints as rows of numbers: for each sample w, x, y and z
 // of one joint after the other.
 struct PoseRows {

@@ -3,8 +3,10 @@
 // direction, hip sway and bounce), a second group weights the inverse kinematics.
 #pragma once
 #include <array>
+#include <optional>
 
 #include "gaitpad/limbs.h"
+#include "gaitpad/result.h"
 
 namespace gaitpad {
 
@@ -63,6 +65,7 @@ struct UpperBodyParams {
   TrunkParams trunk;
   std::array<HandParams, 2> hand;
   HeadParams head;
+  double idle = 1.0;  // how much of breath, sway and glances a stand shows: 0 none .. 1
   bool operator==(const UpperBodyParams&) const = default;
 };
 
@@ -77,5 +80,10 @@ struct GaitParams {
   std::array<LegWeights, 2> weight{kEvenWeights, kEvenWeights};  // indexed by Side
   UpperBodyParams body;
 };
+
+// The first number that is not finite or out of its range, as a sentence: `GaitParams:
+// stride[0].time_s is 0, outside [0.05, 20]`. A tick refuses the same numbers one by one
+// (gaitpad/walk.h).
+std::optional<Error> check(const GaitParams& params);
 
 }  // namespace gaitpad

@@ -4,6 +4,9 @@
 // CPUs, and a replay must give the same bits everywhere (only + - * / and sqrt are exact in IEEE
 // 754). GLM_FORCE_CTOR_INIT stays undefined: with it GLM types are not trivially copyable.
 #pragma once
+#ifdef GLM_FORCE_QUAT_DATA_WXYZ
+#error "gaitpad's rotations lie in memory as x, y, z, w: build without GLM_FORCE_QUAT_DATA_WXYZ"
+#endif
 #define GLM_FORCE_EXPLICIT_CTOR
 #include <algorithm>
 #include <cmath>
@@ -18,6 +21,11 @@ using vec2 = glm::dvec2;
 using vec3 = glm::dvec3;
 using mat3 = glm::dmat3;
 using quat = glm::dquat;
+
+// A program that sets GLM up otherwise would read other numbers than the library has written.
+static_assert(std::is_trivially_copyable_v<quat>, "build without GLM_FORCE_CTOR_INIT");
+static_assert(sizeof(vec3) == 3 * sizeof(double) && sizeof(quat) == 4 * sizeof(double),
+              "build without GLM_FORCE_DEFAULT_ALIGNED_GENTYPES");
 
 inline constexpr double kPi = std::numbers::pi;
 inline constexpr double kDegree = kPi / 180.0;           // radians

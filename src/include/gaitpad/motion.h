@@ -6,6 +6,7 @@
 #include <string_view>
 #include <vector>
 
+#include "gaitpad/result.h"
 #include "gaitpad/skeleton.h"
 
 namespace gaitpad {
@@ -42,6 +43,13 @@ struct Motion {
   Pace pace = Pace::own;  // of the motion's description; the built-in motion has the adult's
   std::vector<MotionFrame> frames;
 };
+
+// `NAME: has no frames`. Joints stand parents before children, each frame has a rotation of length
+// 1 for each joint, and all numbers are finite. `legs` and `pelvis` may be unset (-1, 0).
+std::optional<Error> check(const Motion& motion);
+
+// Whether all joints of both legs are set.
+bool has_legs(const Motion& motion) noexcept;
 
 // Forward kinematics of a frame, eq. (1), with the frame's own translations.
 void forward_kinematics(const Motion& motion, const MotionFrame& frame,

@@ -43,9 +43,8 @@ struct LoadOptions {
 // - The skeleton of NAME_01.amc is NAME_01.asf, else NAME.asf (up to the last `_`), else the only
 //   .asf file in the folder.
 // - An Acclaim bone becomes a joint at its start, with the bone's name; a chain ends in an End
-// Site.
-//   Its `:units length` counts 1/length inches (CMU's 0.45: 56.4 mm), if the legs are plausible
-//   then.
+//   Site. The file's `:units length` counts 1/length inches (CMU's 0.45: 56.4 mm) if the legs then
+//   have a plausible length.
 Result<Motion> load_motion(const std::string& path, const LoadOptions& options = {});
 
 // The same from texts in memory; `name` stands in errors.

@@ -56,6 +56,9 @@ struct SessionSpec {
     static constexpr double kMaxHours = 12.0, kMaxDamagedHours = 1.0;
     std::string trace;               // the recording; empty: the session is live
     Damage damage = Damage::refuse;  // what a damaged line of it means
+    // Whether commands and zones may name styles of the user's folder. Without it a replay is the
+    // same on every machine.
+    bool user_styles = false;
     // A longer one is an error: 40 KB can ask for hours of work. None: kMaxHours, or
     // kMaxDamagedHours if lines of it were skipped.
     std::optional<double> max_hours;

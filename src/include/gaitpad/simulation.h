@@ -50,6 +50,9 @@ struct SimulationConfig {
   std::vector<std::string> remarks;  // what a user should know of the files that it was read from
 };
 
+// `SimulationConfig: rate_hz is 0, outside [20, 1000]`. Calls the check of all that it holds.
+std::optional<Error> check(const SimulationConfig& config);
+
 // Configurations for devices that are not known yet: set_pad() fills them in.
 std::vector<PadConfig> unknown_pads(std::size_t count);
 
@@ -94,8 +97,8 @@ void copy_pose(const Pose& from, Pose& to) noexcept;
 // Copies are cheap, a few kilobytes a character: they share what does not change.
 class Simulation {
  public:
-  // Error: no walker or more than kMaxWalkers, a crowd of more than kMaxFollowers, a motion that
-  // does not fit a character, a zone whose style does not exist.
+  // Error: what check() refuses, a motion that does not fit a character, a zone whose style does
+  // not exist.
   static Result<Simulation> create(const SimulationConfig& config);
 
   // Sets what is known of a device that was found while the simulation runs, before its first

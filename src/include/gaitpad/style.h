@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "gaitpad/gait_params.h"
+#include "gaitpad/result.h"
 
 namespace gaitpad {
 
@@ -43,6 +44,9 @@ struct StyleValues {
 struct Style : StyleValues {
   std::string name;
 };
+// `StyleValues: left_leg.stride_length is nan, outside [0, 1.5]`. The bounds are those of
+// style_keys(); of the weights of a leg, an arm or the spine one must be above 0.
+std::optional<Error> check(const StyleValues& style);
 
 // Each value has a key, in a file, in a command and for a slider: `hip_sway`,
 // `left_leg.weight.knee`, `legs.stride_length` (both legs), `right_leg.weight.hip_x`,

@@ -91,12 +91,24 @@ struct TerrainZone {
   std::string where;  // "course.toml:12", for error sentences
 };
 
+// The ground of a game, of any slope in any direction, asked for by place in the world. It bends as
+// little as sections do (kMaxBend_1_m, kMaxGrade) and has no edges: Ground::piece is not looked at.
+// A tick asks for up to some hundred places; no heap, lock or exception may come of it, and for a
+// crowd several threads may ask at once. A height that is not finite counts as 0.
+struct AskedGround {
+  Ground (*ask)(const void* game, double x_m, double z_m) noexcept = nullptr;
+  const void* game = nullptr;  // handed to it; lives as long as the terrain
+};
+
 // Immutable after load. In the world frame: characters start at z = 0 and walk along +z.
 struct Terrain {
   std::string name = "flat";
   std::vector<TerrainSection> sections;
   std::vector<TerrainZone> zones;  // where zones overlap the last one counts
+  AskedGround asked;               // where it is set there are no sections
 };
+// Whether all sections are as add_section() lays them out, and the zones' numbers are numbers.
+std::optional<Error> check(const Terrain& terrain);
 
 // The ground at a place. Every place has one, NaN too. The line of a riser belongs to the upper
 // tread. No heap.

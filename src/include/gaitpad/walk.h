@@ -23,6 +23,11 @@
 
 namespace gaitpad {
 
+// A tick lasts at least and at most so long.
+inline constexpr double kLeastTick_s = 1e-4, kMostTick_s = 0.1;
+// A place in the world has coordinates of at most so much.
+inline constexpr double kFarthest_m = 1e6;
+
 // paper: the paper's steps 1-7 to the letter; no joint limits, and the solver may fail.
 // robust: damped, within joint limits, continuous; for characters that people look at.
 enum class IkMode : std::uint8_t { paper, robust };
@@ -31,6 +36,19 @@ enum class Stage : std::uint8_t {
   flight,  // Table I (a): one heel flies, the other foot's toe is planted
   roll,    // Table I (b): the landed heel and the other foot's toe are planted
 };
+
+// Where coordinates lie in the world: turned by `heading_rad` about the vertical through their
+// origin, which is at `place_m`.
+struct Placement {
+  vec3 place_m{0.0};
+  double heading_rad = 0.0;  // to the left positive
+  bool operator==(const Placement&) const = default;
+};
+// A place in the world, and back.
+vec3 to_world(const Placement& placed, const vec3& place_m) noexcept;
+vec3 from_world(const Placement& placed, const vec3& world_m) noexcept;
+// Where `placed` lies after the world has been turned and shifted by `by`.
+Placement moved(const Placement& by, const Placement& placed) noexcept;
 
 // What one tick did, for export, tests and panels. World frame, metres: y up, floor 0, heading 0
 // along +z, x to the left at heading 0. Arrays are indexed by Side.
@@ -41,6 +59,10 @@ struct WalkFrame {
   double turn_rate_rad_s = 0.0;
   double speed_m_s = 0.0;  // (left + right step) / cycle time of the running cycle; 0 when idle
   vec3 pelvis_m{0.0};
+  // Root motion: the hips' place on the ground; what the tick has added to it, in axes of the
+  // heading before (x left, z ahead); and to the heading. For engines that move their own capsule.
+  vec3 root_m{0.0}, root_moved_m{0.0};
+  double root_turned_rad = 0.0;
   std::array<double, 2>
       stride_m{};  // length of that foot's running or last step; backwards negative
   std::array<bool, 2> heel_planted{true, true}, toe_planted{true, true};
@@ -51,14 +73,14 @@ struct WalkFrame {
   std::array<int, 2> steps{};          // landings so far
   // Height of the ground under heel and toe, planted or not.
   std::array<double, 2> heel_ground_m{}, toe_ground_m{};
-  int overhangs = 0;  // landings so far on a tread too short for the foot
+  int overhangs = 0;   // landings so far on a tread too short for the foot
+  int bad_inputs = 0;  // numbers so far that advance() or standing() did not take
 };
 
 // support: on its toe; flight: in the air; roll: landed on its heel, the toe comes down.
 enum class FootMode : std::uint8_t { support, flight, roll };
 
-// --- What a walk remembers
-// ----------------------------------------------------------------------
+// --- What a walk remembers -----------------------------------------------------------------------
 // A tick computes several walks side by side, one in each lane of the processor's registers
 // (gaitpad/math.h). What all of them compute alike is a template of the number V: a double, or a
 // register of as many as it holds. The structs of V hold numbers alone.
@@ -162,6 +184,7 @@ struct UpperBodyState {
   std::array<double, sizeof(UpperBodyParams) / sizeof(double)>
       per_s{};              // rates of `now`, per second
   int unsettled_ticks = 0;  // until `now` is `goal`
+  EasedOf<vec3, double> eased_chest, eased_head;  // turns in the walker's axes, rotation vectors
   // How far the trunk leans in this tick, and how far the upper arms are spread; in paper mode not.
   double forward_rad = 0.0, left_rad = 0.0;
   // What is seen of a change before the feet can follow: the mean speed, the lean into another one,
@@ -170,6 +193,15 @@ struct UpperBodyState {
   std::array<double, 2> out_rad{};
   // Height of the ground under a rail, smoothed, and its rate.
   std::array<double, 2> rail_ground_m{}, rail_ground_m_s{};
+};
+
+// A person who stands: for how long, how much of it shows, and how far the trunk rises with the
+// breath and the head is turned by a glance, to the left and down positive. The hips' sway is of the
+// path.
+struct IdleState {
+  int ticks = 0;
+  double share = 0.0;  // 0 none .. 1 all
+  double breath_rad = 0.0, glance_rad = 0.0, nod_rad = 0.0;
 };
 
 // Where the walk is in its step, in ticks. A step is a roll and the flight after it; phases count
@@ -198,6 +230,12 @@ struct StepClock {
   double phase = 0.0, phase_rate = 0.0;   // per tick
   double stage_phase = 0.0;               // where the running stage began
   double end_rate = 0.0;                  // phase_rate at its end
+  // The running roll and step as planned, not rounded to ticks; how many ticks the step was given;
+  // and by how much the steps so far were too short.
+  double roll_s = 0.0, step_s = 0.0;
+  int step_ticks = 0;
+  double late_s = 0.0;
+  double tick_s = 1.0 / 240.0;  // length of the last tick
 };
 
 // How it walks: the parameters, smoothed, and the stride ratios that follow from them.
@@ -250,6 +288,7 @@ struct PathFlow {
   V landing_heading_rad{};
   std::array<V, 2> stride_m{};  // as in WalkFrame
   Damped<V> lean_rad;           // of the whole body into a turn, to the left positive
+  Vec<V> sway_m{};              // of the hips of one who stands, on the ground
 };
 struct PathState : PathFlow<double> {
   FootPlane landing_plane;
@@ -275,20 +314,52 @@ using LegState = LegFlow<double>;
 // All that a walk remembers. Plain, trivially copyable.
 struct WalkState {
   WalkFrame frame;
+  // A walk counts in coordinates of its own, in which the sections of its terrain lie, too. Poses
+  // and `frame` are in the world, where these coordinates lie so: writing it between two ticks
+  // moves the walk and its ground rigidly, and every bit of the rest stays. For a platform it is
+  // the platform's place in each tick; for a shifted origin and a teleport see move_walk() and
+  // put_walk().
+  Placement placed;
   StepClock clock;
   GaitState gait;
   PathState path;
   std::array<FootState, 2> foot;
   LegState legs;
   UpperBodyState body;
+  IdleState idle;
 };
 
 // A character that stands at `place_m`, facing +z, on its terrain; the height of `place_m` does not
 // matter. Sets `pose`.
 WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noexcept;
 
-// Moves the walk on by one tick of `dt_s` seconds, a constant of the run, and writes the pose.
-// Never fails: what the inverse kinematics could not reach is flagged in state.frame.ik_failed.
+// The same, facing `heading_rad`.
+WalkState standing(const WalkModel& model, const vec3& place_m, double heading_rad,
+                   Pose& pose) noexcept;
+
+// Turns the walk about the world's vertical through the origin and shifts it, in the middle of a
+// step, too. Planted feet stay where they are in the moved frame.
+void move_walk(const Placement& by, WalkState& state, Pose& pose) noexcept;
+// The same, so that the hips come to be over a place and face a heading.
+void put_walk(const vec3& place_m, double heading_rad, WalkState& state, Pose& pose) noexcept;
+
+// Where an engine has moved a character's capsule to, and how it goes on there. World.
+struct CapsuleMotion {
+  vec3 place_m{0.0};
+  double heading_rad = 0.0;  // that it is to have when it stands
+  vec3 velocity_m_s{0.0};
+  double turn_rate_rad_s = 0.0;
+};
+// The parameters by which a walk follows it, in steps of its own: feet stay planted, so the walk is
+// some centimetres off its capsule. It turns to where the capsule goes.
+GaitParams following(const CapsuleMotion& capsule, const WalkState& state, const StyleValues& style,
+                     const GaitLimits& limits) noexcept;
+
+// Moves the walk on by one tick of `dt_s` seconds, a constant of the run, and writes the pose. The
+// walk is the same at every rate; a tick longer than 1/60 s is computed in equal parts.
+// Never fails: what the inverse kinematics could not reach is flagged in state.frame.ik_failed. A
+// parameter that is not finite or that check() refuses counts as what is in force instead, and so
+// does such a tick length; state.frame.bad_inputs counts them.
 void advance(const WalkModel& model, const GaitParams& params, IkMode mode, double dt_s,
              WalkState& state, Pose& pose) noexcept;
 

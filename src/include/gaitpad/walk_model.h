@@ -28,6 +28,8 @@ struct Character {
   double leg_ratio = 1.0;  // thigh, shank and foot bones, on top of scale
   std::string skeleton;    // BVH file whose skeleton the character brings, empty: the motion's own
 };
+// `NAME: scale is 0, outside [0.05, 20]`. Both factors and their product have this range.
+std::optional<Error> check(const Character& character);
 
 // Joints from the root to a wrist or the head. A longer path has no inverse kinematics: this bounds
 // what a tick goes through.
@@ -127,8 +129,8 @@ struct WalkModel {
 
 // Retargets by the ratio of the leg lengths: lengths grow with the leg, times with the fourth root
 // of its ratio to the adult's. Error `NAME: cause` for a cycle without clean strides, for a
-// character that brings a skeleton of its own and for a leg with more than kMaxBetween twist joints
-// between two of its joints.
+// character that check() refuses or that brings a skeleton of its own, and for a leg with more than
+// kMaxBetween twist joints between two of its joints.
 Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character);
 
 // Its stride of one ratio in its lengths, at one phase. No heap.

@@ -1,0 +1,27 @@
+// The ground as a walk meets it, in the walk's own coordinates: sections lie in them, and a game's
+// ground is asked for by its place in the world.
+#pragma once
+#include "gaitpad/terrain.h"
+#include "gaitpad/walk.h"
+
+namespace gaitpad {
+
+struct Floor {
+  const Terrain& terrain;
+  const Placement& placed;
+};
+inline Ground ground_at(const Floor& floor, double x_m, double z_m) noexcept {
+  const Placement& placed = floor.placed;
+  if (floor.terrain.asked.ask == nullptr || placed == Placement{})
+    return ground_at(floor.terrain, x_m, z_m);
+  const vec3 at = to_world(placed, vec3(x_m, 0.0, z_m));
+  Ground ground = ground_at(floor.terrain, at.x, at.z);
+  ground.height_m -= placed.place_m.y;
+  ground.normal = from_world({vec3(0.0), placed.heading_rad}, ground.normal);
+  return ground;
+}
+inline Stretch piece_at(const Floor& floor, double z_m) noexcept {
+  return piece_at(floor.terrain, z_m);
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,88 @@
+// Where a walk lies in the world, and how it follows what an engine moves.
+#include "animation/placement.h"
+
+#include "gaitpad/control.h"
+
+namespace gaitpad {
+
+vec3 to_world(const Placement& placed, const vec3& place_m) noexcept {
+  return placed.place_m + rotation_y(placed.heading_rad) * place_m;
+}
+
+vec3 from_world(const Placement& placed, const vec3& world_m) noexcept {
+  return glm::conjugate(rotation_y(placed.heading_rad)) * (world_m - placed.place_m);
+}
+
+Placement moved(const Placement& by, const Placement& placed) noexcept {
+  return {to_world(by, placed.place_m), by.heading_rad + placed.heading_rad};
+}
+
+void place_in_world(const Placement& placed, WalkFrame& frame, vec3& root_m, quat& root) noexcept {
+  if (placed == Placement{}) return;
+  root_m = to_world(placed, root_m);
+  root = rotation_y(placed.heading_rad) * root;
+  frame.heading_rad += placed.heading_rad;
+  frame.pelvis_m = to_world(placed, frame.pelvis_m);
+  frame.root_m = to_world(placed, frame.root_m);
+  for (const int side : {0, 1}) {
+    frame.heel_m[side] = to_world(placed, frame.heel_m[side]);
+    frame.toe_m[side] = to_world(placed, frame.toe_m[side]);
+    frame.heel_ground_m[side] += placed.place_m.y;
+    frame.toe_ground_m[side] += placed.place_m.y;
+  }
+}
+
+void report_root(const RootBefore& before, WalkState& state) noexcept {
+  WalkFrame& frame = state.frame;
+  const PathState& path = state.path;
+  frame.root_m = path.hips_m;
+  frame.root_turned_rad = path.heading_rad - before.heading_rad;
+  frame.root_moved_m = from_world({vec3(0.0), before.heading_rad}, path.hips_m - before.hips_m);
+}
+
+void move_walk(const Placement& by, WalkState& state, Pose& pose) noexcept {
+  state.placed = moved(by, state.placed);
+  place_in_world(by, state.frame, pose.root_m, pose.local[0]);
+}
+
+void put_walk(const vec3& place_m, double heading_rad, WalkState& state, Pose& pose) noexcept {
+  Placement by;
+  by.heading_rad = heading_rad - (state.placed.heading_rad + state.path.heading_rad);
+  by.place_m = place_m - to_world(by, to_world(state.placed, state.path.hips_m));
+  move_walk(by, state, pose);
+}
+
+GaitParams following(const CapsuleMotion& capsule, const WalkState& state, const StyleValues& style,
+                     const GaitLimits& limits) noexcept {
+  constexpr double kCatchUp_s = 0.6, kTurns_s = 0.35;
+  constexpr double kStill_m_s = 0.1, kBeside_m = 0.8;  // so slow and so near, it has arrived
+  constexpr double kNear_m = 0.12, kFaces = 3.0 * kDegree;
+  const WalkFrame& frame = state.frame;
+  vec3 off_m = capsule.place_m - frame.root_m;
+  off_m.y = 0.0;
+  const vec3 goes = capsule.velocity_m_s + off_m / kCatchUp_s;
+  const bool arrives =
+      horizontal_length(capsule.velocity_m_s) < kStill_m_s && horizontal_length(off_m) < kBeside_m;
+  const double aim_rad = arrives ? capsule.heading_rad : heading_of(goes);
+  const double off_rad = aim_rad - frame.heading_rad,
+               left_rad = off_rad - 2.0 * kPi * std::floor(off_rad / (2.0 * kPi) + 0.5);
+  // Where it has arrived it may step back; else it turns round.
+  const double along = glm::dot(goes, heading_direction(frame.heading_rad)),
+               ahead = arrives ? along : std::max(0.0, along);
+  Stick stick;
+  GaitOverrides overrides;
+  const auto ask = [&overrides](GaitKey key, double value) {
+    overrides.value[static_cast<std::size_t>(key)] = value;
+    overrides.is_set[static_cast<std::size_t>(key)] = true;
+  };
+  if (std::abs(ahead) > kNear_m / kCatchUp_s) {
+    stick.left.y = 1.0;
+    ask(GaitKey::speed_m_s, ahead);
+  } else if (std::abs(left_rad) < kFaces) {
+    return gait_params(stick, style, limits);
+  }
+  ask(GaitKey::turn_rate_rad_s, capsule.turn_rate_rad_s + left_rad / kTurns_s);
+  return gait_params(stick, style, overrides, limits);
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,20 @@
+// What a tick reports in the world (WalkState::placed), and its root motion.
+#pragma once
+#include "gaitpad/walk.h"
+
+namespace gaitpad {
+
+// What a tick has written in the walk's own coordinates: brings it to the world.
+void place_in_world(const Placement& placed, WalkFrame& frame, vec3& root_m, quat& root) noexcept;
+
+struct RootBefore {
+  vec3 hips_m{0.0};
+  double heading_rad = 0.0;
+};
+inline RootBefore root_of(const WalkState& state) noexcept {
+  return {state.path.hips_m, state.path.heading_rad};
+}
+// Since then, in the walk's own coordinates.
+void report_root(const RootBefore& before, WalkState& state) noexcept;
+
+}  // namespace gaitpad

@@ -1,0 +1,62 @@
+#include "animation/sound_input.h"
+
+#include <algorithm>
+#include <cstring>
+
+#include "base/lanes.h"
+#include "control/params_range.h"
+
+namespace gaitpad {
+
+bool is_sound(const GaitParams& params) noexcept {
+  using Pair = Lanes<2>;
+  const ParamsRange& range = params_range();
+  const auto pair = [](const GaitParams& of, std::size_t k) {
+    Pair two;
+    std::memcpy(&two, numbers_of(of).data() + k, sizeof two);
+    return two;
+  };
+  MaskOf<Pair> outside{};
+  for (std::size_t k = 0; k < kParamsNumbers; k += 2) {
+    const std::size_t at = std::min(k, kParamsNumbers - 2);
+    const Pair x = pair(params, at);
+    outside |= ~((x >= pair(range.least, at)) & (x <= pair(range.most, at)));
+  }
+  return !any(outside);
+}
+
+GaitParams mended_params(const GaitParams& params, WalkState& state) noexcept {
+  GaitParams in_force;
+  for (const int side : {0, 1}) {
+    in_force.stride[side] = {state.gait.length_m[side].x, state.gait.time_s[side],
+                             state.gait.flight_height[side].x};
+    for (int j = 0; j < kLegDofs; ++j) in_force.weight[side][j] = state.gait.weight[side][j].x;
+  }
+  in_force.turn_rate_rad_s = state.gait.turn_goal.x;
+  in_force.hip_sway = state.gait.sway.x;
+  in_force.hip_bounce = state.gait.bounce.x;
+  in_force.body = state.body.goal;
+  const ParamsRange& range = params_range();
+  GaitParams mended = params;
+  const auto numbers = numbers_of(mended);
+  for (std::size_t k = 0; k < kParamsNumbers; ++k) {
+    const double least = numbers_of(range.least)[k], most = numbers_of(range.most)[k];
+    if (numbers[k] >= least && numbers[k] <= most) continue;
+    numbers[k] = within(numbers_of(in_force)[k], least, most);
+    ++state.frame.bad_inputs;
+  }
+  return mended;
+}
+
+double mended_tick(WalkState& state) noexcept {
+  ++state.frame.bad_inputs;
+  return state.clock.tick_s;
+}
+
+double mended_place(double place_m, WalkState& state) noexcept {
+  if (std::abs(place_m) <= kFarthest_m) return place_m;
+  ++state.frame.bad_inputs;
+  return 0.0;
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,43 @@
+// A pad's event node, calibrated: the sticks' and triggers' axes carry the calibrated position,
+// every other code what the pad sends. Plain data in and out; pads/stand_in.h sends it.
+#pragma once
+#include <cstdint>
+#include <vector>
+
+#include "drivers/virtual_pad.h"
+#include "gaitpad/decode.h"
+#include "hid/evdev_layout.h"
+
+namespace gaitpad {
+
+class CalibratedCopy {
+ public:
+  // `pad`: by which the node's reports are decoded. An axis that is half a control, or one of
+  // several that are summed up to one, passes as it is.
+  CalibratedCopy(const EvdevLayout& node, const PadLayout& pad);
+
+  // The node's axes and keys under their codes. A stick's full deflection is kFullStick, whatever
+  // the pad counts: rest is exactly 0, and no step of the calibrated position is lost. A trigger
+  // keeps the pad's range.
+  std::vector<VirtualPadAxis> axes() const;
+  std::vector<std::uint16_t> keys() const;
+
+  // What has changed since the last call, without the SYN_REPORT at the end.
+  std::vector<VirtualPadEvent> events(const EvdevState& raw, const VirtualPadState& calibrated);
+  // Of a pad that was unplugged: nothing is pressed or deflected.
+  std::vector<VirtualPadEvent> rest();
+
+ private:
+  struct Axis {
+    VirtualPadAxis shown;
+    int control = -1;       // of PadAxis; -1: passes as it is
+    bool reversed = false;  // the control falls while the axis grows
+  };
+  std::vector<VirtualPadEvent> change_to(const EvdevState& next);
+
+  std::vector<Axis> axes_;
+  std::vector<std::uint16_t> keys_;
+  EvdevState sent_;
+};
+
+}  // namespace gaitpad

@@ -1,0 +1,72 @@
+// A virtual pad in place of a real one, for every other program: gaitpad alone reads the real pad,
+// through its event node, and the virtual pad has its sticks and triggers calibrated. Effects of
+// force feedback go back to the real pad. `gaitpad forward` is this and a loop around it.
+#pragma once
+#include <poll.h>
+
+#include <functional>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "drivers/effect_table.h"
+#include "drivers/event_node.h"
+#include "drivers/posix.h"
+#include "drivers/virtual_pad.h"
+#include "gaitpad/pad_setup.h"
+#include "gaitpad/pads.h"
+#include "pads/calibrated_copy.h"
+
+namespace gaitpad {
+
+class StandIn {
+ public:
+  enum class Look {
+    own,       // the real pad's name, ids and codes
+    xbox_360,  // an Xbox 360 pad, whatever the real one is
+  };
+  struct Options {
+    Look look = Look::own;
+    PadFiles files;
+    // For tests.
+    std::function<Result<std::unique_ptr<EventNode>>(const DeviceListing&)> open = &EventNode::open;
+    std::function<Result<std::unique_ptr<VirtualPad>>(const VirtualPadShape&)> create =
+        &VirtualPad::create;
+  };
+  explicit StandIn(Options options) : options_(std::move(options)) {}
+
+  // Takes this pad. Where the virtual pad looks as before it stays, so that no program notices;
+  // else it is made anew. Error: it cannot be opened or is another program's, or no pad can be
+  // made.
+  std::optional<Error> plug(const DeviceListing& listing);
+  bool has_pad() const noexcept { return node_ != nullptr; }
+  std::string node() const { return pad_ ? pad_->node() : ""; }  // of the virtual pad
+
+  // What to wait for. When one of them is ready: serve().
+  std::vector<pollfd> poll_fds() const;
+  // Passes on everything that has come. When the real pad is gone, the virtual one comes to rest,
+  // and keeps what programs have uploaded.
+  void serve() noexcept;
+  std::vector<std::string> take_remarks() { return std::exchange(remarks_, {}); }
+
+ private:
+  void send() noexcept;
+  void settle() noexcept;
+  void unplug() noexcept;
+
+  const Options options_;
+  std::unique_ptr<EventNode> node_;  // null: no pad is there
+  PadConfig config_;
+  PadState state_;
+  JumpFilter filter_;
+  Timer settling_;                      // set only where the calibration filters jumps
+  std::optional<CalibratedCopy> copy_;  // Look::own
+  VirtualPadState sent_;                // Look::xbox_360
+  std::unique_ptr<VirtualPad> pad_;     // null: no pad was there yet
+  VirtualPadShape shape_;
+  EffectTable effects_;
+  std::vector<std::string> remarks_;
+};
+
+}  // namespace gaitpad

@@ -1,0 +1,58 @@
+// Three characters on skeletons of your own walk in circles on a ground of your own, without a
+// file. Each second one is teleported by a wave of the ground. Prints how far planted feet slide.
+#include <gaitpad/anatomy.h>
+#include <gaitpad/clean_strides.h>
+#include <gaitpad/control.h>
+#include <gaitpad/walk.h>
+
+#include <cstdio>
+using namespace gaitpad;
+
+static Motion bones(double leg_m) {  // standing: +x left, +y up, +z ahead
+  Motion body;
+  body.name = "bones";
+  std::vector<Joint>& joints = body.skeleton.joints;
+  joints.push_back({"Hips", -1});
+  for (const std::string side : {"Left", "Right"}) {
+    const int hip = static_cast<int>(joints.size());
+    joints.push_back({side + "UpLeg", 0, vec3(side == "Left" ? 0.1 : -0.1, 0.0, 0.0)});
+    joints.push_back({side + "Leg", hip, vec3(0.0, -0.52 * leg_m, 0.0)});
+    joints.push_back({side + "Foot", hip + 1, vec3(0.0, -0.48 * leg_m, 0.0)});
+    joints.push_back({side + "Toe", hip + 2, vec3(0.0, -0.07, 0.14)});
+    joints.push_back({side + "Tip", hip + 3, vec3(0.0, 0.0, 0.06), true});
+  }
+  body.frames = {{vec3(0.0, leg_m, 0.0), std::vector<quat>(joints.size(), kIdentity), {}}};
+  return body;
+}
+static Ground ask(const void*, double x_m, double z_m) noexcept {  // waves of 2.5 pi, two slopes
+  return {0.2 * sin_cos(0.8 * x_m).sin + 0.15 * sin_cos(0.8 * z_m).sin, kUp, 0};
+}
+
+int main() {
+  int not_finite = 0;
+  double slide_m = 0.0;
+  for (const double leg_m : {0.7, 0.84, 1.0}) {
+    Motion body = bones(leg_m);
+    const auto legs = find_legs(body);
+    if (!legs) return std::puts(legs.error().message.c_str());
+    body.legs = *legs;
+    auto cycle = cycle_on_skeleton(procedural_gait(), body);
+    if (cycle) cycle = with_clean_strides(*cycle);
+    auto model = cycle ? walk_model(*cycle, Character{}) : cycle.error();
+    if (!model) return std::puts(model.error().message.c_str());
+    model->terrain = std::make_shared<Terrain>(Terrain{"waves", {}, {}, {&ask, nullptr}});
+    const GaitParams circle = gait_params({vec2(0.4, 0.7)}, StyleValues{}, gait_limits(*model));
+    Pose pose;
+    WalkState state = standing(*model, vec3(4.0 * leg_m, 0.0, 1.0), 0.5, pose);
+    for (int tick = 1; tick <= 1200; ++tick) {
+      if (tick % 60 == 0 && leg_m == 0.7) move_walk({vec3(2.5 * kPi, 0.0, 0.0)}, state, pose);
+      const WalkFrame before = state.frame;
+      advance(*model, circle, IkMode::robust, 1.0 / 60.0, state, pose);
+      not_finite += !std::isfinite(pose.root_m.x + pose.local[3].w);
+      for (const std::size_t side : {0u, 1u})
+        if (before.toe_planted[side] && state.frame.toe_planted[side])
+          slide_m = std::max(slide_m, glm::distance(before.toe_m[side], state.frame.toe_m[side]));
+    }
+  }
+  std::printf("feet slide %.4f mm at most, %d poses are not finite\n", 1e3 * slide_m, not_finite);
+}

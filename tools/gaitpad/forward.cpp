@@ -1,0 +1,237 @@
+// gaitpad forward [PAD]: the calibrated pad in place of the real one, for every other program.
+//
+// One thread that sleeps in poll() over the pad's event node, the virtual pad, udev's monitor and
+// the signals. A timer runs only while the calibration filters jumps, or while a pad that is there
+// cannot be taken.
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <memory>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "base/files.h"
+#include "base/text.h"
+#include "drivers/system_nodes.h"
+#include "gaitpad/config_files.h"
+#include "gaitpad/pad_stream.h"
+#include "pads/stand_in.h"
+#include "tools/gaitpad/commands.h"
+#include "tools/gaitpad/doctor_machine.h"
+#include "tools/gaitpad/options.h"
+#include "tools/gaitpad/print.h"
+
+namespace gaitpad {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr const char* kForward = "forward";
+constexpr const char* kUnit = "gaitpad-forward.service";
+constexpr int kForever_ms = -1, kRetry_ms = 1000;
+
+struct ForwardArguments {
+  std::string pad, as, map, calibration;
+  bool installs_unit = false, installs_rules = false, is_agreed = false;
+};
+
+// --- the pad that is forwarded
+
+class Forward {
+ public:
+  Forward(const ForwardArguments& arguments, PadFiles files)
+      : wish_{arguments.pad, "evdev"},
+        files_(files),
+        stand_in_({.look = arguments.as.empty() ? StandIn::Look::own : StandIn::Look::xbox_360,
+                   .files = std::move(files)}) {}
+
+  // Until a signal ends it. Error: no pad could be looked for.
+  std::optional<Error> run(RunEnd& end, HotplugMonitor& changes);
+
+ private:
+  enum class Found { nothing, taken, refused };
+  Result<Found> look_for_the_pad();
+  // A sentence that a retry brings again is told once.
+  void tell(const std::string& sentence) {
+    if (told_.insert(sentence).second) print_remarks(kForward, {sentence});
+  }
+
+  const PadWish wish_;
+  const PadFiles files_;
+  StandIn stand_in_;
+  std::set<std::string> told_;
+  bool is_first_look_ = true;  // a name that fits several pads is then a wrong usage
+};
+
+// The first that fits and can be taken.
+Result<Forward::Found> Forward::look_for_the_pad() {
+  const auto sightings = pad_sightings(files_, wish_, Drivers::preferred);
+  if (!sightings) return sightings.error();
+  auto pads = wished_pads(*sightings, wish_);
+  if (!pads && std::exchange(is_first_look_, false)) return pads.error();
+  is_first_look_ = false;
+  if (!pads) {
+    tell(pads.error().message);
+    return Found::refused;
+  }
+  Found found = Found::nothing;
+  for (const PadSighting& pad : *pads) {
+    if (!pad.is_pad) continue;
+    found = Found::refused;
+    std::string problem = pad.problem;
+    if (problem.empty()) {
+      const auto refusal = stand_in_.plug(pad.listing);
+      if (!refusal) {
+        told_.clear();
+        print_remarks(kForward, stand_in_.take_remarks());
+        print_remarks(kForward,
+                      {fmt::format("{} ({}) is {} to other programs", pad.listing.info.name,
+                                   pad.listing.node, stand_in_.node())});
+        return Found::taken;
+      }
+      problem = refusal->message;
+    }
+    for (const std::string& remark : stand_in_.take_remarks()) tell(remark);
+    tell(problem);
+  }
+  if (found == Found::nothing)
+    tell(wish_.pad.empty() ? "no pad is there; waiting for one"
+                           : in_quotes(wish_.pad) + " is not there; waiting for it");
+  return found;
+}
+
+std::optional<Error> Forward::run(RunEnd& end, HotplugMonitor& changes) {
+  bool looks = true;
+  while (true) {
+    int patience_ms = kForever_ms;
+    if (!stand_in_.has_pad() && std::exchange(looks, false)) {
+      const auto found = look_for_the_pad();
+      if (!found) return found.error();
+      if (*found == Found::refused) patience_ms = kRetry_ms;
+    }
+    std::vector<pollfd> fds = stand_in_.poll_fds();
+    fds.insert(fds.begin(), {end.fd(), {changes.fd(), POLLIN, 0}});
+    const bool had_pad = stand_in_.has_pad();
+    const int ready = ::poll(fds.data(), fds.size(), patience_ms);
+    stand_in_.serve();
+    if (ready > 0 && fds[0].revents != 0 && end.is_reached()) return std::nullopt;
+    const bool has_changed = ready > 0 && fds[1].revents != 0 && changes.has_changed();
+    if (stand_in_.has_pad()) continue;
+    looks = has_changed || had_pad || ready == 0;
+    if (had_pad) print_remarks(kForward, stand_in_.take_remarks());
+  }
+}
+
+// --- as a service of the user's
+
+// A word of ExecStart= in systemd's quotes.
+std::string unit_word(const std::string& word) {
+  std::string text = "\"";
+  for (const char c : word) {
+    const auto byte = static_cast<unsigned char>(c);
+    if (byte < 0x20 || byte == 0x7f) {
+      text += fmt::format("\\x{:02x}", byte);
+      continue;
+    }
+    if (c == '"' || c == '\\') text += '\\';
+    if (c == '%' || c == '$') text += c;
+    text += c;
+  }
+  return text + '"';
+}
+
+std::string unit_text(const ForwardArguments& arguments) {
+  std::vector<std::string> words = {fs::read_symlink("/proc/self/exe").string(), kForward};
+  if (!arguments.pad.empty()) words.push_back(arguments.pad);
+  if (!arguments.as.empty()) words.insert(words.end(), {"--as", arguments.as});
+  if (!arguments.map.empty())
+    words.insert(words.end(), {"--map", fs::absolute(arguments.map).string()});
+  if (!arguments.calibration.empty())
+    words.insert(words.end(), {"--calibration", fs::absolute(arguments.calibration).string()});
+  std::vector<std::string> quoted;
+  for (const std::string& word : words) quoted.push_back(unit_word(word));
+  return fmt::format(
+      "[Unit]\n"
+      "Description=A calibrated pad in place of the real one, for every program\n"
+      "Documentation=man:gaitpad-forward(1)\n"
+      "\n"
+      "[Service]\n"
+      "ExecStart={}\n"
+      "Restart=on-failure\n"
+      "RestartSec=5\n"
+      "\n"
+      "[Install]\n"
+      "WantedBy=default.target\n",
+      fmt::join(quoted, " "));
+}
+
+std::string rules_command() { return fmt::format("sudo {} forward --install-rules", program()); }
+
+int install_unit(const ForwardArguments& arguments) {
+  const std::string folder = user_config_folder();
+  if (folder.empty())
+    return fail(kForward, "neither XDG_CONFIG_HOME nor HOME names a folder for the unit");
+  const std::string path = (fs::path(folder).parent_path() / "systemd/user" / kUnit).string();
+  if (const auto problem = write_file(path, unit_text(arguments)))
+    return fail(kForward, problem->message);
+  say("{} is written. It runs as you, without root. Start it, now and at each login:\n"
+      "  systemctl --user daemon-reload && systemctl --user enable --now {}\n",
+      printable(path), kUnit);
+  if (!access_problem("/dev/uinput").empty())
+    say("Before that, let yourself make virtual pads (once, as root):\n  {}\n", rules_command());
+  return 0;
+}
+
+// --- the command
+
+int run(const ForwardArguments& arguments) {
+  if (arguments.installs_rules) {
+    const auto shipped = shipped_rules(kUinputRules);
+    if (!shipped) return fail(kForward, shipped.error().message);
+    return install_rules(kForward, kUinputRules, shipped->text, arguments.is_agreed,
+                         rules_command());
+  }
+  if (is_recording(arguments.pad))
+    return fail(kForward, printable(arguments.pad) +
+                              ": is a recording; gaitpad replay --to uinput plays one");
+  auto files = pad_files(arguments.map, arguments.calibration);
+  if (!files) return fail(kForward, files.error().message);
+  if (arguments.installs_unit) return install_unit(arguments);
+  RunEnd end;
+  auto changes = HotplugMonitor::create();
+  if (!changes) return fail(kForward, changes.error().message);
+  const auto problem = Forward(arguments, std::move(*files)).run(end, *changes);
+  return problem ? fail(kForward, problem->message) : 0;
+}
+
+}  // namespace
+
+void add_forward(CLI::App& app, int& status) {
+  CLI::App* command =
+      app.add_subcommand("forward", "gives other programs the pad calibrated, in place of the pad");
+  const auto arguments = std::make_shared<ForwardArguments>();
+  command->add_option("PAD", arguments->pad,
+                      "an event node, a vid:pid, a unique id, or a part of one pad's name "
+                      "(default: the first usable)");
+  command
+      ->add_option("--as", arguments->as,
+                   "what programs see (default: the pad's own name, ids and controls)")
+      ->check(CLI::IsMember({"xbox360"}));
+  command->add_option("--calibration", arguments->calibration, "calibration file of the stick");
+  command->add_option("--map", arguments->map, "pad file that overrides config/pads");
+  auto* unit = command->add_flag("--install", arguments->installs_unit,
+                                 "write a systemd user unit that does this, and end");
+  auto* rules = command->add_flag("--install-rules", arguments->installs_rules,
+                                  "let ordinary users make virtual pads (a udev rule for "
+                                  "/dev/uinput), and end; asks first");
+  rules->excludes(unit);
+  command->add_flag("--yes", arguments->is_agreed, "answers yes")->needs(rules);
+  command->callback([arguments, &status] { status = run(*arguments); });
+}
+
+}  // namespace gaitpad

@@ -10,7 +10,7 @@ packages=(g++ cmake ninja-build libglm-dev libeigen3-dev libtbb-dev libtomlplusp
 if [ "${1:-}" = --program ]; then
   shift
 else
-  packages+=(clang python3-numpy python3-matplotlib python3-pytest)
+  packages+=(clang python3-numpy python3-matplotlib python3-pytest strace)
 fi
 packages+=("$@")
 

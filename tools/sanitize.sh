@@ -7,6 +7,7 @@ set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 source "$root/tools/slice.sh"
 bash "$root/tools/install.sh"
+[ "${GAITPAD_ALL:-}" != 1 ] || bash "$root/tools/install.sh" locales # a whole run leaves no test out
 bash "$root/tools/build.sh" "$root/build-asan" all -DCMAKE_CXX_COMPILER=clang++ \
   -DGAITPAD_SANITIZE=ON -DCMAKE_BUILD_TYPE=Debug -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1"
 foreign='^(base|hid|drivers|pads|stick|files|config|check)\.|^tools\.(check|replay|calibrate|record|evemu|decode|map|main)'

@@ -16,6 +16,9 @@ esac
 [ "${GAITPAD_ALL:-}" != 1 ] || chosen=()
 source "$root/tools/folders.sh"
 bash "$root/tools/install.sh" xvfb ffmpeg # a display and an encoder for the window's tests
+# For the variants that only a whole run tries: other processors, valgrind, locales with decimal commas.
+[ "${GAITPAD_ALL:-}" != 1 ] ||
+  bash "$root/tools/install.sh" g++-aarch64-linux-gnu g++-i686-linux-gnu qemu-user-static valgrind locales
 if command -v npm >/dev/null && ! bash "$root/tools/gltf/install.sh"; then
   echo "No glTF validator: its test is skipped." >&2
 fi

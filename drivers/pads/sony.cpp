@@ -1,11 +1,13 @@
 // DualShock 3: its start. DualShock 4 and DualSense: their motors, and what Bluetooth adds (full
 // reports on request, a checksum on every long report). Packet layouts are from Linux's
-// hid-playstation.c and were compared with what that driver sends.
+// hid-playstation.c and were compared with what that driver sends. DualShock 4s of other makers:
+// whether they have motors, by SDL's SDL_hidapi_ps4.c.
 #include <algorithm>
 #include <utility>
 
 #include "drivers/pads/crc32.h"
 #include "drivers/pads/pad_model.h"
+#include "gaitpad/descriptor.h"
 
 namespace gaitpad {
 
@@ -160,6 +162,43 @@ class DualShock4 final : public SonyModel {
   }
 };
 
+// Of another maker, for the PlayStation 4: by USB alone, and not every one has motors. It tells
+// that in a feature which its descriptor must state: pads of the same makers that do not know it
+// hang when they are asked.
+class DualShock4OfOthers final : public PadModel {
+ public:
+  static constexpr std::uint8_t kAbilities = 0x03, kEffects = 0x05;
+  static constexpr std::size_t kAbilityBytes = 48, kEffectBytes = 32;
+
+  void start(PadPort& port, StartedBy) override {
+    std::array<std::uint8_t, kAbilityBytes> bytes{};
+    const bool is_told = port.feature(kAbilities, bytes) == bytes.size() && bytes[2] == kPs4;
+    has_motors_ = is_told && (bytes[4] & kHasMotors) != 0;
+  }
+  void rumble(const Rumble& rumble, OutPacket& packet) noexcept override {
+    packet = {};
+    if (!has_motors_) return;
+    packet.bytes[0] = kEffects;
+    packet.bytes[1] = 0x01;  // sets the motors and leaves the light alone
+    packet.bytes[4] = motor(rumble.weak);
+    packet.bytes[5] = motor(rumble.strong);
+    packet.size = kEffectBytes;
+  }
+
+ private:
+  static constexpr std::uint8_t kPs4 = 0x27, kHasMotors = 0x08;
+  bool has_motors_ = false;
+};
+
+// By its descriptor: the reports for abilities and effects, of exactly these sizes.
+bool is_dualshock4_of_others(const DeviceInfo& device) {
+  if (device.bus != BusType::usb) return false;
+  const auto d = parse_descriptor(device.descriptor);
+  using Model = DualShock4OfOthers;
+  return d && report_bytes(*d, FieldKind::feature, Model::kAbilities) == Model::kAbilityBytes &&
+         report_bytes(*d, FieldKind::output, Model::kEffects) == Model::kEffectBytes;
+}
+
 class DualSense final : public SonyModel {
  public:
   explicit DualSense(const DeviceInfo& device)
@@ -207,7 +246,8 @@ class DualSense final : public SonyModel {
 }  // namespace
 
 std::unique_ptr<PadModel> make_sony_model(const DeviceInfo& device) {
-  if (device.vendor != kSony) return nullptr;
+  if (device.vendor != kSony)
+    return is_dualshock4_of_others(device) ? std::make_unique<DualShock4OfOthers>() : nullptr;
   switch (device.product) {
     case 0x0268:
       return std::make_unique<DualShock3>(device);

@@ -116,7 +116,7 @@ void Crowd::advance_block(int number, double dt_s) noexcept {
   std::array<Walking, kTogether> walks;
   for (std::size_t i = 0; i < block.size(); ++i) {
     const int member = block[i];
-    if (!is_sound(params_[member]))
+    if (!is_sound(params_[member], states_[member]))
       params_[member] = mended_params(params_[member], states_[member]);
     states_[member].clock.tick_s = dt_s;
     const std::size_t first = first_joint_[member];

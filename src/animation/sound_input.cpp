@@ -8,7 +8,7 @@
 
 namespace gaitpad {
 
-bool is_sound(const GaitParams& params) noexcept {
+bool is_sound(const GaitParams& params, const WalkState& state) noexcept {
   using Pair = Lanes<2>;
   const ParamsRange& range = params_range();
   const auto pair = [](const GaitParams& of, std::size_t k) {
@@ -16,9 +16,13 @@ bool is_sound(const GaitParams& params) noexcept {
     std::memcpy(&two, numbers_of(of).data() + k, sizeof two);
     return two;
   };
+  // The body's numbers, which stand last, are many and seldom change.
+  constexpr std::size_t kBody = sizeof(UpperBodyParams) / sizeof(double);
+  const bool same = std::memcmp(&params.body, &state.body.goal, sizeof params.body) == 0;
+  const std::size_t count = same ? kParamsNumbers - kBody : kParamsNumbers;
   MaskOf<Pair> outside{};
-  for (std::size_t k = 0; k < kParamsNumbers; k += 2) {
-    const std::size_t at = std::min(k, kParamsNumbers - 2);
+  for (std::size_t k = 0; k < count; k += 2) {
+    const std::size_t at = std::min(k, count - 2);  // the last pair of an odd count overlaps
     const Pair x = pair(params, at);
     outside |= ~((x >= pair(range.least, at)) & (x <= pair(range.most, at)));
   }

@@ -617,7 +617,7 @@ void finish_tick(const PlannedTick& planned, Pose& pose) noexcept {
 void advance(const WalkModel& model, const GaitParams& params, IkMode mode, double dt_s,
              WalkState& state, Pose& pose) noexcept {
   if (!is_sound_tick(dt_s)) return advance(model, params, mode, mended_tick(state), state, pose);
-  if (!is_sound(params))
+  if (!is_sound(params, state))
     return advance(model, mended_params(params, state), mode, dt_s, state, pose);
   state.clock.tick_s = dt_s;
   const int parts = tick_parts(dt_s);

@@ -15,6 +15,7 @@
 #include "gaitpad/decode.h"
 #include "gaitpad/descriptor.h"
 #include "hid/evdev_layout.h"
+#include "hid/evdev_recording.h"
 #include "hid/trace_lines.h"
 
 namespace gaitpad {
@@ -26,14 +27,6 @@ constexpr std::uint16_t kSyn = 0x00, kKey = 0x01, kAbs = 0x03;  // event types
 constexpr std::uint16_t kSynReport = 0x00;
 constexpr std::size_t kMaskBytes = 8;  // of a B: or P: line
 
-struct EvemuEvent {
-  std::int64_t time_us = 0;
-  std::uint16_t type = 0, code = 0;
-  std::int32_t value = 0;
-};
-
-// Reads the lines in their order; the trace is made at the end, because an axis begins with the
-// value of its first event.
 class EvemuReader {
  public:
   explicit EvemuReader(const std::string& name) : name_(name) {}
@@ -48,13 +41,10 @@ class EvemuReader {
   Cause mask(Words words);
   Cause axis(Words words);
   Cause event(Words words);
-  EvdevState first_state() const;
 
   std::string name_;
-  DeviceInfo info_;
-  EvdevAbilities abilities_;
+  EvdevRecording recording_;
   std::map<std::uint16_t, std::size_t> mask_bytes_;  // read so far, by the type of event
-  std::vector<EvemuEvent> events_;
   std::int64_t skipped_ = 0;
   std::string first_damage_;
 };
@@ -66,7 +56,7 @@ Cause EvemuReader::add(std::string_view line) {
     return fmt::format("{} is no line of evemu", in_quotes(line));
   std::string_view text = trimmed(line.substr(2));
   if (line.front() == 'N') {
-    info_.name = text.substr(0, kMaxTraceTextBytes);
+    recording_.info.name = text.substr(0, kMaxTraceTextBytes);
     return std::nullopt;
   }
   const Words words(text.substr(0, text.find('#')));
@@ -93,10 +83,10 @@ Cause EvemuReader::identity(Words words) {
              "four digits";
     id = static_cast<std::uint16_t>(*value);
   }
-  info_.bus = static_cast<BusType>(ids[0]);
-  info_.vendor = ids[1];
-  info_.product = ids[2];
-  info_.version = ids[3];
+  recording_.info.bus = static_cast<BusType>(ids[0]);
+  recording_.info.vendor = ids[1];
+  recording_.info.product = ids[2];
+  recording_.info.version = ids[3];
   return std::nullopt;
 }
 
@@ -113,7 +103,7 @@ Cause EvemuReader::mask(Words words) {
   for (std::size_t i = 0; i < 8 * kMaskBytes && *type == kKey; ++i) {
     const std::size_t code = 8 * read + i;
     if (code <= evdev::kKeyMax && ((bytes[i / 8] >> (i % 8)) & 1u) != 0)
-      abilities_.keys.push_back(static_cast<std::uint16_t>(code));
+      recording_.add_key(static_cast<std::uint16_t>(code));
   }
   read = std::min<std::size_t>(read + kMaskBytes, evdev::kKeyMax);
   return std::nullopt;
@@ -124,12 +114,7 @@ Cause EvemuReader::axis(Words words) {
   const auto min = parse_number<std::int32_t>(words.next());
   const auto max = parse_number<std::int32_t>(words.next());
   if (!code || !min || !max) return "an A: line holds a code, a minimum and a maximum";
-  const bool is_known =
-      std::ranges::any_of(abilities_.axes, [&code](const EvdevAxis& a) { return a.code == *code; });
-  if (is_known) return fmt::format("a second A: line for the axis {:02x}", *code);
-  if (*code <= evdev::kAbsMax)
-    abilities_.axes.push_back({static_cast<std::uint16_t>(*code), *min, *max});
-  return std::nullopt;
+  return recording_.add_axis(*code, *min, *max);
 }
 
 Cause EvemuReader::event(Words words) {
@@ -139,60 +124,18 @@ Cause EvemuReader::event(Words words) {
   const auto value = parse_number<std::int32_t>(words.next());
   if (!time_us || !type || !code || !value)
     return "an E: line holds SECONDS.MICROSECONDS, a type, a code and a value";
-  if (!events_.empty()) {
-    const std::int64_t before = events_.back().time_us;
-    if (*time_us < before) return fmt::format("time goes back to {}", word);
-    if (*time_us - before > kMaxTraceGapUs) return "a gap of more than ten minutes";
-    if (*time_us - events_.front().time_us > kMaxTraceDurationUs)
-      return "a recording of more than a million seconds";
-  }
-  if (events_.size() >= kMaxTraceEvents) return fmt::format("more than {} events", kMaxTraceEvents);
-  events_.push_back(
-      {*time_us, static_cast<std::uint16_t>(*type), static_cast<std::uint16_t>(*code), *value});
-  return std::nullopt;
-}
-
-EvdevState EvemuReader::first_state() const {
-  EvdevState state;
-  for (const EvdevAxis& a : abilities_.axes) {
-    const auto first = std::ranges::find_if(
-        events_, [&a](const EvemuEvent& e) { return e.type == kAbs && e.code == a.code; });
-    state.axis[a.code] = first != events_.end()
-                             ? first->value
-                             : static_cast<std::int32_t>((std::int64_t{a.min} + a.max + 1) / 2);
-  }
-  return state;
+  return recording_.add_event(
+      {*time_us, static_cast<std::uint16_t>(*type), static_cast<std::uint16_t>(*code), *value},
+      word);
 }
 
 Result<Trace> EvemuReader::trace() const {
-  if (abilities_.axes.empty() && abilities_.keys.empty())
-    return Error{name_ + ": no device: there is no A: or B: line"};
-  const EvdevLayout layout = evdev_layout(abilities_, {});
+  if (!recording_.has_abilities()) return Error{name_ + ": no device: there is no A: or B: line"};
   Trace trace;
   trace.path = name_;
   trace.skipped_lines = skipped_;
   trace.first_damage = first_damage_;
-  TraceDevice& device = trace.devices.emplace_back();
-  device.info = info_;
-  device.info.driver = "evdev";
-  device.info.descriptor = layout.descriptor;
-  EvdevState state = first_state();
-  Report report;
-  for (const EvemuEvent& e : events_) {
-    if (e.type == kAbs && e.code <= evdev::kAbsMax) state.axis[e.code] = e.value;
-    if (e.type == kKey && e.code <= evdev::kKeyMax) state.keys[e.code] = e.value != 0;
-    if (e.type != kSyn || e.code != kSynReport) continue;
-    put_state(layout, state, report);
-    if (trace.bytes.size() + report.size > kMaxTraceBytes)
-      return Error{fmt::format("{}: reports of more than {} MiB", name_, kMaxTraceBytes >> 20)};
-    TraceEvent event;
-    event.time_us = e.time_us;
-    event.device = 0;
-    event.first_byte = static_cast<std::uint32_t>(trace.bytes.size());
-    event.size = report.size;
-    trace.bytes.insert(trace.bytes.end(), report.bytes.begin(), report.bytes.begin() + report.size);
-    trace.events.push_back(event);
-  }
+  if (auto problem = recording_.append_to(trace)) return *problem;
   return trace;
 }
 

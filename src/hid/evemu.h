@@ -12,9 +12,7 @@ namespace gaitpad {
 
 bool is_evemu(std::string_view text) noexcept;
 
-// evemu keeps no state from before the first event: an axis has the value of its first event until
-// then, or stands in its middle if it has none; no key is pressed. `name` stands for the path in
-// errors.
+// `name` stands for the path in errors.
 Result<Trace> parse_evemu(std::string_view text, const std::string& name, Damage damage);
 
 // The first pad of the trace. Fields whose usages the kernel gives no code are left out, and so are

@@ -17,6 +17,7 @@
 #include "base/text.h"
 #include "gaitpad/descriptor.h"
 #include "hid/evemu.h"
+#include "hid/libinput_record.h"
 #include "hid/trace_lines.h"
 
 namespace gaitpad {
@@ -599,10 +600,17 @@ class LineFeed {
   std::int64_t number_ = 0;
 };
 
+// Recordings of event nodes, by other tools.
+bool is_of_nodes(std::string_view text) { return is_evemu(text) || is_libinput_record(text); }
+Result<Trace> parse_of_nodes(std::string_view text, const std::string& name, Damage damage) {
+  return is_evemu(text) ? parse_evemu(text, name, damage)
+                        : parse_libinput_record(text, name, damage);
+}
+
 }  // namespace
 
 Result<Trace> parse_trace(std::string_view text, const std::string& name, Damage damage) {
-  if (is_evemu(text)) return parse_evemu(text, name, damage);
+  if (is_of_nodes(text)) return parse_of_nodes(text, name, damage);
   LineFeed feed(name, damage);
   if (auto error = feed.add(text)) return *error;
   return feed.finish();
@@ -619,7 +627,7 @@ Result<Trace> read_trace(const std::string& path, Damage damage) {
   std::ifstream in(path, std::ios::binary);
   if (!in) return Error{path + ": cannot be opened for reading"};
   LineFeed feed(path, damage);
-  std::string evemu;  // the whole of such a file
+  std::string of_nodes;  // the whole of such a file
   std::vector<char> buffer(1 << 16);
   std::size_t total = 0;
   while (in.good()) {
@@ -628,14 +636,14 @@ Result<Trace> read_trace(const std::string& path, Damage damage) {
     total += got;
     if (total > kMaxTraceBytes) return too_large();
     const std::string_view piece(buffer.data(), got);
-    if (!evemu.empty() || (total == got && is_evemu(piece))) {
-      evemu += piece;
+    if (!of_nodes.empty() || (total == got && is_of_nodes(piece))) {
+      of_nodes += piece;
     } else if (auto error = feed.add(piece)) {
       return *error;
     }
   }
   if (in.bad()) return Error{path + ": reading failed"};
-  if (!evemu.empty()) return parse_evemu(evemu, path, damage);
+  if (!of_nodes.empty()) return parse_of_nodes(of_nodes, path, damage);
   return feed.finish();
 }
 

@@ -100,7 +100,7 @@ void LiveSession::Impl::start_loop() {
                                      spec.live.frame_ticks,
                                      spec.live.report_times,
                                      stream ? &stream->newest() : nullptr,
-                                     forward.get()};
+                                     forward ? &forward->mail() : nullptr};
   loop = std::make_unique<LiveLoop>(options, script, simulation, *pads, recording.get());
   if (stream) stream->start();
   if (forward) forward->start();

@@ -146,7 +146,7 @@ class LiveLoop {
     bool report_times = false;
     // What other programs get of each tick; may be null.
     Latest<StreamedTick>* stream = nullptr;
-    PadForward* forward = nullptr;
+    ForwardMail* forward = nullptr;
   };
   // All must outlive the loop; `recording` may be null.
   LiveLoop(const Options& options, const Script& script, Simulation& simulation, PadStream& pads,

@@ -49,11 +49,11 @@ void PadForward::start() {
 
 void PadForward::stop() {
   is_ending_ = true;
-  bell_.ring();
+  mail_.wake();
   if (thread_.joinable()) thread_.join();
 }
 
-void PadForward::put(const ForwardedTick& tick) noexcept {
+void ForwardMail::put(const ForwardedTick& tick) noexcept {
   if (is_same(tick, put_)) return;
   put_ = tick;
   newest_.writable() = tick;
@@ -61,15 +61,19 @@ void PadForward::put(const ForwardedTick& tick) noexcept {
   bell_.ring();
 }
 
+void ForwardMail::wait() noexcept {
+  pollfd ready = {bell_.fd(), POLLIN, 0};
+  ::poll(&ready, 1, -1);
+  bell_.clear();
+}
+
 void PadForward::run() {
   ::pthread_setname_np(::pthread_self(), "gaitpad-forward");
   ForwardedTick sent;
   while (!is_ending_) {
-    pollfd ready = {bell_.fd(), POLLIN, 0};
-    ::poll(&ready, 1, -1);
-    bell_.clear();
+    mail_.wait();
     bool is_new = false;
-    const ForwardedTick& tick = newest_.read(is_new);
+    const ForwardedTick& tick = mail_.read(is_new);
     if (!is_new) continue;
     // An event that the kernel refuses is lost; the next one comes with the next change.
     static_cast<void>(pad_.set(between(sent, tick)));

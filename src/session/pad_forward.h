@@ -28,6 +28,23 @@ ForwardedTick forwarded_tick(const Pads& pads, const Stick& stick) noexcept;
 // was pressed in between, is turned over. `after` itself if there is none.
 VirtualPadState between(const ForwardedTick& before, const ForwardedTick& after) noexcept;
 
+// The newest tick on its way from the loop to the thread that sends it.
+class ForwardMail {
+ public:
+  // From the loop, after each tick. Without heap or lock; a system call where something has
+  // changed.
+  void put(const ForwardedTick& tick) noexcept;
+  // Waits for a change, or for wake().
+  void wait() noexcept;
+  void wake() noexcept { bell_.ring(); }
+  const ForwardedTick& read(bool& is_new) noexcept { return newest_.read(is_new); }
+
+ private:
+  ForwardedTick put_;  // the loop's
+  Latest<ForwardedTick> newest_;
+  Bell bell_;
+};
+
 class PadForward {
  public:
   // The errors of XboxPad::create().
@@ -37,18 +54,14 @@ class PadForward {
   void start();
   void stop();
   std::string node() const { return pad_.node(); }
-  // From the loop, after each tick. Without heap or lock; a system call where something has
-  // changed.
-  void put(const ForwardedTick& tick) noexcept;
+  ForwardMail& mail() noexcept { return mail_; }
 
  private:
   explicit PadForward(XboxPad pad) : pad_(std::move(pad)) {}
   void run();
 
   XboxPad pad_;
-  ForwardedTick put_;  // the loop's
-  Latest<ForwardedTick> newest_;
-  Bell bell_;
+  ForwardMail mail_;
   std::atomic<bool> is_ending_{false};
   std::thread thread_;
 };

@@ -177,6 +177,7 @@ void CalibrationView::draw_control(Ui& ui, const GuideProgress& control, bool is
   progress_bar(ui, control.done);
   note(ui, control.text, 4);
   ImGui::EndGroup();
+  keep_area("calibration of the " + control.control, at, ImGui::GetItemRectMax());
 }
 
 // Scrolls where the window is lower than the text and the smallest pictures.

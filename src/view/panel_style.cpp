@@ -181,8 +181,8 @@ bool is_any_set(const Ui& ui) {
 constexpr std::string_view kLeftOf = "left_", kRightOf = "right_";
 constexpr std::string_view kOfBoth[] = {"legs.", "arms.", "hands."};
 // Keys behind the button below: the upper body, and those that are rarely changed.
-constexpr std::string_view kRare[] = {"arm.",  "hand.",   "spine.",
-                                      "head.", "idle", "blend_s", "fatigue_model."};
+constexpr std::string_view kRare[] = {"arm.", "hand.",   "spine.",        "head.",
+                                      "idle", "blend_s", "fatigue_model."};
 
 // A row: one key, or the same key of both sides.
 struct StyleRow {

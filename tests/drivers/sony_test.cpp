@@ -70,6 +70,42 @@ TEST(DualShock3, IsStartedByReadingTwoFeaturesOnUsbWithoutTheKernel) {
             std::vector<std::string>{"Pad: does not answer the start over USB"});
 }
 
+// By SDL's SDL_hidapi_ps4.c; the descriptor as pads of other makers state it.
+TEST(DualShock4OfOthers, RunsItsMotorsIfItTellsThatItHasAny) {
+  DeviceInfo device;
+  device.bus = BusType::usb;
+  device.vendor = 0x0f0d;
+  device.product = 0x00ee;
+  device.descriptor = {0x05, 0x01, 0x09, 0x05, 0xa1, 0x01, 0x85, 0x01, 0x09, 0x30, 0x09,
+                       0x31, 0x15, 0x00, 0x26, 0xff, 0x00, 0x75, 0x08, 0x95, 0x02, 0x81,
+                       0x02, 0x06, 0x00, 0xff, 0x85, 0x05, 0x09, 0x22, 0x95, 0x1f, 0x91,
+                       0x02, 0x85, 0x03, 0x0a, 0x21, 0x27, 0x95, 0x2f, 0xb1, 0x02, 0xc0};
+  for (const auto& [abilities, size] : {std::pair(0x0f, 32u), {0x07, 0u}}) {
+    ScriptedPort port;
+    port.features = {{0x03, Packet(48, 0)}};
+    port.features[0x03][2] = 0x27;
+    port.features[0x03][4] = static_cast<std::uint8_t>(abilities);
+    const auto pad = make_sony_model(device);
+    ASSERT_NE(pad, nullptr);
+    pad->start(port, StartedBy::kernel);
+    OutPacket packet;
+    pad->rumble(kRumble, packet);
+    ASSERT_EQ(packet.size, size);
+    if (size == 0) continue;
+    EXPECT_EQ(packet.bytes[0], 0x05);
+    EXPECT_EQ(packet.bytes[4], 0x40) << "weak";
+    EXPECT_EQ(packet.bytes[5], 0xc0) << "strong";
+  }
+  ScriptedPort silent;
+  const auto pad = make_sony_model(device);
+  pad->start(silent, StartedBy::us);
+  OutPacket packet;
+  pad->rumble(kRumble, packet);
+  EXPECT_EQ(packet.size, 0u);
+  device.descriptor[39] = 0x2e;  // the feature is a byte shorter: nothing is known of this pad
+  EXPECT_EQ(make_sony_model(device), nullptr);
+}
+
 TEST(Crc32, IsTheBitwiseOneWithThePublishedCheckValueAndGoesOnInParts) {
   const std::string_view text = "123456789";
   EXPECT_EQ(crc32(Packet(text.begin(), text.end())), 0xcbf43926u);

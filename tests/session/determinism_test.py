@@ -1,7 +1,7 @@
 """One walk, one hash: two compilers at three levels walk the same sessions, and every tick is compared. Of the five other
 builds two are made, for each takes a minute: clang++ -O3 -march=native always, and one that the commit chooses
-(support/slices.py). GAITPAD_ALL=1 makes them all, and where there are g++-aarch64-linux-gnu and
-qemu-user-static, one for aarch64.
+(support/slices.py). GAITPAD_ALL=1 makes them all, and those for other processors: aarch64 in an emulator, and i386 with
+the arithmetic of SSE2.
 
 The program `pose_hash` of the ordinary build is the reference, as users run it; it also says which sources
 a walk needs. The other builds stand in `determinism` beside it, and ninja keeps them up to date. Where two
@@ -28,11 +28,14 @@ OTHERS = {f"{compiler}-{name}": (compiler, level) for compiler in ("g++", "clang
 if not slices.ALL:
     FIRST, *REST = sorted(OTHERS, key=lambda name: name != "clang++-O3native")
     OTHERS = {name: OTHERS[name] for name in (FIRST, REST[slices.NUMBER % len(REST)])}
-CROSS, EMULATOR = "aarch64-linux-gnu-g++", "qemu-aarch64-static"
-if slices.ALL and shutil.which(CROSS) and shutil.which(EMULATOR):  # minutes in the emulator
-    OTHERS["aarch64"] = (CROSS, "-O2")
+# For other processors: the compiler and its package; what runs the program there, and its package. The x87's registers
+# are wider than a double, so that i386 counts only with SSE2.
+FOREIGN = {"aarch64": (("aarch64-linux-gnu-g++", "g++-aarch64-linux-gnu"), ("qemu-aarch64-static", "qemu-user-static"), "-O2"),
+           "i386": (("i686-linux-gnu-g++", "g++-i686-linux-gnu"), None, "-O2 -msse2 -mfpmath=sse -mstackrealign")}
+if slices.ALL:  # minutes
+    OTHERS |= {variant: (compiler[0], level) for variant, (compiler, _, level) in FOREIGN.items()}
 # The ending that each compiler looks for behind the header's name.
-PRECOMPILED = {"g++": "gch", "clang++": "pch", CROSS: "gch"}
+PRECOMPILED = collections.defaultdict(lambda: "gch", {"clang++": "pch"})
 
 RULES = """
 rule header
@@ -103,7 +106,7 @@ def write_build_file(folder, build):
         if not header.exists() or header.read_text() != text:
             header.write_text(text)
         with_compiler = f"  cxx = {compiler}\n  level = {level}\n  variant = {variant}"
-        is_foreign = compiler == CROSS
+        is_foreign = variant in FOREIGN
         if is_foreign:  # it has no libraries of ours; what is wider than its registers is computed in parts
             portable = re.sub(r" -D(FMT|TOML)_\S+| -I\S*/usr/\S+", "", flags)
             with_compiler += f"\n  flags = {portable} -DFMT_HEADER_ONLY -DTOML_HEADER_ONLY=1\n  libraries = -static"
@@ -145,9 +148,14 @@ def first_difference(a, b):
 @pytest.mark.parametrize("variant", [ORDINARY, *OTHERS])
 def test_every_tick_has_the_same_hash(variant, program, folder, ordinary):
     binary = program.parent / "tests/pose_hash" if variant == ORDINARY else folder / variant / "walk"
+    emulator = []
+    if variant in FOREIGN:
+        compiler, runner, _ = FOREIGN[variant]
+        for tool in filter(None, (compiler, runner)):
+            slices.need(*tool)
+        emulator = runner[:1] if runner else []
     if variant != ORDINARY:
         output_of("ninja", f"{variant}/walk", folder=folder)
-    emulator = [EMULATOR] if variant == "aarch64" else []
     assert len(ordinary) > 10000
     assert first_difference(ordinary, walk(binary, folder, *emulator)) is None
     print(f"{variant}: {ordinary[-1]}, {len(ordinary)} ticks")
@@ -157,8 +165,7 @@ def test_every_tick_has_the_same_hash(variant, program, folder, ordinary):
 def locales(tmp_path_factory):
     """With decimal commas; Turkish has an I of its own."""
     folder = tmp_path_factory.mktemp("locales")
-    if not shutil.which("localedef") or not pathlib.Path("/usr/share/i18n/locales/tr_TR").exists():
-        pytest.skip("the sources of the locales are not here (package locales)")
+    slices.need("/usr/share/i18n/locales/tr_TR", "locales")
     for name in ("tr_TR", "de_DE"):
         subprocess.run(["localedef", "-i", name, "-f", "UTF-8", folder / f"{name}.UTF-8"], check=True, capture_output=True)
     return folder

@@ -9,6 +9,7 @@ import subprocess
 
 import pytest
 
+from support import slices
 from support.program import ROOT, ROUND, has_sanitizers
 from support.traces import beginning
 
@@ -49,10 +50,10 @@ def here(run, short):
     return hash_of(run("replay", short, "--json", *OPTIONS))
 
 
-@pytest.mark.skipif(not shutil.which("valgrind"), reason="there is no valgrind (package valgrind)")
 def test_under_valgrind_without_an_error(program, short, here):
     if has_sanitizers(program):
         pytest.skip("a program with sanitizers does not run under valgrind")
+    slices.need("valgrind", "valgrind")
     done = subprocess.run(["valgrind", "-q", "--error-exitcode=9", program, "replay", short, "--json", *OPTIONS],
                           capture_output=True, text=True, timeout=580, check=False)
     assert done.returncode == 0, done.stderr[-3000:]
@@ -67,8 +68,7 @@ def test_on_one_core(run, short, here):
 
 @pytest.mark.parametrize("name", ["tr_TR", "de_DE"])
 def test_with_decimal_commas(run, short, here, tmp_path, name):
-    if not shutil.which("localedef") or not pathlib.Path("/usr/share/i18n/locales", name).exists():
-        pytest.skip("the sources of the locales are not here (package locales)")
+    slices.need(f"/usr/share/i18n/locales/{name}", "locales")
     subprocess.run(["localedef", "-i", name, "-f", "UTF-8", tmp_path / f"{name}.UTF-8"], check=True, capture_output=True)
     there = {**os.environ, "LOCPATH": str(tmp_path), "LC_ALL": f"{name}.UTF-8", "LANG": f"{name}.UTF-8"}
     files = []

@@ -302,7 +302,7 @@ struct LoopParts {
   Script script;
   // What other programs get.
   std::unique_ptr<Latest<StreamedTick>> stream = std::make_unique<Latest<StreamedTick>>();
-  std::unique_ptr<Latest<ForwardedTick>> forward = std::make_unique<Latest<ForwardedTick>>();
+  std::unique_ptr<ForwardMail> forward = std::make_unique<ForwardMail>();
   std::unique_ptr<LiveLoop> loop;
 };
 

@@ -4,6 +4,7 @@ commit's hash chooses, so that a failure can be repeated; GAITPAD_ALL=1 runs eve
     for walk in slices.chosen(walks, 6, name=lambda walk: walk.label): ...
 """
 import os
+import shutil
 import zlib
 
 ALL = os.environ.get("GAITPAD_ALL") == "1"
@@ -22,3 +23,10 @@ def chosen(items, parts, name=str):
 def text(parts):
     """For the test's output: how to repeat it."""
     return "all (GAITPAD_ALL=1)" if ALL else f"part {NUMBER % parts + 1} of {parts} (GAITPAD_SLICE={NUMBER}; GAITPAD_ALL=1: all)"
+
+
+def need(tool, package):
+    """Skips the test where a program or a file is missing. A run of everything fails instead: it leaves nothing out."""
+    import pytest  # scripts without tests choose slices, too
+    if not shutil.which(tool) and not os.path.exists(tool):
+        (pytest.fail if ALL else pytest.skip)(f"{tool} is not here (package {package})")

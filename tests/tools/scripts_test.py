@@ -64,3 +64,10 @@ def test_a_failed_build_shows_its_errors(pretended):
     done = subprocess.run(["bash", ROOT / "tools/build.sh", build, "all"], capture_output=True, text=True, check=False,
                           env=env)
     assert done.returncode == 1 and done.stderr.strip() == "x.cpp:1: error: no"
+
+
+def test_every_fuzz_target_keeps_few_inputs_in_two_megabytes_together():
+    fuzz = ROOT / "tools/fuzz"
+    kept = {path.name.removesuffix(".tar.xz"): path.stat().st_size for path in (fuzz / "corpus").glob("*.tar.xz")}
+    assert sorted(kept) == sorted(path.stem for path in fuzz.glob("fuzz_*.cpp"))
+    assert sum(kept.values()) <= 2 << 20, kept

@@ -11,6 +11,7 @@
 #include <algorithm>
 #include <array>
 #include <chrono>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <functional>
@@ -922,8 +923,8 @@ void add_reports(std::string& text, int& ms, const std::array<int, 6>& bytes, in
   }
 }
 
-// A pad with one stick that is let go four times from all sides, at once and often enough to be
-// measured: sooner than any thumb. At rest it trembles by one count.
+// A pad whose left stick is let go four times from all sides and turned round twice, sooner than by
+// any thumb. At rest it trembles by one count.
 std::string thumb_trace() {
   std::string text =
       "R: 54 05 01 09 05 a1 01 15 00 26 ff 00 75 08 95 04 09 30 09 31 09 32 09 35 81 02 15 00 25 "
@@ -939,6 +940,13 @@ std::string thumb_trace() {
     add_reports(text, ms, {x, y, 0x80, 0x80, 8, 0}, 25, 8);
     rest(100);
   }
+  for (int degrees = 0; degrees <= 720; degrees += 4) {
+    const auto place = [degrees](double (*of)(double)) {
+      return static_cast<int>(std::lround(127.5 + 127.5 * of(degrees * kDegree)));
+    };
+    add_reports(text, ms, {place(&std::cos), place(&std::sin), 0x80, 0x80, 8, 0}, 1, 8);
+  }
+  rest(100);
   return text;
 }
 
@@ -1012,6 +1020,41 @@ TEST_F(WindowFiles, ACalibrationIsMeasuredShownSavedAndInForce) {
   EXPECT_EQ(file->name, "Thumb Pad");
   // 0x80 and 0x81 by turns, in fractions of half of 0 .. 255.
   EXPECT_NEAR(file->calibration.left.x.centre, (128.5 - 127.5) / 127.5, 0.004);
+}
+
+TEST_F(WindowFiles, TheGuideOfACalibrationFitsInASmallWindow) {
+  options_.session.pad.wish.pad = make("thumb.hid", thumb_trace());
+  options_.width = 640;
+  options_.height = 400;
+  Script script;
+  script.until("it runs", runs);
+  script.tap(SDLK_F8);
+  script.until("the guide is there",
+               [](const Glance&) { return Script::find("calibration of the right stick"); });
+  std::vector<UiItem> items;
+  script.until("it is looked at", [&items](const Glance&) {
+    items.assign(ui_items().begin(), ui_items().end());
+    return true;
+  });
+  run(script);
+  const auto found = [&items](const std::string& name) {
+    const auto item = std::ranges::find(items, name, &UiItem::name);
+    EXPECT_NE(item, items.end()) << name;
+    return item == items.end() ? UiItem{} : *item;
+  };
+  // Items are as large as they are seen: nothing is cut, and no stick lies below the buttons.
+  const float buttons_y = found("calibration skip").min.y;
+  for (const char* name : {"calibration of the left stick", "calibration of the right stick"}) {
+    const UiItem stick = found(name);
+    EXPECT_LE(stick.max.y, buttons_y) << name;
+    EXPECT_GE(stick.max.y - stick.min.y, 55.0f) << name;  // its name, its bar, a line of text
+  }
+  for (const auto& [name, width] :
+       {std::pair("calibration map", 140.0f), {"calibration test", 100.0f}}) {
+    const UiItem button = found(name);
+    EXPECT_GE(button.max.x - button.min.x, width) << name;
+    EXPECT_GE(button.max.y - button.min.y, 25.0f) << name;
+  }
 }
 
 TEST_F(WindowFiles, ACalibrationIsGivenUp) {

@@ -238,7 +238,7 @@ def test_games_know_the_forwarded_pad_as_an_xbox_360_pad():
     seen = {}
     with Pad("generic") as pad, Forward(IDS["generic"], "--as", "xbox360"):
         settle()
-        with SdlPad(b"Microsoft X-Box 360 pad") as sdl:
+        with SdlPad(b"Xbox 360 Controller") as sdl:
             for corner in (0, 255):
                 pad.set(lx=corner, ly=corner)
                 wait_for(lambda: min(map(abs, sdl.left())) > FULL / 2, 20, "both axes of the stick in SDL")

@@ -1,8 +1,12 @@
 """Plugging in again and again: pads of all kinds in turn, each with one short push, every one of which is seen.
 
-Four times each kind, a thousand times with --long, in sessions of fifty.
+Four times each kind, a thousand times with --long, in sessions of fifty. Then at the full speed of the guest, by uhid: a pad
+alone, and one behind a receiver that stays. A thousand times each, in less than 20 minutes:
+
+  bash tools/rig.sh --long --kernel 6.1 --only at_full_speed
 """
 import contextlib
+import os
 import random
 import statistics
 import time
@@ -12,9 +16,11 @@ import pytest
 from pads import KINDS, LONG, Pad, wait_for
 from session import HAS_SANITIZERS, IDS, Session, remark
 from test_matrix import VALUES
+from uhid_pad import EMPTY_PLUG, FULL_PLUG, UhidPad
 
 SESSIONS, TURNS = (20, 50) if LONG else (1, 12 if HAS_SANITIZERS else 24)
 PUSH_S = 0.15  # a tap of the stick
+CYCLES = 1000 if LONG else 10 if HAS_SANITIZERS else 50  # at full speed, of each of two
 MOST_S = 3.0  # from the node to the session, in the median
 
 
@@ -81,3 +87,91 @@ def test_a_pad_that_rests_when_it_is_opened_counts_from_its_first_push(case):
             session.wait_unplugged(turn + 1)
     assert seen_pushes(session) == times
     remark(f"a pad that rests when it is opened, {case}: {times} times, its first push was seen")
+
+
+class Alone:
+    """A pad that is plugged in and out."""
+    FIRST = 0
+    FULL, REST, BYTE = 0, 128, 2  # of its stick, forward
+
+    def __enter__(self):
+        self.pad = UhidPad("plain")
+        return self
+
+    def __exit__(self, *_):
+        pass
+
+    def plug(self):
+        self.pad.plug(wait=False)
+
+    def unplug(self):
+        self.pad.unplug(wait=False)
+
+
+class BehindAReceiver:
+    """A controller of an adapter that stays plugged in: a byte of its reports says whether it is there. Until the first
+    report each of its four plugs may have one, so they are plugged in and out once more."""
+    FIRST = 4
+    FULL, REST, BYTE = 128 + 100, 128, 5
+
+    def __enter__(self):
+        self.pad = UhidPad("gamecube_adapter")
+        self.pad.plug(wait=False)
+        return self
+
+    def __exit__(self, *_):
+        self.pad.unplug(wait=False)
+
+    def plug(self):
+        self.pad.set(type=FULL_PLUG)
+
+    def unplug(self):
+        self.pad.set(type=EMPTY_PLUG)
+
+
+def tap(source, session):
+    """Rest, rim, rest, without a pause but this: the rim is held until it is in the recording, a few ticks later."""
+    way = source.FULL - source.REST
+    for share in (0, 1 / 3, 2 / 3, 1):
+        source.pad.set(ly=source.REST + round(share * way))
+    full, before = f"{source.FULL:02x}", len(session.lines("E:"))
+    wait_for(lambda: any(line.split()[3 + source.BYTE] == full for line in session.lines("E:")[max(0, before - 4):]), 10, "the rim")
+    for share in (2 / 3, 1 / 3, 0):
+        source.pad.set(ly=source.REST + round(share * way))
+
+
+def held(session):
+    """(open files, threads) of the program."""
+    return session.handles(), len(os.listdir(f"/proc/{session.process.pid}/task"))
+
+
+@pytest.mark.timeout(1200 if LONG else 120)
+@pytest.mark.parametrize("source", [Alone, BehindAReceiver])
+def test_every_tap_is_seen_at_full_speed(source):
+    waits_s = []
+    with source() as source, Session("--driver", "hidraw", "--no-rumble", name="full-speed", awaited=0) as session:
+        if source.FIRST:
+            session.wait_plugged(source.FIRST)
+            source.unplug()
+            session.wait_unplugged(source.FIRST)
+        began = time.monotonic()
+        for cycle in range(source.FIRST, source.FIRST + CYCLES):
+            start = time.monotonic()
+            source.plug()
+            session.wait_plugged(cycle + 1)
+            waits_s.append(time.monotonic() - start)
+            tap(source, session)
+            source.unplug()
+            session.wait_unplugged(cycle + 1)
+            if cycle == source.FIRST:
+                first = held(session)
+        took_s = time.monotonic() - began
+        wait_for(lambda: held(session) <= first, 10, f"{first} files and threads as after the first cycle, not {held(session)}")
+    assert session.summary["plugged"] == session.summary["unplugged"] == source.FIRST + CYCLES, session.summary
+    sticks = [float(frame["stick_y"]) for frame in session.frames()]
+    seen = sum(a <= 0.9 < b for a, b in zip(sticks, sticks[1:]))
+    assert seen == CYCLES, f"{seen} of {CYCLES} taps were seen"
+    assert sticks[-1] == 0.0, "stuck"
+    remark(f"plugging in at full speed, {type(source).__name__}: {CYCLES} times in {took_s:.0f} s, each tap was seen; in the session "
+           f"after {statistics.median(waits_s):.3f} s (median), {max(waits_s):.2f} s at most; {first[0]} files and {first[1]} threads "
+           "as after the first")

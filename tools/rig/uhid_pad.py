@@ -63,6 +63,13 @@ _XBOX_BT = (_GAMEPAD + bytes([0x85, 1]) + _fields(4, 16, _STICKS) + _fields(1, 1
             + bytes([0x05, 0x0f, 0x09, 0x21, 0x85, 3]) + _fields(8, 8, tag=0x90) + b"\xc0")
 
 
+# One report of a vendor's: for each of four plugs a type, two bytes of buttons, two sticks, two triggers (SDL's
+# SDL_hidapi_gamecube.c). The second byte is the first plug's type.
+_GAMECUBE = (bytes([0x06, 0, 0xff, 0x09, 1, 0xa1, 1]) + _vendor(0x21, 36, 0x80) + _vendor(0x13, 1, 0x90)
+             + _vendor(0x11, 4, 0x90) + b"\xc0")
+EMPTY_PLUG, FULL_PLUG = 0x04, 0x14
+
+
 def _motion_calibration(report, size):
     values = (0, 0, 0, 8000, -8000, 8000, -8000, 8000, -8000, 500, 500) + 3 * (8192, -8192)
     return with_checksum(0xa3, (bytes([report]) + struct.pack("<17h", *values)).ljust(size, b"\0"))
@@ -123,6 +130,14 @@ def _sony_fields(start, triggers, buttons):
 
 
 KINDS = {
+    "plain": Kind(
+        "Rig plain pad", (0x1209, 0x0001), _GAMEPAD + bytes([0x85, 1]) + _fields(4, 8, _STICKS) + _buttons(8) + b"\xc0",
+        _neutral(6, b"\x01\x80\x80\x80\x80"), {"lx": (8, 8), "ly": (16, 8), "buttons": (40, 8)}, bus=BUS_USB),
+    "gamecube_adapter": Kind(
+        "Rig adapter", (0x057e, 0x0337), _GAMECUBE,
+        _neutral(37, b"\x21", **{f"b{1 + 9 * plug + byte}": value for plug in range(4)
+                                 for byte, value in ((0, EMPTY_PLUG), (3, 0x80), (4, 0x80), (5, 0x80), (6, 0x80))}),
+        {"type": (8, 8), "lx": (32, 8), "ly": (40, 8)}, bus=BUS_USB),
     "dualsense_bt": Kind(
         "DualSense Wireless Controller", (0x054c, 0x0ce6), _DUALSENSE_BT,
         _neutral(78, b"\x31\x01\x80\x80\x80\x80", b9=0x08, b34=0x80, b38=0x80, b54=0x18), _sony_fields(2, 6, 9),

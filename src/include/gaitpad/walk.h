@@ -182,8 +182,8 @@ struct HipsGround {
 struct UpperBodyState {
   UpperBodyParams goal, now;  // asked for; smoothed and in force
   std::array<double, sizeof(UpperBodyParams) / sizeof(double)>
-      per_s{};              // rates of `now`, per second
-  int unsettled_ticks = 0;  // until `now` is `goal`
+      per_s{};                                    // rates of `now`, per second
+  int unsettled_ticks = 0;                        // until `now` is `goal`
   EasedOf<vec3, double> eased_chest, eased_head;  // turns in the walker's axes, rotation vectors
   // How far the trunk leans in this tick, and how far the upper arms are spread; in paper mode not.
   double forward_rad = 0.0, left_rad = 0.0;
@@ -196,8 +196,8 @@ struct UpperBodyState {
 };
 
 // A person who stands: for how long, how much of it shows, and how far the trunk rises with the
-// breath and the head is turned by a glance, to the left and down positive. The hips' sway is of the
-// path.
+// breath and the head is turned by a glance, to the left and down positive. The hips' sway is of
+// the path.
 struct IdleState {
   int ticks = 0;
   double share = 0.0;  // 0 none .. 1 all

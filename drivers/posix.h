@@ -35,6 +35,13 @@ inline std::int64_t now_ns() noexcept {
   return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
 }
 
+// Sleeps until then; at once if it is over. A signal may end it early.
+inline void sleep_until(std::int64_t time_ns) noexcept {
+  const timespec until = {static_cast<time_t>(time_ns / 1'000'000'000),
+                          static_cast<long>(time_ns % 1'000'000'000)};
+  ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
+}
+
 // A bell that one thread rings and another waits for.
 class Bell {
  public:

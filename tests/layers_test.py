@@ -9,10 +9,11 @@ import re
 # The libraries, lowest first: a library includes its own headers and those of the libraries before it.
 LIBRARIES = {
     "core": ["src/base", "src/motion", "src/strides", "src/control", "src/animation"],
+    "pictures": ["src/draw"],
     "files": ["src/files"],
     "devices": ["src/hid", "src/stick", "src/pads", "drivers", "drivers/pads"],
     "session": ["src/session"],
-    "program": ["src/draw", "src/view", "src/paper", "src/check", "src/selftest"],
+    "program": ["src/stick_picture", "src/scene", "src/view", "src/paper", "src/check", "src/selftest", "src/bench"],
 }
 # room: (rooms of its own library that it may include, vendor headers)
 ROOMS = {
@@ -28,12 +29,16 @@ ROOMS = {
     "drivers/pads": (["hid"], ["fmt/"]),
     "src/pads": (["hid", "stick", "drivers"], ["fmt/"]),
     "src/session": ([], ["fmt/", "nlohmann/", "tbb/"]),
-    # Drawing needs cairo alone; the paper's figures are drawn without a window.
+    # Drawing needs cairo alone and knows no pads; the paper's figures are drawn without a window.
     "src/draw": ([], ["fmt/", "cairo/"]),
-    "src/view": (["draw", "selftest"], ["fmt/", "SDL2/", "SDL", "imgui", "backends/imgui_impl", "epoxy/", "cairo/", "nlohmann/"]),
-    "src/paper": (["draw"], ["fmt/", "cairo/", "nlohmann/"]),
+    "src/stick_picture": ([], ["fmt/", "cairo/"]),
+    # The scene knows no window: no SDL, no Dear ImGui.
+    "src/scene": ([], ["fmt/", "epoxy/", "glm/"]),
+    "src/view": (["scene", "stick_picture", "selftest"], ["fmt/", "SDL2/", "SDL", "imgui", "backends/imgui_impl", "epoxy/", "cairo/", "nlohmann/"]),
+    "src/paper": ([], ["fmt/", "cairo/", "nlohmann/"]),
     "src/check": ([], ["fmt/"]),
     "src/selftest": ([], ["fmt/", "nlohmann/"]),
+    "src/bench": ([], ["fmt/", "nlohmann/", "benchmark/"]),
 }
 # The public headers, src/include/gaitpad/NAME.h, by the room whose functions they declare.
 PUBLIC = {
@@ -69,11 +74,11 @@ DRIVER_VENDORS = {
     "tools/rig/latency.cpp": ["linux/"],
     "tools/rig/plain_sdl.cpp": ["SDL2/"],
     "tools/soak/soak.cpp": ["SDL2/", "malloc.h"],
+    "src/bench/bench_work.cpp": ["malloc.h"],
     "tools/fuzz/fuzz_stream.cpp": ["lo/"],
-    "tools/gaitpad/bench_work.cpp": ["malloc.h"],
     "tools/gaitpad/window_module.cpp": ["dlfcn.h"],
 }
-TOOL_VENDORS = ["fmt/", "nlohmann/", "CLI/", "benchmark/"]
+TOOL_VENDORS = ["fmt/", "nlohmann/", "CLI/"]
 SYSTEM_HEADERS = ("sys/", "unistd.h", "fcntl.h", "dirent.h", "errno.h", "poll.h", "signal.h",
                   "pthread.h", "sched.h", "spawn.h", "termios.h", "time.h", "pwd.h", "grp.h", "netdb.h")
 C_PROGRAM = "tools/rig/pad_"  # the virtual pads: a C program that includes nothing of ours

@@ -14,7 +14,8 @@
 #include <cerrno>
 #include <cstdlib>
 #include <cstring>
-#include <fstream>
+
+#include "drivers/process_memory.h"
 
 namespace gaitpad {
 namespace {
@@ -42,9 +43,7 @@ bool has_room_below_limit() {
   rlimit limit{};
   if (::geteuid() == 0 || ::getrlimit(RLIMIT_MEMLOCK, &limit) != 0) return true;
   if (limit.rlim_cur == RLIM_INFINITY) return true;
-  rlim_t pages = 0;
-  std::ifstream("/proc/self/statm") >> pages;
-  return pages * kPageBytes + kGrowthBytes <= limit.rlim_cur;
+  return static_cast<rlim_t>(mapped_bytes()) + kGrowthBytes <= limit.rlim_cur;
 }
 
 // So that the stack of the next ticks is in memory.

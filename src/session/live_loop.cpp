@@ -214,12 +214,6 @@ static_assert(std::atomic<double>::is_always_lock_free);
 // For the only thread that writes it.
 void count(std::atomic<std::int64_t>& n) noexcept { n.store(n.load(kRelaxed) + 1, kRelaxed); }
 
-void sleep_until(std::int64_t time_ns) noexcept {
-  const timespec until = {time_ns / kSecond_ns, time_ns % kSecond_ns};
-  ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until,
-                    nullptr);  // at EINTR the caller looks again
-}
-
 }  // namespace
 
 Rumble heel_beat(double speed_m_s) noexcept {

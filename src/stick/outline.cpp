@@ -636,15 +636,7 @@ void add_piece(const vec2& a, const vec2& b, Bins& greatest) noexcept {
 
 }  // namespace
 
-std::optional<double> circularity_error(const Outline& outline) noexcept {
-  Bins greatest{};
-  for (int k = 0; k < kOutlineDirections; ++k) {
-    if (outline.radius[k] == 0.0 || outline.radius[around(k + 1)] == 0.0) continue;
-    const vec2 a = point_of(outline, k), b = point_of(outline, k + 1);
-    const vec2 corner = corner_between(outline, {k - 2, k, k + 1, k + 3}).value_or(a);
-    add_piece(a, corner, greatest);
-    add_piece(corner, b, greatest);
-  }
+std::optional<double> circularity_error(const CircularityBins& greatest) noexcept {
   double sum = 0.0;
   int filled = 0;
   for (const double g : greatest) {
@@ -654,6 +646,18 @@ std::optional<double> circularity_error(const Outline& outline) noexcept {
   }
   if (filled < kLeastFilledBins) return std::nullopt;
   return 100.0 * std::sqrt(sum / filled);
+}
+
+std::optional<double> circularity_error(const Outline& outline) noexcept {
+  Bins greatest{};
+  for (int k = 0; k < kOutlineDirections; ++k) {
+    if (outline.radius[k] == 0.0 || outline.radius[around(k + 1)] == 0.0) continue;
+    const vec2 a = point_of(outline, k), b = point_of(outline, k + 1);
+    const vec2 corner = corner_between(outline, {k - 2, k, k + 1, k + 3}).value_or(a);
+    add_piece(a, corner, greatest);
+    add_piece(corner, b, greatest);
+  }
+  return circularity_error(greatest);
 }
 
 namespace {

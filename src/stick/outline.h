@@ -49,6 +49,8 @@ struct Reach {
 Reach reach_of(const Outline& outline) noexcept;
 // Percent, by the formula of dualshock-tools: 48 bins about the *raw* middle, the greatest radius r
 // of each, 100 sqrt(mean((r - 1)^2)) over those above 0.2. None if the outline has holes.
+using CircularityBins = std::array<double, kCircularityBins>;
+std::optional<double> circularity_error(const CircularityBins& greatest) noexcept;
 std::optional<double> circularity_error(const Outline& outline) noexcept;
 
 // Whole turns round the middle beyond `radius` (raw); turns in both directions count.

@@ -8,9 +8,9 @@
 #include <iterator>
 #include <optional>
 
-#include "draw/stick_picture.h"
 #include "pads/calibration_store.h"
 #include "pads/guided_calibration.h"
+#include "stick_picture/stick_picture.h"
 #include "view/pad_dialog.h"
 
 namespace gaitpad {
@@ -183,19 +183,12 @@ void CalibrationView::draw_control(Ui& ui, const GuideProgress& control, bool is
 // Scrolls where the window is lower than the text and the smallest pictures.
 void CalibrationView::draw_guide(Ui& ui, CalibrationGuide& guide, float height_px) {
   ImGui::BeginChild("guide", ImVec2(0.0f, height_px - ImGui::GetCursorPosY()));
-  text_line(ui, ui.fonts.title, ui.theme.text,
+  draw_step(ui,
             fmt::format("Step {} of {}: {}", guide.index() + 1, guide.steps().size() - 1,
-                        name_of(guide.step())));
-  text_line(ui, ui.fonts.small, ui.theme.secondary, shown_name(guided_->pad()));
-  ImGui::Dummy(ImVec2(0.0f, ui.px(6)));
-  ImGui::PushFont(ui.fonts.body);
-  ImGui::PushTextWrapPos(0.0f);
-  const bool is_plugged = guided_->is_plugged();
-  ImGui::TextUnformatted(is_plugged ? guide.instruction().c_str()
-                                    : "Unplugged: plug it in again to continue from here.");
-  ImGui::PopTextWrapPos();
-  ImGui::PopFont();
-  ImGui::Dummy(ImVec2(0.0f, ui.px(8)));
+                        name_of(guide.step())),
+            shown_name(guided_->pad()),
+            guided_->is_plugged() ? guide.instruction()
+                                  : "Unplugged: plug it in again to continue from here.");
   const bool is_of_sticks = guide.step() != GuideStep::triggers;
   const auto controls = guide.progress();
   const float gap_px = ui.px(8), spacing_px = gap_px + 2.0f * ImGui::GetStyle().ItemSpacing.y;
@@ -232,12 +225,11 @@ void CalibrationView::draw_result(Ui& ui, float height_px) {
 void CalibrationView::draw_guide_buttons(Ui& ui, CalibrationGuide& guide) {
   ButtonLook next;
   next.is_primary = true;
-  if (button(ui, "calibration skip", "Next  (Enter)", next) || is_typed(ui, SDLK_RETURN))
-    guide.skip();
+  if (key_button(ui, "calibration skip", "Next  (Enter)", SDLK_RETURN, next)) guide.skip();
   ImGui::SameLine();
-  if (button(ui, "calibration repeat", "Repeat  (R)") || is_typed(ui, SDLK_r)) guide.repeat();
+  if (key_button(ui, "calibration repeat", "Repeat  (R)", SDLK_r)) guide.repeat();
   ImGui::SameLine();
-  if (button(ui, "calibration back", "Back  (B)") || is_typed(ui, SDLK_b)) guide.back();
+  if (key_button(ui, "calibration back", "Back  (B)", SDLK_b)) guide.back();
 }
 
 void CalibrationView::draw_result_buttons(Ui& ui, std::vector<std::string>& messages) {

@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "gaitpad/simulation.h"
-#include "view/ground_mesh.h"
+#include "scene/ground_mesh.h"
 
 namespace gaitpad {
 namespace {

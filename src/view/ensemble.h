@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "view/camera.h"
-#include "view/crowd_bodies.h"
-#include "view/history.h"
-#include "view/mannequin.h"
+#include "scene/camera.h"
+#include "scene/crowd_bodies.h"
+#include "scene/mannequin.h"
+#include "session/history.h"
 #include "view/ui.h"
 
 namespace gaitpad {

@@ -1,9 +1,7 @@
 #include "view/file_browser.h"
 
-#include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <imgui.h>
-#include <sys/stat.h>
 
 #include <algorithm>
 #include <cstdlib>
@@ -12,102 +10,12 @@
 #include <utility>
 #include <vector>
 
-#include "base/files.h"
-#include "base/text.h"
-#include "gaitpad/calibration.h"
 #include "gaitpad/config_files.h"
-#include "gaitpad/motion_file.h"
-#include "gaitpad/style.h"
-#include "gaitpad/walk_model.h"
 #include "view/widgets.h"
 
 namespace gaitpad {
 namespace fs = std::filesystem;
 namespace {
-
-constexpr const char* kWhatOpens =
-    "motions (.bvh, .amc), recordings (.hid), and .toml files of styles, characters, calibrations, "
-    "terrains and motions can be opened";
-
-std::optional<FileKind> kind_of_folder(const fs::path& path) {
-  const std::string folder = path.parent_path().filename().string();
-  if (folder == "styles") return FileKind::style;
-  if (folder == "characters") return FileKind::character;
-  if (folder == "calibration") return FileKind::calibration;
-  if (folder == "terrain") return FileKind::terrain;
-  if (folder == "motions") return FileKind::motion;
-  return std::nullopt;
-}
-
-// Tries each kind of .toml file and takes the one that loads without error.
-Result<FileKind> kind_of_content(const std::string& path) {
-  std::vector<FileKind> kinds;
-  std::string problem;
-  const auto look = [&](FileKind kind, const auto& loaded) {
-    if (loaded) kinds.push_back(kind);
-    if (!loaded && problem.empty()) problem = loaded.error().message;
-  };
-  look(FileKind::style, load_style(path));
-  look(FileKind::character, load_character(path));
-  look(FileKind::calibration, load_calibration_file(path));
-  look(FileKind::terrain, load_terrain(path));
-  if (kinds.empty()) look(FileKind::motion, load_motion_source(path));
-  if (kinds.size() == 1) return kinds.front();
-  if (!kinds.empty()) {
-    return Error{path +
-                 ": could be a style, a character or a terrain; put it into a folder named styles, "
-                 "characters or terrain"};
-  }
-  return Error{
-      fmt::format("{}: is not a style, character, calibration, terrain or motion; as a style: {}",
-                  path, problem)};
-}
-
-// Sets item `n` of `count` in the list, which repeats its last item up to there; a negative `n`
-// replaces the whole list.
-void put(std::vector<std::string>& list, const std::string& path, int n, int count) {
-  if (n < 0 || list.empty() || n >= count) {
-    list = {path};
-    return;
-  }
-  const std::string last = list.back();
-  list.resize(static_cast<std::size_t>(count), last);
-  list[static_cast<std::size_t>(n)] = path;
-}
-
-constexpr std::size_t kMostSeen = 100'000;  // entries of a folder that are read
-constexpr std::size_t kMostRecentBytes = 64 * 1024;
-
-bool is_wanted(const std::string& name, FileFilter filter) {
-  const std::string ending = lower_case(fs::path(name).extension().string());
-  const bool is_motion = ending == ".bvh" || ending == ".amc", is_recording = ending == ".hid",
-             is_setting = ending == ".toml";
-  switch (filter) {
-    case FileFilter::motions:
-      return is_motion;
-    case FileFilter::recordings:
-      return is_recording;
-    case FileFilter::settings:
-      return is_setting;
-    case FileFilter::all:
-      break;
-  }
-  return is_motion || is_recording || is_setting;
-}
-
-void sort(std::vector<FolderEntry>& entries) {
-  std::ranges::sort(entries, [](const FolderEntry& a, const FolderEntry& b) {
-    if (a.is_folder != b.is_folder) return a.is_folder;
-    const std::string left = lower_case(a.name), right = lower_case(b.name);
-    return left != right ? left < right : a.name < b.name;
-  });
-}
-
-std::string date_of(const fs::path& path) {
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) return {};
-  return fmt::format("{:%Y-%m-%d %H:%M}", fmt::localtime(status.st_mtime));
-}
 
 constexpr double kBrowserWidth = 780.0, kBrowserHeight = 520.0;  // at scale 1
 constexpr std::pair<FileFilter, const char*> kFilters[] = {{FileFilter::all, "All"},
@@ -122,109 +30,11 @@ std::string home_folder() {
 
 }  // namespace
 
-Result<FileKind> kind_of_file(const std::string& path) {
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (!fs::exists(status)) return Error{path + ": there is no such file"};
-  if (fs::is_directory(status)) return Error{path + ": is a folder; " + kWhatOpens};
-  if (!fs::is_regular_file(status)) return Error{path + ": is not a regular file"};
-  const std::string ending = lower_case(fs::path(path).extension().string());
-  if (ending == ".bvh" || ending == ".amc") return FileKind::motion;
-  if (ending == ".hid") return FileKind::recording;
-  if (ending != ".toml") return Error{path + ": cannot be opened: " + kWhatOpens};
-  if (const auto kind = kind_of_folder(fs::absolute(path, error))) return *kind;
-  return kind_of_content(path);
-}
-
-SessionSpec with_file(SessionSpec options, const std::string& path, FileKind kind, int walker,
-                      int walker_count) {
-  SessionSpec::Walk& walk = options.walk;
-  options.live.record.clear();
-  switch (kind) {
-    case FileKind::motion:
-      walk.motion = path;
-      break;
-    case FileKind::character:
-      // Without a list every style has the motion's own character.
-      if (walk.characters.empty() && walker >= 0) walk.characters = {"as_in_motion_file"};
-      put(walk.characters, path, walker, walker_count);
-      break;
-    case FileKind::style:
-      if (walk.styles.empty() && walker >= 0) walk.styles = {"even"};
-      put(walk.styles, path, walker, walker_count);
-      break;
-    case FileKind::calibration:
-      options.pad.calibration = path;
-      break;
-    case FileKind::terrain:
-      walk.terrain = path;
-      break;
-    case FileKind::recording:
-      options.replay.trace = path;
-      options.rate_hz.reset();
-      break;
-  }
-  return options;
-}
-
-FolderList list_folder(const std::string& folder, FileFilter filter) {
-  FolderList list;
-  std::error_code error;
-  fs::directory_iterator it(folder, error), end;
-  std::size_t seen = 0;
-  for (; !error && it != end && seen < kMostSeen; it.increment(error), ++seen) {
-    std::string name = it->path().filename().string();
-    if (name.empty() || name.front() == '.') continue;
-    std::error_code ignored;  // a broken link is not a folder
-    const bool is_folder = it->is_directory(ignored);
-    if (!is_folder && (!is_wanted(name, filter) || !it->is_regular_file(ignored))) continue;
-    if (list.entries.size() == FolderList::kMostEntries) break;
-    std::string date = is_folder ? "" : date_of(it->path());
-    list.entries.push_back({std::move(name), is_folder, std::move(date)});
-  }
-  if (error) {
-    list.problem = fmt::format("{}: cannot be read: {}", folder, error.message());
-  } else if (it != end) {
-    list.problem = fmt::format("{}: has too many entries, only some are shown", folder);
-  }
-  sort(list.entries);
-  return list;
-}
-
-RecentFiles::RecentFiles(std::string file) : file_(std::move(file)) {
-  if (file_.empty()) return;
-  const auto text = file_text(file_, kMostRecentBytes);
-  if (!text) return;  // no file was opened so far
-  for (std::size_t begin = 0; begin < text->size() && paths_.size() < kMost;) {
-    const std::size_t end = std::min(text->find('\n', begin), text->size());
-    std::string path = text->substr(begin, end - begin);
-    begin = end + 1;
-    std::error_code error;
-    const bool is_known = std::ranges::count(paths_, path) > 0;
-    if (!path.empty() && !is_known && fs::is_regular_file(path, error))
-      paths_.push_back(std::move(path));
-  }
-}
-
-void RecentFiles::add(const std::string& path) {
-  std::error_code error;
-  const std::string whole = fs::absolute(path, error).lexically_normal().string();
-  if (error || whole.find('\n') != std::string::npos) return;
-  std::erase(paths_, whole);
-  paths_.insert(paths_.begin(), whole);
-  if (paths_.size() > kMost) paths_.resize(kMost);
-  if (file_.empty()) return;
-  std::string text;
-  for (const std::string& known : paths_) text += known + "\n";
-  // Not reported: the list is a convenience.
-  static_cast<void>(save_text(file_, text));
-}
-
 void FileBrowser::open(const std::vector<std::string>& config_folders) {
   is_open_ = true;
   last_.clear();
   for (const std::string& path : recent_.paths())
-    last_.push_back({path, fmt::format("{}  {}", drawable(path), date_of(path))});
+    last_.push_back({path, fmt::format("{}  {}", drawable(path), written_on(path))});
   bundled_.clear();
   for (const auto& files :
        {config_files(config_folders, "traces", ".hid"), config_files(config_folders, "motions")}) {

@@ -1,60 +1,14 @@
-// Files that a person opens or drops: what they are, which session they make, and a browser to find
-// them without leaving the window.
+// A browser to find files and open them without leaving the window.
 #pragma once
 #include <array>
-#include <cstdint>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "gaitpad/result.h"
-#include "view/show.h"
+#include "files/folder_list.h"
 #include "view/widgets.h"
 
 namespace gaitpad {
-
-enum class FileKind { motion, character, style, calibration, terrain, recording };
-
-// Known by its ending; a .toml by its folder (styles, characters, calibration, terrain, motions),
-// else by its content. Fails if it is not a file or none of these.
-Result<FileKind> kind_of_file(const std::string& path);
-
-// The given options with this file. A style or a character is for walker `walker`, or for all of
-// them if that is -1. The new session is not recorded.
-SessionSpec with_file(SessionSpec options, const std::string& path, FileKind kind, int walker,
-                      int walker_count);
-
-// Which files are listed, of those that the window can open.
-enum class FileFilter : std::uint8_t { all, motions, recordings, settings };
-
-struct FolderEntry {
-  std::string name;  // the file system's bytes, perhaps not UTF-8
-  bool is_folder = false;
-  std::string date;  // of a file: when it was written last, "2024-02-29 23:59"; empty: unknown
-};
-struct FolderList {
-  static constexpr std::size_t kMostEntries = 4000;
-  std::vector<FolderEntry> entries;  // folders first, then files; by name, ignoring case
-  std::string problem;               // why it cannot be read or is shown in part
-};
-
-// Leaves out hidden files and those that the filter excludes.
-FolderList list_folder(const std::string& folder, FileFilter filter);
-
-// The last files that were opened, newest first, kept in a file from one start to the next. Paths
-// that appear twice, no longer exist or have a line break are left out.
-class RecentFiles {
- public:
-  static constexpr std::size_t kMost = 8;
-  // `file`: where they are kept; empty: nowhere.
-  explicit RecentFiles(std::string file);
-  void add(const std::string& path);
-  const std::vector<std::string>& paths() const noexcept { return paths_; }
-
- private:
-  std::string file_;
-  std::vector<std::string> paths_;
-};
 
 class FileBrowser {
  public:

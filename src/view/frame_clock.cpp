@@ -1,9 +1,6 @@
 #include "view/frame_clock.h"
 
-#include <time.h>
-
 #include <algorithm>
-#include <cerrno>
 
 #include "drivers/posix.h"
 
@@ -15,14 +12,6 @@ constexpr std::int64_t kWarmFrames = 5;
 constexpr double kLongest_s = 0.25;  // after a suspended machine wakes up
 
 }  // namespace
-
-void sleep_until(std::int64_t time_ns) noexcept {
-  if (time_ns <= now_ns()) return;
-  const timespec until = {static_cast<time_t>(time_ns / kSecond_ns),
-                          static_cast<long>(time_ns % kSecond_ns)};
-  while (::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr) == EINTR) {
-  }
-}
 
 // --- FramePacer
 
@@ -77,7 +66,7 @@ void FrameClock::wait_for_next() noexcept {
   const auto least_ns = static_cast<std::int64_t>(least_s_ * 1e9);
   // Counted from the planned time, so that the frame after a late one can catch up.
   due_ns_ = std::max(due_ns_ + least_ns, now_ns_);
-  sleep_until(due_ns_);
+  while (gaitpad::now_ns() < due_ns_) sleep_until(due_ns_);  // a signal may end it early
 }
 
 double FrameClock::mean_frames_per_second() const noexcept {

@@ -64,6 +64,4 @@ class FrameClock {
   double rate_hz_ = 0.0;
 };
 
-void sleep_until(std::int64_t time_ns) noexcept;  // CLOCK_MONOTONIC; at once if it is over
-
 }  // namespace gaitpad

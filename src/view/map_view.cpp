@@ -20,21 +20,14 @@ class MapView final : public PadDialog {
   State draw(Ui& ui, const ImVec2& window_px, std::vector<std::string>& messages) override;
 
  private:
-  void draw_step(Ui& ui);
+  void draw_prompt(Ui& ui);
   State keep(std::vector<std::string>& messages) const;
 
   std::unique_ptr<PadMapping> mapping_;
 };
 
-void MapView::draw_step(Ui& ui) {
+void MapView::draw_prompt(Ui& ui) {
   const std::size_t steps = PadMapping::step_count();
-  text_line(ui, ui.fonts.title, ui.theme.text,
-            mapping_->has_pad()
-                ? fmt::format("Control {} of {}", std::min(mapping_->step() + 1, steps), steps)
-                : "Which control is which");
-  text_line(ui, ui.fonts.small, ui.theme.secondary,
-            mapping_->has_pad() ? drawable(mapping_->pad().name) : "No pad is connected.");
-  ImGui::Dummy(ImVec2(0.0f, ui.px(6)));
   std::string request = "Plug a pad in.";
   if (const char* prompt = mapping_->prompt()) {
     request = std::string(prompt) + ".";
@@ -42,10 +35,11 @@ void MapView::draw_step(Ui& ui) {
   } else if (mapping_->has_pad()) {
     request = "Let everything go.";
   }
-  ImGui::PushFont(ui.fonts.body);
-  ImGui::TextUnformatted(request.c_str());
-  ImGui::PopFont();
-  ImGui::Dummy(ImVec2(0.0f, ui.px(8)));
+  const bool has_pad = mapping_->has_pad();
+  draw_step(ui,
+            has_pad ? fmt::format("Control {} of {}", std::min(mapping_->step() + 1, steps), steps)
+                    : "Which control is which",
+            has_pad ? drawable(mapping_->pad().name) : "No pad is connected.", request);
   progress_bar(ui, static_cast<double>(mapping_->step()) / static_cast<double>(steps));
   if (!mapping_->last_found().empty()) note(ui, "Found: " + mapping_->last_found(), 1);
 }
@@ -70,10 +64,9 @@ PadDialog::State MapView::draw(Ui& ui, const ImVec2& window_px,
   }
   State state = State::goes_on;
   const ImVec2 size = begin_modal(ui, "map", kMapWidth, kMapHeight, window_px);
-  draw_step(ui);
-  ImGui::SetCursorPosY(size.y - ImGui::GetFrameHeight() - ImGui::GetStyle().WindowPadding.y);
-  if (button(ui, "map skip", "The pad has none  (Enter)") || is_typed(ui, SDLK_RETURN))
-    mapping_->skip();
+  draw_prompt(ui);
+  go_to_buttons(size.y);
+  if (key_button(ui, "map skip", "The pad has none  (Enter)", SDLK_RETURN)) mapping_->skip();
   ImGui::SameLine();
   if (mapping_->has_left_stick()) {
     ButtonLook look;

@@ -3,6 +3,7 @@
 #pragma once
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "gaitpad/pad_setup.h"
@@ -21,6 +22,14 @@ class PadDialog {
   // Draws in the middle of a window of this size. Remarks and errors are added to `messages`.
   virtual State draw(Ui& ui, const ImVec2& window_px, std::vector<std::string>& messages) = 0;
 };
+
+// A step of a dialog: its title, whose pad it is about (empty: left out), and what to do.
+void draw_step(Ui& ui, std::string_view title, std::string_view who, std::string_view request);
+// Goes to the row of buttons at the lower edge of a dialog that is so high.
+void go_to_buttons(float height_px);
+// A button that a key presses as well.
+bool key_button(Ui& ui, std::string_view id, std::string_view label, SDL_Keycode key,
+                const ButtonLook& look = {});
 
 struct PadDialogOptions {
   PadWish wish;

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "session/script.h"
-#include "view/history.h"
+#include "view/history_plots.h"
 #include "view/panels.h"
 
 namespace gaitpad {
@@ -159,64 +159,46 @@ void draw_feet(Ui& ui, const GraphSpan& span, int walker) {
   note(ui, "F flight, R roll, each of the left or right foot", 1);
 }
 
-// Columns of the table: name, iterations and error of each leg, failures since the start. The
-// numbers take what they need in this font, the name has the rest.
-constexpr std::string_view kIterations = "iterations", kFailed = "failed";
-struct Columns {
-  float name, iterations, error, failures, width;
-};
-Columns columns_of(const Ui& ui, float width) {
-  const float gap = ui.px(6), end = width - ui.px(2);
-  const float failures = end - text_width(ui.fonts.tick, kFailed);
-  const float error = failures - text_width(ui.fonts.small, "0.00 | 0.00") - gap;
-  const float iterations = error - text_width(ui.fonts.tick, kIterations) - gap;
-  return {0.0f, iterations, error, failures, end};
-}
-
-std::string pair_text(const std::array<std::string, 2>& legs) { return legs[0] + " | " + legs[1]; }
-
-void draw_walker(Ui& ui, int index) {
-  const WalkerFrame& walker = ui.in.frame.walkers[static_cast<std::size_t>(index)];
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  const float width = ImGui::GetContentRegionAvail().x;
-  const Columns c = columns_of(ui, width);
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  const ImFont* font = ui.fonts.small;
-  list.AddRectFilled({at.x, at.y + ui.px(1)}, {at.x + ui.px(3), at.y + ui.px(13)},
-                     packed(walker_colour(ui, index)));
-  put_text(list, font, ui.theme.text, {at.x + ui.px(8), at.y}, walker_name(ui, index),
-           c.iterations - ui.px(14));
-  std::array<std::string, 2> iterations, errors;
-  bool is_failing = false;
-  for (const Side side : {kLeftSide, kRightSide}) {
-    iterations[side] = fmt::format("{}", walker.walk.ik_iterations[side]);
-    errors[side] = fmt::format("{:.2f}", walker.walk.ik_error_m[side] * 1000.0);
-    if (walker.walk.ik_failed[side]) errors[side] += "!";
-    is_failing = is_failing || walker.walk.ik_failed[side];
-  }
-  put_text(list, font, ui.theme.text, {at.x + c.iterations, at.y}, pair_text(iterations),
-           c.error - c.iterations - ui.px(4));
-  put_text(list, font, is_failing ? ui.theme.warning : ui.theme.text, {at.x + c.error, at.y},
-           pair_text(errors), c.failures - c.error - ui.px(4));
-  put_text(list, font, walker.ik_failures > 0 ? ui.theme.warning : ui.theme.secondary,
-           {at.x + c.failures, at.y}, fmt::format("{}", walker.ik_failures), c.width - c.failures);
-  ImGui::Dummy({width, font->FontSize + ui.px(2)});
-}
-
+// Of each leg the iterations and the error, and the failures since the start. The numbers take what
+// they need in this font, the name has the rest.
 void draw_table(Ui& ui) {
-  const ImVec2 at = ImGui::GetCursorScreenPos();
-  const float width = ImGui::GetContentRegionAvail().x;
-  const Columns c = columns_of(ui, width);
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  const auto head = [&](float x, float end, std::string_view text) {
-    put_text(list, ui.fonts.tick, ui.theme.tick, {at.x + x, at.y}, text, end - x - ui.px(4));
+  ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, ImVec2{ui.px(3), ui.px(1)});
+  const bool is_begun = ImGui::BeginTable("legs", 4);
+  ImGui::PopStyleVar();
+  if (!is_begun) return;
+  const auto cell = [&ui](const ImFont* font, const Colour& colour, std::string_view text) {
+    ImGui::TableNextColumn();
+    text_line(ui, font, colour, text);
   };
-  head(c.name, c.iterations, "left | right leg");
-  head(c.iterations, c.error, kIterations);
-  head(c.error, c.failures, "error, mm");
-  head(c.failures, c.width + ui.px(6), kFailed);
-  ImGui::Dummy({width, ui.fonts.tick->FontSize + ui.px(2)});
-  for (int i = 0; i < ui.in.frame.walker_count; ++i) draw_walker(ui, i);
+  ImGui::TableSetupColumn("name", ImGuiTableColumnFlags_WidthStretch);
+  for (const float width :
+       {text_width(ui.fonts.tick, "iterations"), text_width(ui.fonts.small, "0.00 | 0.00"),
+        text_width(ui.fonts.tick, "failed")})
+    ImGui::TableSetupColumn("number", ImGuiTableColumnFlags_WidthFixed, width + 1.0f);
+  for (const char* head : {"left | right leg", "iterations", "error, mm", "failed"})
+    cell(ui.fonts.tick, ui.theme.tick, head);
+  for (int i = 0; i < ui.in.frame.walker_count; ++i) {
+    const WalkerFrame& walker = ui.in.frame.walkers[static_cast<std::size_t>(i)];
+    const WalkFrame& walk = walker.walk;
+    const auto error = [&walk](Side side) {
+      return fmt::format("{:.2f}{}", walk.ik_error_m[side] * 1000.0,
+                         walk.ik_failed[side] ? "!" : "");
+    };
+    const bool is_failing = walk.ik_failed[kLeftSide] || walk.ik_failed[kRightSide];
+    ImGui::TableNextColumn();
+    const ImVec2 at = ImGui::GetCursorScreenPos();
+    ImGui::GetWindowDrawList()->AddRectFilled(
+        {at.x, at.y + ui.px(1)}, {at.x + ui.px(3), at.y + ui.px(13)}, packed(walker_colour(ui, i)));
+    ImGui::SetCursorScreenPos({at.x + ui.px(8), at.y});
+    text_line(ui, ui.fonts.small, ui.theme.text, walker_name(ui, i));
+    cell(ui.fonts.small, ui.theme.text,
+         fmt::format("{} | {}", walk.ik_iterations[kLeftSide], walk.ik_iterations[kRightSide]));
+    cell(ui.fonts.small, is_failing ? ui.theme.warning : ui.theme.text,
+         fmt::format("{} | {}", error(kLeftSide), error(kRightSide)));
+    cell(ui.fonts.small, walker.ik_failures > 0 ? ui.theme.warning : ui.theme.secondary,
+         fmt::format("{}", walker.ik_failures));
+  }
+  ImGui::EndTable();
 }
 
 // Which solver walks, live and recorded, and what differs.

@@ -5,21 +5,17 @@
 #include <cmath>
 #include <numbers>
 
-#include "draw/stick_picture.h"
+#include "stick_picture/stick_picture.h"
 #include "view/panels.h"
 #include "view/widgets.h"
 
 namespace gaitpad {
 namespace {
 
-// A square plot of a stick over its zones; `min` is its upper left corner.
-void draw_stick_plane(Ui& ui, const ImVec2& min, float side_px, Side side,
-                      const StickCalibration& calibration);
-
 constexpr double kHalfHeight = 1.15;  // of the plane, in fractions of the logical range
 constexpr int kCirclePoints = 40, kBandPoints = 12;
 constexpr double kTurn = 2.0 * std::numbers::pi;
-constexpr double kLeastReach = 0.2;  // of a direction that counts; dualshock-tools'
+constexpr double kLeastReach = 0.2;  // of a direction that is drawn
 
 struct StickPlane {
   ImVec2 min;
@@ -93,18 +89,19 @@ void draw_trail(Ui& ui, ImDrawList& list, const StickPlane& plane, Side side) {
 
 // The outline reached in the last ten seconds.
 void draw_reached(Ui& ui, ImDrawList& list, const StickPlane& plane, Side side) {
-  const auto& reached = ui.state.memory.reached[side];
+  const ReachedOutline& reached = ui.state.memory.reached[side];
   const auto point = [&](std::size_t k) {
-    const double angle = kTurn * static_cast<double>(k) / UiMemory::kDirections;
-    return plane.pixel(reached[k].radius * vec2(std::cos(angle), std::sin(angle)));
+    const double angle = kTurn * static_cast<double>(k) / kCircularityBins;
+    return plane.pixel(reached.radius(k) * vec2(std::cos(angle), std::sin(angle)));
   };
-  for (std::size_t k = 0; k < reached.size(); ++k) {
-    const std::size_t next = (k + 1) % reached.size();
-    if (std::min(reached[k].radius, reached[next].radius) < kLeastReach) continue;
+  for (std::size_t k = 0; k < kCircularityBins; ++k) {
+    const std::size_t next = (k + 1) % kCircularityBins;
+    if (std::min(reached.radius(k), reached.radius(next)) < kLeastReach) continue;
     list.AddLine(point(k), point(next), packed(with_alpha(ui.theme.warning, 0.9)), ui.px(1.4));
   }
 }
 
+// A square plot of a stick over its zones; `min` is its upper left corner.
 void draw_stick_plane(Ui& ui, const ImVec2& min, float side_px, Side side,
                       const StickCalibration& calibration) {
   const StickPlane plane{min, side_px};
@@ -290,7 +287,7 @@ void keep_trail(Ui& ui) {
   const UiMemory::StickPlace now = place_of(ui.in.frame);
   const UiMemory::StickPlace before = memory.stick_trail.empty() ? now : memory.stick_trail.back();
   for (const Side side : {kLeftSide, kRightSide})
-    add_reached(before.raw[side], now.raw[side], tick, ui.in.cast.rate_hz, memory.reached[side]);
+    memory.reached[side].add(before.raw[side], now.raw[side], tick, ui.in.cast.rate_hz);
   memory.stick_trail.push_back(now);
   if (memory.stick_trail.size() > kTrailPlaces) {
     memory.stick_trail.erase(memory.stick_trail.begin());
@@ -350,7 +347,7 @@ void draw_sticks(Ui& ui) {
     put_text(list, ui.fonts.tick, ui.theme.tick, {min.x, y + line}, "stick", label);
     put_text(list, ui.fonts.tick, ui.theme.text, {min.x + label, y + line},
              signed_pair(place.calibrated[s]), side - label);
-    const auto error = reached_error(ui.state.memory.reached[s]);
+    const auto error = ui.state.memory.reached[s].error();
     put_text(list, ui.fonts.tick, ui.theme.tick, {min.x, y + 2.0f * line}, "circle", label);
     put_text(list, ui.fonts.tick, error ? ui.theme.text : ui.theme.secondary,
              {min.x + label, y + 2.0f * line},
@@ -437,43 +434,6 @@ void draw_waits(Ui& ui) {
 }
 
 }  // namespace
-
-void add_reached(const vec2& before, const vec2& now, std::int64_t tick, int rate_hz,
-                 std::array<UiMemory::Reached, UiMemory::kDirections>& reached) noexcept {
-  constexpr std::int64_t kKept_s = 10;
-  constexpr int kParts = 8;
-  constexpr double kMostTurn_rad = 1.0;  // between two frames; more is no turn along the rim
-  for (UiMemory::Reached& r : reached)
-    if (tick - r.tick > kKept_s * rate_hz) r.radius = 0.0;
-  if (!std::isfinite(before.x + before.y + now.x + now.y)) return;
-  const double from = std::atan2(before.y, before.x), radius = glm::length(now);
-  double turn = std::remainder(std::atan2(now.y, now.x) - from, kTurn);
-  const bool is_along = std::fabs(turn) < kMostTurn_rad && glm::length(before) > kLeastReach;
-  for (int part = is_along ? 1 : kParts; part <= kParts; ++part) {
-    const double share = static_cast<double>(part) / kParts;
-    const double angle = from + share * turn;
-    const double r = glm::length(before) + share * (radius - glm::length(before));
-    const auto count = static_cast<long>(UiMemory::kDirections);
-    const long k = std::lround(angle / kTurn * static_cast<double>(count));
-    UiMemory::Reached& to = reached[static_cast<std::size_t>(((k % count) + count) % count)];
-    if (r < to.radius) continue;
-    to = {r, tick};
-  }
-}
-
-std::optional<double> reached_error(
-    const std::array<UiMemory::Reached, UiMemory::kDirections>& reached) noexcept {
-  constexpr int kFewest = 44;  // of 48
-  double sum = 0.0;
-  int count = 0;
-  for (const UiMemory::Reached& r : reached) {
-    if (r.radius <= kLeastReach) continue;
-    sum += (r.radius - 1.0) * (r.radius - 1.0);
-    ++count;
-  }
-  if (count < kFewest) return std::nullopt;
-  return 100.0 * std::sqrt(sum / count);
-}
 
 void draw_pad_panel(Ui& ui) {
   keep_trail(ui);

@@ -101,31 +101,25 @@ PadDialog::State SelfTestView::draw(Ui& ui, const ImVec2& window_px,
   if (!person_.take_remarks(messages)) return State::ended;
   const SelfTestPrompt prompt = person_.prompt();
   const ImVec2 size = begin_modal(ui, "self test", kSelfTestWidth, kSelfTestHeight, window_px);
-  text_line(ui, ui.fonts.title, ui.theme.text,
+  draw_step(ui,
             prompt.parts > 0
                 ? fmt::format("Part {} of {}: {}", prompt.part, prompt.parts, prompt.title)
-                : "Test this pad");
-  ImGui::Dummy(ImVec2(0.0f, ui.px(6)));
-  ImGui::PushFont(ui.fonts.body);
-  ImGui::PushTextWrapPos(0.0f);
-  ImGui::TextUnformatted(prompt.parts > 0 ? prompt.request.c_str() : "Looking for the pad.");
-  ImGui::PopTextWrapPos();
-  ImGui::PopFont();
-  ImGui::Dummy(ImVec2(0.0f, ui.px(8)));
+                : "Test this pad",
+            "", prompt.parts > 0 ? prompt.request : "Looking for the pad.");
   progress_bar(ui, prompt.done);
   note(ui, drawable(prompt.seen), 4);
 
-  ImGui::SetCursorPosY(size.y - ImGui::GetFrameHeight() - ImGui::GetStyle().WindowPadding.y);
+  go_to_buttons(size.y);
   if (prompt.is_question) {
-    if (button(ui, "self test yes", "Yes  (Y)") || is_typed(ui, SDLK_y))
+    if (key_button(ui, "self test yes", "Yes  (Y)", SDLK_y))
       person_.answer(SelfTestPerson::Answer::yes);
     ImGui::SameLine();
   }
-  if (button(ui, "self test no", prompt.is_question ? "No  (N)" : "It shows something else  (N)") ||
-      is_typed(ui, SDLK_n))
+  if (key_button(ui, "self test no",
+                 prompt.is_question ? "No  (N)" : "It shows something else  (N)", SDLK_n))
     person_.answer(SelfTestPerson::Answer::no);
   ImGui::SameLine();
-  if (button(ui, "self test next", "The pad cannot do it  (Enter)") || is_typed(ui, SDLK_RETURN))
+  if (key_button(ui, "self test next", "The pad cannot do it  (Enter)", SDLK_RETURN))
     person_.answer(SelfTestPerson::Answer::next);
   ImGui::SameLine();
   if (button(ui, "self test give up", "Give up  (Esc)"))

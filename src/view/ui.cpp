@@ -242,17 +242,17 @@ void draw_hint(Ui& ui, const UiRect& scene) {
 
 struct PanelPart {
   Panel panel;
-  std::string_view title;
-  Action action;  // opens and closes it
+  std::string_view id, title;  // of its button
+  Action action;               // opens and closes it
   void (*draw)(Ui& ui);
 };
 constexpr PanelPart kParts[] = {
-    {Panel::pad, "Pad", Action::panel_pad, &draw_pad_panel},
-    {Panel::control, "Control", Action::panel_control, &draw_control_panel},
-    {Panel::style, "Style", Action::panel_style, &draw_style_panel},
-    {Panel::graphs, "Graphs", Action::panel_graphs, &draw_graphs_panel},
-    {Panel::solver, "Solver", Action::panel_solver, &draw_solver_panel},
-    {Panel::loop, "Loop", Action::panel_loop, &draw_loop_panel},
+    {Panel::pad, "panel pad", "Pad", Action::panel_pad, &draw_pad_panel},
+    {Panel::control, "panel control", "Control", Action::panel_control, &draw_control_panel},
+    {Panel::style, "panel style", "Style", Action::panel_style, &draw_style_panel},
+    {Panel::graphs, "panel graphs", "Graphs", Action::panel_graphs, &draw_graphs_panel},
+    {Panel::solver, "panel solver", "Solver", Action::panel_solver, &draw_solver_panel},
+    {Panel::loop, "panel loop", "Loop", Action::panel_loop, &draw_loop_panel},
 };
 
 bool has_walker(Panel panel) { return panel != Panel::pad && panel != Panel::loop; }
@@ -415,13 +415,9 @@ std::vector<Entry> entries(const Ui& ui) {
       {"help", "Help", Action::help, look_of(Icon::none, ui.state.is_help_open)},
       {"view", "View", std::nullopt, {}},
   };
-  constexpr std::string_view kLabels[kPanels] = {"Pad",    "Control", "Style",
-                                                 "Graphs", "Solver",  "Loop"};
-  constexpr std::string_view kIds[kPanels] = {"panel pad",    "panel control", "panel style",
-                                              "panel graphs", "panel solver",  "panel loop"};
-  for (std::size_t i = 0; i < kPanels; ++i) {
-    const auto action = static_cast<Action>(static_cast<std::size_t>(Action::panel_pad) + i);
-    all.push_back({kIds[i], kLabels[i], action, look_of(Icon::none, ui.state.is_open[i])});
+  for (const PanelPart& part : kParts) {
+    const bool is_open = ui.state.is_open[static_cast<std::size_t>(part.panel)];
+    all.push_back({part.id, part.title, part.action, look_of(Icon::none, is_open)});
   }
   return all;
 }
@@ -433,19 +429,6 @@ void press(Ui& ui, const Entry& entry) {
     ImGui::OpenPopup("view menu");
   }
 }
-
-struct Switch {
-  std::string_view id, label;
-  bool UiState::*value;
-  std::optional<Action> action;
-};
-constexpr Switch kSwitches[] = {
-    {"trails", "Trails", &UiState::has_trails, Action::trails},
-    {"source", "Source figure", &UiState::has_source, Action::source},
-    {"grid", "Grid", &UiState::has_grid, std::nullopt},
-    {"shadows", "Shadows", &UiState::has_shadows, std::nullopt},
-    {"names", "Names", &UiState::has_names, std::nullopt},
-};
 
 void draw_type_size(Ui& ui, float width) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -467,15 +450,14 @@ void draw_view_menu(Ui& ui) {
   if (!ImGui::BeginPopup("view menu")) return;
   ButtonLook look;
   look.width = std::round(ui.px(150));
-  for (const Switch& entry : kSwitches) {
-    bool& value = ui.state.*entry.value;
+  for (const ScenePart& part : kSceneParts) {
+    bool& value = ui.state.*part.is_shown;
     look.is_on = value;
-    if (!button(ui, entry.id, fmt::format("{}: {}", entry.label, value ? "shown" : "hidden"),
-                look)) {
-      continue;
-    }
-    if (entry.action) {
-      ui.out.actions.push_back(*entry.action);
+    const std::string label = fmt::format("{}: {}", part.label, value ? "shown" : "hidden");
+    if (!button(ui, part.name, label, look)) continue;
+    const auto action = std::ranges::find(actions(), part.name, &ActionInfo::name);
+    if (action != actions().end()) {
+      ui.out.actions.push_back(action->action);
     } else {
       value = !value;
     }
@@ -624,7 +606,7 @@ double seconds_of(const Ui& ui, std::int64_t tick) {
   return static_cast<double>(tick) / std::max(ui.in.cast.rate_hz, 1);
 }
 
-std::int64_t last_tick(const UiTimeline& timeline) {
+std::int64_t last_tick(const Timeline& timeline) {
   return std::max<std::int64_t>(timeline.ticks - 1, 0);
 }
 
@@ -686,7 +668,7 @@ void draw_marks(Ui& ui, const Track& track, float y) {
 }
 
 void draw_track(Ui& ui, const UiRect& rect) {
-  const UiTimeline& timeline = *ui.in.timeline;
+  const Timeline& timeline = *ui.in.timeline;
   const Track track{rect, last_tick(timeline)};
   const float reach = ui.px(8);
   ImGui::SetCursorScreenPos({rect.x - reach, rect.y});
@@ -726,7 +708,7 @@ void icon_button(Ui& ui, std::string_view id, Icon icon, const ImVec2& at,
 
 // Draws the buttons and the time; returns the x behind them.
 float draw_transport(Ui& ui, float x, float y, bool is_full) {
-  const UiTimeline& timeline = *ui.in.timeline;
+  const Timeline& timeline = *ui.in.timeline;
   ButtonLook primary;
   primary.is_primary = true;
   icon_button(ui, "to begin", Icon::to_begin, {x, y});

@@ -14,10 +14,10 @@
 #include "draw/theme.h"
 #include "gaitpad/live.h"
 #include "gaitpad/session_frame.h"
-#include "session/playback.h"
+#include "scene/scene.h"
+#include "session/show.h"
+#include "stick/reached_outline.h"
 #include "view/controls.h"
-#include "view/history.h"
-#include "view/scene.h"
 
 namespace gaitpad {
 
@@ -46,14 +46,7 @@ struct UiMemory {
   double held = 0.0;                    // the last value of the slider being dragged
   std::vector<StickPlace> stick_trail;  // oldest first
   std::int64_t stick_tick = -1;
-  // The farthest that each stick was seen in 48 directions about the raw middle, within the last
-  // ten seconds.
-  static constexpr std::size_t kDirections = 48;
-  struct Reached {
-    double radius = 0.0;  // raw; 0: nowhere
-    std::int64_t tick = 0;
-  };
-  std::array<std::array<Reached, kDirections>, 2> reached{};  // left, right
+  std::array<ReachedOutline, 2> reached;  // left, right
   std::array<bool, kPanels> was_open{};
   bool has_drawn = false;
   std::array<char, 64> style_name{};
@@ -77,22 +70,15 @@ struct UiState {
 
 // The parts of the scene that can be hidden, by the names that options and the layout file use.
 struct ScenePart {
-  std::string_view name;
+  std::string_view name, label;  // an action that shows and hides it is called like it
   bool UiState::*is_shown;
 };
-inline constexpr ScenePart kSceneParts[] = {{"trails", &UiState::has_trails},
-                                            {"grid", &UiState::has_grid},
-                                            {"shadows", &UiState::has_shadows},
-                                            {"source", &UiState::has_source},
-                                            {"names", &UiState::has_names}};
+inline constexpr ScenePart kSceneParts[] = {{"trails", "Trails", &UiState::has_trails},
+                                            {"source", "Source figure", &UiState::has_source},
+                                            {"grid", "Grid", &UiState::has_grid},
+                                            {"shadows", "Shadows", &UiState::has_shadows},
+                                            {"names", "Names", &UiState::has_names}};
 
-// The time line of a playback.
-struct UiTimeline {
-  std::int64_t tick = 0, ticks = 0;
-  std::span<const PlaybackMark> marks;
-  double pace = 1.0;
-  bool is_looping = false, is_computing = false;
-};
 struct UiLabel {  // a name above a head
   vec2 place_px{0.0};
   std::string text;
@@ -102,9 +88,9 @@ struct UiInput {
   const SessionFrame& frame;
   const Cast& cast;
   const History& history;
-  const LiveStatus* status = nullptr;    // live only
-  const UiTimeline* timeline = nullptr;  // playback only
-  std::string pad_name{};                // empty: none
+  const LiveStatus* status = nullptr;  // live only
+  const Timeline* timeline = nullptr;  // playback only
+  std::string pad_name{};              // empty: none
   double pad_rate_hz = 0.0;
   double pace = 1.0;
   double frames_per_second = 0.0;  // 0: not shown (in pictures)
@@ -154,14 +140,6 @@ UiOutput draw_ui(const UiInput& input, const Theme& theme, const Fonts& fonts, d
 
 // Moves UiMemory::focus; after everything was drawn.
 void move_focus(const UiInput& input, UiMemory& memory);
-
-// Takes the raw place of a stick into what it reached; the way from `before` counts too.
-void add_reached(const vec2& before, const vec2& now, std::int64_t tick, int rate_hz,
-                 std::array<UiMemory::Reached, UiMemory::kDirections>& reached) noexcept;
-// Percent, 100 sqrt(mean((r - 1)^2)) as gamepad testers count it; none until nearly all directions
-// were reached.
-std::optional<double> reached_error(
-    const std::array<UiMemory::Reached, UiMemory::kDirections>& reached) noexcept;
 
 // For tests and scripts: rectangles of what can be clicked in the frame drawn last, in window
 // pixels, by name ("panel pad", "close pad", "play", "slider speed_m_s"). Items that are scrolled

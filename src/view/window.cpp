@@ -5,11 +5,10 @@
 #include <fmt/chrono.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <algorithm>
+#include <cassert>
 #include <cstdint>
-#include <cstdio>
 #include <ctime>
 #include <deque>
 #include <filesystem>
@@ -22,10 +21,16 @@
 
 #include "base/files.h"
 #include "draw/picture.h"
+#include "draw/video.h"
 #include "drivers/posix.h"
-#include "drivers/system_nodes.h"
+#include "drivers/process_memory.h"
 #include "gaitpad/config_files.h"
+#include "pads/unseen_pad.h"
+#include "scene/scene.h"
+#include "session/file_kind.h"
 #include "session/script.h"
+#include "session/show.h"
+#include "session/undo.h"
 #include "view/controls.h"
 #include "view/ensemble.h"
 #include "view/file_browser.h"
@@ -33,12 +38,8 @@
 #include "view/gui.h"
 #include "view/layout.h"
 #include "view/pad_dialog.h"
-#include "view/scene.h"
-#include "view/show.h"
 #include "view/surface.h"
 #include "view/tooltips.h"
-#include "view/undo.h"
-#include "view/video.h"
 #include "view/widgets.h"
 
 namespace gaitpad {
@@ -110,19 +111,6 @@ void set_window_icon(SDL_Window* window) {
   SDL_FreeSurface(icon);
 }
 
-// What keeps a pad from being seen, and the fix; empty if nothing is known to.
-std::string pad_problem() {
-  if (::access("/run/udev", F_OK) != 0)
-    return "udev is not running, so device permissions and types are unknown: gaitpad doctor";
-  for (const SystemNode& node : system_nodes("input")) {
-    if (!node.is_joystick || node.is_motion_sensor || access_problem(node.node).empty()) continue;
-    return fmt::format(
-        "{} is plugged in, but you may not read it: sudo gaitpad doctor --install-rules",
-        node.name);
-  }
-  return {};
-}
-
 constexpr double kSoftwareFrame_s = 1.0 / 30.0;  // leaves processor time to the session
 constexpr double kFrame_s = 1.0 / 120.0;         // if the display does not limit the rate
 constexpr double kUnseenFrame_s = 0.1;           // minimized
@@ -176,16 +164,15 @@ class WindowLoop {
   bool has_walked() const;
   void keep_pictures(int width_px, int height_px, bool is_last);
 
-  // What the person asked for. The functions that return bool return false for an action of another
-  // kind.
+  // What the person asked for.
   void run_actions(const UiOutput& out);
   void run_action(Action action);
-  bool run_session_action(Action action);  // pause, step, styles
-  bool run_view_action(Action action);     // camera, theme, panels
-  void run_other_action(Action action);
+  bool is_read_only();  // the playback; says so
   void choose_style(const std::string& name);
+  void choose_style_number(std::size_t number);  // from 0, of the session's list
   void choose_style_after(int steps);
-  void toggle_panel(Panel panel);
+  void toggle_pause();
+  void toggle_full_screen();
   void step_once();
   void reset_session();
   void toggle_stick();
@@ -392,13 +379,13 @@ bool WindowLoop::is_ended() {
     return true;
   }
   if (options_.frames > 0) return result_.frames + 1 >= options_.frames;
-  const UiTimeline* timeline = show_->timeline();
+  const Timeline* timeline = show_->timeline();
   return makes_pictures() && timeline != nullptr && timeline->tick + 1 >= timeline->ticks;
 }
 
 void WindowLoop::show_progress() const {
   if (!options_.show_progress || !makes_pictures()) return;
-  const UiTimeline* timeline = show_->timeline();
+  const Timeline* timeline = show_->timeline();
   if (options_.frames > 0) {
     options_.show_progress(static_cast<double>(result_.frames) / options_.frames);
   } else if (timeline != nullptr) {
@@ -546,17 +533,6 @@ constexpr double kAside_rad = 1.1, kAbove_rad = 0.3, kAboveCrowd_rad = 0.36;
 // before them on the way down. It goes from one place to the other in about two seconds.
 constexpr double kBehind_rad = 2.05, kLeastRise_m = 0.1, kTurn_per_s = 1.1;
 
-// Resident memory of the whole program; 0 if not known.
-double memory_mib() {
-  std::FILE* file = std::fopen("/proc/self/statm", "r");
-  if (file == nullptr) return 0.0;
-  long all = 0, resident = 0;
-  const bool is_read = std::fscanf(file, "%ld %ld", &all, &resident) == 2;
-  std::fclose(file);
-  if (!is_read) return 0.0;
-  return static_cast<double>(resident) * static_cast<double>(::sysconf(_SC_PAGESIZE)) / 1048576.0;
-}
-
 void WindowLoop::draw_window(bool is_last) {
   int width_px = 0, height_px = 0;
   surface_->size(width_px, height_px);
@@ -662,7 +638,7 @@ const LiveStatus* WindowLoop::shown_status() {
 
 UiInput WindowLoop::ui_input() {
   const SessionFrame& frame = show_->frame();
-  const UiTimeline* timeline = show_->timeline();
+  const Timeline* timeline = show_->timeline();
   UiInput in{.frame = frame,
              .cast = show_->cast(),
              .history = show_->history(),
@@ -690,7 +666,7 @@ UiInput WindowLoop::ui_input() {
     if (!has_pad && !makes_pictures()) {
       if (pad_hint_ns_ + kPadHint_ns < clock_.now_ns()) {
         pad_hint_ns_ = clock_.now_ns();
-        pad_hint_ = pad_problem();
+        pad_hint_ = unseen_pad();
       }
       in.pad_hint = pad_hint_;
     }
@@ -700,7 +676,8 @@ UiInput WindowLoop::ui_input() {
   in.can_rumble = has_pad && !is_recording(show_->options().pad.wish.pad);
   in.pad_rate_hz = clock_.rate_hz(frame.pad.reports);
   in.frames_per_second = clock_.frames_per_second();
-  if (state_.is_open[static_cast<std::size_t>(Panel::loop)]) in.memory_mib = memory_mib();
+  if (state_.is_open[static_cast<std::size_t>(Panel::loop)])
+    in.memory_mib = static_cast<double>(resident_bytes()) / 1048576.0;
   return in;
 }
 
@@ -768,132 +745,71 @@ void WindowLoop::run_actions(const UiOutput& out) {
 }
 
 void WindowLoop::run_action(Action action) {
-  if (run_session_action(action) || run_view_action(action)) return;
-  run_other_action(action);
-}
-
-bool WindowLoop::run_session_action(Action action) {
-  switch (action) {
-    case Action::pause:
-      if (show_->pace() > 0.0) {
-        pace_before_pause_ = show_->pace();
-        show_->set_pace(0.0);
-      } else {
-        show_->set_pace(pace_before_pause_);
-      }
-      return true;
-    case Action::step:
-      step_once();
-      return true;
-    case Action::slow_motion:
-      show_->set_pace(show_->pace() == kSlowMotion ? 1.0 : kSlowMotion);
-      return true;
-    case Action::reset:
-      reset_session();
-      return true;
-    case Action::stick:
-      toggle_stick();
-      return true;
-    case Action::next_style:
-      choose_style_after(1);
-      return true;
-    case Action::previous_style:
-      choose_style_after(-1);
-      return true;
-    case Action::undo:
-      send_again(undo_.undo(), "undone");
-      return true;
-    case Action::redo:
-      send_again(undo_.redo(), "done again");
-      return true;
-    default:
-      break;
+  using Loop = WindowLoop;
+  static constexpr std::pair<Action, void (*)(Loop&)> kRuns[] = {
+      {Action::pause, [](Loop& l) { l.toggle_pause(); }},
+      {Action::step, [](Loop& l) { l.step_once(); }},
+      {Action::slow_motion,
+       [](Loop& l) { l.show_->set_pace(l.show_->pace() == kSlowMotion ? 1.0 : kSlowMotion); }},
+      {Action::reset, [](Loop& l) { l.reset_session(); }},
+      {Action::stick, [](Loop& l) { l.toggle_stick(); }},
+      {Action::next_style, [](Loop& l) { l.choose_style_after(1); }},
+      {Action::previous_style, [](Loop& l) { l.choose_style_after(-1); }},
+      {Action::undo, [](Loop& l) { l.send_again(l.undo_.undo(), "undone"); }},
+      {Action::redo, [](Loop& l) { l.send_again(l.undo_.redo(), "done again"); }},
+      {Action::next_terrain, [](Loop& l) { l.choose_next_terrain(); }},
+      {Action::next_walker,
+       [](Loop& l) {
+         const int count = static_cast<int>(l.show_->cast().members.size());
+         if (++l.state_.walker >= count) l.state_.walker = -1;
+       }},
+      {Action::record, [](Loop& l) { l.toggle_recording(); }},
+      {Action::screenshot, [](Loop& l) { l.wants_screenshot_ = true; }},
+      {Action::open_file, [](Loop& l) { l.browser_.open(l.show_->options().config_folders); }},
+      {Action::calibrate, [](Loop& l) { l.begin_calibration(); }},
+      {Action::follow, [](Loop& l) { l.camera_.is_following = !l.camera_.is_following; }},
+      {Action::reset_camera, [](Loop& l) { l.is_camera_new_ = true; }},
+      {Action::theme,
+       [](Loop& l) {
+         const bool is_dark = l.state_.theme == ThemeName::dark;
+         l.state_.theme = is_dark ? ThemeName::light : ThemeName::dark;
+       }},
+      {Action::trails, [](Loop& l) { l.state_.has_trails = !l.state_.has_trails; }},
+      {Action::source, [](Loop& l) { l.state_.has_source = !l.state_.has_source; }},
+      {Action::navigate,
+       [](Loop& l) { l.state_.memory.focus = l.state_.memory.focus.empty() ? "play" : ""; }},
+      {Action::help, [](Loop& l) { l.state_.is_help_open = !l.state_.is_help_open; }},
+      {Action::fullscreen, [](Loop& l) { l.toggle_full_screen(); }},
+      {Action::quit, [](Loop& l) { l.is_quitting_ = true; }},
+      {Action::back, [](Loop& l) { l.go_back(); }},
+  };
+  const auto number_from = [action](Action first) {
+    return static_cast<std::size_t>(action) - static_cast<std::size_t>(first);
+  };
+  if (action >= Action::style_1 && action <= Action::style_9)
+    return choose_style_number(number_from(Action::style_1));
+  if (action >= Action::panel_pad && action <= Action::panel_loop) {
+    bool& is_open = state_.is_open[number_from(Action::panel_pad)];
+    is_open = !is_open;
+    return;
   }
-  if (action < Action::style_1 || action > Action::style_9) return false;
-  const Cast& cast = show_->cast();
-  const auto choices = style_choices(cast);
-  const auto number = static_cast<std::size_t>(action) - static_cast<std::size_t>(Action::style_1);
-  if (number < choices.size()) choose_style(cast.styles[static_cast<std::size_t>(choices[number])]);
-  return true;
+  const auto found = std::ranges::find(kRuns, action, [](const auto& run) { return run.first; });
+  assert(found != std::end(kRuns));
+  found->second(*this);
 }
 
-bool WindowLoop::run_view_action(Action action) {
-  switch (action) {
-    case Action::next_walker:
-      if (++state_.walker >= static_cast<int>(show_->cast().members.size())) state_.walker = -1;
-      return true;
-    case Action::follow:
-      camera_.is_following = !camera_.is_following;
-      return true;
-    case Action::reset_camera:
-      is_camera_new_ = true;
-      return true;
-    case Action::theme:
-      state_.theme = state_.theme == ThemeName::dark ? ThemeName::light : ThemeName::dark;
-      return true;
-    case Action::trails:
-      state_.has_trails = !state_.has_trails;
-      return true;
-    case Action::source:
-      state_.has_source = !state_.has_source;
-      return true;
-    case Action::navigate:
-      state_.memory.focus = state_.memory.focus.empty() ? "play" : "";
-      return true;
-    case Action::help:
-      state_.is_help_open = !state_.is_help_open;
-      return true;
-    case Action::fullscreen: {
-      const bool is_full = (SDL_GetWindowFlags(surface_->window()) & SDL_WINDOW_FULLSCREEN) != 0;
-      SDL_SetWindowFullscreen(surface_->window(), is_full ? 0 : SDL_WINDOW_FULLSCREEN_DESKTOP);
-      return true;
-    }
-    default:
-      break;
-  }
-  if (action < Action::panel_pad || action > Action::panel_loop) return false;
-  toggle_panel(static_cast<Panel>(static_cast<int>(action) - static_cast<int>(Action::panel_pad)));
-  return true;
+void WindowLoop::toggle_pause() {
+  if (show_->pace() > 0.0) pace_before_pause_ = show_->pace();
+  show_->set_pace(show_->pace() > 0.0 ? 0.0 : pace_before_pause_);
 }
 
-void WindowLoop::run_other_action(Action action) {
-  switch (action) {
-    case Action::record:
-      toggle_recording();
-      break;
-    case Action::screenshot:
-      wants_screenshot_ = true;
-      break;
-    case Action::open_file:
-      browser_.open(show_->options().config_folders);
-      break;
-    case Action::next_terrain:
-      choose_next_terrain();
-      break;
-    case Action::calibrate:
-      begin_calibration();
-      break;
-    case Action::back:
-      go_back();
-      break;
-    case Action::quit:
-      is_quitting_ = true;
-      break;
-    default:
-      break;
-  }
-}
-
-void WindowLoop::toggle_panel(Panel panel) {
-  bool& is_open = state_.is_open[static_cast<std::size_t>(panel)];
-  is_open = !is_open;
+void WindowLoop::toggle_full_screen() {
+  const bool is_full = (SDL_GetWindowFlags(surface_->window()) & SDL_WINDOW_FULLSCREEN) != 0;
+  SDL_SetWindowFullscreen(surface_->window(), is_full ? 0 : SDL_WINDOW_FULLSCREEN_DESKTOP);
 }
 
 void WindowLoop::step_once() {
-  if (show_->pace() > 0.0) {
-    pace_before_pause_ = show_->pace();
-    show_->set_pace(0.0);
-  }
+  if (show_->pace() > 0.0) toggle_pause();
   show_->step();
 }
 
@@ -906,7 +822,7 @@ void WindowLoop::reset_session() {
 }
 
 void WindowLoop::toggle_stick() {
-  if (!show_->is_live()) return show_message("Playback is read-only; Esc returns to live.");
+  if (is_read_only()) return;
   const bool points = show_->options().walk.stick == StickMeans::steers;
   show_->set_stick(points ? StickMeans::points : StickMeans::steers);
   aimed_deg_.reset();
@@ -932,14 +848,22 @@ void WindowLoop::aim_stick() {
   aimed_tick_ = tick;
 }
 
+bool WindowLoop::is_read_only() {
+  if (show_->is_live()) return false;
+  show_message("Playback is read-only; Esc returns to live.");
+  return true;
+}
+
 void WindowLoop::choose_style(const std::string& name) {
-  if (!show_->is_live()) {
-    show_message("Playback is read-only; Esc returns to live.");
-  } else if (state_.walker >= 0) {
-    send_command(fmt::format("style {} {}", state_.walker + 1, name));
-  } else {
-    send_command("style " + name);
-  }
+  if (is_read_only()) return;
+  send_command(state_.walker >= 0 ? fmt::format("style {} {}", state_.walker + 1, name)
+                                  : "style " + name);
+}
+
+void WindowLoop::choose_style_number(std::size_t number) {
+  const Cast& cast = show_->cast();
+  const auto choices = style_choices(cast);
+  if (number < choices.size()) choose_style(cast.styles[static_cast<std::size_t>(choices[number])]);
 }
 
 // Goes `steps` places on in the list, from the style of the chosen character or of the first.
@@ -987,7 +911,7 @@ void WindowLoop::send_command(const std::string& command) {
 }
 
 void WindowLoop::send_again(const std::vector<std::string>& commands, const char* what) {
-  if (!show_->is_live()) return show_message("Playback is read-only; Esc returns to live.");
+  if (is_read_only()) return;
   if (commands.empty()) return say_change(fmt::format("nothing can be {}", what));
   for (const std::string& command : commands) show_->command(command);
   state_.memory.wishes.clear();
@@ -1158,7 +1082,7 @@ void WindowLoop::open_file(const std::string& path) {
 // elsewhere.
 void WindowLoop::choose_next_terrain() {
   if (pad_dialog_) return;
-  if (!show_->is_live()) return show_message("Playback is read-only; Esc returns to live.");
+  if (is_read_only()) return;
   if (makes_pictures())
     return show_message(
         "the ground cannot change while pictures are made; choose it with --terrain");
@@ -1175,7 +1099,7 @@ void WindowLoop::choose_next_terrain() {
 }
 
 void WindowLoop::toggle_recording() {
-  if (!show_->is_live()) return show_message("Playback is read-only; Esc returns to live.");
+  if (is_read_only()) return;
   if (makes_pictures()) return show_message("no recording can be started while pictures are made");
   SessionSpec next = show_->options();
   if (!next.live.record.empty()) return end_recording();

@@ -10,7 +10,7 @@
 #include "gaitpad/live.h"
 #include "gaitpad/result.h"
 #include "gaitpad/session_spec.h"
-#include "view/camera.h"
+#include "scene/camera.h"
 #include "view/ui.h"
 
 namespace gaitpad {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <memory>
 
-#include "tests/view/walking_fixture.h"
+#include "tests/walking_fixture.h"
 
 namespace gaitpad {
 namespace {

@@ -13,6 +13,7 @@
 
 #include "session/walk_export.h"
 #include "ui_fixture.h"
+#include "view/history_plots.h"
 
 namespace gaitpad {
 namespace {
@@ -233,7 +234,7 @@ TEST_F(PanelTest, AStyleIsSavedUnderANameThatFitsAFile) {
 
 TEST_F(PanelTest, APlaybackTakesNoCommands) {
   walk();
-  timeline = UiTimeline{};
+  timeline = Timeline{};
   timeline->ticks = 1000;
   for (const Panel panel : {Panel::control, Panel::style}) {
     show(panel);
@@ -383,7 +384,7 @@ TEST_F(PanelTest, NothingLeavesItsPanel) {
     if (look.is_hostile) make_hostile(cast, pad_name, renderer, source, messages, labels);
     for (const bool is_playback : {false, true}) {
       timeline.reset();
-      if (is_playback) timeline = UiTimeline{};
+      if (is_playback) timeline = Timeline{};
       for (int panels = 1; panels <= 64; panels *= 2) {
         for (std::size_t i = 0; i < kPanels; ++i)
           state.is_open[i] = panels == 64 || panels >> i & 1;
@@ -435,33 +436,6 @@ TEST_F(PanelTest, AllPanelsTogetherAreFewTriangles) {
   draw();
   draw();
   EXPECT_LT(ImGui::GetDrawData()->TotalIdxCount, 60000);
-}
-
-// Turned in frames of 10 degrees; the outline is that of gamepad testers: 0 % is a circle of radius
-// 1, a full square has 20.5 %, and after ten seconds nothing is left.
-TEST(ReachedOutline, HasTheErrorOfItsGateAndIsForgotten) {
-  constexpr int kRate_hz = 240;
-  const auto turned = [](auto gate) {
-    std::array<UiMemory::Reached, UiMemory::kDirections> reached{};
-    vec2 before = gate(0.0);
-    for (int k = 0; k <= 144; ++k) {  // four turns
-      const vec2 now = gate(k * 10.0 * kDegree + (k / 36) * 2.5 * kDegree);
-      add_reached(before, now, k, kRate_hz, reached);
-      before = now;
-    }
-    return reached;
-  };
-  auto circle = turned([](double a) { return 0.95 * vec2(std::cos(a), std::sin(a)); });
-  ASSERT_TRUE(reached_error(circle));
-  EXPECT_NEAR(*reached_error(circle), 5.0, 0.01);
-  const auto square = turned([](double a) {
-    const vec2 p(std::cos(a), std::sin(a));
-    return p / std::max(std::abs(p.x), std::abs(p.y));
-  });
-  ASSERT_TRUE(reached_error(square));
-  EXPECT_NEAR(*reached_error(square), 20.5, 1.0);
-  add_reached(vec2(0.0), vec2(0.0), 144 + 10 * kRate_hz + 1, kRate_hz, circle);
-  EXPECT_FALSE(reached_error(circle));
 }
 
 }  // namespace

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/view/walking_fixture.h"
+#include "tests/walking_fixture.h"
 #include "view/gui.h"
 #include "view/ui.h"
 
@@ -113,7 +113,7 @@ class UiTest : public WalkingTest {
   Fonts fonts;
   UiState state;
   LiveStatus status;
-  std::optional<UiTimeline> timeline;
+  std::optional<Timeline> timeline;
   std::string pad_name = "Wireless Controller", renderer = "llvmpipe", source, recording;
   std::vector<UiLabel> labels;
   std::vector<std::string> messages;

@@ -109,7 +109,7 @@ TEST_F(UiTest, APlaybackIsSoughtWhereItsLineIsClicked) {
   walk();
   draw();
   EXPECT_EQ(find("timeline"), nullptr) << "a live session has none";
-  timeline = UiTimeline{};
+  timeline = Timeline{};
   timeline->ticks = 2401;
   draw();
   const UiItem line = *find("timeline");
@@ -175,7 +175,7 @@ TEST_F(UiTest, EveryItemIsExplainedUnderThePointer) {
   state.is_open.fill(true);
   step(2, {"set 1 fatigue 0.5"});
   for (const bool is_playback : {false, true}) {
-    if (is_playback) timeline = UiTimeline{};
+    if (is_playback) timeline = Timeline{};
     draw();
     draw();
     int explained = 0;
@@ -217,7 +217,7 @@ TEST_F(UiTest, NoTextIsCutOff) {
       state.is_open.fill(true);
       state.memory.has_body_keys = state.memory.has_axis_weights = true;
       timeline.reset();
-      if (is_playback) timeline = UiTimeline{};
+      if (is_playback) timeline = Timeline{};
       draw();
       draw();
       for (const std::string& text : cut_texts()) {
@@ -248,7 +248,7 @@ TEST_F(UiTest, AHintStandsOverTheSceneAlone) {
 
 TEST_F(UiTest, AButtonLeavesAPlaybackThatALiveSessionWasBefore) {
   walk();
-  timeline = UiTimeline{};
+  timeline = Timeline{};
   draw();
   draw();
   EXPECT_EQ(find("leave playback"), nullptr);

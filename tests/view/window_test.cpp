@@ -25,10 +25,10 @@
 #include "gaitpad/config_files.h"
 #include "gaitpad/replay.h"
 #include "pads/calibration_store.h"
+#include "scene/mannequin.h"
 #include "tests/folders.h"
 #include "tests/own_folder.h"
 #include "tests/value_of.h"
-#include "view/mannequin.h"
 #include "view/surface.h"
 
 namespace gaitpad {

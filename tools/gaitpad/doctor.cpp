@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "gaitpad/drivers.h"
+#include "pads/unseen_pad.h"
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/doctor_machine.h"
 #include "tools/gaitpad/options.h"
@@ -288,8 +289,7 @@ void check_machine(Diagnosis& diagnosis) {
   const Machine& machine = diagnosis.machine;
   const PadHardware none;
   if (!machine.has_udev) {
-    diagnosis.add(Finding::State::problem, "udev", none,
-                  "udev is not running, so device permissions and types are unknown",
+    diagnosis.add(Finding::State::problem, "udev", none, kNoUdev,
                   machine.is_container ? "start the container with -v /run/udev:/run/udev:ro"
                                        : "sudo systemctl start systemd-udevd");
   }

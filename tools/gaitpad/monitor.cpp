@@ -2,11 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <array>
-#include <cmath>
 #include <cstdint>
-#include <future>
-#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -16,7 +12,7 @@
 #include "base/numeric.h"
 #include "gaitpad/calibration.h"
 #include "gaitpad/pad_stream.h"
-#include "stick/new_values.h"
+#include "pads/pad_meter.h"
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/options.h"
 #include "tools/gaitpad/print.h"
@@ -27,71 +23,6 @@ namespace gaitpad {
 namespace {
 
 using nlohmann::ordered_json;
-
-// --- a pad as it is shown: position, buttons, and how regularly its reports come
-
-// What came within one second.
-struct Window {
-  double duration_s = 1.0;
-  std::int64_t reports = 0, bad_reports = 0;
-  std::vector<double> interval_us, latency_us;
-  std::vector<double> frame_us;  // from the report to the line that shows it, on a terminal
-};
-
-struct MonitoredPad {
-  PadConfig config;
-  PadState state;
-  JumpFilter filter;
-  NewValueCount new_values;
-  std::array<UntouchedWatch, 2> watch;  // left, right
-  int untouched = 0;                    // how often a stick moved by itself
-  bool is_warned = false;               // of that
-  bool is_plugged = true;
-  std::optional<Battery> battery;
-  std::future<std::optional<Battery>> asked_battery;  // the kernel may wait for the pad
-  std::int64_t battery_ns = 0;                        // when it was asked last; 0: never
-  std::int64_t last_ns = 0;              // stamp of the last report; 0: none since plugging in
-  Window running, shown;                 // the present second, and the last full one
-  std::vector<std::int64_t> unshown_ns;  // stamps of the reports since the last line
-};
-using MonitoredPads = std::map<std::uint16_t, MonitoredPad>;
-
-constexpr std::size_t kMaxKept = 20000;  // times of one second that are looked at
-
-template <class T>
-void keep(std::vector<T>& values, T value) {
-  if (values.size() < kMaxKept) values.push_back(value);
-}
-double greatest(const std::vector<double>& values) {
-  return values.empty() ? 0.0 : *std::ranges::max_element(values);
-}
-// Standard deviation of the intervals.
-double jitter(const std::vector<double>& values) {
-  if (values.size() < 2) return 0.0;
-  double sum = 0.0, squares = 0.0;
-  for (double v : values) sum += v;
-  const double mean = sum / static_cast<double>(values.size());
-  for (double v : values) squares += (v - mean) * (v - mean);
-  return std::sqrt(squares / static_cast<double>(values.size() - 1));
-}
-
-double rate_hz(const Window& window) {
-  return static_cast<double>(window.reports) / window.duration_s;
-}
-
-Stick stick_of(const MonitoredPad& pad) {
-  const Calibration& calibration = pad.config.calibration;
-  return stick_position(calibration, pad.filter.filtered(calibration, pad.state));
-}
-
-struct Triggers {
-  double left, right;
-};
-Triggers triggers_of(const MonitoredPad& pad) {
-  const Calibration& c = pad.config.calibration;
-  return {trigger_position(c.left_trigger, pad.state.axis[kLeftTrigger]),
-          trigger_position(c.right_trigger, pad.state.axis[kRightTrigger])};
-}
 
 std::string pad_name(const DeviceInfo& info) {
   return fmt::format("{} ({})", printable(info.name),
@@ -104,74 +35,6 @@ std::string calibration_remark(const TraceDevice& device) {
   const std::string name = file ? printable(file->name) : "";
   return fmt::format("{}: calibration \"{}\"", pad_name(device.info),
                      name.empty() ? "without a name" : name);
-}
-
-void watch_sticks(MonitoredPad& pad, std::int64_t time_ns) {
-  const Calibration& c = pad.config.calibration;
-  const Stick stick = stick_of(pad);
-  const auto& axis = pad.state.axis;
-  pad.untouched += pad.watch[0].take(time_ns, c.left, {axis[kLeftX], axis[kLeftY]}, stick.left);
-  pad.untouched += pad.watch[1].take(time_ns, c.right, {axis[kRightX], axis[kRightY]}, stick.right);
-}
-
-// Once a minute.
-void look_at_battery(MonitoredPad& pad, const DeviceInfo& info, std::int64_t time_ns) {
-  constexpr std::int64_t kMinuteNs = 60'000'000'000;
-  if (pad.battery_ns == 0 || time_ns >= pad.battery_ns + kMinuteNs) {
-    pad.battery_ns = time_ns;
-    pad.asked_battery = std::async(std::launch::async, [info] { return battery_of(info); });
-  }
-  using namespace std::chrono_literals;
-  if (pad.asked_battery.valid() && pad.asked_battery.wait_for(0s) == std::future_status::ready)
-    pad.battery = pad.asked_battery.get();
-}
-
-// A pad that reports changes only is silent while its sticks stand still.
-void take_silence(MonitoredPad& pad) {
-  const std::int64_t time_ns = now_ns();
-  const double silent_s = 1e-9 * static_cast<double>(time_ns - pad.last_ns);
-  if (pad.last_ns == 0 || silent_s < JumpFilter::kSettled_s) return;
-  pad.filter.settle();
-  watch_sticks(pad, time_ns);
-}
-
-// Takes one report of the stream in. True if it announces a pad for the first time.
-bool take_report(const Report& report, PadStream& stream, MonitoredPads& pads) {
-  if (report.device == kNoDevice) return false;
-  if (report.kind == ReportKind::added) {
-    auto [pad, is_first] = pads.try_emplace(report.device);
-    if (is_first) pad->second.config = stream.take_config(report.device);
-    pad->second.is_plugged = true;
-    return is_first;
-  }
-  const auto found = pads.find(report.device);
-  if (found == pads.end()) return false;
-  MonitoredPad& pad = found->second;
-  if (report.kind == ReportKind::removed) {
-    pad.is_plugged = false;
-    pad.state = {};
-    pad.filter = {};
-    pad.new_values = {};
-    pad.watch = {};
-    pad.last_ns = 0;
-    return false;
-  }
-  keep(pad.running.latency_us, static_cast<double>(now_ns() - report.time_ns) / 1e3);
-  if (pad.last_ns != 0)
-    keep(pad.running.interval_us, static_cast<double>(report.time_ns - pad.last_ns) / 1e3);
-  pad.last_ns = report.time_ns;
-  keep(pad.unshown_ns, report.time_ns);
-  ++pad.running.reports;
-  if (!decode(*pad.config.layout, report, pad.state)) {
-    ++pad.running.bad_reports;
-  } else {
-    pad.filter.take(pad.state);
-    const auto& axis = pad.state.axis;
-    pad.new_values.take(report.time_ns, {axis[kLeftX], axis[kLeftY]},
-                        {axis[kRightX], axis[kRightY]});
-    watch_sticks(pad, report.time_ns);
-  }
-  return false;
 }
 
 // While a stick moved, since the pad was plugged in.
@@ -188,7 +51,7 @@ ordered_json pad_json(std::uint16_t index, const MonitoredPad& pad, const PadStr
   const DeviceInfo& info = stream.device(index).info;
   const Stick stick = stick_of(pad);
   const Triggers triggers = triggers_of(pad);
-  const Window& w = pad.shown;
+  const ReportWindow& w = pad.shown;
   return {{"device", index},
           {"name", info.name},
           {"driver", info.driver},
@@ -229,7 +92,7 @@ void add_lines(const PadLine& pad, std::size_t columns, std::vector<std::string>
   }
 }
 
-std::string frame_text(const Window& window, std::size_t percent) {
+std::string frame_text(const ReportWindow& window, std::size_t percent) {
   if (window.frame_us.empty()) return "-";
   return fmt::format("{:.1f}", percentile(window.frame_us, percent) / 1e3);
 }
@@ -246,7 +109,7 @@ PadLine pad_text(std::uint16_t index, const MonitoredPad& pad, const PadStream& 
   if (!pad.is_plugged) return {"unplugged:", "", who};
   const Stick stick = stick_of(pad);
   const Triggers triggers = triggers_of(pad);
-  const Window& w = pad.shown;
+  const ReportWindow& w = pad.shown;
   std::string buttons;
   for (const std::string& name : button_names(pad.state)) buttons += name + " ";
   std::string battery;
@@ -262,17 +125,6 @@ PadLine pad_text(std::uint16_t index, const MonitoredPad& pad, const PadStream& 
                       frame_text(w, 99), stream.counts().lost),
           buttons + who + battery};
 }
-
-// The line with these reports has just been written.
-void note_shown(MonitoredPads& pads) {
-  const std::int64_t time_ns = now_ns();
-  for (auto& [index, pad] : pads) {
-    for (const std::int64_t report_ns : std::exchange(pad.unshown_ns, {}))
-      keep(pad.running.frame_us, static_cast<double>(time_ns - report_ns) / 1e3);
-  }
-}
-
-// --- the command
 
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 constexpr std::int64_t kRewriteNs = kSecondNs / 60;
@@ -318,11 +170,8 @@ class Display {
 
  private:
   void end_second(MonitoredPads& pads, const PadStream& stream, std::int64_t time_ns) {
-    for (auto& [index, pad] : pads) {
-      look_at_battery(pad, stream.device(index).info, time_ns);
-      pad.shown = std::exchange(pad.running, {});
-      pad.shown.duration_s = static_cast<double>(time_ns - second_ns_) / 1e9;
-    }
+    const double duration_s = static_cast<double>(time_ns - second_ns_) / 1e9;
+    for (auto& [index, pad] : pads) end_window(pad, stream.device(index).info, time_ns, duration_s);
     second_ns_ = time_ns;
   }
 

@@ -17,7 +17,7 @@
 #include "tools/gaitpad/print.h"
 #include "tools/gaitpad/window_options.h"
 #ifdef GAITPAD_HAS_WINDOW
-#include "view/show.h"
+#include "session/show.h"
 #endif
 
 namespace gaitpad {

@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "check/trace_check.h"
-#include "draw/stick_picture.h"
 #include "gaitpad/gait_cycle.h"
 #include "gaitpad/result.h"
+#include "stick_picture/stick_picture.h"
 #include "view/window.h"
 
 namespace gaitpad {

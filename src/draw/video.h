@@ -1,0 +1,40 @@
+// Writes frames as a video, H.264 in MP4, through the program ffmpeg if it is installed.
+#pragma once
+#include <sys/types.h>
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "draw/picture.h"
+#include "gaitpad/result.h"
+
+namespace gaitpad {
+
+// Writes beside `path`, and finish() renames. Until then, and on error, the old file is unchanged.
+// The error of a failure ends with ffmpeg's own message.
+class VideoWriter {
+ public:
+  // Why no video can be written to `path`, as far as that shows before it is begun.
+  static std::optional<Error> problem_of(const std::string& path);
+  static Result<std::unique_ptr<VideoWriter>> open(const std::string& path, int width, int height,
+                                                   int frames_per_second);
+  ~VideoWriter();                                  // without finish() no file is left
+  std::optional<Error> add(const Pixels& pixels);  // waits while ffmpeg is behind
+  std::optional<Error> finish();                   // waits for ffmpeg's end
+
+ private:
+  VideoWriter() = default;
+  std::optional<Error> start(int frames_per_second);
+  Error failure();
+  bool has_ended_well();
+
+  std::string path_, part_;
+  int link_ = -1;       // to ffmpeg's standard input
+  int log_ = -1;        // what it says on standard error
+  pid_t process_ = -1;  // -1: none, or waited for
+  int exit_status_ = -1;
+  int width_ = 0, height_ = 0;
+};
+
+}  // namespace gaitpad

@@ -1,0 +1,13 @@
+// Why a pad may not be seen although it is plugged in.
+#pragma once
+#include <string>
+
+namespace gaitpad {
+
+inline constexpr const char* kNoUdev =
+    "udev is not running, so device permissions and types are unknown";
+
+// A sentence with the command that mends it; empty if nothing is known to be in the way.
+std::string unseen_pad();
+
+}  // namespace gaitpad

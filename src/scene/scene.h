@@ -1,0 +1,101 @@
+// The three-dimensional picture: a floor with a metre grid, bodies of tapered capsules with light
+// and soft shadows, stick figures, trails. Needs OpenGL 3.3 core; the context that was current at
+// create() has to be current in every call.
+#pragma once
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "draw/theme.h"
+#include "gaitpad/math.h"
+#include "gaitpad/result.h"
+#include "gaitpad/terrain.h"
+#include "scene/camera.h"
+
+namespace gaitpad {
+
+// The hull of two balls. Along the part of `wide` that is at right angles to a-b it is stretched by
+// a factor, because a trunk is wider than deep.
+struct Capsule {
+  vec3 a_m{0.0}, b_m{0.0};  // world
+  double radius_a_m = 0.05, radius_b_m = 0.05;
+  vec3 wide{0.0};  // zero: round
+  double width_a = 1.0, width_b = 1.0;
+  Colour colour;
+  // 1, 2: half transparent, one body over the other. Bodies of the same layer hide each other.
+  int layer = 0;
+  vec3 wide_b{0.0};  // `wide` of the end b, so that two capsules meet in one seam; zero: as at a
+};
+struct SceneLine {  // of constant width in pixels, for stick figures; casts a faint shadow
+  vec3 a_m{0.0}, b_m{0.0};
+  Colour colour;
+  double width_px = 3.0;  // at scale 1
+};
+struct Trail {  // oldest first; fades towards the old end
+  std::vector<vec3> points_m;
+  Colour colour;
+};
+// A row of what the shaders read.
+inline glm::vec4 row(const vec3& v, double w) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z),
+          static_cast<float>(w)};
+}
+// A capsule of a body that is one of many: drawn as a rectangle that faces the eye, shaded as if it
+// were round, for a fraction of the cost. It casts no shadow. Places are relative to
+// SceneContent::crowd_origin_m.
+struct FlatCapsule {
+  glm::vec4 a_radius{0.0f}, b_radius{0.0f};
+  // As in Capsule. A negative width at b: both ends lie in other capsules and show no caps.
+  glm::vec4 wide_width_a{0.0f}, colour_width_b{0.0f};
+  float ground_m = 0.0f;  // height of the ground below it
+};
+// A soft dark strip on the floor between two places, its radius at each end; relative likewise.
+struct FloorShade {
+  glm::vec4 a_radius{0.0f}, b_radius{0.0f};
+  float dark = 0.0f;  // 0 .. 1
+};
+struct SceneContent {
+  std::vector<Capsule> capsules;  // these cast shadows
+  std::vector<SceneLine> lines;
+  std::vector<vec3> joints_m;  // dots of the stick figures
+  Colour joint_colour;
+  std::vector<FlatCapsule> crowd;
+  std::vector<FloorShade> crowd_shades;
+  vec3 crowd_origin_m{0.0};
+  double reach_m = 0.0;  // the floor is seen at least so far around the focus
+  std::vector<Trail> trails;
+  std::shared_ptr<const Terrain> terrain;  // the floor; null: level at height 0
+  vec3 focus_m{0.0};  // the floor is drawn around it; the grid is fixed to the world
+  bool has_grid = true, has_shadows = true, has_axes = true;
+};
+
+// Pixels from the window's upper left corner.
+struct Viewport {
+  int x = 0, y = 0, width = 0, height = 0;
+};
+
+class Scene {
+ public:
+  // automatic: anti-aliasing and fine meshes, but not on a software rasterizer. high: always, for
+  // single pictures.
+  enum class Quality { automatic, low, high };
+  // Fails if a shader does not compile or the renderer lacks a feature.
+  static Result<std::unique_ptr<Scene>> create(Quality quality);
+  ~Scene();
+
+  // Draws into the bound frame buffer, which is `window_height_px` high. It stays bound, and
+  // nothing changes outside the viewport. `scale`: of the display. Turns depth test and blending
+  // off.
+  void draw(const SceneContent& content, const Camera& camera, const Theme& theme,
+            const Viewport& viewport, int window_height_px, double scale);
+  // "llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 3.3, 4x anti-aliasing"
+  const std::string& renderer() const noexcept;
+  bool is_software() const noexcept;
+
+ private:
+  Scene();
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace gaitpad

@@ -1,0 +1,90 @@
+// What a viewer shows: a live session, or a trace on a time line, behind one interface.
+#pragma once
+#include <cstdint>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "gaitpad/live.h"
+#include "gaitpad/result.h"
+#include "session/history.h"
+#include "session/playback.h"
+
+namespace gaitpad {
+
+inline constexpr int kPictureRateHz = 60;  // frames per second of the session in pictures
+
+// The time line of a playback.
+struct Timeline {
+  std::int64_t tick = 0, ticks = 0;
+  std::span<const PlaybackMark> marks;
+  double pace = 1.0;
+  bool is_looping = false, is_computing = false;
+};
+
+class Show {
+ public:
+  static Result<std::unique_ptr<Show>> open(const SessionSpec& spec);
+  // The same in two parts, so that a running show is ended only if the next one can be opened:
+  // reads the files; the function that it returns, called once, opens the show.
+  using Start = std::function<Result<std::unique_ptr<Show>>()>;
+  static Result<Start> prepare(const SessionSpec& spec);
+  virtual ~Show() = default;
+  Show(const Show&) = delete;
+  Show& operator=(const Show&) = delete;
+
+  virtual const Cast& cast() const noexcept = 0;
+  virtual const SessionFrame& frame() const noexcept = 0;
+  const History& history() const noexcept { return history_; }
+  const SessionSpec& options() const noexcept { return options_; }
+  // Used by shows that are opened with these options later.
+  void add_config_folder(const std::string& folder);
+  void set_stick(StickMeans means) noexcept { options_.walk.stick = means; }
+  bool is_live() const noexcept { return options_.replay.trace.empty(); }
+
+  // Takes over what is new; call it once for each drawn frame. `passed_s`: wall time since the last
+  // call, by which a playback advances.
+  virtual void update(double passed_s) = 0;
+  // The same for pictures: computes 1 / kPictureRateHz seconds of the session now.
+  virtual void update_for_picture() = 0;
+  // What update() took over has gone to the display, or will not go there.
+  virtual void end_frame(FrameEnd) {}
+  // Where the moment to draw, one tick ago, lies between WalkerFrame::before (0) and pose (1).
+  virtual double share(std::int64_t now_ns) const noexcept = 0;
+
+  double pace() const noexcept { return pace_; }  // 0: paused
+  virtual void set_pace(double pace) = 0;
+  virtual void step() = 0;  // one tick, while paused
+
+  // Live only; otherwise without effect.
+  virtual void steer(const vec2&) {}
+  virtual void command(std::string_view) {}
+  virtual void add_style(const Style&) {}
+  virtual void rumble() {}
+  virtual std::optional<Error> end_recording() { return std::nullopt; }
+  virtual bool has_ended() const noexcept { return false; }  // of a recording that plays as the pad
+  virtual const LiveStatus* status() { return nullptr; }
+  // Playback only.
+  virtual const Timeline* timeline() { return nullptr; }
+  virtual void seek(std::int64_t) {}
+  virtual void set_looping(bool) {}
+
+  virtual std::string pad_name() const = 0;  // of the pad that steers; empty: none
+  virtual std::vector<std::string> take_remarks() = 0;
+  virtual Result<RunSummary> stop() = 0;  // ends the show
+
+ protected:
+  explicit Show(SessionSpec options) : options_(std::move(options)) {}
+  SessionSpec options_;
+  History history_;
+  double pace_ = 1.0;
+};
+
+// Shows the present state of another show while nothing runs.
+std::unique_ptr<Show> still_show(Show& show);
+
+}  // namespace gaitpad

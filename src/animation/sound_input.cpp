@@ -18,7 +18,7 @@ bool is_sound(const GaitParams& params, const WalkState& state) noexcept {
   };
   // The body's numbers, which stand last, are many and seldom change.
   constexpr std::size_t kBody = sizeof(UpperBodyParams) / sizeof(double);
-  const bool same = std::memcmp(&params.body, &state.body.goal, sizeof params.body) == 0;
+  const bool same = params.body == state.body.goal;
   const std::size_t count = same ? kParamsNumbers - kBody : kParamsNumbers;
   MaskOf<Pair> outside{};
   for (std::size_t k = 0; k < count; k += 2) {

@@ -10,7 +10,7 @@ import pytest
 from nodes import EventNode, HidrawNode
 from pads import KINDS, NODES, Pad, wait_for
 from support import traces
-from uhid_pad import KINDS as UHID_KINDS, UhidPad, with_checksum
+from uhid_pad import BUS_BLUETOOTH, KINDS as UHID_KINDS, UhidPad, with_checksum
 from uinput_pad import UinputPad
 
 EIGHT_BITS = {"lx": 200, "ly": 100, "rx": 50, "ry": 25}
@@ -144,7 +144,7 @@ def test_faults_of_the_pad():
         wait_for(lambda: any(line[2] == "stalled" for line in pad.lines("setup")), 10, "a refused feature")
 
 
-@pytest.mark.parametrize("kind", UHID_KINDS)
+@pytest.mark.parametrize("kind", [name for name, kind in UHID_KINDS.items() if kind.bus == BUS_BLUETOOTH])
 def test_pads_of_bluetooth(kind):
     with UhidPad(kind) as pad:
         wide = kind == "xbox_bt"

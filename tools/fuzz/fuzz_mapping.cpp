@@ -39,7 +39,7 @@ void check_pad(DeviceInfo device, std::string_view mapping) {
 }  // namespace
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
-  static const std::array pads = {made_hid_pad(), made_evdev_pad(0, 255),
+  static const std::array pads = {made_pad(), made_evdev_pad(0, 255),
                                   made_evdev_pad(-32768, 32767)};
   const std::string_view text(reinterpret_cast<const char*>(data), size);
   std::string_view rest = text;

@@ -14,7 +14,7 @@ namespace {
 using namespace gaitpad;
 
 void decode_with(const PadOverrides& pads, const PadOverride& entry) {
-  DeviceInfo device = made_hid_pad();
+  DeviceInfo device = made_pad();
   device.vendor = entry.vendor.value_or(0x1209);
   if (!entry.products.empty()) device.product = entry.products.front();
   if (!entry.ids.empty()) {

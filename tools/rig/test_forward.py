@@ -19,7 +19,7 @@ from nodes import EV_FF, EventNode, HidrawNode, ioctl_number
 from pads import PATIENCE, Nodes, Pad, settle, wait_for
 from session import HAS_SANITIZERS, IDS, PROGRAM, Session, remark, run
 from support import traces
-from test_latency import ATTEMPTS, BLOCKS, RATE_HZ, SECONDS, bare_block, latencies_us, quartiles, written
+from test_latency import BLOCKS, RATE_HZ, SECONDS, bare_block, latencies_us, quartiles, written
 from uhid_pad import UhidPad
 
 FULL = 32767
@@ -289,6 +289,9 @@ inner = 0.0
 outer = 1.0
 """
 MOST_OVER_BARE_US = 300
+# Work beside the emulator makes a block late, by half a millisecond for seconds on end, and never one early: the
+# quickest block of each reader is compared.
+FORWARD_ATTEMPTS = 6
 
 
 def forwarded_block(pad, calibration):
@@ -312,7 +315,7 @@ def test_forwarding_adds_little_to_the_bare_node(tmp_path):
     (tmp_path / "plain.toml").write_text(PLAIN)
     bare, forwarded = [], []
     with Pad("generic") as pad:
-        for attempt in range(1 + ATTEMPTS):
+        for _ in range(1 + FORWARD_ATTEMPTS):
             for _ in range(BLOCKS):
                 before = len(pad.sent())
                 received, _ = bare_block(pad, "bare_evdev")
@@ -320,13 +323,14 @@ def test_forwarding_adds_little_to_the_bare_node(tmp_path):
                 bare.append(quartiles(latencies_us(written(pad, before), received)))
                 forwarded.append(quartiles(forwarded_block(pad, tmp_path / "plain.toml")))
                 print(f"bare {bare[-1]}, forwarded {forwarded[-1]} us", flush=True)
-            over = [statistics.median(f[q] - b[q] for f, b in zip(forwarded, bare)) for q in (0, 1)]
+            over = [min(f[q] for f in forwarded) - min(b[q] for b in bare) for q in (0, 1)]
             if over[1] <= MOST_OVER_BARE_US:
                 break
-    remark(f"forward: {over[1] / 1000:.3f} ms over the bare node in the median ({over[0] / 1000:.3f} in the first quartile); "
-           f"bare {statistics.median(b[1] for b in bare) / 1000:.3f} ms, forwarded "
-           f"{statistics.median(f[1] for f in forwarded) / 1000:.3f} ms, {len(bare)} blocks each")
-    assert over[1] <= MOST_OVER_BARE_US, f"{over} us over the bare read, {1 + ATTEMPTS} times in a row"
+    remark(f"forward: {over[1] / 1000:.3f} ms over the bare node in the median ({over[0] / 1000:.3f} in the first quartile) "
+           f"of the quickest block; medians of {len(bare)} blocks each: "
+           f"bare {statistics.median(b[1] for b in bare) / 1000:.3f} ms, "
+           f"forwarded {statistics.median(f[1] for f in forwarded) / 1000:.3f} ms")
+    assert over[1] <= MOST_OVER_BARE_US, f"{over} us over the bare read, {1 + FORWARD_ATTEMPTS} times in a row"
 
 
 def play_into(target, trace, reader):

@@ -28,7 +28,7 @@ if [ ${#targets[@]} -eq 0 ]; then
   for source in "$root"/tools/fuzz/fuzz_*.cpp; do targets+=("$(basename "$source" .cpp)"); done
 fi
 # The largest input that a target gets: beyond, text only repeats itself.
-declare -A most=([fuzz_command]=1024 [fuzz_stream]=1024 [fuzz_mapping]=2048 [fuzz_expectation]=4096 [fuzz_pad_file]=4096)
+declare -A most=([fuzz_command]=1024 [fuzz_stream]=1024 [fuzz_session]=1024 [fuzz_mapping]=2048 [fuzz_expectation]=4096 [fuzz_pad_file]=4096)
 
 bash "$root/tools/install.sh" libclang-rt-14-dev xz-utils
 for target in "${targets[@]}"; do

@@ -158,6 +158,10 @@ def write_commands(out):
         "stick steers\nstick points 90\nreset\nreset 2\nik paper\nik robust\nmark\n")
     (out / "fuzz_command" / "script.toml").write_text(
         '[[event]]\nat_s = 1.5\ncommand = "style 1 limp"\n[[event]]\nat_s = 0\ncommand = "mark"\n')
+    (out / "fuzz_session" / "walk").write_bytes(
+        b"@\x80\x20\nmark\nset 1 legs.weight.knee 0\nset left_leg.weight.knee 1\nset hip_sway 2\ngait 2 stride_left_m 0.3\n"
+        b"gait hip_bounce 1.5\ngait 1 speed_m_s 0.8\n@\x20\x20\nstyle limp\nik paper\nstick points 90\nreset 2\n"
+        b"ik robust\nset arm_swing 0\nset look_at 0.5\ngait stick\nstick steers\n@\x80\x80\n")
 
 
 def write_streams(out):

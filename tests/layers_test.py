@@ -13,7 +13,8 @@ LIBRARIES = {
     "files": ["src/files"],
     "devices": ["src/hid", "src/stick", "src/pads", "drivers", "drivers/pads"],
     "session": ["src/session"],
-    "program": ["src/stick_picture", "src/scene", "src/view", "src/paper", "src/check", "src/selftest", "src/bench"],
+    "program": ["src/stick_picture", "src/scene", "src/view", "src/paper", "src/check", "src/selftest", "src/bench", "src/terminal",
+                "src/doctor"],
 }
 # room: (rooms of its own library that it may include, vendor headers)
 ROOMS = {
@@ -38,6 +39,8 @@ ROOMS = {
     "src/paper": ([], ["fmt/", "cairo/", "nlohmann/"]),
     "src/check": ([], ["fmt/"]),
     "src/selftest": ([], ["fmt/", "nlohmann/"]),
+    "src/terminal": ([], ["fmt/"]),
+    "src/doctor": ([], ["fmt/"]),
     "src/bench": ([], ["fmt/", "nlohmann/", "benchmark/"]),
 }
 # The public headers, src/include/gaitpad/NAME.h, by the room whose functions they declare.

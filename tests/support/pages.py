@@ -96,7 +96,7 @@ class Judge:
         self.sources, self.help = Sources(), Help(program)
         self.foreign = foreign
         self.all_options = set().union(*self.help.options.values()) | {
-            option for path, text in self.sources.text.items() if path.startswith(("tools/", "tests/", "CMake"))
+            option for path, text in self.sources.text.items() if path.startswith(("tools/", "tests/", "src/doctor", "CMake"))
             for option in re.findall(r"(?<![\w-])-{1,2}[a-zA-Z][\w-]*", text)}
 
     @staticmethod

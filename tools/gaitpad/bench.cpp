@@ -14,7 +14,7 @@
 
 #include "base/lanes.h"
 #include "bench/measured.h"
-#include "tools/gaitpad/run_end.h"
+#include "terminal/run_end.h"
 #include "tools/gaitpad/window_module.h"
 #ifdef GAITPAD_HAS_WINDOW
 #include "draw/theme.h"

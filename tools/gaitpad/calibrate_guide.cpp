@@ -8,9 +8,9 @@
 #include <utility>
 
 #include "stick/guide.h"
+#include "terminal/terminal.h"
 #include "tools/gaitpad/options.h"
 #include "tools/gaitpad/print.h"
-#include "tools/gaitpad/terminal.h"
 
 namespace gaitpad {
 namespace {

@@ -7,7 +7,7 @@
 
 #include "gaitpad/result.h"
 #include "pads/guided_calibration.h"
-#include "tools/gaitpad/run_end.h"
+#include "terminal/run_end.h"
 
 namespace gaitpad {
 

@@ -15,10 +15,10 @@
 #include "base/files.h"
 #include "check/trace_check.h"
 #include "session/workers.h"
+#include "terminal/run_end.h"
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/options.h"
 #include "tools/gaitpad/print.h"
-#include "tools/gaitpad/run_end.h"
 #include "tools/gaitpad/window_module.h"
 
 namespace gaitpad {

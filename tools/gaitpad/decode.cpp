@@ -18,10 +18,10 @@
 #include "hid/usage_names.h"
 #include "pads/newest_reports.h"
 #include "session/playback.h"
+#include "terminal/run_end.h"
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/options.h"
 #include "tools/gaitpad/print.h"
-#include "tools/gaitpad/run_end.h"
 
 namespace gaitpad {
 namespace {

@@ -22,7 +22,7 @@
 #include "gaitpad/pad_stream.h"
 #include "pads/stand_in.h"
 #include "tools/gaitpad/commands.h"
-#include "tools/gaitpad/doctor_machine.h"
+#include "tools/gaitpad/install_rules.h"
 #include "tools/gaitpad/options.h"
 #include "tools/gaitpad/print.h"
 
@@ -191,7 +191,7 @@ int install_unit(const ForwardArguments& arguments) {
 
 int run(const ForwardArguments& arguments) {
   if (arguments.installs_rules) {
-    const auto shipped = shipped_rules(kUinputRules);
+    const auto shipped = shipped_rules(config_folders(), kUinputRules);
     if (!shipped) return fail(kForward, shipped.error().message);
     return install_rules(kForward, kUinputRules, shipped->text, arguments.is_agreed,
                          rules_command());

@@ -13,11 +13,11 @@
 #include "gaitpad/calibration.h"
 #include "gaitpad/pad_stream.h"
 #include "pads/pad_meter.h"
+#include "terminal/run_end.h"
+#include "terminal/terminal.h"
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/options.h"
 #include "tools/gaitpad/print.h"
-#include "tools/gaitpad/run_end.h"
-#include "tools/gaitpad/terminal.h"
 
 namespace gaitpad {
 namespace {

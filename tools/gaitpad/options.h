@@ -10,7 +10,7 @@
 #include "gaitpad/pad_stream.h"
 #include "gaitpad/result.h"
 #include "gaitpad/session_spec.h"
-#include "tools/gaitpad/run_end.h"
+#include "terminal/run_end.h"
 
 namespace gaitpad {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cstdio>
 
-#include "tools/gaitpad/terminal.h"
+#include "terminal/terminal.h"
 
 namespace gaitpad {
 

@@ -16,7 +16,7 @@
 #include "drivers/system_nodes.h"
 #include "gaitpad/decode.h"
 #include "gaitpad/summary.h"
-#include "tools/gaitpad/run_end.h"
+#include "terminal/run_end.h"
 
 namespace gaitpad {
 

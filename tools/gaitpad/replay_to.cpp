@@ -17,8 +17,8 @@
 #include "gaitpad/trace.h"
 #include "hid/evemu.h"
 #include "session/pad_forward.h"
+#include "terminal/run_end.h"
 #include "tools/gaitpad/print.h"
-#include "tools/gaitpad/run_end.h"
 
 namespace gaitpad {
 namespace {

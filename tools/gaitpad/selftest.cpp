@@ -9,10 +9,10 @@
 
 #include "gaitpad/pad_setup.h"
 #include "selftest/self_test.h"
+#include "terminal/terminal.h"
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/options.h"
 #include "tools/gaitpad/print.h"
-#include "tools/gaitpad/terminal.h"
 
 namespace gaitpad {
 namespace {

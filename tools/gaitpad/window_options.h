@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "tools/gaitpad/run_end.h"
+#include "terminal/run_end.h"
 #include "tools/gaitpad/window_module.h"
 
 namespace gaitpad {

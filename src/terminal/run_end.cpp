@@ -1,4 +1,4 @@
-#include "tools/gaitpad/run_end.h"
+#include "terminal/run_end.h"
 
 #include <fmt/format.h>
 #include <signal.h>

@@ -1,6 +1,5 @@
-// What doctor looks at: what the machine shows of pads, whether or not a driver can open them, and
-// the udev rules that let ordinary users open them. Looking reads sysfs, /dev and /proc and changes
-// nothing.
+// The udev rules that let ordinary users open pads: the lines of a rules file, whom they let in,
+// and the commands that install them.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -8,42 +7,9 @@
 #include <string_view>
 #include <vector>
 
-#include "drivers/system_nodes.h"
-#include "drivers/usb_interfaces.h"
-#include "gaitpad/pad_map.h"
-#include "gaitpad/pad_stream.h"
 #include "gaitpad/result.h"
 
 namespace gaitpad {
-
-// One pad with all its nodes.
-struct PadHardware {
-  std::string path;  // DeviceListing::pad_path
-  std::string name;
-  BusType bus = BusType::unknown;
-  std::uint16_t vendor = 0, product = 0;
-  std::vector<SystemNode> hidraw, events;
-  std::optional<UsbInterface> interface;  // of a pad on USB
-  std::string usb_node;                   // of its USB device
-};
-
-struct Machine {
-  std::vector<PadHardware> pads;
-  std::vector<SystemNode> usb_devices;  // all but hubs
-  std::vector<PadSighting> sightings;   // of the drivers
-  bool has_udev = false;                // udevd runs
-  bool is_container = false;
-};
-
-// `rules`: the shipped ones. A device that they name is a pad even if nothing could be read of it.
-Machine look_at_machine(std::vector<PadSighting> sightings, const PadOverrides& overrides,
-                        const std::string& rules);
-
-// The other programs that have the node open, as far as this user may see: `steam (1234), ...`.
-std::string users_of(const std::string& node);
-std::string own_user_name();
-
-// --- the rules of config/udev
 
 struct RulesTarget {
   const char* path;
@@ -69,7 +35,9 @@ struct RuleSubject {
 struct RulesFile {
   std::string path, text;
 };
-Result<RulesFile> shipped_rules(const RulesTarget& target = kPadRules);
+// udev/60-gaitpad.rules, or the target's, of the first of the folders that has it.
+Result<RulesFile> shipped_rules(const std::vector<std::string>& config_folders,
+                                const RulesTarget& target = kPadRules);
 // The rules file for pads that udev reads: the one in the first of its folders that has it.
 std::optional<RulesFile> installed_rules();
 
@@ -84,10 +52,5 @@ std::string program();
 // Commands that do what `doctor --install-rules` does.
 std::string install_command();                               // by this program
 std::string manual_install_command(const RulesFile& rules);  // without it
-
-// Prints the text, asks unless the user has agreed already, replaces the target in one step and
-// makes udev apply it. The exit status. `as_root`: the command that the user has to give as root.
-int install_rules(std::string_view command, const RulesTarget& target, const std::string& text,
-                  bool is_agreed, const std::string& as_root);
 
 }  // namespace gaitpad

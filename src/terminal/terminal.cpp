@@ -1,4 +1,4 @@
-#include "tools/gaitpad/terminal.h"
+#include "terminal/terminal.h"
 
 #include <poll.h>
 #include <signal.h>

@@ -3,6 +3,7 @@
 // and plugging between them. Every event for the virtual pad is one that it has stated, in its
 // range.
 #include <algorithm>
+#include <array>
 #include <cstdint>
 #include <cstdlib>
 #include <memory>
@@ -16,7 +17,9 @@
 
 namespace gaitpad {
 // No kernel makes a pad here.
-Result<std::unique_ptr<VirtualPad>> VirtualPad::create() { return Error{"not while fuzzing"}; }
+Result<std::unique_ptr<VirtualPad>> VirtualPad::create(const VirtualPadShape&) {
+  return Error{"not while fuzzing"};
+}
 }  // namespace gaitpad
 
 namespace {
@@ -44,15 +47,16 @@ std::vector<std::uint8_t> node_descriptor(std::span<const std::uint8_t> bytes) {
   return evdev_layout(node, {}).descriptor;
 }
 
-void check_events(const VirtualPadState& from, const VirtualPadState& to) {
-  static const std::vector<std::uint16_t> keys = virtual_pad_keys();
-  for (const VirtualPadEvent& event : events_between(from, to)) {
+void check_events(const VirtualPadState& from, const VirtualPadState& to, XboxKind kind) {
+  static const std::array shapes = {shape_of(XboxKind::calibrated), shape_of(XboxKind::xbox_360)};
+  const VirtualPadShape& shape = shapes[static_cast<std::size_t>(kind)];
+  for (const VirtualPadEvent& event : events_between(from, to, kind)) {
     const auto is_stated = [&event](const VirtualPadAxis& axis) {
       return event.code == axis.code && event.value >= axis.min && event.value <= axis.max;
     };
     const bool is_key = event.type == 1 && (event.value == 0 || event.value == 1) &&
-                        std::ranges::count(keys, event.code) == 1;
-    const bool is_axis = event.type == 3 && std::ranges::any_of(virtual_pad_axes(), is_stated);
+                        std::ranges::count(shape.keys, event.code) == 1;
+    const bool is_axis = event.type == 3 && std::ranges::any_of(shape.axes, is_stated);
     if (!is_key && !is_axis) std::abort();
   }
 }
@@ -77,8 +81,10 @@ void forward(PadConfig config, std::span<const std::uint8_t> bytes) {
     const Stick stick = pads.finish_tick();
     const ForwardedTick tick = forwarded_tick(pads, stick);
     const VirtualPadState half_way = between(sent, tick);
-    check_events(sent.state, half_way);
-    check_events(half_way, tick.state);
+    for (const XboxKind kind : {XboxKind::calibrated, XboxKind::xbox_360}) {
+      check_events(sent.state, half_way, kind);
+      check_events(half_way, tick.state, kind);
+    }
     sent = tick;
   }
 }

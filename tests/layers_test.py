@@ -28,7 +28,7 @@ ROOMS = {
     "src/stick": (["hid"], ["fmt/"]),
     "drivers": (["hid", "drivers/pads"], ["fmt/"]),
     "drivers/pads": (["hid"], ["fmt/"]),
-    "src/pads": (["hid", "stick", "drivers"], ["fmt/"]),
+    "src/pads": (["hid", "stick", "drivers", "drivers/pads"], ["fmt/"]),
     "src/session": ([], ["fmt/", "nlohmann/", "tbb/"]),
     # Drawing needs cairo alone and knows no pads; the paper's figures are drawn without a window.
     "src/draw": ([], ["fmt/", "cairo/"]),

@@ -829,6 +829,12 @@ Result<std::int64_t> write_trace(const Trace& trace, const std::string& path) {
 
 // ---- Replaying
 
+std::optional<std::string> damage_remark(const Trace& trace) {
+  if (trace.skipped_lines == 0) return std::nullopt;
+  return fmt::format("{} damaged lines were skipped, the first: {}", trace.skipped_lines,
+                     trace.first_damage);
+}
+
 Result<std::int64_t> assign_ticks(Trace& trace, int rate_hz) {
   if (rate_hz < kLeastRateHz || rate_hz > kMaxRateHz) {
     return Error{fmt::format("{}: a rate of {} Hz is not within {} .. {}", trace.path, rate_hz,

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <optional>
 
+#include "gaitpad/limbs.h"
+
 namespace gaitpad {
 namespace {
 
@@ -430,10 +432,10 @@ Result<std::array<LegJoints, 2>> find_legs(const Motion& motion,
       is_found = true;
     }
   }
-  constexpr std::array<const char*, 2> kSides = {"left", "right"};
   for (int s = 0; s < 2; ++s) {
     if (!is_given(given[s])) continue;
-    if (const auto error = take_given_joints(figure, given[s], kSides[s], legs[s])) return *error;
+    if (const auto error = take_given_joints(figure, given[s], kSideNames[s], legs[s]))
+      return *error;
   }
   const bool both_given = is_given(given[0]) && is_given(given[1]);
   if (!is_found && !both_given) {

@@ -220,8 +220,8 @@ std::string why_no_walk(const CapturedCycle& captured, const GaitCycle& cycle) {
   for (const Side side : {kLeftSide, kRightSide}) {
     const double slides_m = slide_m(captured, cycle, side);
     if (slides_m > kMostSlide_legs * mean_leg_m(cycle)) {
-      return std::string("holds no walk: the ") + (side == kLeftSide ? "left" : "right") +
-             " foot slides " + fixed(slides_m, 2) + " m while it should stand";
+      return std::string("holds no walk: the ") + kSideNames[side] + " foot slides " +
+             fixed(slides_m, 2) + " m while it should stand";
     }
     if (!(cycle.step_m[side] >= -kMostBehind * cycle.stride_m))
       return "holds no walk: one foot stays " + fixed(-cycle.step_m[side], 2) +

@@ -5,6 +5,7 @@
 
 #include "base/numeric.h"
 #include "base/text.h"
+#include "gaitpad/limbs.h"
 
 namespace gaitpad {
 namespace {
@@ -480,7 +481,6 @@ const FootSwing* middle_swing(const std::vector<FootSwing>& swings, Side side, d
 Result<StrideEvents> stride_events(const FeetTracks& stride, const vec3& travel_m) {
   const FeetTracks row = in_a_row(stride, travel_m);
   const auto samples = static_cast<double>(stride.foot[0].ankle_m.size());
-  constexpr std::array<const char*, 2> kNames = {"left", "right"};
   std::string problem;
   for (const double share : kMovingShares) {
     const std::vector<FootSwing> swings = foot_swings(row, share);
@@ -489,7 +489,7 @@ Result<StrideEvents> stride_events(const FeetTracks& stride, const vec3& travel_
     for (const Side side : {kLeftSide, kRightSide}) {
       const FootSwing* swing = middle_swing(swings, side, samples);
       if (!swing) {
-        problem = std::string("the ") + kNames[side] + " foot does not swing";
+        problem = std::string("the ") + kSideNames[side] + " foot does not swing";
         break;
       }
       events.toe_off[side] = fraction(*swing->toe_off / samples);
@@ -509,8 +509,8 @@ Result<StrideEvents> stride_events(const FeetTracks& stride, const vec3& travel_
     for (const Side side : {kLeftSide, kRightSide}) {
       if (roll_s[side] > 0.0) continue;
       return Error{std::string("holds no walk whose events are in order: the ") +
-                   kNames[other(side)] + " toe leaves " + fixed(-roll_s[side], 2) +
-                   " s before the " + kNames[side] + " heel strikes"};
+                   kSideNames[other(side)] + " toe leaves " + fixed(-roll_s[side], 2) +
+                   " s before the " + kSideNames[side] + " heel strikes"};
     }
     return events;
   }

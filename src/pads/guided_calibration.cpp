@@ -9,13 +9,13 @@
 #include <utility>
 
 #include "drivers/posix.h"
+#include "gaitpad/limbs.h"
 #include "pads/calibration_store.h"
 
 namespace gaitpad {
 namespace {
 
 constexpr std::int64_t kOnTheWayNs = 50'000'000;  // reports may take so long to arrive
-constexpr const char* kSides[] = {"left", "right"};
 
 }  // namespace
 
@@ -119,7 +119,7 @@ std::vector<std::string> axes_questions(const GuidedPad& pad) {
     questions.push_back(fmt::format(
         "this pad is known, but pushed right its {} stick went {} and pushed forward {}: is this "
         "right? if not, measure again and push where it is asked for",
-        kSides[i], kRaw[static_cast<std::size_t>(frame.right)],
+        kSideNames[i], kRaw[static_cast<std::size_t>(frame.right)],
         kRaw[static_cast<std::size_t>(frame.forward)]));
   }
   return questions;
@@ -132,7 +132,7 @@ std::vector<std::string> calibration_comments(const PadAnalysis& analysis) {
   for (std::size_t i = 0; i < 2; ++i) {
     if (!analysis.stick[i]) continue;
     comments.push_back(
-        fmt::format("{} stick: {}. {}{}", kSides[i], name_of(analysis.stick[i]->advice.verdict),
+        fmt::format("{} stick: {}. {}{}", kSideNames[i], name_of(analysis.stick[i]->advice.verdict),
                     analysis.stick[i]->advice.reason,
                     is_known(analysis, i) ? "" : "; its calibration stays as it was"));
   }

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "gaitpad/limbs.h"
 #include "motion/leg_pose.h"
 #include "paper/figures.h"
 #include "paper/page.h"
@@ -15,7 +16,6 @@ constexpr double kInner = kWidth - 2.0 * kPageMargin;
 constexpr int kPoses = 7;  // of a stride
 constexpr double kPanelTop = 104.0, kPanelHeight = 280.0, kPlotTop = 456.0, kPlotHeight = 300.0,
                  kTableTop = 842.0, kTableHeight = 190.0;
-constexpr std::array<const char*, 2> kSideNames = {"left", "right"};
 
 struct Character3 {
   std::string name;

@@ -28,6 +28,7 @@
 #include "drivers/posix.h"
 #include "drivers/system_nodes.h"
 #include "gaitpad/decode.h"
+#include "gaitpad/limbs.h"
 #include "gaitpad/live.h"
 #include "pads/calibration_store.h"
 #include "pads/guided_calibration.h"
@@ -289,10 +290,9 @@ Controls controls_of(const PadLayout& layout) {
 std::vector<ControlAction> actions_for(const PadLayout& layout) {
   const Controls controls = controls_of(layout);
   std::vector<ControlAction> actions;
-  constexpr const char* kSides[] = {"left", "right"};
   for (const int axis : {kLeftX, kLeftY, kRightX, kRightY}) {
     if ((controls.axes >> axis & 1u) == 0) continue;
-    const char* stick = kSides[axis >= kRightX];
+    const char* stick = kSideNames[axis >= kRightX];
     const bool is_x = axis == kLeftX || axis == kRightX;
     for (const float direction : {1.0f, -1.0f}) {
       const char* where = is_x
@@ -308,7 +308,7 @@ std::vector<ControlAction> actions_for(const PadLayout& layout) {
     if ((controls.axes >> axis & 1u) == 0) continue;
     actions.push_back({std::string(kAxisNames[static_cast<std::size_t>(axis)]),
                        fmt::format("Pull the {} trigger all the way, and let it go.",
-                                   kSides[axis == kRightTrigger]),
+                                   kSideNames[axis == kRightTrigger]),
                        axis, 1.0f});
   }
   for (int button = 0; button < kButtonCount; ++button) {
@@ -721,7 +721,6 @@ bool SelfTest::calibrate() {
   const PadAnalysis analysis =
       analysis_of(pad_->layout(), guide.tracks(), {guide.frame(0), guide.frame(1)});
   ordered_json sticks = ordered_json::object();
-  constexpr const char* kSides[] = {"left", "right"};
   for (std::size_t i = 0; i < 2; ++i) {
     if (!analysis.stick[i]) continue;
     const StickAdvice& advice = analysis.stick[i]->advice;
@@ -729,7 +728,7 @@ bool SelfTest::calibrate() {
     const auto value = [](const std::optional<double>& v) {
       return v ? ordered_json(*v) : ordered_json(nullptr);
     };
-    sticks[kSides[i]] = {
+    sticks[kSideNames[i]] = {
         {"verdict", name_of(advice.verdict)}, {"reason", advice.reason},
         {"inner_zone", advice.inner_zone},    {"outer_zone", advice.outer_zone},
         {"hysteresis", value(s.hysteresis)},  {"circularity_error", value(s.circularity_error)},

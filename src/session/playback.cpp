@@ -78,12 +78,6 @@ Result<PreparedTrace> prepared_trace(const SessionSpec& asked) {
                        std::move(*changes), std::move(used)};
 }
 
-std::optional<std::string> damage_remark(const Trace& trace) {
-  if (trace.skipped_lines == 0) return std::nullopt;
-  return fmt::format("{} damaged lines were skipped, the first: {}", trace.skipped_lines,
-                     trace.first_damage);
-}
-
 void TraceRun::step(const PreparedTrace& prepared) noexcept {
   const Trace& trace = prepared.trace;
   const std::int64_t tick = ticks();

@@ -28,8 +28,6 @@ struct PreparedTrace {
 // Reads `spec.replay.trace` and every file of the session, and adds the script's events. Error
 // also: `spec.rate_hz` differs from the trace's rate, or none of the trace's devices is a pad.
 Result<PreparedTrace> prepared_trace(const SessionSpec& spec);
-// "3 damaged lines were skipped, the first: ..."; nothing if there were none.
-std::optional<std::string> damage_remark(const Trace& trace);
 
 // A place in a run. Copies go on from there, independent of each other.
 class TraceRun {

@@ -73,7 +73,7 @@ constexpr std::string_view kStageNames[] = {"idle", "flight", "roll"};
 
 std::string_view swing_name(const WalkFrame& frame) {
   if (frame.stage == Stage::idle) return "none";
-  return frame.swing == kLeftSide ? "left" : "right";
+  return kSideNames[frame.swing];
 }
 
 void append_number(double value, std::string& out) {

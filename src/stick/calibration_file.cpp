@@ -9,6 +9,7 @@
 #include "base/text.h"
 #include "files/toml_file.h"
 #include "gaitpad/calibration.h"
+#include "gaitpad/limbs.h"
 #include "gaitpad/trace.h"
 #include "hid/sdl_lines.h"
 
@@ -25,7 +26,6 @@ constexpr double kMaxMeasured = 100.0;       // of any measured number; far beyo
 constexpr std::string_view kShapeNames[] = {"radial", "axial", "both"};
 constexpr std::string_view kDirectionNames[] = {"x", "-x", "y", "-y"};  // by RawDirection
 constexpr std::string_view kDriverNames[] = {"hidraw", "usb", "evdev", "sdl"};
-constexpr std::string_view kStickNames[] = {"left", "right"};
 
 // The index of the key's value in `names`; none if the key is absent or its value unknown.
 template <std::size_t N>
@@ -276,8 +276,8 @@ std::string calibration_text(const CalibrationFile& file) {
   const Calibration& c = file.calibration;
   const StickCalibration* sticks[] = {&c.left, &c.right};
   for (int side = 0; side < 2; ++side) {
-    text += stick_text(kStickNames[side], *sticks[side]);
-    if (file.measured[side]) text += measured_text(kStickNames[side], *file.measured[side]);
+    text += stick_text(kSideNames[side], *sticks[side]);
+    if (file.measured[side]) text += measured_text(kSideNames[side], *file.measured[side]);
   }
   return text + trigger_text("left_trigger", c.left_trigger) +
          trigger_text("right_trigger", c.right_trigger);

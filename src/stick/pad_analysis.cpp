@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "gaitpad/limbs.h"
 #include "stick/outline.h"
 
 namespace gaitpad {
@@ -538,13 +539,12 @@ bool is_useful(const PadAnalysis& analysis) noexcept {
 }
 
 std::string why_useless(const PadAnalysis& analysis) {
-  constexpr const char* kSides[] = {"left", "right"};
   std::string text = "no stick is known well enough to be calibrated";
   for (std::size_t i = 0; i < 2; ++i) {
     const auto& stick = analysis.stick[i];
     if (!stick || is_known(analysis, i)) continue;
     const Reasons missing_are = missing(stick->statistics);
-    text += fmt::format("; {}: {}", kSides[i],
+    text += fmt::format("; {}: {}", kSideNames[i],
                         missing_are.empty() ? stick->advice.reason : missing_are.front());
   }
   return text;

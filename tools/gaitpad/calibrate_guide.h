@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "gaitpad/limbs.h"
 #include "gaitpad/result.h"
 #include "pads/guided_calibration.h"
 #include "terminal/run_end.h"
@@ -12,7 +13,6 @@
 namespace gaitpad {
 
 inline constexpr const char* kCalibrateCommand = "calibrate";
-inline constexpr const char* kSideNames[] = {"left", "right"};
 
 // Runs the guided steps on the first wished pad that comes. Nothing if the user gave up (q, Ctrl-C,
 // SIGTERM, end of input): then no file must be written. At the end of a recording the steps that

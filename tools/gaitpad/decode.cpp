@@ -17,7 +17,6 @@
 #include "gaitpad/trace.h"
 #include "hid/usage_names.h"
 #include "pads/newest_reports.h"
-#include "session/playback.h"
 #include "terminal/run_end.h"
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/options.h"

@@ -11,6 +11,7 @@
 #include "gaitpad/config_files.h"
 #include "gaitpad/flight.h"
 #include "gaitpad/gait_cycle.h"
+#include "gaitpad/limbs.h"
 #include "gaitpad/motion_file.h"
 #include "gaitpad/walk_model.h"
 #include "tools/gaitpad/commands.h"
@@ -21,8 +22,6 @@ namespace gaitpad {
 namespace {
 
 using nlohmann::ordered_json;
-
-constexpr std::array<const char*, 2> kLegNames = {"left", "right"};
 
 struct MotionArguments {
   std::string file;
@@ -87,7 +86,7 @@ ordered_json motion_json(const Motion& motion, const Result<GaitCycle>& cycle) {
   // Feet that go nowhere do not fly.
   const bool stays = !cycle && cycle.error().message.find("walks on the spot") != std::string::npos;
   for (const Side side : {kLeftSide, kRightSide}) {
-    const char* name = kLegNames[side];
+    const char* name = kSideNames[side];
     out["legs"][name] = leg_json(motion, side);
     out["flight"][name] = stays ? nullptr : flight_json(robust_flight(motion, side));
     out["flight_paper"][name] = stays ? nullptr : paper_json(paper_flight(motion, side));
@@ -151,14 +150,14 @@ void print_motion(const Motion& motion, const Result<GaitCycle>& cycle) {
   for (const Side side : {kLeftSide, kRightSide}) {
     const LegJoints& leg = motion.legs[side];
     const auto name = [&](int joint) { return printable(motion.skeleton.joints[joint].name); };
-    say("{:<5} leg     {} - {} - {} - {}, thigh + shank {:.3f} m\n", kLegNames[side], name(leg.hip),
-        name(leg.knee), name(leg.ankle), name(leg.toe), leg_length_m(motion, leg));
+    say("{:<5} leg     {} - {} - {} - {}, thigh + shank {:.3f} m\n", kSideNames[side],
+        name(leg.hip), name(leg.knee), name(leg.ankle), name(leg.toe), leg_length_m(motion, leg));
   }
   for (const Side side : {kLeftSide, kRightSide}) {
     const auto flight = walked_flight(motion, side, cycle);
     const std::string heel_off =
         flight ? fmt::format("heel off {}, ", frame_text(flight->heel_off, frames)) : "";
-    say("{:<5} flight  {}{}; by the paper's rule {}\n", kLegNames[side], heel_off,
+    say("{:<5} flight  {}{}; by the paper's rule {}\n", kSideNames[side], heel_off,
         flight_text(flight, frames), flight_text(paper_flight(motion, side), frames));
   }
   say("gait          {}\n", printable(gait_text(cycle)));
@@ -216,7 +215,7 @@ void add_motion(CLI::App& app, int& status) {
       ->add_option("--frame-rate", arguments->load.frame_rate_hz,
                    "frames a second (default: the file's; 120 for .amc, which does not say)")
       ->check(CLI::Range(1.0, 1e4));
-  for (int s = 0; s < 2; ++s) add_leg_options(*command, arguments->load.legs[s], kLegNames[s]);
+  for (int s = 0; s < 2; ++s) add_leg_options(*command, arguments->load.legs[s], kSideNames[s]);
   command->callback([arguments, &status] { status = run_motion(*arguments); });
 }
 

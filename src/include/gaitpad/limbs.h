@@ -7,6 +7,8 @@ namespace gaitpad {
 
 enum Side : int { kLeftSide = 0, kRightSide = 1 };
 inline constexpr Side other(Side s) noexcept { return s == kLeftSide ? kRightSide : kLeftSide; }
+// By Side: of legs and of sticks, in sentences and in files.
+inline constexpr std::array<const char*, 2> kSideNames = {"left", "right"};
 
 // A leg's joint angles in radians, about axes fixed in the standing pose (x left, y up, z forward)
 // and applied outwards: thigh = pelvis Rx Rz Ry, shank = thigh Rx, foot = shank Rx Rz Ry. A

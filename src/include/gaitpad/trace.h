@@ -79,6 +79,8 @@ Result<Trace> read_trace(const std::string& path, Damage damage = Damage::refuse
 // The same from memory; `name` stands for the path in errors.
 Result<Trace> parse_trace(std::string_view text, const std::string& name,
                           Damage damage = Damage::refuse);
+// `3 damaged lines were skipped, the first: ...`; nothing if there were none.
+std::optional<std::string> damage_remark(const Trace& trace);
 
 // Gives every event its tick and returns the number n of ticks of a replay: ticks 0 .. n-1. Without
 // `T:` lines an event belongs to the first tick that starts at or after its time; tick k starts

@@ -1,0 +1,230 @@
+// gaitpad.h as a program in C sees it: linked with libgaitpad.so alone, beside the core as a second
+// way to the same walk.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <string>
+#include <vector>
+
+#include "gaitpad.h"
+
+namespace {
+
+constexpr double kStart_m[3] = {1.0, 0.0, 2.0};
+constexpr double kTick_s = 1.0 / 60.0, kNan = std::numeric_limits<double>::quiet_NaN();
+
+gaitpad_model_options defaults() {
+  gaitpad_model_options options;
+  gaitpad_model_defaults(&options);
+  return options;
+}
+
+std::string refusal(const gaitpad_model_options& options) {
+  std::array<char, 256> error = {};
+  gaitpad_model* model = gaitpad_model_create(&options, error.data(), error.size());
+  EXPECT_EQ(model, nullptr);
+  gaitpad_model_destroy(model);
+  return error.data();
+}
+
+class CApi : public testing::Test {
+ protected:
+  CApi() { make(defaults()); }
+  ~CApi() override { destroy(); }
+  void make(const gaitpad_model_options& options) {
+    model_ = gaitpad_model_create(&options, error_.data(), error_.size());
+    walk_ =
+        model_ ? gaitpad_walk_create(model_, kStart_m, 0.5, error_.data(), error_.size()) : nullptr;
+    ASSERT_NE(walk_, nullptr) << error_.data();
+  }
+  void destroy() {
+    gaitpad_walk_destroy(walk_);
+    gaitpad_model_destroy(model_);
+  }
+  gaitpad_frame frame() const {
+    gaitpad_frame f = {};
+    f.size = sizeof f;
+    EXPECT_TRUE(gaitpad_walk_frame(walk_, &f));
+    return f;
+  }
+  std::vector<float> matrices() const {
+    std::vector<float> m(16 * static_cast<std::size_t>(gaitpad_joint_count(model_)));
+    EXPECT_EQ(gaitpad_pose_world(walk_, m.data(), gaitpad_joint_count(model_)),
+              gaitpad_joint_count(model_));
+    return m;
+  }
+  void step(double right, double forward, int ticks = 1) {
+    for (int i = 0; i < ticks; ++i) gaitpad_walk_step(walk_, right, forward, kTick_s);
+  }
+  std::array<char, 256> error_ = {};
+  gaitpad_model* model_ = nullptr;
+  gaitpad_walk* walk_ = nullptr;
+};
+
+TEST_F(CApi, AWalkBeginsWhereItIsPutAndGoesAheadByTheStick) {
+  gaitpad_frame f = frame();
+  EXPECT_NEAR(f.root_m[0], kStart_m[0], 1e-9);
+  EXPECT_NEAR(f.root_m[2], kStart_m[2], 1e-9);
+  EXPECT_NEAR(f.heading_rad, 0.5, 1e-9);
+  EXPECT_EQ(f.stage, GAITPAD_STANDS);
+  step(0.0, 0.8, 300);
+  f = frame();
+  const double x = f.root_m[0] - kStart_m[0], z = f.root_m[2] - kStart_m[2];
+  EXPECT_GT(std::hypot(x, z), 3.0);
+  EXPECT_NEAR(std::atan2(x, z), 0.5, 0.02) << "the way that it faces";
+}
+
+TEST_F(CApi, StrikesAndRootMotionOfAllTicksAddUp) {
+  gaitpad_frame f = frame();
+  int strikes = 0, offs = 0;
+  double x = f.root_m[0], z = f.root_m[2], heading = f.heading_rad;
+  for (int tick = 0; tick < 600; ++tick) {
+    step(0.4, 0.7);
+    f = frame();
+    strikes += f.heel_struck[0] + f.heel_struck[1];
+    offs += f.toe_off[0] + f.toe_off[1];
+    x += std::cos(heading) * f.root_moved_m[0] + std::sin(heading) * f.root_moved_m[2];
+    z += -std::sin(heading) * f.root_moved_m[0] + std::cos(heading) * f.root_moved_m[2];
+    heading += f.root_turned_rad;
+  }
+  EXPECT_GT(strikes, 15);
+  EXPECT_EQ(strikes, f.landings[0] + f.landings[1]);
+  EXPECT_LE(std::abs(strikes - offs), 1) << "each foot that lands has left the ground";
+  EXPECT_NEAR(x, f.root_m[0], 1e-6);
+  EXPECT_NEAR(z, f.root_m[2], 1e-6);
+  EXPECT_NEAR(heading, f.heading_rad, 1e-9);
+}
+
+TEST_F(CApi, MatricesAreTheLocalRotationsFromTheRootOn) {
+  step(0.0, 0.8, 100);
+  const int joints = gaitpad_joint_count(model_);
+  std::vector<float> local(4 * static_cast<std::size_t>(joints));
+  std::array<float, 3> root_m;
+  ASSERT_EQ(gaitpad_pose_local(walk_, local.data(), joints, root_m.data()), joints);
+  const std::vector<float> world = matrices();
+  for (int i = 0; i < 3; ++i)
+    EXPECT_EQ(world[12 + static_cast<std::size_t>(i)], root_m[static_cast<std::size_t>(i)]);
+  for (int j = 0; j < joints; ++j) {
+    const int parent = gaitpad_joint_parent(model_, j);
+    const float* q = &local[4 * static_cast<std::size_t>(j)];
+    // The x axis, turned by q, in the parent's frame.
+    const float axis[] = {1 - 2 * (q[1] * q[1] + q[2] * q[2]), 2 * (q[0] * q[1] + q[3] * q[2]),
+                          2 * (q[0] * q[2] - q[3] * q[1])};
+    for (int row = 0; row < 3; ++row) {
+      float expected = axis[row];
+      if (parent >= 0) {
+        const float* m = &world[16 * static_cast<std::size_t>(parent)];
+        expected = m[row] * axis[0] + m[4 + row] * axis[1] + m[8 + row] * axis[2];
+      }
+      EXPECT_NEAR(world[16 * static_cast<std::size_t>(j) + static_cast<std::size_t>(row)], expected,
+                  1e-5)
+          << j;
+    }
+  }
+}
+
+TEST_F(CApi, ATeleportMovesTheWholePoseAndChangesNoStep) {
+  step(0.0, 0.8, 100);
+  const std::vector<float> before = matrices();
+  const double shift_m[3] = {10.0, 0.0, -3.0};
+  gaitpad_walk_move(walk_, shift_m, 0.0);
+  const std::vector<float> after = matrices();
+  for (std::size_t at = 12; at < after.size(); at += 16) {
+    EXPECT_NEAR(after[at] - before[at], 10.0, 1e-5);
+    EXPECT_NEAR(after[at + 2] - before[at + 2], -3.0, 1e-5);
+  }
+  const double place_m[3] = {-4.0, 0.0, 7.0};
+  gaitpad_walk_put(walk_, place_m, 2.0);
+  EXPECT_NEAR(frame().root_m[0], -4.0, 1e-9);
+  EXPECT_NEAR(frame().heading_rad, 2.0, 1e-9);
+}
+
+TEST_F(CApi, ASticksNumbersThatAreNoneAreCountedAndTheLastGoodOnesHold) {
+  step(0.0, 0.8, 200);
+  step(kNan, 3.0, 50);
+  step(0.0, 0.8);
+  const gaitpad_frame bad = frame();
+  EXPECT_EQ(bad.bad_inputs, 100);
+  destroy();
+  make(defaults());
+  step(0.0, 0.8, 251);
+  EXPECT_EQ(frame().root_m[2], bad.root_m[2]);
+}
+
+TEST_F(CApi, AStyleIsSetByItsKeysWithinTheirBounds) {
+  EXPECT_TRUE(gaitpad_walk_set(walk_, "left_leg.weight.knee", 0.2));
+  EXPECT_FALSE(gaitpad_walk_set(walk_, "left_leg.weight.knee", 1.5));
+  EXPECT_FALSE(gaitpad_walk_set(walk_, "no_such_key", 1.0));
+}
+
+TEST_F(CApi, AGroundIsAskedForItsHeight) {
+  destroy();
+  gaitpad_model_options options = defaults();
+  const double slope = 0.1;
+  options.game = &slope;
+  options.ground = [](const void* game, double, double z_m) {
+    return *static_cast<const double*>(game) * z_m;
+  };
+  make(options);
+  EXPECT_NEAR(frame().heel_m[0][1], slope * frame().heel_m[0][2], 0.01);
+  step(0.0, 0.8, 300);
+  EXPECT_GT(frame().heel_m[0][1], 0.3) << "it has climbed";
+}
+
+TEST_F(CApi, AWalkOutlivesItsModelsHandle) {
+  gaitpad_model_destroy(model_);
+  model_ = nullptr;
+  step(0.0, 0.8, 60);
+  EXPECT_GT(frame().speed_m_s, 0.5);
+}
+
+TEST(CApiRefusals, NameTheFieldInOneSentence) {
+  gaitpad_model_options options = defaults();
+  options.scale = 0.0;
+  EXPECT_NE(refusal(options).find("scale is 0"), std::string::npos) << refusal(options);
+  options = defaults();
+  options.size = 8;
+  EXPECT_NE(refusal(options).find("size"), std::string::npos);
+  const gaitpad_bone hips = {"Hips", -1, 0, {0, 0, 0}};
+  options = defaults();
+  options.bones = &hips;
+  for (const int count : {0, -1, 1'000'000}) {
+    options.bone_count = count;
+    EXPECT_NE(refusal(options).find("bone_count"), std::string::npos);
+  }
+  options.bone_count = 1;
+  EXPECT_FALSE(refusal(options).empty()) << "it has no legs";
+  const gaitpad_bone unnamed = {nullptr, -1, 0, {0, 0, 0}};
+  options.bones = &unnamed;
+  EXPECT_NE(refusal(options).find("bone 0 has no name"), std::string::npos);
+}
+
+TEST(CApiRefusals, ASentenceIsCutToTheCallersBytes) {
+  gaitpad_model_options options = defaults();
+  options.scale = 0.0;
+  std::array<char, 8> error;
+  error.fill('x');
+  EXPECT_EQ(gaitpad_model_create(&options, error.data(), 5), nullptr);
+  EXPECT_EQ(std::string(error.data()).size(), 4u);
+  EXPECT_EQ(error[5], 'x');
+  EXPECT_EQ(gaitpad_model_create(&options, nullptr, 0), nullptr);
+}
+
+TEST(CApiRefusals, AFrameOfAnUnknownSizeIsNotWritten) {
+  gaitpad_frame frame = {};
+  frame.size = 8;
+  gaitpad_model* model = nullptr;
+  const gaitpad_model_options options = defaults();
+  ASSERT_NE(model = gaitpad_model_create(&options, nullptr, 0), nullptr);
+  gaitpad_walk* walk = gaitpad_walk_create(model, kStart_m, 0.0, nullptr, 0);
+  EXPECT_FALSE(gaitpad_walk_frame(walk, &frame));
+  EXPECT_EQ(frame.landings[0], 0);
+  const double nowhere_m[3] = {kNan, 0.0, 0.0};
+  EXPECT_EQ(gaitpad_walk_create(model, nowhere_m, 0.0, nullptr, 0), nullptr);
+  gaitpad_walk_destroy(walk);
+  gaitpad_model_destroy(model);
+}
+
+}  // namespace

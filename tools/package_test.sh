@@ -15,7 +15,7 @@ install_tools() {
 }
 make_packages() {
   rm -f "$folder"/*.deb
-  bash tools/build.sh "$folder" gaitpad -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX=/usr -DGAITPAD_TESTS=OFF \
+  bash tools/build.sh "$folder" all -DCMAKE_BUILD_TYPE=Release -DCMAKE_INSTALL_PREFIX=/usr -DGAITPAD_TESTS=OFF \
     -DGAITPAD_CONFIG_DIR=
   (cd "$folder" && cpack -G DEB)
   ls -l "$folder"/*.deb
@@ -63,7 +63,7 @@ try_program() {
   inside gaitpad doctor || true  # a chroot has no pad; it is to end by itself
 }
 install_library() {
-  inside sh -c 'apt-get -qq -o Dpkg::Use-Pty=0 install -y --no-install-recommends /packages/libgaitpad-dev_*.deb cmake g++ make' >/dev/null
+  inside sh -c 'apt-get -qq -o Dpkg::Use-Pty=0 install -y --no-install-recommends /packages/libgaitpad*.deb cmake g++ make' >/dev/null
 }
 try_library() {
   cp -r tools/examples "$debian/tmp/examples"
@@ -73,11 +73,11 @@ try_library() {
   inside gaitpad check --update /tmp/examples/walks
   inside cmake -S /tmp/examples -B /tmp/built >/dev/null
   inside cmake --build /tmp/built
-  inside sh -c '/tmp/built/solve_leg && /tmp/built/minimal_walk /tmp/out/pose.bvh 0.8 | tail -n 1'
+  inside sh -c '/tmp/built/solve_leg && /tmp/built/minimal_walk /tmp/out/pose.bvh 0.8 | tail -n 1 && /tmp/built/walk_in_c | tail -n 1'
   inside ctest --test-dir /tmp/built --output-on-failure
 }
 remove_all() {
-  inside sh -c 'apt-get -qq -o Dpkg::Use-Pty=0 purge -y gaitpad libgaitpad-dev cmake g++ make && apt-get -qq -o Dpkg::Use-Pty=0 autoremove --purge -y' >/dev/null
+  inside sh -c 'apt-get -qq -o Dpkg::Use-Pty=0 purge -y gaitpad libgaitpad-dev libgaitpad0 cmake g++ make && apt-get -qq -o Dpkg::Use-Pty=0 autoremove --purge -y' >/dev/null
   files >"$work/after"
   diff "$work/before" "$work/after" && echo "nothing is left"
 }

@@ -1,11 +1,12 @@
-# `cpack -G DEB` in a build folder that was configured with -DCMAKE_INSTALL_PREFIX=/usr: the packages gaitpad and
-# libgaitpad-dev. tools/package_test.sh makes and tries them.
+# `cpack -G DEB` in a build folder that was configured with -DCMAKE_INSTALL_PREFIX=/usr: the packages gaitpad,
+# libgaitpad-dev and libgaitpad0. tools/package_test.sh makes and tries them.
 set(CPACK_PACKAGE_NAME gaitpad)
 set(CPACK_PACKAGE_VENDOR "The gaitpad authors")
 set(CPACK_PACKAGE_CONTACT "The gaitpad authors <gaitpad@users.noreply.github.com>")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_COMPONENTS_ALL program development)
+set(packages gaitpad libgaitpad-dev)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_RELEASE 1)
@@ -57,13 +58,31 @@ if(GAITPAD_TBB)
 endif()
 list(JOIN needs ", " CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS)
 
-# What Debian's policy wants beside both: licence and changelog.
+
+if(TARGET gaitpad_c)
+  list(APPEND CPACK_COMPONENTS_ALL library)
+  list(APPEND packages libgaitpad0)
+  set(CPACK_COMPONENT_LIBRARY_DESCRIPTION
+"walking character as a library in C
+The walking character of gaitpad for programs in C and for languages that
+call C: skeletons, grounds and sticks in, poses and steps out.")
+  set(CPACK_DEBIAN_LIBRARY_PACKAGE_NAME libgaitpad0)
+  set(CPACK_DEBIAN_LIBRARY_PACKAGE_SECTION libs)
+  # As dpkg-shlibdeps finds them. CPack's SHLIBDEPS would add scripts that call ldconfig, where policy wants a trigger.
+  set(CPACK_DEBIAN_LIBRARY_PACKAGE_DEPENDS "libc6 (>= 2.34), libgcc-s1 (>= 3.0), libstdc++6 (>= 11)")
+  file(WRITE ${made}/libgaitpad0/shlibs "libgaitpad 0 libgaitpad0 (>= ${PROJECT_VERSION})\n")
+  file(WRITE ${made}/libgaitpad0/triggers "activate-noawait ldconfig\n")
+  set(CPACK_DEBIAN_LIBRARY_PACKAGE_CONTROL_EXTRA ${made}/libgaitpad0/shlibs ${made}/libgaitpad0/triggers)
+  string(APPEND CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS ", libgaitpad0 (= ${PROJECT_VERSION}-1)")
+endif()
+
+# What Debian's policy wants beside each: licence and changelog.
 string(TIMESTAMP PACKAGE_TIME "%a, %d %b %Y %H:%M:%S +0000" UTC)
-foreach(package gaitpad libgaitpad-dev)
-  set(component program)
-  if(package STREQUAL libgaitpad-dev)
-    set(component development)
-  endif()
+set(component_of_gaitpad program)
+set(component_of_libgaitpad-dev development)
+set(component_of_libgaitpad0 library)
+foreach(package ${packages})
+  set(component ${component_of_${package}})
   set(documents ${CMAKE_INSTALL_DATADIR}/doc/${package})
   install(FILES ${CMAKE_CURRENT_LIST_DIR}/copyright DESTINATION ${documents} COMPONENT ${component})
   file(WRITE ${made}/${package}/changelog.Debian "gaitpad (${PROJECT_VERSION}-1) unstable; urgency=medium

@@ -1,7 +1,7 @@
 # What `cmake --install` puts under a prefix: the libraries with their public headers, the files by which
 # CMake (find_package(gaitpad CONFIG)) and pkg-config find them, the program with its configuration, udev rules,
-# manual pages, completions and what desktops show of it. `cpack -G DEB` makes two packages of the same
-# (tools/package/debian.cmake): component `development` is libgaitpad-dev, `program` is gaitpad.
+# manual pages, completions and what desktops show of it. `cpack -G DEB` makes packages of the same
+# (tools/package/debian.cmake): component `development` is libgaitpad-dev, `library` libgaitpad0, `program` gaitpad.
 # Each library is a component of find_package, so that gaitpad::core needs GLM alone.
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME development)
 set(package_folder ${CMAKE_INSTALL_LIBDIR}/cmake/gaitpad)
@@ -15,7 +15,7 @@ if(TARGET gaitpad_c)
 endif()
 foreach(component ${components})
   install(TARGETS gaitpad_${component} EXPORT gaitpad-${component} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
-          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
+          LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT library NAMELINK_COMPONENT development)
   install(EXPORT gaitpad-${component} NAMESPACE gaitpad:: DESTINATION ${package_folder})
 endforeach()
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/include/gaitpad DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")

@@ -50,7 +50,7 @@ TEST(SceneGround, ItsTrianglesLieOnTheGroundAndFaceUpOrOutOfRisers) {
   }
   EXPECT_LT(largest_gap_m, 0.002);
   EXPECT_NEAR(risers_m2 / (12.25 + 0.0), 4 * 0.17,
-              0.02);  // as wide as the mesh, the far ones not in it
+              0.02);  // as wide as the mesh, without the far ones
 }
 
 TEST(SceneGround, VerticesStayWhereTheyAreWhenTheMeshMoves) {

@@ -55,7 +55,7 @@ struct SelfTestResult {
 Result<std::optional<SelfTestResult>> run_self_test(const SelfTestOptions& options,
                                                     SelfTestPerson& person);
 
-// The request to operate this button, as the report and the prompt name it.
+// The request to press this button.
 std::string button_request(PadButton button);
 
 }  // namespace gaitpad

@@ -163,7 +163,7 @@ double straight_drift_mm(const Walk& walk) {
   return worst;
 }
 
-// The greatest distance of heels, toes and pelvis from the other walk's mirror image.
+// Largest distance of heels, toes and pelvis from the other walk's mirror image.
 double mirror_gap_m(const Walk& a, const Walk& b) {
   double most = 0.0;
   const auto gap = [&most](const vec3& p, vec3 q) {

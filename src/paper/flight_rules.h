@@ -10,8 +10,7 @@ namespace gaitpad {
 
 struct FlightRule {
   bool has_bands = true;    // a target's height must be within 10 % of the extreme
-  bool takes_last = false;  // the first target is the last low before the peak instead of the first
-                            // low
+  bool takes_last = false;  // lift: the last low before the peak, not the first low
 };
 struct FlightTargets {  // as indices of the heights
   int lift = 0, peak = 0, land = 0;

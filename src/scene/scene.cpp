@@ -270,8 +270,8 @@ void light_bodies(const GlProgram& program, const SceneView& view) {
   program.set("rim_strength", view.is_light() ? 0.10 : 0.34);
 }
 
-// Of two half transparent bodies each layer covers one half of a pixel's samples, so that both are
-// visible, whichever is in front.
+// Two half transparent bodies each cover one half of a pixel's samples, so that both are visible,
+// whichever is in front.
 void CapsuleScene::draw(const SceneView& view, int samples) const {
   light_bodies(program_, view);
   glEnable(GL_CULL_FACE);

@@ -93,8 +93,8 @@ class TimeHistogram {
 
 // Collects the reports of the pads until a tick uses them. No system call.
 //
-// While ticks stand still, reports gather for the next tick. Of reports that only move a stick the
-// newest is kept; reports that press or release a button are all kept. When kMaxInTick have
+// While ticks stand still, reports gather for the next tick. If several reports only move a stick,
+// the newest is kept; reports that press or release a button are all kept. When kMaxInTick have
 // gathered, the rest stays in the PadStream, which keeps the newest state of each device.
 class TickReports {
  public:

@@ -409,7 +409,7 @@ Work step_work(const Session& session, const Simulation& simulation, const char*
 constexpr double kCrowdDt_s = 1.0 / 60.0;
 constexpr int kWarmTicks = 60, kFewWarmTicks = 24;  // before measuring a crowd
 constexpr int kLastStart = 20;                      // ticks within which standing members start
-constexpr int kLarge = 10000;                       // larger crowds run fewer ticks and rounds
+constexpr int kLarge = 10000;                       // from this size: shorter warm-up, fewer rounds
 constexpr int kBuilds = 16;
 constexpr unsigned kSeed = 14;
 const std::vector<std::string> kCrowdStyles = {"even",      "stiff_hip",     "stiff_knee",

@@ -89,9 +89,9 @@ bool has_pad_name(std::string_view device_name) {
       [&](const char* word) { return name.find(word) != std::string::npos; });
 }
 
-// A vendor-class interface is a pad if its class says so. A HID interface may be one if no specific
-// HID driver serves it, also if it is not bound to usbhid at all: the kernel binds every HID
-// interface unless a program has detached it.
+// A vendor-class interface is judged by its class. A HID interface that no specific driver serves
+// and that is not a keyboard or mouse may be a pad if its name or the rules say so, or if usbhid is
+// not bound to it: the kernel binds every HID interface, so a program has detached it.
 bool looks_like_pad(const SystemNode& device, const UsbInterface& interface,
                     const std::string& rules) {
   if (interface.ids.interface_class != kHidClass) return may_be_pad(interface);

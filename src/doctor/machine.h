@@ -1,4 +1,4 @@
-// Collects the traces of pads on this machine, whether or not a driver can open them. Reads sysfs,
+// Collects what the system knows of pads, whether or not a driver can open them. Reads sysfs,
 // /dev and /proc and changes nothing.
 #pragma once
 #include <cstdint>

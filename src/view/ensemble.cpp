@@ -21,7 +21,7 @@ constexpr double kOnePerson_m = 4.2;                      // least framing dista
 constexpr double kWithCrowd_m = 9.0;                      // least framing distance with a crowd
 constexpr double kLabelAbove_m = 0.14;                    // height of a name above the head
 constexpr double kHalfLabel_px = 40.0, kLabel_px = 22.0;  // half its width; its height
-constexpr double kReach = 0.25;     // reach of a foot from the root, in body heights
+constexpr double kReach = 0.25;     // of a foot from below the root, in body heights
 constexpr double kHeadReach = 0.5;  // reach of the head, in reaches of the feet
 
 std::string with_blanks(std::string name) {

@@ -26,8 +26,8 @@ struct Fonts {
 Fonts load_fonts(double scale);
 void apply_style(const Theme& theme, double scale);
 
-// Returns `wish` if it is positive, else $GDK_SCALE, else (display's dots per inch) / 96, limited
-// to 1 .. 3; 1 if all are unknown.
+// Returns `wish` if it is positive, else $GDK_SCALE, else (display's dots per inch) / 96 within
+// 1 .. 3; 1 if all are unknown.
 double display_scale(double wish, double dots_per_inch) noexcept;
 
 class Gui {

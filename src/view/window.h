@@ -56,7 +56,7 @@ struct WindowOptions {
   std::function<void(const WindowGlance& glance)> script;
   std::function<bool()> is_ended_from_outside;      // Ctrl-C; pictures are then given up
   std::function<void(double share)> show_progress;  // of pictures: share of frames done
-  // Commands for the session, for instance from standard input.
+  // Commands for the session, for example from standard input.
   std::function<std::vector<std::string>()> take_commands;
 };
 struct WindowResult {

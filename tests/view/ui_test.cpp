@@ -320,9 +320,7 @@ TEST_F(UiTest, NamesAboveHeadsStayInTheSceneAndApart) {
   for (const ImDrawVert& vertex : list->VtxBuffer) {
     EXPECT_GE(vertex.pos.x, static_cast<float>(v.x) - 1.5f);
     EXPECT_LE(vertex.pos.x, static_cast<float>(v.x + v.width) + 1.5f);
-    if (vertex.pos.y < 150.0f || vertex.pos.y > 400.0f)
-      continue;  // without the labels in the
-                 // corners
+    if (vertex.pos.y < 150.0f || vertex.pos.y > 400.0f) continue;  // labels in the corners
     top = std::min(top, vertex.pos.y);
     bottom = std::max(bottom, vertex.pos.y);
   }

@@ -621,8 +621,6 @@ TEST_F(Window, TwoCharactersAreMarkedForAnOverlayAndAThirdReplacesOne) {
   run(script);
 }
 
-// Recordings go to a folder of their own. A recording begins a session in the styles of the
-// previous one; when it ends, the session continues.
 bool points(const Glance& g) { return g.session.stick_means == StickMeans::points; }
 
 // True if the first character's heading is the camera's, turned to the left by `left_rad`.
@@ -691,6 +689,8 @@ TEST_F(Window, AStickThatPointsDoesSoOnTheNextGround) {
   run(script);
 }
 
+// Recordings go to a folder of their own. A recording begins a session in the styles of the
+// previous one; when it ends, the session continues.
 TEST_F(Window, TheSessionGoesOnWhenItsRecordingEnds) {
   options_.record_folder = (folder_ / "takes").string();
   Script script;

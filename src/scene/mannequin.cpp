@@ -239,8 +239,9 @@ void Builder::add_trunk() {
   }
 }
 
-// Neck, jaw with skull, and a nose that shows the direction of the head. The head has the height of
-// the skeleton's if that is plausible; a head joint between the shoulders gets a longer neck.
+// Neck, jaw with skull, and a nose that shows the direction of the head. The head has the
+// skeleton's head height if that is plausible; a head joint between the shoulders gets a longer
+// neck.
 void Builder::add_head() {
   if (joints_.head < 0) return;
   constexpr double kHeight_m = 0.224;

@@ -24,10 +24,10 @@
 namespace gaitpad {
 namespace {
 
-// --- The walk that all of it is measured on ------------------------------------------------------
+// --- The walk that is measured -------------------------------------------------------------------
 
 constexpr int kFirstTick = 480, kLastTick = 2880;  // of the bundled trace: walking, turning
-constexpr int kStickTicks = 8;  // a character of these measurements gets a new stick so often
+constexpr int kStickTicks = 8;                     // ticks between two new sticks of a character
 
 std::string bundled_trace(const std::vector<std::string>& config_folders) {
   const std::string name = "traces/round.hid";
@@ -72,7 +72,7 @@ Result<Session> bench_session(const std::vector<std::string>& config_folders,
   return session;
 }
 
-// The walkers as they are at kFirstTick.
+// The walkers at kFirstTick.
 Result<Simulation> walking(const Session& session) {
   auto simulation = Simulation::create(session.config);
   if (!simulation) return simulation.error();
@@ -80,7 +80,7 @@ Result<Simulation> walking(const Session& session) {
   return simulation;
 }
 
-// The sticks of the trace from kFirstTick on, for characters that begin anywhere in it.
+// The sticks of the trace from kFirstTick on; a character may begin anywhere in them.
 std::vector<Stick> sticks_of(const Session& session, Simulation simulation) {
   std::vector<Stick> sticks;
   for (int tick = kFirstTick; tick < kLastTick; ++tick) {
@@ -101,7 +101,7 @@ IkAngles all_angles(const LegAngles& angles) {
   return all;
 }
 
-// The rows that held the foot in a tick whose solver came to `frame`.
+// The constraint rows of the foot in a tick whose solution is `frame`.
 std::array<IkRow, 6> foot_rows(const LegBuild& leg, const IkFrame& frame, bool is_on_toe) {
   const vec3 effector = is_on_toe ? leg.model.toe_m : leg.model.heel_m;
   const vec3 other = is_on_toe ? leg.model.heel_m : leg.model.toe_m;
@@ -116,8 +116,8 @@ std::array<IkRow, 6> foot_rows(const LegBuild& leg, const IkFrame& frame, bool i
           row(other, across),   row(effector + kSideLever_m * leg.side, across)};
 }
 
-// Both legs of one tick, as the walk solves them: side by side. They start where the walk's solver
-// did and go where it came to.
+// Both legs of one tick, solved side by side as in the walk. They start at the walk's start angles
+// and move to the walk's solution.
 struct RobustLegs {
   std::array<LegToSolve, 2> legs;
   std::array<LegAngles, 2> start_rad;
@@ -174,7 +174,7 @@ void add_legs(const Walker& before, const Walker& now, double, std::vector<Paper
   }
 }
 
-// The solves of these walkers' ticks, one tick in kSnapshotTicks.
+// The solves of these walkers, of one tick in kSnapshotTicks.
 template <class Legs>
 std::vector<Legs> solves_of(const Session& session, Simulation simulation,
                             const std::vector<int>& walkers) {
@@ -201,7 +201,7 @@ int solve(PaperLeg& leg) {
   return result.iterations;
 }
 
-// One pass solves all of them.
+// One pass solves all legs.
 template <class Legs>
 Work leg_work(const char* name, const char* label, std::vector<Legs> legs) {
   Work work;
@@ -219,8 +219,8 @@ Work leg_work(const char* name, const char* label, std::vector<Legs> legs) {
 
 // --- Bare playback: the peer ---------------------------------------------------------------------
 
-// The local rotation of every joint at a phase, in plain code for one joint after another: the four
-// samples around it by Catmull-Rom, as sample_local() computes it with two joints side by side.
+// The local rotation of every joint at a phase, one joint after another: Catmull-Rom through four
+// samples, as sample_local() computes it with two joints side by side.
 void play_back(const GaitCycle& cycle, double phase, Pose& pose) {
   const double place = (phase - std::floor(phase)) * kCycleSamples;
   const int i = std::min(static_cast<int>(place), kCycleSamples - 1);
@@ -272,13 +272,13 @@ Work playback_work(const Session& session, PlaybackFrames kind) {
 
 // --- One character, and four ---------------------------------------------------------------------
 
-// Characters that walk on as the trace leads them, without the session around them.
+// Characters that follow the trace's sticks, without a session.
 struct LiveWalkers {
   struct One {
     std::shared_ptr<const WalkModel> model;
     StyleValues style;
     GaitLimits limits;
-    std::size_t begin = 0;  // in the sticks
+    std::size_t begin = 0;  // index of the first stick
     GaitParams params;
     WalkState state;
     Pose pose;
@@ -288,7 +288,7 @@ struct LiveWalkers {
   std::size_t tick = 0;
   double dt_s = 0.0;
 
-  // `from` are the walkers' places in `simulation`; each begins in another part of the trace.
+  // `from`: indices of walkers in `simulation`; each begins at another part of the trace.
   LiveWalkers(double tick_s, const Simulation& simulation, const std::vector<int>& from,
               const std::vector<Stick>& led_by)
       : sticks(led_by), dt_s(tick_s) {
@@ -320,16 +320,16 @@ Work character_work(const char* name, const char* label,
   return work;
 }
 
-// The processor time that this thread has had.
+// Processor time of this thread.
 double thread_s() {
   timespec time{};
   ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
   return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
 }
 
-// The tick in parts. Sixteen characters go through each part together, so that reading the clock
-// costs little, and live on: no state is copied. What the plan and the pose read from the tables is
-// read once more for itself and taken off them.
+// Splits the tick into parts. Sixteen characters run each part together, so that reading the clock
+// costs little; no state is copied. The table reads of plan and pose are measured once more
+// separately and subtracted from them.
 Work stage_work(const Session& session, const Simulation& simulation,
                 const std::vector<Stick>& sticks) {
   constexpr std::size_t kTogether = 16;
@@ -376,7 +376,7 @@ Work stage_work(const Session& session, const Simulation& simulation,
   return work;
 }
 
-// The whole of Simulation::step(): reports, styles and the pose's hash, too.
+// The whole of Simulation::step(), with reports, styles and the pose's hash.
 Work step_work(const Session& session, const Simulation& simulation, const char* label) {
   struct State {
     Session session;
@@ -407,28 +407,28 @@ Work step_work(const Session& session, const Simulation& simulation, const char*
 // --- Crowds --------------------------------------------------------------------------------------
 
 constexpr double kCrowdDt_s = 1.0 / 60.0;
-constexpr int kWarmTicks = 60, kFewWarmTicks = 24;  // before a crowd is measured
-constexpr int kLastStart = 20;  // somebody who stands begins to walk within so many of them
-constexpr int kLarge = 10000;   // such crowds warm up shorter and take part in fewer rounds
+constexpr int kWarmTicks = 60, kFewWarmTicks = 24;  // before measuring a crowd
+constexpr int kLastStart = 20;                      // ticks within which standing members start
+constexpr int kLarge = 10000;                       // from this size: shorter warm-up, fewer rounds
 constexpr int kBuilds = 16;
 constexpr unsigned kSeed = 14;
 const std::vector<std::string> kCrowdStyles = {"even",      "stiff_hip",     "stiff_knee",
                                                "limp_left", "limp_left_hip", "limp_left_knee",
                                                "muscular",  "heavy_slack"};
 
-// Bytes that the heap has given out.
+// Bytes that are allocated on the heap.
 double heap_bytes() {
   const auto info = ::mallinfo2();
   return static_cast<double>(info.uordblks + info.hblkhd);
 }
 
-// What the crowds have in common. Its members share the models of some builds.
+// Shared by all crowds. Members share the models of some builds.
 struct CrowdCast {
   std::vector<std::shared_ptr<const WalkModel>> models;
   std::vector<GaitLimits> limits;
   std::vector<StyleValues> styles;
   std::vector<Stick> sticks;
-  int stick_step = 1;  // of the sticks in a tick of a crowd
+  int stick_step = 1;  // sticks per tick of a crowd
   double model_bytes = 0.0;
 };
 
@@ -456,7 +456,8 @@ Result<CrowdCast> crowd_cast(const Session& session, const std::vector<Stick>& s
   return cast;
 }
 
-// A crowd of mixed builds and styles, each led by another part of the trace, in different stages.
+// A crowd of mixed builds and styles; each member follows another part of the trace, in another
+// stage.
 class LedCrowd {
  public:
   LedCrowd(std::shared_ptr<const CrowdCast> cast, int size) : cast_(std::move(cast)) {
@@ -476,7 +477,7 @@ class LedCrowd {
   }
   double bytes_each() const { return bytes_each_; }
 
-  // Member after member, each as if it walked alone.
+  // Advances the members one by one, each as if it walked alone.
   void advance_each() {
     lead();
     for (int i = 0; i < crowd_.size(); ++i) {
@@ -485,7 +486,7 @@ class LedCrowd {
               alone_[i].first, alone_[i].second);
     }
   }
-  // Makes advance_each() go on from where the crowd is.
+  // Copies the members' states, from which advance_each() then continues.
   void leave() {
     for (int i = 0; i < crowd_.size(); ++i) {
       alone_.emplace_back(crowd_.state(i), Pose());
@@ -493,7 +494,7 @@ class LedCrowd {
     }
   }
 
-  // With workers: by all of them.
+  // With workers: on all of their threads.
   void advance_all(Workers* workers) {
     lead();
     if (workers) {
@@ -507,7 +508,7 @@ class LedCrowd {
   struct Part {
     int model, style, stick, start;
   };
-  // Gives members their sticks of this tick.
+  // Gives the members the sticks of this tick.
   void lead() {
     for (int i = tick_ % kStickTicks; i < crowd_.size(); i += kStickTicks) {
       const Part& part = parts_[i];
@@ -544,7 +545,7 @@ Work crowd_work(std::shared_ptr<const CrowdCast> cast, int size, int lanes, Crow
   work.width = lanes;
   work.over = "playback";
   work.every = size >= kLarge ? 3 : 1;
-  // A sanitizer's heap counts nothing there.
+  // With a sanitizer, mallinfo2() counts nothing.
   if (crowd->bytes_each() > 0.0) work.notes["bytes"] = crowd->bytes_each();
   if (cores == CrowdCores::all) {
     work.name = "crowd_all_cores";
@@ -561,8 +562,8 @@ Work crowd_work(std::shared_ptr<const CrowdCast> cast, int size, int lanes, Crow
   return work;
 }
 
-// The peer of a crowd: so many of its members, with the same builds, styles, sticks and rate, by a
-// tick of each. The first members of crowds of different sizes are the same.
+// The peer of a crowd: the same number of members with the same builds, styles, sticks and rate,
+// one after another. Crowds of different sizes have the same first members.
 Work alone_work(std::shared_ptr<const CrowdCast> cast, int size) {
   const auto crowd = std::make_shared<LedCrowd>(std::move(cast), size);
   for (int tick = 0; tick < kWarmTicks; ++tick) crowd->advance_all(nullptr);
@@ -577,8 +578,8 @@ Work alone_work(std::shared_ptr<const CrowdCast> cast, int size) {
   return work;
 }
 
-// The limit by memory: a crowd's states and poses are read and written once, its parameters are
-// read, and nothing is computed.
+// The memory limit: reads and writes a crowd's states and poses once, reads its parameters, and
+// computes nothing.
 Work memory_work(const CrowdCast& cast, int size) {
   struct Memory {
     std::vector<std::array<double, sizeof(WalkState) / sizeof(double)>> states;
@@ -634,9 +635,9 @@ std::optional<Error> load(Result<GaitCycle> cycle, const std::string& cache) {
   return std::nullopt;
 }
 
-// From a motion in memory to a character: of the built-in one, of the same as a captured clip,
-// whose halves are not known to be alike, and of that with a cache that knows its strides. Strides
-// are solved on several cores.
+// From a motion in memory to a character: the built-in motion; the same as a captured clip, whose
+// halves are not assumed to be mirrored; the clip with its strides in a cache. Strides are solved
+// on several cores.
 Result<std::vector<Work>> load_work() {
   const auto clip = std::make_shared<const Motion>(procedural_motion());
   const auto cache = cache_folder("strides");
@@ -662,8 +663,8 @@ Result<std::vector<Work>> load_work() {
 
 // --- Replays -------------------------------------------------------------------------------------
 
-// The bundled trace from reading it to its summary, as `replay` and `check` do it, and with all
-// files of --out. Bounds hold for the whole program, whose start is not in it.
+// The bundled trace, from reading it to its summary, as in `replay` and `check`, and with all files
+// of --out. The bounds are for the whole program, but its start is not measured.
 Result<std::vector<Work>> replay_work(const std::vector<std::string>& config_folders) {
   SessionSpec spec;
   spec.config_folders = config_folders;

@@ -13,13 +13,13 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr double kBlock_s = 0.02;    // of one work in one round; at least one pass
-constexpr double kMostGrowth = 1.8;  // of a character's time from a crowd of 1,000 on
+constexpr double kBlock_s = 0.02;    // per work and round; at least one pass
+constexpr double kMostGrowth = 1.8;  // of a character's time, relative to crowds of 1,000
 constexpr int kGrowsFrom = 1000;
 constexpr double kFrame_ns = 1e9 / 60.0;
 
-// Keeps what Google Benchmark measures: the processor time of this thread, which other programs do
-// not add to, or where several threads work the time that passes.
+// Keeps Google Benchmark's result: this thread's processor time, which other programs do not
+// affect, or the elapsed time if there are several threads.
 class Block : public benchmark::BenchmarkReporter {
  public:
   explicit Block(bool has_threads) : has_threads_(has_threads) {}
@@ -38,7 +38,7 @@ class Block : public benchmark::BenchmarkReporter {
   bool has_threads_;
 };
 
-// So many passes of one work, or, with 0, as many as take kBlock_s.
+// Runs `passes` passes of a work or, if 0, as many as take kBlock_s.
 Block measured_block(const Work& work, std::int64_t passes) {
   benchmark::ClearRegisteredBenchmarks();
   auto* registered = benchmark::RegisterBenchmark("block", [&work](benchmark::State& state) {

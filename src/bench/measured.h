@@ -1,4 +1,4 @@
-// Lets pieces of work take turns and tells what a unit of each took.
+// Runs works in turns and reports the time of a unit of each.
 #pragma once
 #include <sched.h>
 
@@ -12,8 +12,8 @@
 
 namespace gaitpad {
 
-// Keeps this thread on one core, so that moves between cores do not count, and gives it all of
-// them for work that has several threads.
+// Pins this thread to one core, so that no migration is measured, and unpins it for work with
+// several threads.
 class Cores {
  public:
   Cores() {
@@ -21,7 +21,7 @@ class Cores {
     CPU_ZERO(&one_);
     if (::sched_getaffinity(0, sizeof all_, &all_) != 0) return;
     for (int core = 0; core < CPU_SETSIZE; ++core)
-      if (CPU_ISSET(core, &all_)) core_ = core;  // the last: the first serves most interrupts
+      if (CPU_ISSET(core, &all_)) core_ = core;  // the last: the first one serves most interrupts
     if (core_ >= 0) CPU_SET(core_, &one_);
   }
   ~Cores() { use_all(); }
@@ -29,7 +29,7 @@ class Cores {
   Cores& operator=(const Cores&) = delete;
   void use_one() const { use(one_); }
   void use_all() const { use(all_); }
-  int core() const { return core_; }  // -1: not known, then nothing is pinned
+  int core() const { return core_; }  // -1: unknown; nothing is pinned
 
  private:
   void use(const cpu_set_t& cores) const {
@@ -39,31 +39,31 @@ class Cores {
   int core_ = -1;
 };
 
-// What a unit of a work, or one of its stages, took.
+// Times of a unit of a work or of one of its stages.
 struct BenchRow {
   const Work* work = nullptr;
   int stage = -1;                       // in kStages; -1: the whole
-  std::vector<double> ns;               // in each round
-  double quantile(double share) const;  // the value that this share of the rounds does not exceed
+  std::vector<double> ns;               // one for each round
+  double quantile(double share) const;  // smallest value >= this share of the rounds'
   double median() const { return quantile(0.5); }
 };
 
-// All works take turns, block by block, so that what the machine does besides falls on all of them.
-// Before the first round each finds its number of passes. `show`: told after each round, 0 .. 1.
+// The works run in turns, block by block, so that other load of the machine affects all of them.
+// Before the first round each determines its number of passes. `show` gets 0 .. 1 after each round.
 std::vector<BenchRow> measured(const std::vector<Work>& works, int rounds, const Cores& cores,
                                const std::function<void(double share)>& show);
 
-// The median of the first row with this name, and this many characters and lanes; 0 stands for any.
-// Nothing if there is none.
+// Median of the first row with this name, number of characters and lanes; 0 matches any. Nothing if
+// there is none.
 double median_of(const std::vector<BenchRow>& rows, std::string_view name, int characters,
                  int width);
 
 std::string processor_name();
 
-// A row with its spread, its peer and its bounds, as `gaitpad bench --json` prints it.
+// A row with its spread, peer and bounds, as `gaitpad bench --json` prints it.
 nlohmann::ordered_json json_of(const BenchRow& row, const std::vector<BenchRow>& rows);
-// The rows as a list, and two under names of their own: a leg's share of the tick's inverse
-// kinematics, and loading a clip.
+// All rows, and two with names of their own: a leg's share of the tick's inverse kinematics, and
+// the loading of a clip.
 nlohmann::ordered_json list_of(const std::vector<BenchRow>& rows, const std::string& processor);
 
 }  // namespace gaitpad

@@ -15,10 +15,10 @@ namespace gaitpad {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr double kMostValue = 1e9;  // of any number
+constexpr double kMostValue = 1e9;  // largest permitted number
 constexpr const char* kHashKey = "pose_hash";
 
-// Six significant digits, as a file has them.
+// The value with six significant digits, as in a file.
 std::string number_text(double value) {
   return fmt::format("{:.6g}", value == 0.0 ? 0.0 : value);  // no -0
 }
@@ -50,7 +50,7 @@ void RunMeter::look(const WalkerSample& sample, const Walker& walker, Character&
       const auto& [is_planted, place_m] = points[p];
       if (is_planted && foot.is_planted[p]) {
         const double slip_m = glm::length(place_m - foot.planted_m[p]);
-        if (!(slip_m <= character.slip_m)) character.slip_m = slip_m;  // keeps what is no number
+        if (!(slip_m <= character.slip_m)) character.slip_m = slip_m;  // NaN is kept
       } else if (is_planted) {
         foot.planted_m[p] = place_m;
       }
@@ -160,7 +160,7 @@ void read_options(TomlTable& options, Expectation& e) {
   e.is_lenient = options.boolean("lenient").value_or(false);
 }
 
-// The lines of comment before the first other line.
+// The comment lines at the beginning.
 std::string heading_of(std::string_view text) {
   text = without_byte_order_mark(text);
   std::string heading;
@@ -272,7 +272,7 @@ SessionSpec session_of(const Expectation& expectation, const std::string& folder
   const auto placed = [&folder](std::string& path) {
     if (!path.empty()) path = (fs::path(folder) / path).lexically_normal().string();
   };
-  // FILE|NAME: as config_file() tells them apart, and motions by their extension.
+  // FILE|NAME: distinguished as in config_file(), and motions by their extension.
   const auto placed_if_path = [&placed](std::string& path) {
     const bool is_file = path.find('/') != path.npos || path.ends_with(".toml") ||
                          path.ends_with(".bvh") || path.ends_with(".amc");
@@ -299,7 +299,7 @@ SessionSpec session_of(const Expectation& expectation, const std::string& folder
 
 namespace {
 
-// With tolerances that are still to be chosen: below zero.
+// All measures; a tolerance below zero is chosen later.
 std::vector<Expected> all_of(int measures) {
   std::vector<Expected> list;
   for (int i = 0; i < measures; ++i) list.push_back({i, 0.0, -1.0});
@@ -325,7 +325,7 @@ void find_unmet(const std::vector<Expected>& list, const std::array<Measure, N>&
   for (const Expected& expected : list) {
     const double value = values[expected.measure];
     const bool is_count = measures[expected.measure].within == 0.0;
-    // Half a unit of the sixth digit, to which an expectation is written.
+    // Half a unit of the sixth digit, the precision of an expectation file.
     const double rounding = is_count ? 0.0 : 5e-6 * std::abs(expected.value);
     if (std::abs(value - expected.value) <= expected.within + rounding) continue;
     sentences.push_back(fmt::format(

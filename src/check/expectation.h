@@ -1,4 +1,4 @@
-// What a recording is expected to come to: NAME.expect.toml beside NAME.hid (config/README.md,
+// The expected results of a recording: NAME.expect.toml beside NAME.hid (config/README.md,
 // Expectations). Options of the replay, the hash of the poses, counts, and numbers with tolerances.
 #pragma once
 #include <array>
@@ -14,11 +14,11 @@
 
 namespace gaitpad {
 
-// Something that is measured of a run or of one of its characters.
+// A measure of a run or of one of its characters.
 struct Measure {
   std::string_view name;
-  // What a written expectation allows: this, or a hundredth of the value if that is more. 0: a
-  // count, which must be met exactly.
+  // Tolerance in a new expectation: the larger of this and 1 % of the value. 0: a count, which must
+  // be equal.
   double within = 0.0;
 };
 enum RunMeasure { kTicks, kReports, kBadReports, kBadCommands, kDamagedLines, kRunMeasures };
@@ -29,19 +29,19 @@ enum CharacterMeasure {
   kStepsRight,
   kIkFailures,
   kDistance,  // on the ground, along the path of the hips
-  kSpeed,     // distance over the time in which it was not idle
+  kSpeed,     // distance over the time when not idle
   kHeading,   // at the end, positive to the left
   kEndX,      // of the pelvis at the end
   kEndZ,
-  kStepLeft,  // mean of its steps
+  kStepLeft,  // mean of its steps' lengths
   kStepRight,
-  kHipLeft,  // from the least to the greatest flexion
+  kHipLeft,  // range of flexion
   kHipRight,
   kKneeLeft,
   kKneeRight,
   kAnkleLeft,
   kAnkleRight,
-  kSlip,  // the farthest that a planted heel or toe was from where it was planted
+  kSlip,  // largest distance of a planted heel or toe from where it was planted
   kCharacterMeasures
 };
 inline constexpr std::array<Measure, kCharacterMeasures> kOfCharacter = {{{"steps_left"},
@@ -62,7 +62,7 @@ inline constexpr std::array<Measure, kCharacterMeasures> kOfCharacter = {{{"step
                                                                           {"ankle_right_deg", 1.0},
                                                                           {"slip_m", 0.0005}}};
 
-// A run in these measures.
+// The measures of a run.
 struct Measured {
   std::uint64_t pose_hash = 0;
   std::array<double, kRunMeasures> run{};
@@ -72,7 +72,7 @@ struct Measured {
 // Watches a run tick by tick.
 class RunMeter {
  public:
-  void look(const Simulation& simulation);  // after each tick
+  void look(const Simulation& simulation);  // call it after each tick
   Measured finish(const Simulation& simulation, const RunSummary& summary) const;
 
  private:
@@ -106,40 +106,40 @@ struct ExpectedFile {
   bool operator==(const ExpectedFile&) const = default;
 };
 struct Expectation {
-  std::string heading;  // the comment that the file begins with, kept when it is written again
-  // Texts as in the file: a path is relative to it.
+  std::string heading;  // comment at the file's beginning; kept on renewal
+  // As in the file: paths are relative to it.
   SessionSpec::Walk walk;
   SessionSpec::Pad pad;
   std::optional<int> rate_hz;
   bool is_lenient = false;
-  bool keeps_poses = true;  // written beside it, so that a difference can be found
+  bool keeps_poses = true;  // pose file beside it, to locate a difference
 
   std::optional<std::uint64_t> pose_hash;
   std::vector<Expected> run;
-  std::vector<std::vector<Expected>> characters;  // the n-th for the n-th character
-  std::vector<ExpectedFile> files;                // as they were when it was written
+  std::vector<std::vector<Expected>> characters;  // indexed like the characters
+  std::vector<ExpectedFile> files;                // as of writing
   bool is_empty() const { return !pose_hash && run.empty() && characters.empty(); }
 };
 
-// Errors: `round.expect.toml:3: unknown key "pose_hsh"; ...`. `name` stands in them.
+// Errors: `round.expect.toml:3: unknown key "pose_hsh"; ...`. `name` is the file's name in them.
 Result<Expectation> parsed_expectation(std::string_view text, const std::string& name);
 std::string expectation_text(const Expectation& expectation);
 
-// The session that replays `trace` as the expectation in `folder` says.
+// The session that replays `trace` with the options of the expectation in `folder`.
 SessionSpec session_of(const Expectation& expectation, const std::string& folder,
                        const std::string& trace);
 
-// The same options and tolerances with the values of a run: of what was expected before, or of
-// everything where nothing was.
+// The same options and tolerances with the values of a run: of the measures that it had, or of all
+// if it had none.
 Expectation renewed(const Expectation& expectation, const Measured& measured);
 
-// Which files are others than when the expectation was written, a sentence each. Nothing if it
-// knows of none.
+// A sentence for each file that has changed since the expectation was written. Empty if it lists no
+// files.
 std::vector<std::string> changed_files(const Expectation& expectation,
                                        const std::vector<ExpectedFile>& now);
-// What is not met, a sentence each: `speed_m_s is 1.31, expected 1.2 within 0.02`.
+// A sentence for each measure out of tolerance: `speed_m_s is 1.31, expected 1.2 within 0.02`.
 std::vector<std::string> unmet_numbers(const Expectation& expectation, const Measured& measured);
-// What renewing changed, a sentence each.
+// A sentence for each change by the renewal.
 std::vector<std::string> changes(const Expectation& before, const Expectation& after);
 
 std::string hash_text(std::uint64_t hash);

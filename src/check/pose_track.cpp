@@ -104,8 +104,8 @@ void write_column(std::string& out, const std::vector<std::int32_t>& column) {
   }
 }
 
-// Reads what the functions above wrote. After the end of the bytes, or a number out of its bounds,
-// it is not sound and gives zeros.
+// Reads the output of the functions above. After the end of the bytes, or a number out of bounds,
+// it returns zeros and is_sound() is false.
 class Reader {
  public:
   explicit Reader(std::string_view bytes) : rest_(bytes) {}
@@ -162,7 +162,7 @@ class Reader {
 };
 
 std::optional<std::string> unpacked(std::string_view bytes) {
-  constexpr std::size_t kMostPacking = 1100;  // zlib packs a byte of 1032 at best
+  constexpr std::size_t kMostPacking = 1100;  // zlib compresses at most 1032 : 1
   if (!bytes.starts_with(kMagic)) return std::nullopt;
   bytes.remove_prefix(kMagic.size());
   Reader head(bytes.substr(0, 8));
@@ -234,7 +234,7 @@ vec3 value_of(const PoseChannel& channel, std::size_t tick) {
   return {channel.values[0][tick], channel.values[1][tick], channel.values[2][tick]};
 }
 
-// Unit length, but for the rounding of the steps.
+// Unit length, except for rounding.
 quat rotation_of(const PoseChannel& channel, std::size_t tick) {
   const vec3 v = PoseTrack::kAngleStep * value_of(channel, tick);
   return {std::sqrt(std::max(0.0, 1.0 - glm::dot(v, v))), v.x, v.y, v.z};
@@ -266,7 +266,7 @@ Result<std::optional<PoseDifference>> difference(const PoseTrack& before, const 
     return Error{"the characters have other joints than the poses that are kept"};
   if (before.rate_hz() != after.rate_hz())
     return Error{fmt::format("the poses that are kept are of {} ticks a second", before.rate_hz())};
-  // An angle that is off is told before a length: joints move the root.
+  // Report an angle before a length: joints move the root.
   const auto is_farther = [&a](const PoseDifference::Place& p, const PoseDifference::Place& than) {
     const auto rank = [&a](const PoseDifference::Place& place) {
       return std::pair(!a[place.channel].joint.empty() && place.distance > 0.0, place.distance);
@@ -275,7 +275,7 @@ Result<std::optional<PoseDifference>> difference(const PoseTrack& before, const 
   };
   PoseDifference found;
   const std::size_t ticks = std::min(before.kept(), after.kept());
-  int differing = 0;  // channels in the first tick
+  int differing = 0;  // number of channels in the first tick
   for (std::size_t tick = 0; tick < ticks; ++tick) {
     const bool is_first = differing == 0;
     for (std::size_t c = 0; c < a.size(); ++c) {

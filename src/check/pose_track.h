@@ -1,9 +1,9 @@
-// The poses of a run, kept small beside its expectation (NAME.expect.poses), and where two runs
-// part. A fingerprint of each joint in each tick tells exactly when and where a bit differs; values
-// rounded to kAngleStep and kLengthStep_m tell by how much.
+// The poses of a run in a small file beside its expectation (NAME.expect.poses), to locate the
+// first difference of two runs. A fingerprint of each joint and tick finds a differing bit exactly;
+// values rounded to kAngleStep and kLengthStep_m give its size.
 //
-// The file: the line `gaitpad poses 1`, the length of what follows before compression, 8 bytes, and
-// that as zlib packs it. All numbers are little-endian; N is a number of 7 bits a byte, the lowest
+// The file: the line `gaitpad poses 1`; the uncompressed length of the rest, 8 bytes; the rest,
+// compressed by zlib. All numbers are little-endian; N is a number of 7 bits a byte, the lowest
 // first. Rate N, ticks of the run N, pose hash 8 bytes, channels N, ticks kept N; then each
 // channel: the character N (0: the crowd), the joint's name (N bytes), a fingerprint of 2 bytes for
 // each tick, and three columns of values, each as its second differences N, signs in the lowest
@@ -21,14 +21,14 @@
 
 namespace gaitpad {
 
-inline constexpr double kDegrees = 57.29577951308232;  // of a radian
+inline constexpr double kDegrees = 57.29577951308232;  // 180 / pi
 
 // One joint of one character, or its root's place.
 struct PoseChannel {
-  int character = 1;  // from 1; 0: all of the crowd, fingerprints alone
-  std::string joint;  // empty: the place of the root
+  int character = 1;  // from 1; 0: the whole crowd, without values
+  std::string joint;  // empty: the root's place
   std::vector<std::uint16_t> prints;
-  // The root's place in kLengthStep_m, else x, y, z of the rotation with w >= 0 in kAngleStep.
+  // The root's place in kLengthStep_m, or x, y, z of the rotation with w >= 0 in kAngleStep.
   std::array<std::vector<std::int32_t>, 3> values;
 };
 
@@ -37,9 +37,9 @@ class PoseTrack {
   static constexpr double kLengthStep_m = 1e-4;
   static constexpr double kAngleStep = 1.0 / 16384.0;  // 0.007 degrees
 
-  // `ticks`: of the run. A long run's first ticks are kept, as many as kMaxCells hold.
+  // `ticks`: of the run. Keeps the first ticks, as many as fit into kMaxCells.
   PoseTrack(const Simulation& simulation, int rate_hz, std::int64_t ticks);
-  void add(const Simulation& simulation);  // after each tick
+  void add(const Simulation& simulation);  // call it after each tick
 
   std::string bytes() const;
   static Result<PoseTrack> parse(std::string_view bytes, const std::string& name);
@@ -61,9 +61,10 @@ class PoseTrack {
   std::vector<PoseChannel> channels_;
 };
 
-// In a tick: the rotation vector in degrees, in the parent's frame; the root's place in metres.
+// Value in a tick: the rotation vector in degrees, in the parent's frame, or the root's place in
+// metres.
 vec3 shown_value(const PoseChannel& channel, std::size_t tick);
-// How far apart a channel is in a tick: degrees, of a root metres. 0: less than the steps tell.
+// Distance in a tick: degrees, or metres for a root. 0: less than the rounding.
 double distance_of(const PoseChannel& a, const PoseChannel& b, std::size_t tick);
 
 struct PoseDifference {
@@ -71,12 +72,12 @@ struct PoseDifference {
     std::size_t tick = 0, channel = 0;
     double distance = 0.0;  // distance_of()
   };
-  // The first tick in which a bit differs; of the channels that do, the one that is farthest off.
+  // The first tick with a differing bit, and its channel with the largest distance.
   Place first;
-  int others = 0;  // further channels that differ in that tick
-  Place largest;   // of the whole run; angles alone where one differs
+  int others = 0;  // other channels that differ in that tick
+  Place largest;   // of the whole run; only angles if one differs
 };
-// Nothing: all that both keep is the same. Error: the channels are not the same.
+// Returns nothing if the ticks that both keep are equal. Error: the channels differ.
 Result<std::optional<PoseDifference>> difference(const PoseTrack& before, const PoseTrack& after);
 
 }  // namespace gaitpad

@@ -105,7 +105,7 @@ Measured measured_run(const PreparedTrace& prepared) {
 
 struct KeptRun {
   PoseTrack poses;
-  std::vector<vec2> sticks;  // of each tick
+  std::vector<vec2> sticks;  // one for each tick
 };
 KeptRun kept_run(const PreparedTrace& prepared) {
   KeptRun kept{PoseTrack(prepared.start, prepared.config.rate_hz, prepared.ticks), {}};
@@ -130,7 +130,7 @@ std::string distance_text(const PoseChannel& channel, double distance) {
                         : ", by less than 0.02 degrees";
 }
 
-// The last report that the tick knew, and the stick that came of all reports.
+// The last report up to the tick, and the resulting stick.
 std::string report_text(const PreparedTrace& prepared, std::size_t tick, const vec2& stick) {
   constexpr std::size_t kMostBytes = 32;
   const Trace& trace = prepared.trace;
@@ -170,7 +170,7 @@ JointCurves curves_of(const PoseChannel& before, const PoseChannel& after, int r
   return curves;
 }
 
-// Where the poses part from those that were kept.
+// Describes the first difference from the stored poses.
 void find_difference(const CheckedTrace& trace, const Expectation& expectation,
                      const PreparedTrace& prepared, bool with_curves, CheckResult& result) {
   const auto say = [&result](std::string sentence) {
@@ -239,7 +239,7 @@ void judge(const Expectation& expectation, const Measured& measured, CheckResult
                                        hash_text(*expectation.pose_hash)));
 }
 
-// The recording first. `folders`: of configuration.
+// Files of the replay, the recording first. `folders`: of configuration.
 Result<std::vector<ExpectedFile>> files_of(const CheckedTrace& trace, const PreparedTrace& prepared,
                                            const std::vector<std::string>& folders) {
   const fs::path own = fs::absolute(trace.path).lexically_normal().parent_path();
@@ -259,14 +259,14 @@ Result<std::vector<ExpectedFile>> files_of(const CheckedTrace& trace, const Prep
   return files;
 }
 
-// What a failure says first.
+// Puts these sentences first in a failed result.
 void blame_files(std::vector<std::string> sentences, CheckResult& result) {
   if (result.is_met || sentences.empty()) return;
   sentences.push_back(std::exchange(result.verdict, sentences.front()));
   result.details.insert(result.details.begin(), sentences.begin() + 1, sentences.end());
 }
 
-// Whether the poses beside it are those of the run, or none are wanted.
+// True if the stored poses are those of the expectation, or if none are wanted.
 bool has_poses(const CheckedTrace& trace, const Expectation& expectation) {
   if (!expectation.keeps_poses || !expectation.pose_hash) return true;
   const auto bytes = file_text(trace.poses(), kMaxPosesBytes);
@@ -325,7 +325,7 @@ std::optional<Error> check(const CheckedTrace& trace, const CheckOptions& option
   if (!files) return files.error();
   const Measured measured = measured_run(*prepared);
   judge(expectation, measured, result);
-  CheckResult parting;  // found before an update replaces the poses that are kept
+  CheckResult parting;  // found before an update replaces the stored poses
   if (expectation.pose_hash && *expectation.pose_hash != measured.pose_hash)
     find_difference(trace, expectation, *prepared, options.with_curves, parting);
   if (options.updates) {
@@ -360,7 +360,7 @@ void check_all(const std::vector<CheckedTrace>& traces, const CheckOptions& opti
   std::mutex mutex;
   std::vector<std::optional<CheckResult>> waiting(traces.size());
   std::size_t taken = 0;
-  std::exception_ptr thrown;  // by `take`, for the caller: fmt::print on a full disk
+  std::exception_ptr thrown;  // from `take`, for the caller: a full disk
   const auto work = [&] {
     for (std::size_t i; (i = next.fetch_add(1)) < traces.size();) {
       CheckResult result = checked(traces[i], options);

@@ -1,4 +1,4 @@
-// Recordings with expectations: found in folders, replayed, judged, renewed.
+// Recordings with expectations: finds them in folders, replays, judges and renews them.
 #pragma once
 #include <array>
 #include <functional>
@@ -13,15 +13,15 @@ namespace gaitpad {
 
 struct CheckOptions {
   std::vector<std::string> config_folders;
-  bool updates = false;             // writes the expectations that are not met or are missing
-  bool with_curves = false;         // of the joint that differs first
+  bool updates = false;             // writes expectations that failed or are missing
+  bool with_curves = false;         // of the first joint that differs
   std::optional<double> max_hours;  // as SessionSpec::Replay's
   bool user_styles = false;         // as SessionSpec::Replay's
 };
 
-// A recording and what stands beside it.
+// A recording and the files beside it.
 struct CheckedTrace {
-  std::string path;  // without extension, as it was given or found
+  std::string path;  // without extension, as given or found
   std::string recording() const { return path + ".hid"; }
   std::string expectation() const { return path + ".expect.toml"; }
   std::string poses() const { return path + ".expect.poses"; }
@@ -29,25 +29,24 @@ struct CheckedTrace {
 
 struct FoundTraces {
   std::vector<CheckedTrace> traces;  // ordered by path, each once
-  std::vector<std::string> without;  // further recordings in the folders, without an expectation
+  std::vector<std::string> without;  // other recordings of the folders, without an expectation
 };
-// Files are taken as they are: a recording or its expectation. Folders are searched, hidden ones
-// and links left out; recordings without an expectation count only if `updates` is set. Error: a
-// path does not exist.
+// A file is a recording or its expectation. Folders are searched, without hidden folders and links;
+// recordings without an expectation count only if `updates` is set. Error: a path does not exist.
 Result<FoundTraces> found_traces(const std::vector<std::string>& paths, bool updates);
 
-// Both courses of a joint over all ticks that are kept: its rotation vector in degrees, in the
-// frame of its parent; of a root its place in metres.
+// Two curves of a joint over all kept ticks: its rotation vector in degrees in its parent's frame,
+// or the root's place in metres.
 struct JointCurves {
   std::string joint;
   bool is_angle = true;
   int rate_hz = 0;
-  std::size_t first_tick = 0;  // that differs
+  std::size_t first_tick = 0;  // first tick that differs
   std::array<std::vector<double>, 3> before, after;
   std::vector<double> distance;  // degrees or metres between them
 };
 struct CheckResult {
-  bool is_met = false;  // with CheckOptions::updates: whether the files say so now
+  bool is_met = false;  // with CheckOptions::updates: after the update
   std::string verdict;  // one sentence
   std::vector<std::string> details;
   double seconds = 0.0;
@@ -55,8 +54,8 @@ struct CheckResult {
 };
 CheckResult checked(const CheckedTrace& trace, const CheckOptions& options);
 
-// All of them on so many threads. `take` gets the results in the order of the traces, each as soon
-// as those before it are known, from one thread at a time.
+// Checks all of them on `threads` threads. `take` gets each result in the order of the traces, when
+// the earlier ones are done; it is called by one thread at a time.
 void check_all(const std::vector<CheckedTrace>& traces, const CheckOptions& options, int threads,
                const std::function<void(std::size_t, CheckResult&&)>& take);
 

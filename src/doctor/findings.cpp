@@ -22,7 +22,7 @@ bool exists(const std::string& path) {
   return fs::exists(path, ignored);
 }
 
-// The findings so far, and what they are made from.
+// The findings so far, and their input.
 struct Diagnosis {
   const Machine& machine;
   const RulesFile& shipped;
@@ -38,19 +38,19 @@ RuleSubject subject_of(const PadHardware& pad) {
   return {static_cast<std::uint16_t>(pad.bus), pad.vendor, pad.product,
           pad.interface ? std::optional<int>(pad.interface->number) : std::nullopt};
 }
-// Whether another interface of its USB device is a keyboard or a mouse: a rule for the device would
-// open that one, too.
+// True if another interface of the same USB device is a keyboard or a mouse: a rule for the device
+// would open that one as well.
 bool is_beside_a_keyboard(const PadHardware& pad) {
   if (!pad.interface) return false;
   const fs::path device = fs::path(pad.interface->path).parent_path();
   return std::ranges::any_of(usb_interfaces(device.string()),
                              [](const UsbInterface& i) { return !boot_device(i).empty(); });
 }
-// Whether the node has the sticks of a pad: one pad makes several.
+// True if the event node has the pad's sticks: one pad makes several nodes.
 bool is_pad_event(const SystemNode& node) { return !node.is_motion_sensor && !node.is_touchpad; }
 
-// In the checks below `state` is what their findings are: a problem, or a note if the pad works in
-// another way.
+// In the checks below `state` is the state of their findings: problem, or note if another driver
+// can use the pad.
 
 // --- access
 
@@ -93,7 +93,7 @@ std::string permission_fix(const RulesFile& shipped, const PadHardware& pad,
                      kPadRules.apply, installed->path);
 }
 
-// True if the node can be used.
+// Returns true if the node can be used.
 bool check_access(const std::string& node, const PadHardware& pad, Finding::State state,
                   Diagnosis& diagnosis) {
   struct stat status = {};
@@ -119,7 +119,7 @@ void check_events(const PadHardware& pad, Finding::State state, Diagnosis& diagn
                     fmt::format("{}: the pad's {}, not its sticks", node.node,
                                 node.is_touchpad ? "touchpad" : "motion sensors"));
     } else if (check_access(node.node, pad, state, diagnosis)) {
-      // Whether it is grabbed is only known to who grabs it: the other would lose events.
+      // Only the program that grabs a node knows it, so a second program would receive no events.
       const std::string users = users_of(node.node);
       if (users.empty()) continue;
       diagnosis.add(
@@ -145,7 +145,7 @@ std::string module_fix(const std::string& module) {
   return fmt::format("sudo modprobe {} (on the host: {} is not here)", module, folder);
 }
 
-// Whether a kernel driver serves the USB interface.
+// Checks that a kernel driver serves the USB interface.
 void check_binding(const UsbInterface& interface, const PadHardware& pad, Finding::State state,
                    Diagnosis& diagnosis) {
   const std::string name = fs::path(interface.path).filename().string();
@@ -215,13 +215,13 @@ void check_model(const PadHardware& pad, Diagnosis& diagnosis) {
 bool is_open_to_us(const PadSighting& sighting, const PadHardware& pad) {
   return sighting.is_pad && sighting.problem.empty() && sighting.listing.pad_path == pad.path;
 }
-// usb would have to take the pad from the kernel: play does that only if it is asked to.
+// usb would have to detach the kernel's driver, which play does only if it is asked to.
 bool needs_consent(const PadSighting& sighting) {
   return sighting.driver->name == std::string_view("usb") &&
          !sighting.listing.kernel_driver.empty();
 }
 
-// The drivers by which play would open it: `hidraw (/dev/hidraw3), evdev (/dev/input/event5)`.
+// The drivers with which play could open it: `hidraw (/dev/hidraw3), evdev (/dev/input/event5)`.
 std::string ways_to(const PadHardware& pad, const Machine& machine) {
   std::string ways;
   for (const PadSighting& sighting : machine.sightings) {
@@ -232,8 +232,8 @@ std::string ways_to(const PadHardware& pad, const Machine& machine) {
   return ways;
 }
 
-// The errors of the drivers, if nothing else explains why the pad does not work, and what could
-// help.
+// Adds the drivers' errors, with a possible fix, if nothing else explains why the pad does not
+// work.
 void check_sightings(const PadHardware& pad, bool is_explained, Diagnosis& diagnosis) {
   for (const PadSighting& sighting : diagnosis.machine.sightings) {
     const std::string& node = sighting.listing.node;
@@ -256,7 +256,7 @@ void check_pad(const PadHardware& pad, Diagnosis& diagnosis) {
     diagnosis.add(Finding::State::usable, pad.hidraw.empty() ? pad.path : pad.hidraw.front().node,
                   pad, fmt::format("works through {}; {}", ways, kHatDrives));
   }
-  // One usable driver is enough: problems of the others are notes then.
+  // One usable driver is enough; then problems of the others are notes.
   const auto state = is_usable ? Finding::State::note : Finding::State::problem;
   const std::size_t before = diagnosis.list.size();
   if (pad.interface) check_binding(*pad.interface, pad, state, diagnosis);
@@ -270,7 +270,7 @@ void check_pad(const PadHardware& pad, Diagnosis& diagnosis) {
   if (!is_usable) check_sightings(pad, is_explained, diagnosis);
 }
 
-// Problems of the machine, not of one pad.
+// Problems of the machine that do not concern a single pad.
 void check_machine(Diagnosis& diagnosis) {
   const Machine& machine = diagnosis.machine;
   const PadHardware none;
@@ -311,7 +311,7 @@ void check_absence(Diagnosis& diagnosis) {
       "plug one in (a cable for charging alone carries no data), or pair it by Bluetooth");
 }
 
-// The pads that are plugged in and that the shipped rules do not name, none of a keyboard.
+// Pads that are plugged in and not named by the shipped rules, without parts of a keyboard.
 std::vector<RuleSubject> uncovered_pads(const Machine& machine, const RulesFile& shipped) {
   std::vector<RuleSubject> subjects;
   for (const PadHardware& pad : machine.pads) {

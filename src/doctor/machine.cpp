@@ -37,7 +37,7 @@ RuleSubject subject_of(const SystemNode& node) {
   return {static_cast<std::uint16_t>(node.bus), node.vendor, node.product, std::nullopt};
 }
 
-// By its descriptor, or by what config/pads says about it.
+// True if the descriptor or config/pads says that it is a pad.
 bool describes_pad(const SystemNode& node, const PadOverrides& overrides) {
   DeviceInfo info;
   info.bus = node.bus;
@@ -50,7 +50,7 @@ bool describes_pad(const SystemNode& node, const PadOverrides& overrides) {
   return layout && layout->is_pad;
 }
 
-// Whether a driver could read that the node is a pad. Without udev nothing else says so.
+// True if a driver could read that the node is a pad. Without udev this is the only evidence.
 bool is_sighted(const std::vector<PadSighting>& sightings, const std::string& node) {
   return std::ranges::any_of(sightings, [&](const PadSighting& sighting) {
     return sighting.is_pad && sighting.listing.node == node &&
@@ -65,7 +65,7 @@ void add_hidraw(const Machine& machine, const PadOverrides& overrides, PadsByPat
   }
 }
 
-// Motion sensors and touchpads belong to their pad.
+// Adds event nodes; motion sensors and touchpads belong to their pad.
 void add_events(const Machine& machine, PadsByPath& pads) {
   const std::vector<SystemNode> nodes = system_nodes("input");
   for (const SystemNode& node : nodes) {
@@ -89,8 +89,9 @@ bool has_pad_name(std::string_view device_name) {
       [&](const char* word) { return name.find(word) != std::string::npos; });
 }
 
-// Pads of a vendor class by that class. A HID device that no HID driver serves by its name or ids,
-// and any that is not even bound to usbhid: the kernel binds all but what a program took away.
+// A vendor-class interface is judged by its class. A HID interface that no specific driver serves
+// and that is not a keyboard or mouse may be a pad if its name or the rules say so, or if usbhid is
+// not bound to it: the kernel binds every HID interface, so a program has detached it.
 bool looks_like_pad(const SystemNode& device, const UsbInterface& interface,
                     const std::string& rules) {
   if (interface.ids.interface_class != kHidClass) return may_be_pad(interface);
@@ -144,7 +145,7 @@ std::string users_of(const std::string& node) {
     const std::string id = process.path().filename().string();
     if (id.find_first_not_of("0123456789") != std::string::npos) continue;
     if (id == std::to_string(::getpid())) continue;
-    std::error_code closed;  // it belongs to another user, or is gone
+    std::error_code closed;  // another user's process, or it has ended
     fs::directory_iterator file(process.path() / "fd", closed);
     for (; !closed && file != fs::directory_iterator(); file.increment(closed)) {
       std::error_code gone;

@@ -1,5 +1,5 @@
-// What the machine shows of pads, whether or not a driver can open them. Looking reads sysfs, /dev
-// and /proc and changes nothing.
+// Collects what the system knows of pads, whether or not a driver can open them. Reads sysfs,
+// /dev and /proc and changes nothing.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -20,23 +20,23 @@ struct PadHardware {
   BusType bus = BusType::unknown;
   std::uint16_t vendor = 0, product = 0;
   std::vector<SystemNode> hidraw, events;
-  std::optional<UsbInterface> interface;  // of a pad on USB
-  std::string usb_node;                   // of its USB device
+  std::optional<UsbInterface> interface;  // only for a pad on USB
+  std::string usb_node;                   // node of its USB device
 };
 
 struct Machine {
   std::vector<PadHardware> pads;
-  std::vector<SystemNode> usb_devices;  // all but hubs
+  std::vector<SystemNode> usb_devices;  // without hubs
   std::vector<PadSighting> sightings;   // of the drivers
-  bool has_udev = false;                // udevd runs
+  bool has_udev = false;                // udevd is running
   bool is_container = false;
 };
 
-// `rules`: the shipped ones. A device that they name is a pad even if nothing could be read of it.
+// `rules`: the shipped rules. A device that they name is a pad even if it cannot be read.
 Machine look_at_machine(std::vector<PadSighting> sightings, const PadOverrides& overrides,
                         const std::string& rules);
 
-// The other programs that have the node open, as far as this user may see: `steam (1234), ...`.
+// Other programs that have the node open, if this user may see them: `steam (1234), ...`.
 std::string users_of(const std::string& node);
 std::string own_user_name();
 

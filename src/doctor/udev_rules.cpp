@@ -21,7 +21,7 @@ std::optional<std::string> text_of(const fs::path& path) {
   return std::string(std::istreambuf_iterator<char>(in), {});
 }
 
-// Like udev's glob, of which the rules use only `*`.
+// Matches like udev's glob, but only with `*`, which is all that the rules use.
 bool fits(std::string_view pattern, std::string_view text) {
   const std::size_t star = pattern.find('*');
   if (star == std::string_view::npos) return pattern == text;
@@ -43,7 +43,7 @@ bool fits_one_of(std::string_view patterns, std::string_view text) {
   }
 }
 
-// Whether every KERNELS=="..." of the line fits; false if it has none.
+// True if every KERNELS=="..." of the line matches; false if it has none.
 bool line_fits(std::string_view line, std::string_view hid_device) {
   constexpr std::string_view kKey = "KERNELS==\"";
   bool has_key = false;

@@ -1,5 +1,5 @@
-// The udev rules that let ordinary users open pads: the lines of a rules file, whom they let in,
-// and the commands that install them.
+// The udev rules that let ordinary users open pads: their lines, the devices that they open, and
+// the commands that install them.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -16,7 +16,7 @@ struct RulesTarget {
   // Makes udev read its rules again and apply them to the devices that are plugged in.
   const char* apply;
 };
-// Who may use pads (60-gaitpad.rules), and who may make virtual ones (60-gaitpad-uinput.rules).
+// Rules for access to pads (60-gaitpad.rules) and for virtual pads (60-gaitpad-uinput.rules).
 inline constexpr RulesTarget kPadRules = {
     "/etc/udev/rules.d/60-gaitpad.rules",
     "udevadm control --reload && udevadm trigger --subsystem-match=hidraw --subsystem-match=input "
@@ -28,29 +28,29 @@ inline constexpr RulesTarget kUinputRules = {
 // A device as a rule sees it.
 struct RuleSubject {
   std::uint16_t bus = 0, vendor = 0, product = 0;
-  std::optional<int> interface;  // of a USB device: its number
+  std::optional<int> interface;  // number of a USB interface
   bool operator==(const RuleSubject&) const = default;
 };
 
 struct RulesFile {
   std::string path, text;
 };
-// udev/60-gaitpad.rules, or the target's, of the first of the folders that has it.
+// Reads udev/60-gaitpad.rules, or the target's file, from the first of the folders that has it.
 Result<RulesFile> shipped_rules(const std::vector<std::string>& config_folders,
                                 const RulesTarget& target = kPadRules);
-// The rules file for pads that udev reads: the one in the first of its folders that has it.
+// The rules file for pads in the first of udev's folders that has it.
 std::optional<RulesFile> installed_rules();
 
-// Whether a line for hidraw nodes fits the device.
+// True if a line for hidraw nodes matches the device.
 bool opens_hidraw(std::string_view rules, const RuleSubject& subject);
-// The lines for this model: for the hidraw node of its interface, for its USB device.
+// Lines for this model: for the hidraw node of its interface, for its USB device.
 std::string hidraw_rule(const RuleSubject& subject);
 std::string usb_rule(const RuleSubject& subject);
 
-// How a user starts this program: by its name if the shell finds it, else by its path.
+// Command that starts this program: its name if the shell finds it, else its path.
 std::string program();
-// Commands that do what `doctor --install-rules` does.
+// Commands with the effect of `doctor --install-rules`.
 std::string install_command();                               // by this program
-std::string manual_install_command(const RulesFile& rules);  // without it
+std::string manual_install_command(const RulesFile& rules);  // without this program
 
 }  // namespace gaitpad

@@ -38,8 +38,8 @@ std::size_t row_bytes(const Pixels& pixels) {
   return static_cast<std::size_t>(pixels.width) * kChannels;
 }
 
-// A cairo pixel is one number in the machine's byte order, red in bits 16 to 23. In place: a
-// picture of a large window has 15 MB.
+// A cairo pixel is one number in the machine's byte order, red in bits 16 to 23. Converts in place:
+// a picture of a large window has 15 MB.
 void turn_into_cairo_pixels(Pixels& pixels) {
   for (std::size_t i = 0; i < pixels.rgba.size(); i += kChannels) {
     std::uint8_t* p = pixels.rgba.data() + i;

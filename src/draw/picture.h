@@ -29,7 +29,7 @@ inline Colour mixed(const Colour& a, const Colour& b, double share) {
   return {mix(a.red, b.red, share), mix(a.green, b.green, share), mix(a.blue, b.blue, share),
           a.alpha};
 }
-// Okabe and Ito's palette, whose colours people with any colour vision can tell apart, and greys.
+// Okabe and Ito's palette, distinguishable with any colour vision, and greys.
 namespace colour {
 inline constexpr unsigned kOrange = 0xe69f00, kSkyBlue = 0x56b4e9, kGreen = 0x009e73,
                           kBlue = 0x0072b2, kVermilion = 0xd55e00, kPurple = 0xcc79a7;
@@ -63,7 +63,7 @@ void fill_box(cairo_t* cr, const Box& box, const Colour& c);
 void stroke_box(cairo_t* cr, const Box& box, const Colour& c, double width);
 void set_dashes(cairo_t* cr, bool is_dashed);
 void draw_dot(cairo_t* cr, const vec2& at, double radius, const Colour& c);
-void line(cairo_t* cr, const vec2& from, const vec2& to);  // adds to the path, draws nothing yet
+void line(cairo_t* cr, const vec2& from, const vec2& to);  // adds to the path; does not draw
 
 // While an object of this class exists, drawing is clipped to the box.
 class Clipped {
@@ -81,11 +81,11 @@ class Clipped {
   cairo_t* cr_;
 };
 
-// Text from outside, such as a device's name, as valid UTF-8 on one line and of at most 1024 bytes:
+// Makes text from outside, such as a device's name, valid UTF-8 on one line of at most 1024 bytes:
 // invalid bytes become `?`, control characters become blanks.
 std::string drawable(std::string_view text);
 double text_width(cairo_t* cr, const TextStyle& style, const std::string& text);
-// Draws on this baseline. Text wider than `max_width` (0: no limit) is cut and ends with `...`.
+// Draws at this baseline. Text wider than `max_width` (0: no limit) is cut and ends with `...`.
 void draw_text(cairo_t* cr, const TextStyle& style, const vec2& baseline, std::string_view text,
                double max_width = 0.0);
 // Breaks the text between words into at most `max_lines` lines; text that does not fit is cut and
@@ -93,7 +93,7 @@ void draw_text(cairo_t* cr, const TextStyle& style, const vec2& baseline, std::s
 std::vector<std::string> wrapped(cairo_t* cr, const TextStyle& style, std::string_view text,
                                  double max_width, std::size_t max_lines);
 
-// Empty where cairo has no memory.
+// Empty if cairo has no memory.
 std::string png_of(cairo_surface_t* surface);
 
 struct Pixels {

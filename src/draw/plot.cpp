@@ -10,7 +10,7 @@ namespace gaitpad {
 namespace {
 
 constexpr int kMostTicks = 64;
-constexpr double kRounding = 1e-9;  // of a step; a range's end this near to a tick counts as one
+constexpr double kRounding = 1e-9;  // of a step; a range's end this near to a tick equals it
 
 // Indices of the points of one pixel column that are kept.
 struct Column {
@@ -32,7 +32,7 @@ void add_gap(std::vector<PlotPoint>& out) {
 }
 
 constexpr int kMostXSteps = 8, kMostYSteps = 7;  // of a plot on cairo
-// Powers of ten within the range of logarithms, and 2 and 5 times those if they are not too many.
+// Powers of ten within the range of logarithms, and 2 and 5 times those unless they are too many.
 std::vector<PlotTick> log_ticks(const PlotRange& range, int max_steps) {
   std::vector<PlotTick> ticks;
   if (!(range.max - range.min <= kMostTicks)) return ticks;

@@ -12,29 +12,29 @@ namespace gaitpad {
 
 struct PlotRange {
   double min = 0.0, max = 1.0;
-  bool is_log10 = false;  // values are decimal logarithms, ticks show what they are of
+  bool is_log10 = false;  // values are decimal logarithms; ticks show the numbers
 };
 
-// The round step (1, 2 or 5 times a power of ten) that cuts `span` into at most `max_steps` parts;
-// 0 if the span is not positive and finite.
+// The round step (1, 2 or 5 times a power of ten) that divides `span` into at most `max_steps`
+// parts; 0 if the span is not positive and finite.
 double nice_step(double span, int max_steps) noexcept;
-// Multiples of that step within [min, max].
+// Multiples of nice_step() within [min, max].
 std::vector<double> nice_ticks(double min, double max, int max_steps);
-// With as many decimals as the step has: "-0.25", "20".
+// The value with as many decimals as the step: "-0.25", "20".
 std::string tick_text(double value, double step);
 struct PlotTick {
   double value = 0.0;
   std::string text;
 };
-// Of logarithms: the powers of ten, and 2 and 5 times those where there is room.
+// For logarithms: the powers of ten, and 2 and 5 times those if they fit.
 std::vector<PlotTick> plot_ticks(const PlotRange& range, int max_steps);
-// The range widened to round numbers, at least `least` wide.
+// The range, widened to round numbers and to at least `least`.
 PlotRange nice_range(double min, double max, double least) noexcept;
 
 using PlotPoint = vec2;  // x, y in the plot's units
 
 struct PlotSeries {
-  std::string letter;  // drawn at the curve's end, so that it is known without its colour
+  std::string letter;  // drawn at the curve's end, to tell curves apart without colour
   Colour colour;
   double width_px = 1.6;  // at scale 1; the window rounds it to whole pixels
   std::vector<PlotPoint> points;
@@ -62,13 +62,13 @@ struct Plot {
 // Sets the y range to round numbers around all curves, at least `least` wide.
 void fit_y(Plot& plot, double least);
 
-// Reduces points to those that a plot `columns` pixels wide can show: the first, lowest, highest
-// and last point of each column. x must not fall. Few points are kept as they are; a gap becomes
-// one point that is not a number.
+// Reduces points to those that are visible in a plot of `columns` pixels: the first, lowest,
+// highest and last point of each column. x must not decrease. A short list stays as it is; a gap
+// becomes one NaN point.
 void decimate(std::span<const PlotPoint> points, const PlotRange& x, int columns,
               std::vector<PlotPoint>& out);
 
-// Rows of spans over a common x axis, for instance when each point of a foot is planted.
+// Rows of spans over a common x axis, for example the times at which a foot's points are planted.
 struct SpanRow {
   struct Part {
     double from = 0.0, to = 0.0;
@@ -83,7 +83,8 @@ struct SpanPlot {
   std::vector<SpanRow> rows;
 };
 
-// The following draw with cairo. `box` holds the curves; numbers and labels stand outside it.
+// The following functions draw with cairo. `box` holds the curves; numbers and labels are outside
+// it.
 vec2 pixel_in(const Box& box, const Plot& plot, const vec2& value) noexcept;
 void draw_curve(cairo_t* cr, const Box& box, const Plot& plot, const PlotSeries& series);
 // Bands, grid, numbers, labels and curves.
@@ -95,8 +96,8 @@ struct LegendEntry {
   unsigned colour = colour::kInk;
   std::string text;
 };
-// In rows, starting at the box's upper left corner; an entry that does not fit the width starts a
-// new row.
+// Draws entries in rows from the box's upper left corner; an entry that does not fit starts a new
+// row.
 void draw_legend(cairo_t* cr, const Box& box, const std::vector<LegendEntry>& entries);
 
 }  // namespace gaitpad

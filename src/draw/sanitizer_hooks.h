@@ -1,10 +1,10 @@
-// What the sanitizers are to know of libraries that draw. Included once by every program that loads
-// them: the hooks are its own.
+// Settings of the sanitizers for libraries that draw. Every program that loads such libraries
+// includes this file once.
 #pragma once
 
-// Fontconfig and D-Bus (through SDL) keep what they looked up until the process ends, where the
-// leak checker cannot see it. Renderers keep some allocations, too: SDL unloads them with the
-// display, and the checker then no longer finds the pointers, so nothing is unloaded.
+// Fontconfig and D-Bus (through SDL) keep allocations until the process ends, where the leak
+// checker cannot see them. Renderers also keep some: SDL unloads them with the display, after which
+// the checker no longer finds the pointers, so nothing is unloaded.
 #ifdef GAITPAD_SANITIZED
 extern "C" const char* __lsan_default_suppressions() {
   return "leak:libdbus-1\n"
@@ -12,9 +12,9 @@ extern "C" const char* __lsan_default_suppressions() {
 }
 extern "C" int dlclose(void*) { return 0; }
 extern "C" const char* __lsan_default_options() { return "print_suppressions=0"; }
-// glibc allocates a 16-byte thread-local block for Mesa on the heap. The libasan of GCC 12 takes it
-// for a block of glibc 2.19, which stores its size in front, and the leak checker then reads a
-// wrong address and crashes. Without this interception the checker finds such blocks by itself, as
-// memory that the dynamic linker allocated.
+// glibc allocates a 16-byte thread-local block for Mesa on the heap. GCC 12's libasan mistakes it
+// for a block of glibc 2.19, which stores its size in front; the leak checker then reads a wrong
+// address and crashes. Without this interception the checker still finds such blocks, as memory
+// that the dynamic linker allocated.
 extern "C" const char* __asan_default_options() { return "intercept_tls_get_addr=0"; }
 #endif

@@ -8,7 +8,7 @@ constexpr std::array<Colour, 8> kSeries = {
     rgb(0x56b4e9), rgb(0xe69f00), rgb(0x009e73), rgb(0xcc79a7),
     rgb(0xd8680f), rgb(0x348fc2), rgb(0xf0e442), rgb(0x999999),
 };
-// Darker, for thin lines and numbers on white.
+// Darker colours, for thin lines and numbers on white.
 constexpr std::array<Colour, 8> kSeriesOnLight = {
     rgb(0x2474a7), rgb(0x986400), rgb(0x007e5c), rgb(0xa65381),
     rgb(0xb74f00), rgb(0x005d94), rgb(0x7a7000), rgb(0x6f6f6f),

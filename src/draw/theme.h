@@ -1,5 +1,5 @@
-// The window's colours, dark and light. Characters and curves have Okabe and Ito's palette, whose
-// colours people with any colour vision can tell apart.
+// The window's colours, dark and light. Characters and curves use Okabe and Ito's palette, which is
+// distinguishable with any colour vision.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -10,7 +10,7 @@ namespace gaitpad {
 
 enum class ThemeName : std::uint8_t { dark, light };
 
-// Text has a contrast of 4.5 at least, and edges of controls 3 (tests/draw/theme_test.cpp).
+// Text has a contrast of at least 4.5, edges of controls of 3 (tests/draw/theme_test.cpp).
 struct Theme {
   ThemeName name = ThemeName::dark;
   Colour window, bar, panel, card, plot, frame, border;
@@ -20,8 +20,8 @@ struct Theme {
   std::array<Colour, 8> series;  // of characters and curves, used in turn
   Colour left, right, axis_x, axis_y, axis_z;
 };
-inline constexpr double kChosenShare = 0.35;  // of the accent on what is chosen
-inline constexpr double kScrollShare = 0.65;  // of secondary on a scroll bar's grab
+inline constexpr double kChosenShare = 0.35;  // share of the accent colour in selected items
+inline constexpr double kScrollShare = 0.65;  // share of `secondary` in a scroll bar's grab
 
 const Theme& theme_of(ThemeName name) noexcept;
 const Colour& series_colour(const Theme& theme, std::size_t index) noexcept;

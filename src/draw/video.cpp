@@ -37,7 +37,7 @@ Error problem(const std::string& path, const std::string& cause) {
   return Error{fmt::format("{}: cannot be written: {}", path, cause)};
 }
 
-// H.264's usual colour format needs even sizes, so an odd edge is padded. Colours are those of HD
+// H.264's usual pixel format needs even sizes, so odd edges are padded. Colours are those of HD
 // video, which players assume at this size. `file:` keeps ffmpeg from reading a name as an address.
 std::vector<std::string> arguments(const std::string& file, int width, int height,
                                    int frames_per_second) {
@@ -52,8 +52,8 @@ std::vector<std::string> arguments(const std::string& file, int width, int heigh
           "-f", "mp4", "file:" + file};
 }
 
-// ffmpeg gets its own process group, so that Ctrl-C reaches this program alone, which then finishes
-// the file. No signal stays blocked in it.
+// ffmpeg gets its own process group, so that Ctrl-C reaches only this program, which then finishes
+// the file. No signal is blocked in ffmpeg.
 int spawn(std::vector<std::string> words, int input, int log, pid_t& process) {
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
@@ -80,7 +80,7 @@ int spawn(std::vector<std::string> words, int input, int log, pid_t& process) {
   return cause;
 }
 
-// The last line that ffmpeg printed, which names the cause; empty if there is none.
+// The last line that ffmpeg printed, which names the cause; empty if it printed nothing.
 std::string last_words(int log) {
   constexpr off_t kEnough = 400;
   const off_t size = ::lseek(log, 0, SEEK_END);
@@ -92,8 +92,8 @@ std::string last_words(int log) {
   return drawable(text);
 }
 
-// Whether an MP4 is whole: its boxes fill it to the last byte, and the index of its frames, `moov`,
-// is among them. On a full disk ffmpeg may leave less and yet end with status 0.
+// True if an MP4 is complete: its boxes fill it to the last byte, and one is `moov`, the index of
+// its frames. On a full disk ffmpeg may write less and still exit with status 0.
 bool is_whole(const std::string& path) {
   std::ifstream file(path, std::ios::binary);
   std::error_code error;
@@ -101,10 +101,10 @@ bool is_whole(const std::string& path) {
   bool has_index = false;
   for (std::uintmax_t at = 0; !error && file && at <= end;) {
     if (at == end) return has_index;
-    std::array<unsigned char, 16> head{};  // size, name, a 64-bit size where the first is 1
+    std::array<unsigned char, 16> head{};  // size, name, a 64-bit size if the first one is 1
     file.seekg(static_cast<std::streamoff>(at));
     file.read(reinterpret_cast<char*>(head.data()), head.size());
-    file.clear();  // the last box may be shorter
+    file.clear();  // the last box may be shorter than 16 bytes
     const auto number = [&head](std::size_t first, std::size_t bytes) {
       std::uint64_t n = 0;
       for (std::size_t i = first; i < first + bytes; ++i) n = n << 8 | head[i];
@@ -155,15 +155,15 @@ Result<std::unique_ptr<VideoWriter>> VideoWriter::open(const std::string& path, 
 }
 
 std::optional<Error> VideoWriter::start(int frames_per_second) {
-  // Created here first, so that a missing folder is reported at once and not by ffmpeg.
+  // Create the file here first, so that a missing folder is reported at once, and not by ffmpeg.
   remove_leftovers(path_);
   const std::string part = temporary_beside(path_);
   int file = ::open(part.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
   if (file < 0) return problem(path_, std::strerror(errno));
   close_fd(file);
   part_ = part;
-  // A socket instead of a pipe: send() takes MSG_NOSIGNAL, so that ffmpeg's end does not end this
-  // program.
+  // Use a socket instead of a pipe: send() accepts MSG_NOSIGNAL, so that ffmpeg's end does not kill
+  // this program.
   int ends[2] = {-1, -1};
   log_ = ::memfd_create("ffmpeg", MFD_CLOEXEC);
   if (log_ < 0 || ::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
@@ -196,7 +196,7 @@ bool VideoWriter::has_ended_well() {
   return WIFEXITED(exit_status_) && WEXITSTATUS(exit_status_) == 0 && is_whole(part_);
 }
 
-// After ffmpeg has stopped reading, or ended badly.
+// The error after ffmpeg has stopped reading or failed.
 Error VideoWriter::failure() {
   has_ended_well();
   const std::string words = last_words(log_);

@@ -1,4 +1,4 @@
-// Writes frames as a video, H.264 in MP4, through the program ffmpeg if it is installed.
+// Writes frames as a video, H.264 in MP4, with the program ffmpeg if it is installed.
 #pragma once
 #include <sys/types.h>
 
@@ -11,15 +11,15 @@
 
 namespace gaitpad {
 
-// Writes beside `path`, and finish() renames. Until then, and on error, the old file is unchanged.
-// The error of a failure ends with ffmpeg's own message.
+// Writes to a file beside `path`, which finish() renames. Until then, and on error, the old file is
+// unchanged. Errors end with ffmpeg's own message.
 class VideoWriter {
  public:
-  // Why no video can be written to `path`, as far as that shows before it is begun.
+  // The reason why no video can be written to `path`, if it is known before the start.
   static std::optional<Error> problem_of(const std::string& path);
   static Result<std::unique_ptr<VideoWriter>> open(const std::string& path, int width, int height,
                                                    int frames_per_second);
-  ~VideoWriter();                                  // without finish() no file is left
+  ~VideoWriter();                                  // removes the file unless finish() succeeded
   std::optional<Error> add(const Pixels& pixels);  // waits while ffmpeg is behind
   std::optional<Error> finish();                   // waits for ffmpeg's end
 
@@ -31,8 +31,8 @@ class VideoWriter {
 
   std::string path_, part_;
   int link_ = -1;       // to ffmpeg's standard input
-  int log_ = -1;        // what it says on standard error
-  pid_t process_ = -1;  // -1: none, or waited for
+  int log_ = -1;        // its standard error
+  pid_t process_ = -1;  // -1: not started, or already waited for
   int exit_status_ = -1;
   int width_ = 0, height_ = 0;
 };

@@ -1,4 +1,4 @@
-// Figure 4's simple structure: four links in a plane with a lowered weight at the root.
+// The simple structure of figure 4: four links in a plane, with a reduced weight at the root.
 #pragma once
 #include <vector>
 
@@ -10,13 +10,13 @@ namespace gaitpad {
 inline constexpr int kChainLinks = 4;
 inline constexpr double kChainLink_m = 0.25;
 inline constexpr double kChainTolerance_m = 1e-5;
-// The root's weights in figure 4; 1 is the chain with even weights.
+// The root's weights in figure 4; 1 gives the chain with even weights.
 inline constexpr std::array<double, 5> kRootWeights = {1.0, 0.5, 0.2, 0.1, 0.05};
 
-// The links turn about z; the chain begins at the origin and points along x at angles of 0.
+// The links turn about z; at angles of 0 the chain points from the origin along x.
 IkChain plane_chain(const std::array<double, kChainLinks>& weights);
 vec2 plane_end(const IkChain& chain, const IkAngles& angles_rad);
-// The places of its joints, from the origin to the end.
+// Positions of its joints, from the origin to the end.
 std::vector<vec2> plane_joints(const IkChain& chain, const IkAngles& angles_rad);
 
 struct ChainTask {
@@ -35,7 +35,7 @@ struct ChainSolve {
 // Solves with two rows of the Jacobian, x and y.
 ChainSolve solve_chain(const IkChain& chain, const ChainTask& task, IkMode mode);
 
-// Random numbers that are the same on every machine (Knuth's MMIX multiplier).
+// Random numbers that are equal on every machine (Knuth's MMIX multiplier).
 class Lcg {
  public:
   explicit Lcg(std::uint64_t seed) : state_(seed) {}
@@ -47,7 +47,7 @@ class Lcg {
  private:
   std::uint64_t state_;
 };
-// A chain bent by at most `bend_rad` at each joint, with a goal within `reach_links` of its end on
+// A chain bent by at most `bend_rad` at each joint, and a goal within `reach_links` of its end on
 // both axes.
 struct NearGoals {
   double bend_rad = kPi;

@@ -62,7 +62,7 @@ Claims endurance_group(Study& s, IkMode mode) {
   return endurance_claims(walked(what), mode);
 }
 
-// Claims that do not depend on the solver are reported once, as robust, a session's mode.
+// Claims that do not depend on the solver are reported once, for robust, a session's default mode.
 template <Claims (*group)(const Study&)>
 Claims robust_only(Study& s, IkMode mode) {
   return mode == IkMode::robust ? group(s) : Claims{};
@@ -173,7 +173,7 @@ std::string claims_json(const std::string& motion, const std::vector<Claim>& cla
     list.push_back(std::move(row));
   }
   const nlohmann::ordered_json all = {{"motion", motion}, {"claims", std::move(list)}};
-  // The motion's file name comes from outside: invalid UTF-8 is replaced, the rest escaped.
+  // The motion's file name comes from outside: invalid UTF-8 is replaced, non-ASCII is escaped.
   return all.dump(1, ' ', true, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 

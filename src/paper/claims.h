@@ -1,7 +1,7 @@
-// The thirty assertions that the paper's text makes, each measured as a number and compared with
-// its bound. Most bounds were derived from the paper's figures and from two prototypes of its
-// method; where the walk itself has a stricter bound, that one counts. A claim that does not hold
-// as the paper words it is reported as failed.
+// The thirty assertions of the paper's text, each measured as a number and compared with its bound.
+// Most bounds were derived from the paper's figures and from two prototypes of its method; if the
+// walk itself has a stricter bound, that one is used. A claim that does not hold as worded in the
+// paper is reported as failed.
 #pragma once
 #include <functional>
 #include <limits>
@@ -19,7 +19,7 @@ inline constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 struct Bound {
   enum class Kind { at_most, less, at_least, more, within, equal } kind = Kind::at_most;
   double limit = 0.0;
-  double low = 0.0;  // within: from here to `limit`
+  double low = 0.0;  // within: low <= value <= limit
 };
 inline constexpr Bound at_most(double v) { return {Bound::Kind::at_most, v}; }
 inline constexpr Bound less_than(double v) { return {Bound::Kind::less, v}; }
@@ -37,7 +37,7 @@ struct Claim {
   IkMode mode = IkMode::robust;
   std::optional<double> value;
   std::string bound;
-  std::optional<bool> pass;  // none: this motion cannot test it; `note` says why
+  std::optional<bool> pass;  // none: this motion cannot test it; `note` gives the reason
   std::string note;
 };
 
@@ -59,12 +59,12 @@ const char* name_of(IkMode mode) noexcept;
 // {"motion", "claims": [...]}, the file claims.json.
 std::string claims_json(const std::string& motion, const std::vector<Claim>& claims);
 
-// All groups, ordered by number; those that depend on the solver in both modes. `progress`, if
-// there is one, is told now and then which share of them is measured.
+// All groups, ordered by number; those that depend on the solver in both modes. Calls `progress`
+// repeatedly with the share of groups that are done.
 std::vector<Claim> all_claims(Study& study, const std::function<void(double share)>& progress = {});
 
-// Each of the following measures one group of assertions from what it is given, so that a test can
-// hand it a broken walk.
+// Each function below measures one group of assertions from its arguments only, so that a test can
+// pass a broken walk.
 
 // claims_motion.cpp: the motion data and other legs, section 3.2.
 std::vector<Claim> flight_claims(const PaperSource& source, IkMode mode);  // 1-5
@@ -89,13 +89,13 @@ std::vector<Claim> chain_claims(IkMode mode);                             // 10-
 std::vector<Claim> cost_claims(Study& study);                             // 21
 std::vector<Claim> reach_claims(const WalkModel& model, IkMode mode);     // 23
 
-// claims_style.cpp: what weights, injuries, fatigue, hips and the joystick do, sections 3.1 and 4.
+// claims_style.cpp: effects of weights, injuries, fatigue, hips and joystick, sections 3.1 and 4.
 struct WeightWalks {
   const Walk *even = nullptr, *stiff_hip = nullptr, *stiff_knee = nullptr;
 };
 std::vector<Claim> weight_claims(const WeightWalks& walks, const Ticks& stride,
                                  IkMode mode);  // 13-16
-// RMS of the hip's change for falling weights (0.9, 0.8, 0.5, 0.2), degrees.
+// RMS changes of the hip for decreasing weights (0.9, 0.8, 0.5, 0.2), in degrees.
 std::vector<Claim> monotone_claims(const std::vector<double>& rms_deg, IkMode mode);  // 17
 struct LimpWalks {
   const Walk *even = nullptr, *limp = nullptr, *limp_hip = nullptr, *limp_knee = nullptr;

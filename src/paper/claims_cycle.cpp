@@ -11,11 +11,11 @@ namespace gaitpad {
 namespace {
 
 constexpr std::array<Side, 2> kSides = {kLeftSide, kRightSide};
-constexpr double kPrintRate_hz = 60.0;  // the bound on jumps is for a frame of a screen
+constexpr double kPrintRate_hz = 60.0;  // the bound on jumps is for a frame of the screen
 
 std::size_t first_tick(double after_s) { return static_cast<std::size_t>(after_s * kPaperRate_hz); }
 
-// Counts stages in an order that table I does not have.
+// Counts transitions between stages that table I does not have.
 int disorder(const Walk& walk) {
   int wrong = 0;
   for (std::size_t k = 1; k < walk.samples.size(); ++k) {
@@ -30,7 +30,7 @@ int disorder(const Walk& walk) {
   return wrong;
 }
 
-// Counts ticks whose planted points are not exactly those of table I.
+// Counts ticks whose planted points differ from table I.
 int unlike_table_1(const Walk& walk) {
   int wrong = 0;
   for (const WalkSample& sample : walk.samples) {
@@ -44,7 +44,7 @@ int unlike_table_1(const Walk& walk) {
   return wrong;
 }
 
-// How far a planted point moves from its place at the start of the stage, mm.
+// Largest distance of a planted point from its place at the start of the stage, mm.
 struct Drift {
   double flight_mm = 0.0, roll_mm = 0.0, roll_rise_mm = 0.0;
 };
@@ -78,7 +78,7 @@ double hips_speed(const Walk& walk, std::size_t k) {
   return glm::dot(move, heading_direction(walk.samples[k].frame.heading_rad)) * kPaperRate_hz;
 }
 
-// The least elevation of the heel-toe line at a strike, relative to standing, degrees.
+// Smallest elevation of the heel-toe line at a strike, relative to standing, degrees.
 double least_strike_deg(const Walk& walk, const FootBuild& build, std::size_t from) {
   double least = 1e9;
   for (const Side side : kSides) {
@@ -94,8 +94,8 @@ double least_strike_deg(const Walk& walk, const FootBuild& build, std::size_t fr
   return least;
 }
 
-// The greatest change of a leg angle's rate at a border between stages, in degrees per frame at 60
-// Hz, from differences of neighbouring ticks.
+// Largest change of a leg angle's rate at a border between stages, in degrees per frame at 60 Hz,
+// from differences of neighbouring ticks.
 double worst_border(const Walk& walk, std::size_t from) {
   double worst = 0.0;
   const double per_frame = kPaperRate_hz / kPrintRate_hz / kDegree;
@@ -116,7 +116,7 @@ double worst_border(const Walk& walk, std::size_t from) {
   return worst;
 }
 
-// The greatest difference of two strides at equal phase, degrees, over all leg angles.
+// Largest difference of two strides at equal phase over all leg angles, degrees.
 double stride_difference(const Walk& walk, const Ticks& a, const Ticks& b) {
   double most = 0.0;
   constexpr int kPhases = 200;
@@ -138,11 +138,11 @@ double stride_difference(const Walk& walk, const Ticks& a, const Ticks& b) {
   return most;
 }
 
-// Assertion 24: straight on or turning.
+// Assertion 24: walking straight or in a turn.
 
 constexpr double kForward = 0.6, kHalf = 0.5;  // stick
 constexpr std::array<double, 3> kSideways = {0.25, kHalf, 0.8};
-constexpr double kTurning_s = 4.0;  // after the start the turn is steady
+constexpr double kTurning_s = 4.0;  // the turn is steady this long after the start
 
 Walk turning(const WalkModel& model, IkMode mode, double x, double end_s) {
   WalkCase what;
@@ -153,7 +153,7 @@ Walk turning(const WalkModel& model, IkMode mode, double x, double end_s) {
   return walked(what);
 }
 
-// The greatest sideways drift of the hips in a stride, mm.
+// Largest sideways drift of the hips in a stride, mm.
 double straight_drift_mm(const Walk& walk) {
   double worst = 0.0;
   for (const Ticks& s : strides(walk, kRightSide)) {
@@ -163,7 +163,7 @@ double straight_drift_mm(const Walk& walk) {
   return worst;
 }
 
-// The greatest distance of heels, toes and pelvis from the other walk's mirror image.
+// Largest distance of heels, toes and pelvis from the other walk's mirror image.
 double mirror_gap_m(const Walk& a, const Walk& b) {
   double most = 0.0;
   const auto gap = [&most](const vec3& p, vec3 q) {
@@ -182,7 +182,7 @@ double mirror_gap_m(const Walk& a, const Walk& b) {
 }
 
 struct Circle {
-  double radius_error = kNoNumber;  // relative to speed over turn rate
+  double radius_error = kNoNumber;  // relative to speed / turn rate
   double closes_m = kNoNumber;
 };
 Circle circle_of(const Walk& walk) {
@@ -242,7 +242,7 @@ std::optional<Terrain> terrain_of(const Ground22& ground) {
   return terrain;
 }
 
-// How deep a place is in the ground: the shortest way out, upwards or through a riser.
+// Depth of a place in the ground: the shortest distance out of it, upwards or through a riser.
 double depth_m(const Terrain& terrain, const vec3& p) {
   const double up = ground_at(terrain, p.x, p.z).height_m - p.y;
   if (up <= 0.0) return 0.0;
@@ -257,7 +257,7 @@ double depth_m(const Terrain& terrain, const vec3& p) {
   return out;
 }
 
-// How deep the sole is in the ground, by forward kinematics of the pose.
+// Depth of the sole in the ground, from the pose by forward kinematics.
 double sunk_m(const WalkModel& model, const JointFrames& frames, Side side) {
   const LegModel& leg = model.leg[side].model;
   const LegJoints& joints = leg.joints;

@@ -1,6 +1,6 @@
-// Assertions 1-5: extraction of the foot's flight from the motion data. `paper` is the rule to the
-// letter; `robust` takes the last low before the peak, and lift and landing by speed. Assertions 6
-// and 29: the same motion on other legs.
+// Assertions 1-5: extraction of the foot's flight from the motion data. `paper` follows the rule
+// literally; `robust` uses the last low before the peak, and lift and landing by speed. Assertions
+// 6 and 29: the same motion on other legs.
 
 #include <fmt/format.h>
 
@@ -15,7 +15,7 @@ namespace gaitpad {
 namespace {
 
 constexpr const char* kSection = "3.2, figure 2";
-constexpr int kSamples = 120;                // in a stride, as when the bounds were derived
+constexpr int kSamples = 120;                // per stride, as in the derivation of the bounds
 constexpr double kFrame = 100.0 / kSamples;  // percent
 constexpr const char* kNotAdult = "this number was derived for the built-in adult's curve alone";
 
@@ -36,7 +36,7 @@ struct Wanted {
 constexpr std::array<Wanted, 2> kWanted = {Wanted{FootPoint::ankle, "ankle", {44.2, 71.7, 94.2}},
                                            Wanted{FootPoint::heel, "heel", {0.0, 70.8, 95.0}}};
 
-// 1: the places of the targets.
+// 1: the phases of the targets.
 void target_claims(const PaperSource& source, const Wanted& wanted, IkMode mode, ClaimList& list) {
   const auto heights = stride_heights(source.cycle, kRightSide, wanted.point, kSamples);
   const FlightTargets t =
@@ -77,7 +77,7 @@ void band_claims(const PaperSource& source, IkMode mode, ClaimList& list) {
   list.add(ends, std::max(share(targets->lift), share(targets->land)), band);
 }
 
-// 1: both feet, in the file's own frames.
+// 1: both feet, in frames of the file.
 void file_claims(const PaperSource& source, IkMode mode, ClaimList& list) {
   int found = 0;
   std::string text;
@@ -130,7 +130,7 @@ void threshold_claims(const PaperSource& source, IkMode mode, ClaimList& list) {
   }
 }
 
-// 4: which low and which point of the foot is meant.
+// 4: which low and which point of the foot the paper means.
 void ambiguity_claims(const PaperSource& source, IkMode mode, ClaimList& list) {
   auto heights = stride_heights(source.cycle, kRightSide, FootPoint::ankle, kSamples);
   add_standing_jitter(heights, kSamples);
@@ -156,7 +156,7 @@ void ambiguity_claims(const PaperSource& source, IkMode mode, ClaimList& list) {
   }
 }
 
-// 5: no result rather than an incomplete one, and the same result wherever the clip begins.
+// 5: no result instead of an incomplete one, and the same result for every beginning of the clip.
 void completeness_claims(const PaperSource& source, IkMode mode, ClaimList& list) {
   auto heights = stride_heights(source.cycle, kRightSide, FootPoint::ankle, kSamples);
   const auto whole = flight_targets(heights, rule_of(mode));
@@ -191,7 +191,7 @@ void completeness_claims(const PaperSource& source, IkMode mode, ClaimList& list
 
 constexpr std::array<double, 3> kRatios = {0.6, 1.0, 1.6};
 
-// Heights of the heel over the flight, both ends included, in strides of the data's own length.
+// Heights of the heel over the flight, with both ends, relative to the data's own stride length.
 std::vector<double> flight_heights_m(const WalkModel& model, Side side) {
   constexpr int kSamples = 65;
   const double strike = model.cycle.strike[side], lift = strike + model.leg[side].toe_off;
@@ -211,8 +211,8 @@ Walk walk_on(const WalkModel& model, IkMode mode) {
   return walked(what);
 }
 
-// Toe positions over a stride when the source's angles are played on the character's bones, with
-// the root's way scaled by `root_scale`.
+// Toe positions over a stride if the source's angles are played on the character's bones and the
+// root's motion is scaled by `root_scale`.
 std::vector<vec3> raw_toes(const GaitCycle& source, const GaitCycle& build, Side side,
                            double root_scale, int samples) {
   std::vector<vec3> track;
@@ -230,7 +230,7 @@ std::vector<vec3> raw_toes(const GaitCycle& source, const GaitCycle& build, Side
   return track;
 }
 
-// How far the played toe moves while the source's own toe stands (slower than 15 % of its top
+// Distance that the played toe moves while the source's own toe stands (below 15 % of its top
 // speed).
 double raw_slide_mm(const GaitCycle& source, const GaitCycle& build, double root_scale) {
   constexpr int kSamples = 256;

@@ -36,7 +36,7 @@ double pose_difference_deg(const ChainSolve& a, const ChainSolve& b) {
   return most;
 }
 
-// The greatest difference between the leg's Jacobian and central differences, metres per radian.
+// Largest difference between the leg's Jacobian and central differences, metres per radian.
 double jacobian_error(const IkChain& chain, const vec3& heel_m) {
   Lcg random(9);
   constexpr double kStep = 1e-5;
@@ -62,8 +62,8 @@ double jacobian_error(const IkChain& chain, const vec3& heel_m) {
   return worst;
 }
 
-// Straight chains along directions that no axis has, so that J J^T loses a rank except for
-// rounding.
+// Straight chains along directions that are parallel to no axis, so that J J^T loses a rank except
+// for rounding.
 int halved_at_rank_loss() {
   Lcg random(4);
   int halved = 0;
@@ -109,8 +109,8 @@ Shares near_goals(const NearGoals& what, IkMode mode) {
   return found;
 }
 
-constexpr double kGentle_rad = 1.2;  // a chain bent like an arm
-constexpr double kTickReach = 0.1;   // links; a walk's goal moves so far in a few ticks
+constexpr double kGentle_rad = 1.2;  // bend of a chain like an arm
+constexpr double kTickReach = 0.1;   // in links; a walk's goal moves this far in a few ticks
 
 void near_claims(IkMode mode, ClaimList& list) {
   const Shares any = near_goals({}, mode), tick = near_goals({kGentle_rad, kTickReach}, mode),
@@ -135,7 +135,7 @@ void near_claims(IkMode mode, ClaimList& list) {
            not_near);
 }
 
-// 10: the root moves less, the others more.
+// 10: the root turns less, the other joints more.
 void figure_4_claims(IkMode mode, ClaimList& list) {
   std::string roots;
   int rises = 0;
@@ -201,7 +201,7 @@ double error_of_two_links(double weight, IkMode mode, IkAngles& answer) {
   return s.error_m.back();
 }
 
-// sqrt(e^T (J J^T)^-1 e): the norm in which eq. (5) contracts.
+// sqrt(e^T (J J^T)^-1 e): the norm in which eq. (5) is a contraction.
 double contraction_norm(const IkChain& chain, const IkAngles& q, const vec2& goal_m) {
   const std::array<IkRow, 2> rows = {IkRow{vec3(0.0), kLeft, goal_m.x},
                                      IkRow{vec3(0.0), kUp, goal_m.y}};
@@ -219,7 +219,7 @@ double contraction_norm(const IkChain& chain, const IkAngles& q, const vec2& goa
   return std::sqrt(std::max(square, 0.0));
 }
 
-// 12: without redundancy weights have no effect; and how fast eq. (5) converges.
+// 12: without redundancy weights have no effect; and the rate of convergence of eq. (5).
 void limit_claims(IkMode mode, ClaimList& list) {
   IkAngles even{}, stiff{};
   error_of_two_links(1.0, mode, even);
@@ -234,7 +234,7 @@ void limit_claims(IkMode mode, ClaimList& list) {
   const ChainSolve s = solve_chain(chain, task, mode);
   double worst = 0.0;
   for (std::size_t k = 0; k + 1 < s.angles_rad.size(); ++k) {
-    if (s.error_m[k] > 0.04 * kChainLink_m) continue;  // only where the linearisation holds
+    if (s.error_m[k] > 0.04 * kChainLink_m) continue;  // only where the linearisation is valid
     worst = std::max(worst, contraction_norm(chain, s.angles_rad[k + 1], task.goal_m) /
                                 contraction_norm(chain, s.angles_rad[k], task.goal_m));
   }
@@ -242,8 +242,8 @@ void limit_claims(IkMode mode, ClaimList& list) {
            "1 - least weight = 0.8, beside terms of second order");
 }
 
-constexpr int kFrames = 60;            // on the way to the goal, and as many at it
-constexpr double kFar = 1.5;           // legs from the hip: a step that high
+constexpr int kFrames = 60;            // on the way to the goal, and the same number at it
+constexpr double kFar = 1.5;           // in leg lengths from the hip: a very high step
 constexpr double kMostTurn_rad = kPi;  // no joint of a leg can turn farther between two frames
 
 IkResult solve(const IkChain& chain, const vec3& heel_m, const vec3& goal_m, IkMode mode,
@@ -253,8 +253,8 @@ IkResult solve(const IkChain& chain, const vec3& heel_m, const vec3& goal_m, IkM
   return solve_robust(chain, rows, {.max_tries = 1}, angles);
 }
 
-// Assertion 21. Times are medians of processor time over blocks that alternate in one run, so that
-// other load on the machine affects both sides alike.
+// Assertion 21. Times are medians of processor time over alternating blocks of one run, so that
+// other load on the machine affects both sides equally.
 
 constexpr int kRounds = 61;
 constexpr double kHipWeight = 0.2;
@@ -264,7 +264,7 @@ double seconds_now() {
   const auto now = std::chrono::steady_clock::now().time_since_epoch();
   return std::chrono::duration<double>(now).count();
 }
-// Processor time of this process, without what else the machine runs.
+// Processor time of this process, without other programs.
 double cpu_seconds_now() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 
 struct Pair {
@@ -286,11 +286,11 @@ Pair in_turns(A even, B weighted) {
   return {median(a), median(b), median(ratio)};
 }
 
-// The goals of one leg's heel through the flights of a walk, tick by tick.
+// The goals of one leg's heel during the flights of a walk, one for each tick.
 struct HeelPath {
   IkChain even, weighted;
   vec3 heel_m{0.0};
-  std::vector<IkAngles> start_rad;  // the walk's pose before each goal
+  std::vector<IkAngles> start_rad;  // pose of the walk before each goal
   std::vector<vec3> goal_m;
 };
 HeelPath heel_path(const WalkModel& model, const Walk& walk) {
@@ -324,7 +324,7 @@ void robust_passes(const HeelPath& path, const IkChain& chain) {
     solve_robust(chain, point_goal(path.heel_m, path.goal_m[i]), once, q);
   }
 }
-// Solves along the path, each from the answer before; returns the iterations.
+// Solves along the path, each time from the previous answer; returns the iterations.
 template <class Solve>
 int solves(const HeelPath& path, Solve solve) {
   int iterations = 0;
@@ -384,7 +384,7 @@ double iterations_a_leg(const Walk& walk) {
   return sum / (2.0 * static_cast<double>(walk.samples.size()));
 }
 
-// The time of a whole character's tick with stiff hips over that of even.
+// Time of a whole character's tick with stiff hips / time with even weights.
 double tick_ratio(Study& study, std::string& text) {
   const auto stride = [&](const char* style) {
     return [&study, values = StyleValues(style_of(study.source(), style))] {

@@ -1,6 +1,6 @@
 // Assertions 13-17: figure 5a. 18-20: figure 5b. 25: the joystick. 26-28: fatigue, hips, upper
-// body. Some numbers stand beside those of two earlier prototypes of the paper's method: a planar
-// leg (heel as effector, warm start) and a 3-D walk.
+// body. Some notes compare with two earlier prototypes of the paper's method: a planar leg (heel as
+// effector, warm start) and a 3-D walk.
 
 #include <fmt/format.h>
 
@@ -99,8 +99,8 @@ void stiff_knee_claims(const WeightWalks& w, const Ticks& stride, ClaimList& lis
            both_text(rms) + "; planar prototype 0.53, 3-D prototype 0.5 to 0.8");
 }
 
-// The hip's change against even over the flights of a stride: at their ends, where the leg is
-// nearly stretched, and the greatest before.
+// Change of the hip against even in the flights of a stride: at their ends, where the leg is nearly
+// stretched, and the largest change before.
 struct EndsAndMiddle {
   double ends_deg = 0.0, middle_deg = 0.0;
 };
@@ -122,7 +122,7 @@ EndsAndMiddle ends_and_middle(const Walk& even, const Walk& other, const Ticks& 
   return found;
 }
 
-// 15: walks agree where a leg is nearly stretched, and differ before.
+// 15: walks agree where a leg is nearly stretched, and differ before that.
 void end_claims(const WeightWalks& w, const Ticks& stride, ClaimList& list) {
   const EndsAndMiddle hip = ends_and_middle(*w.even, *w.stiff_hip, stride),
                       knee = ends_and_middle(*w.even, *w.stiff_knee, stride);
@@ -144,7 +144,7 @@ void end_claims(const WeightWalks& w, const Ticks& stride, ClaimList& list) {
 
 double distance_mm(const vec3& a, const vec3& b) { return 1000.0 * glm::distance(a, b); }
 
-// 16: weights do not change where the feet go.
+// 16: weights do not change the paths of the feet.
 void place_claims(const WeightWalks& w, const Ticks& stride, ClaimList& list) {
   double landing = 0.0, heel = 0.0, lifting = 0.0, standing = 0.0, flying = 0.0;
   for (const Walk* other : {w.stiff_hip, w.stiff_knee}) {
@@ -187,9 +187,9 @@ double forward_m(const WalkFrame& frame, const vec3& v) {
 
 struct FlightFigures {
   double ticks = 0.0, peak_m = 0.0;
-  double reach_m = 0.0;      // distance that the heel covers
-  double clearance_m = 0.0;  // the toe's least height in mid-flight
-  double step_m = 0.0;       // standing heel to landing heel
+  double reach_m = 0.0;      // distance covered by the heel
+  double clearance_m = 0.0;  // smallest height of the toe in mid-flight
+  double step_m = 0.0;       // from standing heel to landing heel
 };
 
 // Means over the steady flights of a foot.
@@ -205,7 +205,7 @@ FlightFigures flight_figures(const Walk& walk, Side side) {
       if (u > kMidFrom && u < kMidTo) clearance = std::min(clearance, frame.toe_m[side].y);
     }
     const WalkFrame &lift = walk.samples[f.begin].frame, &land = walk.samples[f.end].frame;
-    std::size_t stood = f.begin;  // where the other heel stood last
+    std::size_t stood = f.begin;  // last tick at which the other heel stood
     while (stood > 0 && !walk.samples[stood].frame.heel_planted[other(side)]) --stood;
     sum.step_m +=
         forward_m(land, land.heel_m[side] - walk.samples[stood].frame.heel_m[other(side)]);
@@ -268,7 +268,7 @@ HipTravel hip_travel(const WalkModel& model, const StyleValues& style, IkMode mo
   return {yaw.size() / kDegree, 1e3 * height.size(), planted_slide_mm(walk)};
 }
 
-// Joints that are neither in a leg nor between the root and the pelvis.
+// Joints that are neither in a leg nor between root and pelvis.
 std::vector<int> upper_joints(const GaitCycle& cycle) {
   const auto& joints = cycle.skeleton.joints;
   std::vector<bool> is_lower(joints.size(), false);
@@ -304,8 +304,8 @@ double correlation(const std::vector<double>& a, const std::vector<double>& b) {
   return sab / std::sqrt(saa * sbb);
 }
 
-// Correlation of a hand's place before the pelvis with the other leg's hip flexion; the lesser of
-// both sides.
+// Correlation of a hand's forward position relative to the pelvis with the other leg's hip flexion;
+// the smaller value of both sides.
 double arm_and_leg(const WalkModel& model, double stick) {
   const Walk walk = straight(model, {}, IkMode::robust, stick, 10.0);
   const Ticks stride = stride_after(walk, kRightSide, 5.0);
@@ -325,9 +325,9 @@ double arm_and_leg(const WalkModel& model, double stick) {
 
 struct Above {
   double apart_deg = 0.0;
-  int back = 0;  // ticks at which the data's time runs backwards
+  int back = 0;  // number of ticks in which the data's time runs backwards
 };
-// In robust mode without shoulders and elbows: arms swing as far as the pace asks.
+// In robust mode without shoulders and elbows, because the speed sets the swing of the arms.
 Above above_the_hips(const WalkModel& model, IkMode mode) {
   std::vector<int> upper = upper_joints(model.cycle);
   if (mode == IkMode::robust) {
@@ -365,7 +365,7 @@ Stick stick_for(const vec2& raw) {
   return pads.finish_tick();
 }
 
-// Counts positions of a grid inside the inner zone that are not neutral.
+// Counts grid positions inside the inner zone that are not neutral.
 int not_neutral() {
   int count = 0;
   const double inner = StickCalibration{}.inner;
@@ -397,8 +397,8 @@ void run(Simulation& simulation, int ticks, const std::vector<Report>& first) {
   for (int k = 0; k < ticks; ++k) simulation.step(k == 0 ? first : std::vector<Report>{});
 }
 
-// The greatest second difference of a leg angle over the ticks, degrees; the stick goes to `raw` at
-// the first.
+// Largest second difference of a leg angle over the ticks, degrees; the stick moves to `raw` at the
+// first tick.
 double second_difference(Simulation& simulation, const vec2& raw, int ticks) {
   const WalkState& state = simulation.walkers()[0].state;
   std::array<LegAngles, 2> last = state.legs.angles_rad, before_last = last;

@@ -1,4 +1,4 @@
-// Figure 5: one motion, three characters, by weights (a) and with an injured left leg (b).
+// Figure 5: one motion, three characters, with weights (a) and with an injured left leg (b).
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kWidth = 1500, kHeight = 1070;
 constexpr double kInner = kWidth - 2.0 * kPageMargin;
-constexpr int kPoses = 7;  // of a stride
+constexpr int kPoses = 7;  // per stride
 constexpr double kPanelTop = 104.0, kPanelHeight = 280.0, kPlotTop = 456.0, kPlotHeight = 300.0,
                  kTableTop = 842.0, kTableHeight = 190.0;
 
@@ -46,7 +46,7 @@ double time_of(const Figure5& f, std::size_t tick) {
   return static_cast<double>(tick - f.stride.begin) / kPaperRate_hz;
 }
 
-// The data's stride at the red character's phases: the paper's "original motion capture".
+// The data's stride at the phases of the red character: the paper's "original motion capture".
 struct DataPose {
   std::vector<vec3> joints_m;
   std::array<vec3, 2> heel_m;
@@ -129,7 +129,7 @@ Extent extent_of(const Panel& panel) {
   return e;
 }
 
-// The largest scale at which every panel fits its box.
+// Largest scale at which every panel fits its box.
 double common_scale(const std::vector<Panel>& panels, const Box& box) {
   double scale = 1e9;
   for (const Panel& panel : panels) {

@@ -15,8 +15,7 @@
 namespace gaitpad {
 namespace {
 
-// One foot's height over the clip, continued into a loop's second round if the flight goes on
-// there.
+// One foot's height over the clip; continues into a loop's second round if the flight does.
 struct FootHeight {
   std::vector<double> height_m, gradient_m_s;
   std::optional<Swing> literal, robust;
@@ -127,14 +126,14 @@ std::string figure_csv(const FootHeight& f) {
 constexpr double kPanelTop = 120.0, kPanelHeight = 450.0, kFloor = 530.0, kPxPerM = 220.0;
 constexpr double kBehind_m = 0.60;  // from the pelvis to a panel's left edge
 
-struct Beginning {  // of a stage
+struct Beginning {  // start of a stage
   std::size_t tick = 0;
   Stage stage = Stage::flight;
   Side swing = kRightSide;
-  std::array<bool, 2> heel{}, toe{};  // planted in its starting configuration
+  std::array<bool, 2> heel{}, toe{};  // planted at the start
 };
 
-// Four stages in a row, starting with the right foot's flight, and a fifth one for the last arrows.
+// Four stages in a row, beginning with the right foot's flight, and a fifth for the last arrows.
 std::vector<Beginning> beginnings(const Walk& walk) {
   std::vector<Beginning> found;
   const auto from = static_cast<std::size_t>(kFigureStart_s * kPaperRate_hz);

@@ -1,4 +1,4 @@
-// The paper's figures, drawn from what the code computes at the time.
+// The paper's figures, drawn from values that the code computes when it runs.
 #pragma once
 #include <string>
 #include <vector>
@@ -14,10 +14,10 @@ struct Figure {
   std::string csv;
 };
 
-// The height of a foot, its gradient, the bands, the three targets of the flight.
+// The height of a foot, its gradient, the bands, and the three targets of the flight.
 Figure figure_2(const PaperSource& source);
-// Table I: the poses at which the four stages of a stride begin, the planted points, arrows to the
-// next pose.
+// Table I: the poses at the starts of the four stages of a stride, the planted points, and arrows
+// to the next pose.
 Figure figure_3(Study& study);
 // A chain of four links: configurations, and the first two angles over the iterations.
 Figure figure_4();

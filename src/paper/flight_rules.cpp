@@ -12,7 +12,7 @@ struct Turn {
   bool is_low = false;
 };
 
-// Changes of the gradient's sign; a plateau counts by the gradients before and after it.
+// Sign changes of the gradient; a plateau is judged by the gradients before and after it.
 std::vector<Turn> turns_of(const std::vector<double>& heights) {
   std::vector<Turn> turns;
   int direction = 0;
@@ -26,7 +26,7 @@ std::vector<Turn> turns_of(const std::vector<double>& heights) {
   return turns;
 }
 
-// The pose in the sagittal plane: flexions and the pelvis' tilt only.
+// The pose in the sagittal plane: only flexions and the pelvis' tilt.
 LegPose flat_pose(const GaitCycle& cycle, const CycleSample& at, Side side) {
   const vec3 ahead = at.pelvis * kForward;
   const double tilt = atan2(-ahead.y, std::sqrt(ahead.x * ahead.x + ahead.z * ahead.z));

@@ -1,5 +1,5 @@
-// The paper's gradient rule with parts that can be switched off, to show what each one is for. (The
-// rule that the walk uses is gaitpad/flight.h.) Meredith & Maddock 2005, section 3.2, figure 2.
+// The paper's gradient rule with parts that can be switched off, to show the purpose of each. (The
+// walk uses gaitpad/flight.h.) Meredith & Maddock 2005, section 3.2, figure 2.
 #pragma once
 #include <optional>
 #include <vector>
@@ -9,8 +9,8 @@
 namespace gaitpad {
 
 struct FlightRule {
-  bool has_bands = true;    // a target's height has to be within 10 % of the extreme
-  bool takes_last = false;  // the first target is the last low before the peak, not the first low
+  bool has_bands = true;    // a target's height must be within 10 % of the extreme
+  bool takes_last = false;  // lift: the last low before the peak, not the first low
 };
 struct FlightTargets {  // as indices of the heights
   int lift = 0, peak = 0, land = 0;
@@ -21,15 +21,15 @@ std::optional<FlightTargets> flight_targets(const std::vector<double>& heights,
                                             const FlightRule& rule);
 
 enum class FootPoint { ankle, heel, toe_tip };
-// Heights over two strides of the motion from that foot's strike on, in metres above the lowest
-// point of both feet, by forward kinematics in the sagittal plane.
+// Heights over two strides of the motion from the foot's strike, in metres above the lowest point
+// of both feet, by forward kinematics in the sagittal plane.
 std::vector<double> stride_heights(const GaitCycle& cycle, Side side, FootPoint point,
                                    int samples_a_stride);
 // Adds the jitter of captured data: a standing foot moves by a few millimetres.
 void add_standing_jitter(std::vector<double>& heights, int samples_a_stride);
 
-// A foot's height over 50 frames that stops (0) or rises a little (`blip_m`) on its way down near
-// frame 25, the case that figure 2 shows.
+// Height of a foot over 50 frames that stops (0) or rises by `blip_m` during its descent near frame
+// 25, as in figure 2.
 std::vector<double> blip_curve(double blip_m);
 inline constexpr int kBlipFrame = 25;
 

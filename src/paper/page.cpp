@@ -98,7 +98,7 @@ std::vector<vec3> figure_points(const std::vector<vec3>& joints_m,
 }
 
 std::vector<StickBone> stick_bones(const GaitCycle& cycle, const std::vector<vec3>& points_m) {
-  // In leg lengths. Fingers and the loose ends of meshes get no line.
+  // In leg lengths. Fingers and loose ends of meshes are not drawn.
   constexpr double kShortest = 0.015, kLongest = 0.9, kLongestEnd = 0.5;
   using Part = StickBone::Part;
   const auto& joints = cycle.skeleton.joints;

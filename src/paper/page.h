@@ -8,7 +8,7 @@
 
 namespace gaitpad {
 
-// The paper's red, green and blue, dark enough for white paper, and colours of everything else.
+// The paper's red, green and blue, dark enough for white paper, and colours of the other parts.
 namespace paper_colour {
 inline constexpr unsigned kRed = 0xc62828, kGreen = 0x2e8b3d, kBlue = 0x1f5fbf, kData = 0x6b7480,
                           kPlant = 0xc62828, kBand = 0xeef1f5;
@@ -27,10 +27,10 @@ struct Stroke {
   double width = 1.8, alpha = 1.0;
   bool is_dashed = false;
 };
-// The points as a curve of a plot in this stroke.
+// The points as a curve of a plot, drawn with this stroke.
 PlotSeries curve_of(std::vector<PlotPoint> points, const Stroke& stroke);
 
-// The sagittal plane: z of the walk to the right, y up.
+// The sagittal plane: z to the right, y up.
 struct SideView {
   Box box;
   double left_z_m = 0.0;  // at the box's left edge
@@ -47,25 +47,25 @@ void draw_plant(cairo_t* cr, const vec2& at);  // a triangle below the planted p
 // The points of a stick figure: its joints, then both heels, left first.
 std::vector<vec3> figure_points(const std::vector<vec3>& joints_m,
                                 const std::array<vec3, 2>& heel_m);
-// A line of a stick figure, from a point's parent to the point. Each sole has two: from the ankle
-// to the heel and from there to the toe.
+// A line of a stick figure, from a point's parent to the point. A sole has two lines: ankle to heel
+// and heel to toe.
 struct StickBone {
   int parent = 0, joint = 0;
   enum class Part { left_leg, right_leg, rest } part = Part::rest;
 };
 std::vector<StickBone> stick_bones(const GaitCycle& cycle, const std::vector<vec3>& points_m);
-// The left leg is paler.
+// Draws the left leg paler.
 void draw_stick_figure(cairo_t* cr, const SideView& view, const std::vector<StickBone>& bones,
                        const std::vector<vec3>& points_m, const Stroke& stroke);
 
-// The first row holds the headings; `shares` are the relative widths of the columns.
+// The first row has the headings; `shares` are the relative widths of the columns.
 struct Table {
   std::vector<double> shares;
   std::vector<std::vector<std::string>> rows;
 };
 void draw_table(cairo_t* cr, const Box& box, const Table& table);
 
-// One column of a CSV file; a value that is not finite leaves its cell empty.
+// One column of a CSV file; a value that is not finite gives an empty cell.
 struct CsvColumn {
   std::string name;
   std::vector<double> values;

@@ -36,7 +36,7 @@ bool is_landing(const Walk& walk, std::size_t tick, Side side) {
 double slide_of(const Walk& walk, std::size_t from, std::array<bool, 2> WalkFrame::*planted,
                 std::array<vec3, 2> WalkFrame::*place, Side side) {
   double most = 0.0;
-  bool stood = true;  // a plant that began before `from` is not judged
+  bool stood = true;  // a plant that began before `from` is ignored
   vec3 anchor(0.0);
   bool counts = false;
   for (std::size_t k = from; k < walk.samples.size(); ++k) {

@@ -1,4 +1,4 @@
-// What figures and claims are made of: a motion with its stride, the styles of figure 5, walks with
+// The input of figures and claims: a motion with its stride, the styles of figure 5, walks with
 // every tick recorded, and a gamepad.
 #pragma once
 #include <functional>
@@ -18,20 +18,20 @@
 namespace gaitpad {
 
 struct PaperSource {
-  std::string motion;     // `procedural` or the file as it was named
-  bool is_adult = false;  // the built-in adult's curve; some claims have numbers for it only
-  Motion frames;          // the motion as it stands in the file
+  std::string motion;     // `procedural`, or the file as given
+  bool is_adult = false;  // the built-in adult's curve, for which some claims have numbers
+  Motion frames;          // the motion as in the file
   GaitCycle cycle;        // its best stride
   std::vector<Style> styles;
 };
 
-// `motion_file`: empty or `procedural` means the built-in motion, which has the adult's pace. No
-// `pace`: the motion's. Styles come from the
-// configuration folders; it is an error if one that a figure needs is missing.
+// `motion_file`: empty or `procedural` is the built-in motion, which has the adult's pace. Without
+// `pace` the motion's pace is used. Styles come from the configuration folders; a missing style of
+// a figure is an error.
 Result<PaperSource> load_paper_source(const std::string& motion_file, std::optional<Pace> pace,
                                       const std::vector<std::string>& config_folders);
 
-// By its name, one of those of styles_of_5a() and styles_of_5b().
+// The style of this name, one of styles_of_5a() and styles_of_5b().
 const Style& style_of(const PaperSource& source, const std::string& name);
 
 // The styles of the red, green and blue character in figures 5 (a) and (b).
@@ -41,14 +41,14 @@ struct FigureStyles {
 const FigureStyles& styles_of_5a();
 const FigureStyles& styles_of_5b();
 
-// A walk: a character, a style and a stick in, every tick out.
+// A walk: computed from a character, a style and a stick; every tick is recorded.
 
 inline constexpr int kPaperRate_hz = 240;
-inline constexpr double kPaperStick = 0.8;  // how far forward the figures' walk has the stick
+inline constexpr double kPaperStick = 0.8;  // forward deflection in the walk of the figures
 
 struct StickAt {
   double time_s = 0.0;
-  vec2 left{0.0};  // from then on; +x right, +y forward
+  vec2 left{0.0};  // from that time on; +x right, +y forward
 };
 struct WalkCase {
   const WalkModel* model = nullptr;
@@ -63,7 +63,7 @@ struct WalkSample {
   std::array<LegAngles, 2> angles_rad{};
   double phase = 0.0;          // of the data's stride, not wrapped
   vec3 hips_m{0.0};            // on the ground, without the data's oscillations
-  double pelvis_yaw_rad = 0;   // beyond the heading; with keeps_joints
+  double pelvis_yaw_rad = 0;   // relative to the heading; with keeps_joints
   std::vector<vec3> joints_m;  // of the skeleton, world; with keeps_joints
 };
 struct Walk {
@@ -81,11 +81,11 @@ struct Ticks {  // [begin, end)
   std::size_t begin = 0, end = 0;
   std::size_t count() const noexcept { return end - begin; }
 };
-// From each strike of that foot to its next one.
+// From each strike of the foot to its next one.
 std::vector<Ticks> strides(const Walk& walk, Side side);
 // The first stride that begins after `time_s`; empty if there is none.
 Ticks stride_after(const Walk& walk, Side side, double time_s);
-// The ticks of each whole flight of that foot that begins after `time_s`.
+// The ticks of each complete flight of the foot that begins after `time_s`.
 std::vector<Ticks> flights(const Walk& walk, Side side, double time_s);
 
 double joint_deg(const Walk& walk, std::size_t tick, Side side, LegJoint joint) noexcept;
@@ -98,7 +98,7 @@ Range joint_range(const Walk& walk, const Ticks& ticks, Side side, LegJoint join
 double joint_rms(const Walk& a, const Walk& b, const Ticks& ticks, Side side,
                  LegJoint joint) noexcept;
 
-// What the claims and figures of one motion share: its model and its walks, each made once.
+// Shared by the claims and figures of one motion: its model and its walks, each computed once.
 
 class Study {
  public:
@@ -109,10 +109,10 @@ class Study {
   const WalkModel& model() const { return *model_; }
   // The same motion on longer or shorter legs.
   Result<WalkModel> model_with_legs(double leg_ratio) const;
-  // A straight walk, kPaperStick forward, long enough for `figure_stride()`.
+  // A straight walk, kPaperStick forward, long enough for figure_stride().
   const Walk& walk(const std::string& style, IkMode mode);
-  // The stride that the figures show: from the right foot's first strike after kFigureStart_s. All
-  // styles of a figure have the same ticks, because weights do not change the timing.
+  // The stride in the figures: from the right foot's first strike after kFigureStart_s. All styles
+  // of a figure have the same ticks, because weights do not change the timing.
   Ticks figure_stride(const Walk& walk) const;
 
  private:
@@ -124,13 +124,13 @@ class Study {
 
 inline constexpr double kFigureStart_s = 4.0, kFigureEnd_s = 9.0;
 
-// The greatest distance, in mm, that a planted heel or toe moves from where its plant began, over
-// all plants that begin at or after `from`.
+// Largest distance in mm of a planted heel or toe from the place where its plant began, over all
+// plants that begin at or after `from`.
 double planted_slide_mm(const Walk& walk, std::size_t from = 0);
 
 // A gamepad with two 16-bit axes, for the claims about the joystick.
 
-// It has the calibration of an unknown stick (inner zone 0.2, outer 0.95).
+// It has the calibration of an unknown stick (inner zone 0.2, outer zone 0.95).
 PadConfig paper_pad();
 // Raw -1..1, +x right, +y forward.
 Report paper_report(const vec2& raw);

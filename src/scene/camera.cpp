@@ -5,11 +5,11 @@ namespace {
 
 constexpr double kNearest_m = 1.0, kFarthest_m = 40.0;
 constexpr double kLowestEye_m = 0.1, kHighestTarget_m = 4.0;
-constexpr double kSteepest_rad = 1.5;  // almost straight down; straight down has no "up"
+constexpr double kSteepest_rad = 1.5;  // almost straight down; straight down leaves "up" undefined
 constexpr double kNearPlane_m = 0.1, kFarPlane_m = 200.0;
-constexpr double kFollow_1_s = 4.0;    // how quickly the camera follows
-constexpr double kFastest_m_s = 20.0;  // faster is a jump: a reset or other people
-constexpr double kUsed = 0.92;         // of the picture's width and height for people
+constexpr double kFollow_1_s = 4.0;    // rate at which the camera follows
+constexpr double kFastest_m_s = 20.0;  // a faster move is a jump: a reset or another character
+constexpr double kUsed = 0.92;         // share of the picture's width and height for the characters
 constexpr double kLeastUsed = 0.3;     // if labels take the rest
 constexpr double kNearestPoint_m = 0.5;
 constexpr double kOutTime_s = 0.25, kInTime_s = 0.6, kLetPass = 0.97;
@@ -92,8 +92,8 @@ void pan(Camera& camera, const vec2& pixels, double viewport_height_px) noexcept
   keep_bounds(camera);
 }
 
-// The exact response of a critically damped spring to a place that moves evenly between two calls,
-// so that two short frames end where one long frame does.
+// The exact response of a critically damped spring to a place that moves at constant speed between
+// two calls, so that two short frames end where one long frame does.
 void follow(Camera& camera, const vec3& place_m, double dt_s) noexcept {
   if (!is_finite(place_m) || !(dt_s > 0.0) || !std::isfinite(dt_s)) return;
   vec3 from_m = camera.followed_m;

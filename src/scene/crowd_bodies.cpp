@@ -6,17 +6,17 @@
 namespace gaitpad {
 namespace {
 
-constexpr double kFull_m = 11.0;  // members nearer to the eye are drawn with all bones
+constexpr double kFull_m = 11.0;  // nearer members are drawn with all bones
 constexpr Colour kPlain = {0.60, 0.61, 0.64};
-constexpr double kPlainShare = 0.45;  // of it in the colour of a member: the walkers stand out
+constexpr double kPlainShare = 0.45;  // share of grey, so that walkers stand out
 constexpr double kPaleCrowdShare = 0.30;
-constexpr double kAroundFocus_m = 3.0;  // of floor behind the last member
-// Shades on the floor: below each foot, and towards where the light throws the body's shadow.
+constexpr double kAroundFocus_m = 3.0;  // floor that is drawn beyond the last member
+// Shadows on the floor: below each foot, and where the light casts the body's shadow.
 constexpr double kFootShade_m = 0.17, kBodyShade_m = 0.26, kHeadShade_m = 0.22;
 constexpr double kShadeUp_m = 0.006;
-const vec3 kThrown = vec3(-0.49, 0.0, -0.42);  // of a metre of height
+const vec3 kThrown = vec3(-0.49, 0.0, -0.42);  // shadow's offset per metre of height
 
-// By style, and brighter or darker by member, so that neighbours differ.
+// The colour of the style, brighter or darker by member, so that neighbours differ.
 Colour colour_of(const Theme& theme, int style, std::size_t member) {
   const Colour tone =
       mixed(series_colour(theme, static_cast<std::size_t>(style)), kPlain, kPlainShare);
@@ -88,7 +88,7 @@ void CrowdBodies::add(const Mannequin& mannequin, const Colour& colour, const Te
   for (const MannequinBone& bone : mannequin.bones) {
     const BonePlace place = place_of(bone, frames_);
     const vec3 a = place.from_m - origin_m, b = place.to_m - origin_m;
-    // Trunk and upper limbs end in one another.
+    // Trunk and upper limbs end inside other capsules.
     const double width = bone.is_pale ? bone.width_to : -bone.width_to;
     const Colour& paint = bone.is_pale ? pale : colour;
     content.crowd.push_back({row(a, bone.radius_from_m), row(b, bone.radius_to_m),
@@ -109,7 +109,7 @@ void CrowdBodies::add(const Mannequin& mannequin, const Colour& colour, const Te
     shade(heel, toe, kFootShade_m, kFootShade_m, 0.45f);
   }
   const vec3 body = below + kUp * kShadeUp_m - origin_m;
-  if (terrain != nullptr) {  // a long shade would float over steps
+  if (terrain != nullptr) {  // a long shadow would float over steps
     shade(body, body, kBodyShade_m, kBodyShade_m, 0.3f);
     return;
   }

@@ -11,13 +11,13 @@ namespace gaitpad {
 
 class CrowdBodies {
  public:
-  CrowdBodies() = default;  // nobody
+  CrowdBodies() = default;  // no members
   explicit CrowdBodies(const Cast& cast);
 
-  // Where the next fill() is seen from: members near it are drawn with all bones.
+  // The place of the eye in the next fill(): members near it are drawn with all bones.
   void look_from(const vec3& eye_m) noexcept { eye_m_ = eye_m; }
-  // Replaces the crowd in the scene: everybody between the two latest poses (share 0 .. 1).
-  // `focus_m`: the place that the floor is drawn around. `terrain`: null if level at height 0.
+  // Replaces the crowd in the scene: all members, interpolated between their two latest poses by
+  // `share` (0 .. 1). `focus_m`: centre of the drawn floor. `terrain`: null if level at height 0.
   void fill(const FollowerPoses& poses, double share, const Theme& theme, const Terrain* terrain,
             const vec3& focus_m, SceneContent& content);
 

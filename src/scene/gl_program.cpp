@@ -10,7 +10,7 @@ namespace {
 
 using Shader = GlName<FreeShader>;
 
-// The first line of the compiler's log.
+// First line of the compiler's log.
 template <class GetLength, class GetText>
 std::string log_of(GLuint name, GetLength get_length, GetText get_text) {
   GLint size = 0;

@@ -1,5 +1,5 @@
-// OpenGL objects that free themselves, and shader programs whose errors become sentences. Each
-// object needs the context that was current when it was made.
+// OpenGL objects that free themselves, and shader programs that report errors as sentences. Each
+// object needs the context in which it was made.
 #pragma once
 #include <epoxy/gl.h>
 
@@ -67,36 +67,36 @@ GlFrameBuffer new_frame_buffer();
 GlRenderBuffer new_render_buffer();
 GlTexture new_texture();
 
-// A part of a row of floats: `floats` numbers for attribute `location`.
+// A part of a row: `floats` numbers for attribute `location`.
 struct RowPart {
   GLuint location;
   GLint floats;
 };
-// What a program draws: rows of floats, one for each vertex or one for each instance, and triangles
-// as indices of vertices.
+// The input of a program: rows of floats, one for each vertex or instance, and triangles as indices
+// of vertices.
 class GlRows {
  public:
   enum class Of : std::uint8_t { vertex, instance };
-  // What such a row holds; call it before load().
+  // Describes the parts of a row; call it before load().
   void add(Of of, std::initializer_list<RowPart> parts);
-  // Replaces the rows, and the indices.
+  // Replaces the rows; load_triangles() replaces the indices.
   template <class Row>
   void load(Of of, const std::vector<Row>& rows) {
     load(of, rows.data(), rows.size(), sizeof(Row));
   }
   void load_triangles(const std::vector<std::uint32_t>& indices);
 
-  // Every instance, or the first `count`, as a square whose corners the vertex shader places.
+  // Draws all instances, or the first `count`, as squares whose corners the vertex shader computes.
   void draw_squares() const { draw_squares(count_[1]); }
   void draw_squares(GLsizei count) const;
-  // The triangles of the indices or, without indices, of each three vertices.
+  // Draws the triangles of the indices or, without indices, of each three vertices.
   void draw_triangles() const;
   void draw_triangles_of(GLsizei instances) const;
 
  private:
   void load(Of of, const void* data, std::size_t count, std::size_t row_bytes);
   GlVertexArray vertices_;
-  std::array<GlBuffer, 2> buffer_;  // of Of
+  std::array<GlBuffer, 2> buffer_;  // indexed by Of
   std::array<GLsizei, 2> count_ = {};
   GlBuffer indices_;
   GLsizei index_count_ = 0;

@@ -12,8 +12,8 @@ constexpr double kBeside_m = 1e-6;  // distance at which the two sides of a rise
 struct GroundRow {
   double z_m = 0.0;
   double look_m = 0.0;    // offset at which the height is sampled
-  double riser = 0.0;     // of a riser's face: its normal's z; 0: the ground's own normal
-  bool is_joined = true;  // by triangles to the row before
+  double riser = 0.0;     // z of the normal of a riser's face; 0: use the ground's normal
+  bool is_joined = true;  // triangles connect it to the previous row
 };
 
 bool climbs(const Terrain& terrain, double riser_m) {

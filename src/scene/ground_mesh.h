@@ -12,7 +12,7 @@ inline constexpr float kEdge_m = 1.0f;
 struct GroundVertex {
   float x = 0.0f, y = 0.0f, z = 0.0f;  // relative to GroundMesh::origin_m
   float normal_x = 0.0f, normal_y = 1.0f, normal_z = 0.0f;
-  // Metres along the surface to the upper and to the lower edge of the nearest riser, if that edge
+  // Distances along the surface to the upper and the lower edge of the nearest riser, if that edge
   // belongs to this surface; at most kEdge_m.
   float to_nose_m = kEdge_m, to_foot_m = kEdge_m;
 };
@@ -21,12 +21,12 @@ struct GroundMesh {
   std::vector<GroundVertex> vertices;
   std::vector<std::uint32_t> indices;  // of triangles
 };
-// A square of ground, `half_m` to each side of a place. Vertices stand at whole multiples of
-// `step_m`, so that they do not swim when the place moves, and at both edges of every riser, which
-// is a separate face.
+// A square of ground, `half_m` to each side of the centre. Vertices are at whole multiples of
+// `step_m`, so that they stay in place when the centre moves, and at both edges of every riser,
+// which is a separate face.
 GroundMesh ground_mesh(const Terrain& terrain, const vec2& centre_m, double half_m, double step_m);
 
-// The mean height over a step's length along z, which has no jumps at risers.
+// Mean height over the length of a step along z, which does not jump at risers.
 double mean_ground_m(const Terrain& terrain, double x_m, double z_m) noexcept;
 
 }  // namespace gaitpad

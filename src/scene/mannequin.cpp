@@ -12,8 +12,9 @@ namespace {
 
 constexpr double kAdultTrunk_m = 0.50;  // hip joints to shoulder joints
 constexpr double kAdultArm_m = 0.57;    // shoulder to elbow to wrist
-// A trunk's half depth, its width over its depth, and how far its middle is ahead of the spine's
-// joints, from the hips (0) to the shoulders (1). Proportions: tests/view/mannequin_test.cpp.
+// Half depth of the trunk, its width / depth, and the distance of its middle ahead of the spine's
+// joints, from the hips (height 0) to the shoulders (1). Proportions:
+// tests/view/mannequin_test.cpp.
 struct Girth {
   double height, radius_m, width, ahead_m;
 };
@@ -36,10 +37,10 @@ Girth girth_at(double height) {
 
 vec3 between(const vec3& a, const vec3& b, double t) { return a + (b - a) * t; }
 
-// A place that moves with a joint.
+// A place fixed to a joint.
 struct Held {
   int joint = 0;
-  vec3 at_m{0.0};  // in the world, standing
+  vec3 at_m{0.0};  // world, standing pose
 };
 
 class Builder {
@@ -68,10 +69,10 @@ class Builder {
   vec3 local(int joint, const vec3& world_m) const {
     return glm::conjugate(standing_.rotation[joint]) * (world_m - at(joint));
   }
-  // Radii in metres of the character; `wide` in the world, standing.
+  // Radii in metres of the character; `wide` in the world, standing pose.
   MannequinBone& add(const Held& from, const Held& to, double radius_from_m, double radius_to_m,
                      const vec3& wide = vec3(0.0), double width = 1.0);
-  void make_pale(int last);  // the bones added last
+  void make_pale(int last);  // from bone `last` on
   void add_leg(Side side);
   void add_foot(const LegModel& leg);
   void add_pelvis();
@@ -87,9 +88,9 @@ class Builder {
   const UpperBodyJoints& joints_;
   JointFrames standing_;                 // world, facing +z, the feet on the floor
   std::vector<int> trunk_;               // from the root upwards to the head
-  vec3 hips_m_{0.0}, shoulders_m_{0.0};  // between left and right; a guess without both arms
-  double leg_, size_ = 1.0;  // over an adult's: the legs; the rest, by trunk, arms and legs
-  vec3 along_{0.0};          // its dot product with a place above the hips is 1 at the shoulders
+  vec3 hips_m_{0.0}, shoulders_m_{0.0};  // middle of left and right; estimated without both arms
+  double leg_, size_ = 1.0;              // over an adult's: of the legs; of the rest
+  vec3 along_{0.0};  // along_ * (place - hips) is 0 at the hips and 1 at the shoulders
 };
 
 void Builder::stand() {
@@ -110,8 +111,8 @@ void Builder::stand() {
                      : hips_m_ + kUp * (kAdultTrunk_m * leg_);
 }
 
-// From the root to the head, or to what carries the arms if there is no head. Of several joints in
-// one place the last one stays: it turns what comes next.
+// From the root to the head, or to the joint that carries the arms if there is no head. If several
+// joints are at one place, the last one is used, because it rotates the following bone.
 void Builder::find_trunk() {
   int top = joints_.head;
   if (top < 0 && !joints_.spine.empty()) top = joints_.spine.back();
@@ -122,7 +123,7 @@ void Builder::find_trunk() {
   }
 }
 
-// Of the longer arm; the legs' size if there is no arm.
+// Size of the longer arm relative to an adult's; the legs' size if there is no arm.
 double Builder::arm_size() const {
   double longest_m = 0.0;
   for (const ArmChain& arm : joints_.arm) {
@@ -154,7 +155,8 @@ void Builder::make_pale(int last) {
   }
 }
 
-// Twist joints between hip and knee or knee and ankle keep a fixed rotation, so they need no bone.
+// Twist joints between hip and knee or knee and ankle have a constant rotation, so they need no
+// bone.
 void Builder::add_leg(Side side) {
   const LegModel& leg = model_.leg[side].model;
   const Held hip = held(leg.joints.hip), knee = held(leg.joints.knee),
@@ -168,8 +170,8 @@ void Builder::add_leg(Side side) {
   add_foot(leg);
 }
 
-// From the heel to the ball of the foot and from there to the end of the toes. The sole lies on the
-// floor: a ball of radius r stands r above it.
+// Adds bones from the heel to the ball of the foot and from there to the end of the toes. The sole
+// lies on the floor: the centre of a ball of radius r is r above it.
 void Builder::add_foot(const LegModel& leg) {
   const LegJoints& j = leg.joints;
   const vec3 heel = at(j.ankle) + leg.heel_m, toe = at(j.toe), end = at(j.toe_end);
@@ -189,7 +191,7 @@ void Builder::add_foot(const LegModel& leg) {
   add(instep, ball, 0.036 * leg_, 0.026 * leg_, side, 1.0).width_to = 1.45;
   make_pale(2);
   const vec3 tip = on_floor(end - ahead * tip_m, tip_m);
-  if (glm::dot(tip - ball.at_m, ahead) < 0.01 * leg_) return;  // no toes, or toes that end nowhere
+  if (glm::dot(tip - ball.at_m, ahead) < 0.01 * leg_) return;  // no toes, or toes without length
   MannequinBone& toes = add({j.toe, ball.at_m}, {j.toe, tip}, ball_m, tip_m, side, 1.55);
   toes.width_to = 1.7;
   toes.is_pale = true;
@@ -205,7 +207,7 @@ void Builder::add_pelvis() {
   add(hip(kLeftSide), hip(kRightSide), radius_m, radius_m);
 }
 
-// Along the spine, cut where its girth changes. Short bones of the spine are joined.
+// Divides the trunk along the spine where its girth changes. Short bones of the spine are joined.
 void Builder::add_trunk() {
   if (trunk_.empty()) return;
   const double shortest_m = 0.05 * size_;
@@ -237,14 +239,15 @@ void Builder::add_trunk() {
   }
 }
 
-// Neck, jaw with skull, and a nose that shows where the head looks. The head is as high as the
-// skeleton says if that is plausible; a head joint between the shoulders gets a longer neck.
+// Neck, jaw with skull, and a nose that shows the direction of the head. The head has the
+// skeleton's head height if that is plausible; a head joint between the shoulders gets a longer
+// neck.
 void Builder::add_head() {
   if (joints_.head < 0) return;
   constexpr double kHeight_m = 0.224;
   const double wish_m = at(joints_.head_top).y - at(joints_.head).y;
   const bool is_likely = wish_m > 0.16 * size_ && wish_m < 0.27 * size_;
-  // Skeletons measure it from the joint below the skull. The chin is lower.
+  // Skeletons measure the height from the joint below the skull; the chin is lower.
   const double from_joint = (is_likely ? wish_m : 0.222 * size_) / kHeight_m;
   const double part = 1.13 * from_joint;
   vec3 base = at(joints_.head);
@@ -272,7 +275,7 @@ void Builder::add_arm(Side side) {
   for (const int j : trunk_) {
     if (is_ancestor(model_.cycle.skeleton, j, arm.shoulder)) chest = j;
   }
-  // Most skeletons place the shoulder joint on the skin, so the flesh is drawn inwards of it.
+  // Most skeletons place the shoulder joint on the skin, so the shoulder is drawn further inwards.
   vec3 inwards = shoulders_m_ - at(arm.shoulder);
   inwards *= 0.036 * size_ / std::max(glm::length(inwards), 0.036 * size_);
   const Held shoulder = held(arm.shoulder, inwards - kUp * (0.008 * size_));
@@ -289,7 +292,7 @@ void Builder::add_arm(Side side) {
   add_hand(arm);
 }
 
-// A flat mitten with a thumb; its wide side points forward when standing.
+// A flat hand with a thumb; its wide side points forward when standing.
 void Builder::add_hand(const ArmChain& arm) {
   const Held wrist = held(arm.wrist);
   const vec3 forearm = at(arm.wrist) - at(arm.elbow);
@@ -305,7 +308,7 @@ void Builder::add_hand(const ArmChain& arm) {
     return Held{arm.wrist, wrist.at_m + along * (share * length_m) + wide * (aside_m * size_)};
   };
   const Held knuckles = spot(0.50, 0.0);
-  // Fingers at rest are bent by 20 degrees, towards the body.
+  // Relaxed fingers are bent by 20 degrees towards the body.
   vec3 palmwards = shoulders_m_ - at(arm.shoulder);
   palmwards -= along * glm::dot(palmwards, along) + wide * glm::dot(palmwards, wide);
   if (glm::length(palmwards) > 1e-6) palmwards = glm::normalize(palmwards);
@@ -327,7 +330,7 @@ void Builder::build() {
   add_head();
 }
 
-// A bone for each limb, three for the trunk.
+// Adds one bone for each limb and three for the trunk.
 void Builder::build_coarsely() {
   add_pelvis();
   for (const LegBuild& leg : model_.leg) {
@@ -381,13 +384,13 @@ constexpr Colour kPale = {0.83, 0.84, 0.86};
 constexpr double kPaleShare = 0.48;
 constexpr double kStickLine_px = 3.2;
 constexpr double kLongestEnd = 0.5,
-                 kLongestLine = 0.9;  // in leg lengths; joints of meshes lie anywhere
-constexpr double kDeepest_m = 0.05;   // of a foot's bone in the ground; deeper is beside a riser
+                 kLongestLine = 0.9;  // in leg lengths; joints of meshes may be far off
+constexpr double kDeepest_m = 0.05;   // of a foot in the ground; deeper: beside a riser
 constexpr double kShortestLine = 0.015,
-                 kShortestDotted = 0.045;  // in leg lengths; fingers are left out
+                 kShortestDotted = 0.045;  // in leg lengths; leaves fingers out
 
-// Lifts an end that would sink into the ground below it. An end that is deeper in the ground is
-// beside a riser, not on its tread, and stays where it is.
+// Lifts an end that is slightly below the ground. A deeper end is beside a riser, not on its tread,
+// and stays.
 void put_on_ground(const Terrain* terrain, vec3& end_m, double radius_m, const vec3& wide,
                    double width) {
   const Ground ground = terrain == nullptr ? Ground() : ground_at(*terrain, end_m.x, end_m.z);

@@ -18,14 +18,14 @@
 namespace gaitpad {
 namespace {
 
-// What all parts of one picture share. The renderer gets positions as floats relative to `origin_m`
-// near the camera's target, so that feet stay sharp 200 m from the start.
+// Data that all parts of one picture share. The renderer gets positions as floats relative to
+// `origin_m` near the camera's target, so that feet stay sharp 200 m from the start.
 struct SceneView {
   Camera camera;
   vec3 origin_m{0.0};      // whole metres on the floor
   mat4 to_clip{1.0};       // from places relative to the origin
   vec2 size_px{1.0, 1.0};  // of the viewport
-  double band_px = 0.0;    // where the band that is drawn begins, from the viewport's lower edge
+  double band_px = 0.0;    // lower edge of the drawn band, from the viewport's lower edge
   double scale = 1.0;      // of the display
   const Theme* theme = nullptr;
 
@@ -33,24 +33,24 @@ struct SceneView {
   bool is_light() const noexcept { return theme->name == ThemeName::light; }
 };
 
-// Towards the only light.
+// Direction to the only light.
 const vec3 kLightDirection = glm::normalize(vec3(0.42, 0.86, 0.36));
 
 struct MeshDetail {
   int segments = 36, rings = 8;  // round the axis; of each cap
   int shadow_px = 1024;          // side of the shadows' texture
 };
-// Where the shadows' texture lies on the floor, relative to the view's origin.
+// Square of the floor that the shadows' texture covers, relative to the view's origin.
 struct ShadowPlace {
   vec2 centre_m{0.0};
   double half_m = 0.0;  // 0: there are no shadows
 };
 
-// Draws bodies of capsules, instanced, and their shadows into a texture of the floor.
+// Draws bodies of capsules, instanced, and renders their shadows into a texture of the floor.
 class CapsuleScene {
  public:
   std::optional<Error> open(const MeshDetail& detail);
-  // Uploads the bodies and lines of a picture; those that are not finite are left out.
+  // Uploads the bodies and lines of a picture, without those that are not finite.
   void load(const SceneContent& content, const SceneView& view);
   // Binds a frame buffer of its own and changes the viewport.
   ShadowPlace draw_shadows();
@@ -74,14 +74,14 @@ class CapsuleScene {
   GlFrameBuffer shadow_target_;
   int shadow_px_ = 0;
 
-  std::vector<Instance> rows_;       // bodies near the floor, the others, lines
-  std::vector<Instance> high_rows_;  // the others, while rows_ is filled
+  std::vector<Instance> rows_;       // bodies near the floor, then the others, then lines
+  std::vector<Instance> high_rows_;  // the other bodies, while rows_ is filled
   std::size_t low_capsules_ = 0, capsules_ = 0;
   bool has_layers_ = false;
 };
 
 constexpr double kLineShadow_m = 0.014;  // radius of a stick figure's lines for their shadow
-constexpr double kContact_m = 0.55;      // bodies above this height cast no contact shadow
+constexpr double kContact_m = 0.55;      // higher bodies cast no contact shadow
 constexpr double kShadowStep_m = 2.0;    // steps of the texture's size, against flicker
 constexpr double kLargestShadow_m = 16.0;
 
@@ -126,8 +126,8 @@ std::optional<Error> CapsuleScene::open(const MeshDetail& detail) {
   return std::nullopt;
 }
 
-// Rows of latitude from one pole to the seam, then from the seam to the other pole. The triangles
-// between the two caps form the cone.
+// Rows of latitude of the two caps, each from pole to seam or back; the triangles between the caps
+// form the cone.
 void CapsuleScene::make_mesh(const MeshDetail& detail) {
   const int columns = detail.segments, rows = 2 * (detail.rings + 1);
   std::vector<std::array<float, 4>> spots;
@@ -201,7 +201,7 @@ void CapsuleScene::load(const SceneContent& content, const SceneView& view) {
   bodies_.load(GlRows::Of::instance, rows_);
 }
 
-// Around all bodies and their shadows, in whole texels, so that shadows do not swim.
+// Contains all bodies and their shadows, in whole texels, so that shadows do not flicker.
 ShadowPlace CapsuleScene::shadow_place() const noexcept {
   if (rows_.empty()) return {};
   vec2 low(1e9), high(-1e9);
@@ -226,7 +226,7 @@ ShadowPlace CapsuleScene::shadow_place() const noexcept {
 }
 
 // Red: the light's shadow. Green: contact shadow straight below, where the sky's light does not
-// reach the floor. The darkest value counts, so that overlapping bones do not show.
+// reach the floor. The darkest value counts, so that overlapping bones are not visible.
 ShadowPlace CapsuleScene::draw_shadows() {
   const ShadowPlace place = shadow_place();
   if (place.half_m <= 0.0) return place;
@@ -270,8 +270,8 @@ void light_bodies(const GlProgram& program, const SceneView& view) {
   program.set("rim_strength", view.is_light() ? 0.10 : 0.34);
 }
 
-// Of half transparent bodies one layer has one half of a pixel's samples, the other layer the other
-// half: each hides nothing of the other, whichever is in front.
+// Two half transparent bodies each cover one half of a pixel's samples, so that both are visible,
+// whichever is in front.
 void CapsuleScene::draw(const SceneView& view, int samples) const {
   light_bodies(program_, view);
   glEnable(GL_CULL_FACE);
@@ -294,7 +294,7 @@ class CrowdScene {
  public:
   std::optional<Error> open();
   void draw(const SceneContent& content, const SceneView& view, int samples);
-  // Call it when the floor is drawn.
+  // Call it while the floor is drawn.
   void draw_shades(const SceneContent& content, const SceneView& view);
 
  private:
@@ -448,7 +448,7 @@ void FloorScene::draw_ground(const SceneContent& content, const SceneView& view,
   set_floor(ground_, content, view, place);
   ground_.set("moved", mesh_origin_m_ - view.origin_m);
   ground_.set("light", kLightDirection);
-  ground_.set("tone", view.is_light() ? 0.92 : 1.0);  // leaves room above for what is lighter
+  ground_.set("tone", view.is_light() ? 0.92 : 1.0);  // leaves a range for brighter parts
   ground_.set("relief", view.is_light() ? 5.0 : 10.0);
   ground_.set("level", mesh_origin_m_.y - view.origin_m.y);
   ground_.set("behind_m", kBehind_m);
@@ -467,7 +467,7 @@ void FloorScene::draw(const SceneContent& content, const SceneView& view, const 
   glBindVertexArray(nothing_.get());
   sky_.use();
   set_background(sky_, view);
-  glDrawArrays(GL_TRIANGLES, 0, 3);  // at the farthest depth
+  glDrawArrays(GL_TRIANGLES, 0, 3);  // at the largest depth
   glBindTexture(GL_TEXTURE_2D, 0);
 }
 
@@ -517,7 +517,7 @@ std::optional<Spot> spot_of(const vec3& world_m, const SceneView& view) {
   return Spot{ndc, vec2(ndc.x, ndc.y) * 0.5 * view.size_px};
 }
 
-// Distance from the point before; 0 if it is not finite.
+// Distance from the previous point; 0 if it is not finite.
 double step_m(const Trail& trail, std::size_t i) {
   const double length_m = glm::distance(trail.points_m[i - 1], trail.points_m[i]);
   return std::isfinite(length_m) ? length_m : 0.0;
@@ -552,8 +552,8 @@ void StrokeScene::draw(const SceneContent& content, const SceneView& view) {
   glDisable(GL_BLEND);
 }
 
-// A trail fades by length, not by time, so that a standing foot does not cut it in two. The
-// triangles share their edges without overlap, so that corners are not darker than the rest.
+// A trail fades with length, not time, so that a standing foot does not divide it. The triangles
+// share their edges without overlap, so that corners are not darker than the rest.
 void StrokeScene::add_ribbon(const Trail& trail, const SceneView& view) {
   const std::size_t count = trail.points_m.size();
   const glm::vec3 colour(trail.colour.red, trail.colour.green, trail.colour.blue);
@@ -572,7 +572,7 @@ void StrokeScene::add_ribbon(const Trail& trail, const SceneView& view) {
     const auto next = i + 1 < count ? spot_of(trail.points_m[i + 1], view) : std::nullopt;
     along = direction(last ? last->px : spot->px, next ? next->px : spot->px, along);
     const vec2 aside(-along.y, along.x);
-    const double share = passed_m / whole_m;  // 1: the newest
+    const double share = passed_m / whole_m;  // 1 at the newest point
     const double half = mix(kTrailTail_px, kTrailHalf_px, share) * view.scale, reach = half + 1.0;
     std::array<Edge, 2> edges;
     for (const int side : {0, 1}) {
@@ -627,8 +627,8 @@ void StrokeScene::draw_lines(const SceneContent& content, const SceneView& view)
 
 constexpr int kSamples = 4;
 constexpr int kLargestPicture_px = 16384;
-// A fine picture is drawn in bands of so many pixels: all its samples at once would take 120 MB in
-// double size.
+// A picture with several samples per pixel is drawn in bands of at most this area: at double size
+// all samples at once would take 120 MB.
 constexpr int kBandArea_px = 1 << 19, kLowestBand_px = 16;
 
 // Software rasterizers of Mesa, Google and Windows.
@@ -642,7 +642,7 @@ bool is_software_renderer(const std::string& name) {
 // A frame buffer with colour and depth, with one or several samples per pixel.
 class Target {
  public:
-  // Returns false if the renderer cannot.
+  // Returns false if the renderer does not support it.
   bool resize(int width, int height, int samples) {
     if (width == width_ && height == height_ && samples == samples_) return is_complete_;
     width_ = width;
@@ -706,7 +706,7 @@ struct Scene::Impl {
   StrokeScene strokes;
   Target target, resolved;
   std::string renderer;
-  int samples = 1, most_samples = 1;  // of a pixel: otherwise; where bodies are half transparent
+  int samples = 1, most_samples = 1;  // per pixel: normally; with half transparent bodies
   bool is_software = false, has_bands = false;
 };
 
@@ -755,7 +755,7 @@ void Scene::draw(const SceneContent& content, const Camera& camera, const Theme&
   SceneView view = view_of(camera, content, theme, viewport, scale);
   s.capsules.load(content, view);
   int samples = s.capsules.has_layers() ? s.most_samples : s.samples;
-  // If memory does not suffice for several samples per pixel, one is tried.
+  // If the memory is too small for several samples per pixel, use one.
   if (!s.target.resize(width, band, samples)) samples = s.samples = s.most_samples = 1;
   if (s.target.resize(width, band, samples)) {
     const ShadowPlace shadow = content.has_shadows ? s.capsules.draw_shadows() : ShadowPlace{};

@@ -14,17 +14,17 @@
 
 namespace gaitpad {
 
-// The hull of two balls. Along the part of `wide` that is at right angles to a-b it is stretched by
-// a factor, because a trunk is wider than deep.
+// The convex hull of two balls. Along the component of `wide` that is perpendicular to a-b it is
+// stretched by `width`, because a trunk is wider than deep.
 struct Capsule {
   vec3 a_m{0.0}, b_m{0.0};  // world
   double radius_a_m = 0.05, radius_b_m = 0.05;
   vec3 wide{0.0};  // zero: round
   double width_a = 1.0, width_b = 1.0;
   Colour colour;
-  // 1, 2: half transparent, one body over the other. Bodies of the same layer hide each other.
+  // 1, 2: half transparent, one body over the other. Bodies of the same layer occlude each other.
   int layer = 0;
-  vec3 wide_b{0.0};  // `wide` of the end b, so that two capsules meet in one seam; zero: as at a
+  vec3 wide_b{0.0};  // `wide` at b, so that two capsules share a seam; zero: as at a
 };
 struct SceneLine {  // of constant width in pixels, for stick figures; casts a faint shadow
   vec3 a_m{0.0}, b_m{0.0};
@@ -35,21 +35,20 @@ struct Trail {  // oldest first; fades towards the old end
   std::vector<vec3> points_m;
   Colour colour;
 };
-// A row of what the shaders read.
+// A vector as the shaders read it.
 inline glm::vec4 row(const vec3& v, double w) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z),
           static_cast<float>(w)};
 }
-// A capsule of a body that is one of many: drawn as a rectangle that faces the eye, shaded as if it
-// were round, for a fraction of the cost. It casts no shadow. Places are relative to
-// SceneContent::crowd_origin_m.
+// A capsule of a crowd's body: drawn as a rectangle that faces the eye and shaded as if it were
+// round, for a fraction of the cost. It casts no shadow. Relative to SceneContent::crowd_origin_m.
 struct FlatCapsule {
   glm::vec4 a_radius{0.0f}, b_radius{0.0f};
-  // As in Capsule. A negative width at b: both ends lie in other capsules and show no caps.
+  // As in Capsule. A negative width at b: both ends are inside other capsules and have no caps.
   glm::vec4 wide_width_a{0.0f}, colour_width_b{0.0f};
   float ground_m = 0.0f;  // height of the ground below it
 };
-// A soft dark strip on the floor between two places, its radius at each end; relative likewise.
+// A soft dark strip on the floor with a radius at each end; also relative to crowd_origin_m.
 struct FloorShade {
   glm::vec4 a_radius{0.0f}, b_radius{0.0f};
   float dark = 0.0f;  // 0 .. 1
@@ -62,7 +61,7 @@ struct SceneContent {
   std::vector<FlatCapsule> crowd;
   std::vector<FloorShade> crowd_shades;
   vec3 crowd_origin_m{0.0};
-  double reach_m = 0.0;  // the floor is seen at least so far around the focus
+  double reach_m = 0.0;  // least radius of the floor around the focus
   std::vector<Trail> trails;
   std::shared_ptr<const Terrain> terrain;  // the floor; null: level at height 0
   vec3 focus_m{0.0};  // the floor is drawn around it; the grid is fixed to the world
@@ -76,16 +75,15 @@ struct Viewport {
 
 class Scene {
  public:
-  // automatic: anti-aliasing and fine meshes, but not on a software rasterizer. high: always, for
+  // automatic: anti-aliasing and fine meshes, except on a software rasterizer. high: always, for
   // single pictures.
   enum class Quality { automatic, low, high };
   // Fails if a shader does not compile or the renderer lacks a feature.
   static Result<std::unique_ptr<Scene>> create(Quality quality);
   ~Scene();
 
-  // Draws into the bound frame buffer, which is `window_height_px` high. It stays bound, and
-  // nothing changes outside the viewport. `scale`: of the display. Turns depth test and blending
-  // off.
+  // Draws into the bound frame buffer of height `window_height_px`, inside the viewport only; it
+  // stays bound. `scale`: of the display. Turns depth test and blending off.
   void draw(const SceneContent& content, const Camera& camera, const Theme& theme,
             const Viewport& viewport, int window_height_px, double scale);
   // "llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 3.3, 4x anti-aliasing"

@@ -4,7 +4,7 @@
 namespace gaitpad::shader {
 
 // --- bodies --------------------------------------------------------------------------------------
-// A vertex holds the direction around the axis (cosine, sine), the place between a cap's pole and
+// A vertex has the direction around the axis (cosine, sine), the position between a cap's pole and
 // its seam, and the cap. The caps continue the cone between them tangentially.
 inline constexpr const char* kBodyVertex = R"(#version 330 core
 layout(location = 0) in vec4 spot;
@@ -41,8 +41,8 @@ void main() {
 }
 )";
 
-// The light on bodies, before either of the two fragment shaders that use it: `facing` is 1 where
-// the surface faces the eye.
+// The light on bodies, prepended to two fragment shaders. `facing` is 1 where the surface faces the
+// eye.
 inline constexpr const char* kLight = R"(#version 330 core
 uniform vec3 light;
 uniform vec3 sky_light;
@@ -79,7 +79,7 @@ void main() {
 
 // --- the crowd -----------------------------------------------------------------------------------
 // A rectangle from one ball's far end to the other's, turned around the capsule's axis to the eye.
-// How wide it is follows from the side that is seen.
+// Its width depends on the visible side.
 inline constexpr const char* kFlatVertex = R"(#version 330 core
 layout(location = 1) in vec4 a_radius;
 layout(location = 2) in vec4 b_radius;
@@ -127,7 +127,7 @@ void main() {
 }
 )";
 
-// The same light, with cheap powers.
+// The same light, with cheaper powers.
 inline constexpr const char* kFlatFragment = R"(
 in float height;
 in vec2 spot;
@@ -208,7 +208,7 @@ void main() {
 
 // --- shadows -------------------------------------------------------------------------------------
 // One square for each bone, drawn into a texture of the floor. Each end is projected along `slide`
-// to a disc, whose edge is softer the higher the end is.
+// to a disc; its edge is softer the higher the end is.
 inline constexpr const char* kShadowVertex = R"(#version 330 core
 layout(location = 1) in vec4 a_radius;
 layout(location = 2) in vec4 b_radius;
@@ -384,9 +384,9 @@ void main() {
 }
 )";
 
-// Treads and risers have two tones, and what lies higher is lighter, so that steps read at a
-// glance. Gentle slopes are shaded more than the light would, so that humps of 6 cm show. A riser
-// shows only the grid's lines across it; lines along it would lie at arbitrary heights.
+// Treads and risers have two tones, and higher parts are brighter, so that steps are easy to see.
+// Gentle slopes are shaded more than by the light, so that humps of 6 cm show. A riser shows only
+// the grid lines across it; lines along it would be at arbitrary heights.
 inline constexpr const char* kGroundFragment = R"(
 in vec3 place;
 in vec3 normal;
@@ -411,8 +411,8 @@ void main() {
 )";
 
 // --- lines and trails ----------------------------------------------------------------------------
-// A line is a rectangle in the picture, wide enough for its round ends and half a pixel of soft
-// edge, without perspective.
+// A line is a rectangle in the picture, without perspective, wide enough for its round ends and
+// half a pixel of soft edge.
 inline constexpr const char* kLineVertex = R"(#version 330 core
 layout(location = 1) in vec4 a_radius;  // pixels
 layout(location = 2) in vec3 b;

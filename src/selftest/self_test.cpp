@@ -45,9 +45,9 @@ using nlohmann::ordered_json;
 using Answer = SelfTestPerson::Answer;
 
 constexpr std::chrono::milliseconds kLook{20};
-constexpr std::int64_t kOpening_ns = 8 * kSecond_ns;  // a pad that takes longer does not open
+constexpr std::int64_t kOpening_ns = 8 * kSecond_ns;  // time limit for opening a pad
 
-// --- what identifies the pad is left out of everything that is kept
+// everything that identifies the pad is removed from the kept files
 
 // A Bluetooth address as bytes, most significant first, else the text itself.
 std::vector<std::uint8_t> identity_bytes(const std::string& unique_id) {
@@ -61,7 +61,7 @@ std::vector<std::uint8_t> identity_bytes(const std::string& unique_id) {
 }
 
 bool holds(std::span<const std::uint8_t> report, const std::vector<std::uint8_t>& identity) {
-  constexpr std::size_t kShortest = 4;  // less would be found by chance
+  constexpr std::size_t kShortest = 4;  // shorter ones may match by chance
   if (identity.size() < kShortest) return false;
   return std::search(report.begin(), report.end(), identity.begin(), identity.end()) !=
              report.end() ||
@@ -69,8 +69,8 @@ bool holds(std::span<const std::uint8_t> report, const std::vector<std::uint8_t>
              report.end();
 }
 
-// Removes serial numbers, addresses and ports: from what describes the devices, and each report
-// that holds one (a pad answers its driver so).
+// Removes serial numbers, addresses and ports from the devices' descriptions, and each report that
+// holds one (a pad may send it to its driver).
 void leave_identity_out(Trace& trace) {
   for (std::size_t i = 0; i < trace.devices.size(); ++i) {
     DeviceInfo& info = trace.devices[i].info;
@@ -94,7 +94,7 @@ class OpenPad {
     return std::unique_ptr<OpenPad>(new OpenPad(std::move(*stream)));
   }
 
-  // Takes in what has come, or waits a moment for it.
+  // Takes the reports that have arrived, or waits briefly.
   void look(CalibrationGuide* guide = nullptr);
   bool has_come() const noexcept { return device_ != kNoDevice; }
   bool is_plugged() const noexcept { return is_plugged_; }
@@ -111,7 +111,7 @@ class OpenPad {
     stream_->rumble(device_, strength, duration);
   }
 
-  ordered_json rate() const;  // and jitter, of all reports so far
+  ordered_json rate() const;  // rate and jitter over all reports so far
   std::optional<Error> save(const std::string& path) &&;
 
  private:
@@ -167,12 +167,12 @@ void OpenPad::look(CalibrationGuide* guide) {
     take_report(*report);
     if (guide != nullptr && report->device == device_) guide->take_report(*report);
   }
-  constexpr std::int64_t kOnTheWay_ns = 50'000'000;  // reports may take so long to arrive
+  constexpr std::int64_t kOnTheWay_ns = 50'000'000;  // reports may arrive this late
   if (guide != nullptr) guide->tick(now_ns() - kOnTheWay_ns);
 }
 
 ordered_json OpenPad::rate() const {
-  // Pauses of a pad that reports changes only are no interval.
+  // A pad that reports only changes pauses; do not count pauses as intervals.
   constexpr double kPause_us = 100e3;
   std::vector<double> running = interval_us_;
   std::erase_if(running, [](double us) { return us > kPause_us; });
@@ -251,11 +251,11 @@ ordered_json system_facts() {
           {"is_root", ::geteuid() == 0}};
 }
 
-// --- the controls that a pad has, and what to do with them
+// the controls that a pad has, and the requests to operate them
 
 struct ControlAction {
-  std::string name;     // of the report: left_x+, left_trigger, a
-  std::string request;  // to the person
+  std::string name;     // in the report: left_x+, left_trigger, a
+  std::string request;  // to the user
   int axis = -1;        // PadAxis, else `button`
   float direction = 1.0f;
   PadButton button = kButtonA;
@@ -325,7 +325,7 @@ bool is_at_rest(const PadState& state) {
          std::ranges::all_of(state.axis, [](float value) { return std::abs(value) < kBack; });
 }
 
-// Only this control, all the way.
+// True if only this control is operated, and fully.
 bool shows(const PadState& state, const ControlAction& action) {
   if (action.axis < 0) return state.buttons == 1u << action.button;
   for (int i = 0; i < kAxisCount; ++i) {
@@ -336,7 +336,7 @@ bool shows(const PadState& state, const ControlAction& action) {
   return true;
 }
 
-// The names of what is pressed or pushed, for people and for the report.
+// Names of the operated controls, for users and the report.
 std::vector<std::string> shown_controls(const PadState& state) {
   std::vector<std::string> names;
   for (int i = 0; i < kAxisCount; ++i) {
@@ -372,7 +372,7 @@ class SelfTest {
   static constexpr int kParts = 6;
   static constexpr const char* kTitles[kParts] = {"drivers", "controls",    "unplugging",
                                                   "rumble",  "calibration", "straight walk"};
-  // Each returns false if the person gave up or `problem_` is set.
+  // Each returns false if the user gave up or `problem_` is set.
   bool compare_drivers();
   bool try_driver(const PadSighting& way);
   bool turn_stick(OpenPad& pad, ordered_json& driver);
@@ -386,7 +386,7 @@ class SelfTest {
   SelfTestPrompt prompt_of(Part part, std::string request) const;
   bool open(const std::string& driver, bool& is_open);
   bool close(const std::string& name);
-  // Shows the prompt until `look_on` returns true (Answer::none) or the person answers.
+  // Shows the prompt until `look_on` returns true (Answer::none) or the user answers.
   template <class LookOn>
   Answer ask(SelfTestPrompt& prompt, const LookOn& look_on);
   void fail(std::string sentence) { failures_.push_back(std::move(sentence)); }
@@ -396,9 +396,9 @@ class SelfTest {
   const SelfTestOptions& options_;
   SelfTestPerson& person_;
   std::string folder_;
-  std::vector<PadSighting> ways_;  // of the one pad, one a driver
-  PadWish wish_;                   // its ids: it is found again after it was unplugged
-  std::string driver_;             // the first that opened it
+  std::vector<PadSighting> ways_;  // to the same pad, one for each driver
+  PadWish wish_;                   // its ids, which find it again after unplugging
+  std::string driver_;             // the first driver that opened it
   std::unique_ptr<OpenPad> pad_;
   CalibrationFile calibration_;
   bool has_calibration_ = false;
@@ -449,7 +449,7 @@ SelfTestPrompt SelfTest::prompt_of(Part part, std::string request) const {
 
 template <class LookOn>
 Answer SelfTest::ask(SelfTestPrompt& prompt, const LookOn& look_on) {
-  static_cast<void>(person_.take_answer());  // given before it was asked
+  static_cast<void>(person_.take_answer());  // drop an answer from before the question
   for (;;) {
     if (look_on(prompt)) return Answer::none;
     person_.show(prompt);
@@ -458,7 +458,7 @@ Answer SelfTest::ask(SelfTestPrompt& prompt, const LookOn& look_on) {
   }
 }
 
-// `is_open`: false if this driver cannot serve it, which is told.
+// `is_open`: false if this driver cannot use the pad, with a remark.
 bool SelfTest::open(const std::string& driver, bool& is_open) {
   is_open = false;
   auto pad = OpenPad::open(options_.files, {wish_.pad, driver});
@@ -478,7 +478,7 @@ bool SelfTest::open(const std::string& driver, bool& is_open) {
   return answer != Answer::quit;
 }
 
-// Keeps what was recorded as NAME.
+// Saves the recorded reports as NAME.
 bool SelfTest::close(const std::string& name) {
   if (pad_->has_come()) problem_ = std::move(*pad_).save(path_of(name));
   pad_.reset();
@@ -490,7 +490,7 @@ bool SelfTest::compare_drivers() {
   for (const PadSighting& way : ways_)
     if (!try_driver(way)) return false;
   if (!has_way()) fail("no driver opened the pad");
-  // The first driver is the measure of the others.
+  // The other drivers are compared with the first.
   const ordered_json* first = nullptr;
   for (ordered_json& driver : report_["drivers"]) {
     if (!driver.contains("left_stick")) continue;
@@ -503,7 +503,7 @@ bool SelfTest::compare_drivers() {
       worst = std::max(worst, std::abs(driver["left_stick"][key].get<double>() -
                                        (*first)["left_stick"][key].get<double>()));
     driver["differs_by"] = worst;
-    constexpr double kAlike = 0.25;  // two turns of a hand, and what a kernel driver scales
+    constexpr double kAlike = 0.25;  // two turns by hand differ, and kernel drivers scale values
     if (worst > kAlike)
       fail(fmt::format("{} shows the left stick otherwise than {}: by {:.2f}",
                        driver["driver"].get<std::string>(), (*first)["driver"].get<std::string>(),
@@ -616,7 +616,7 @@ bool SelfTest::ask_control(const ControlAction& action, ordered_json& control) {
   if (answer == Answer::quit) return false;
   const bool is_wrong = answer == Answer::no;
   control["result"] = is_seen && !is_wrong ? "seen" : is_wrong ? "wrong" : "absent";
-  control["others"] = others;  // shown meanwhile
+  control["others"] = others;  // operated at the same time
   control["from_s"] = from_s;
   control["to_s"] = pad_->time_s();
   if (is_wrong)
@@ -777,7 +777,7 @@ bool SelfTest::walk_straight() {
     bool is_new = false;
     const SessionFrame& frame = (*session)->latest(is_new);
     p.seen = fmt::format("stick {:+.2f} {:+.2f}", frame.stick.left.x, frame.stick.left.y);
-    if (static_cast<double>(frame.stick.left.y) < kForward) {  // from the beginning
+    if (static_cast<double>(frame.stick.left.y) < kForward) {  // start again
       first_tick = -1, frames = straight = 0;
       p.done = 0.0;
       return false;

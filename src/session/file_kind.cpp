@@ -55,8 +55,8 @@ Result<FileKind> kind_of_content(const std::string& path) {
                   path, problem)};
 }
 
-// Sets item `n` of `count` in the list, which repeats its last item up to there; a negative `n`
-// replaces the whole list.
+// Sets item `n` of `count`; a shorter list is first extended with its last item. If `n` is not in
+// [0, count) or the list is empty, `path` replaces the whole list.
 void put(std::vector<std::string>& list, const std::string& path, int n, int count) {
   if (n < 0 || list.empty() || n >= count) {
     list = {path};

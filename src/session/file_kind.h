@@ -1,4 +1,4 @@
-// Files that a person opens or drops: what they are, and which session they make.
+// Files that a user opens or drops: their kind, and the session that each of them makes.
 #pragma once
 #include <string>
 
@@ -9,12 +9,12 @@ namespace gaitpad {
 
 enum class FileKind { motion, character, style, calibration, terrain, recording };
 
-// Known by its ending; a .toml by its folder (styles, characters, calibration, terrain, motions),
-// else by its content. Fails if it is not a file or none of these.
+// The file name's ending tells the kind. For a .toml its folder does (styles, characters,
+// calibration, terrain, motions), else its content. Error: not a file, or none of these kinds.
 Result<FileKind> kind_of_file(const std::string& path);
 
-// The given options with this file. A style or a character is for walker `walker`, or for all of
-// them if that is -1. The new session is not recorded.
+// `options` with this file added. A style or a character applies to walker `walker`, or to all
+// walkers if that is -1. The new session is not recorded.
 SessionSpec with_file(SessionSpec options, const std::string& path, FileKind kind, int walker,
                       int walker_count);
 

@@ -8,21 +8,20 @@
 namespace gaitpad {
 namespace {
 
-// The formation: rows behind the first character, every other one moved by half a place.
+// The formation: rows behind the first character; every second row is shifted by half a place.
 constexpr double kRow_m = 1.2, kPlace_m = 1.2;
-constexpr double kWidth_m = 1.5;   // of the formation, times the root of the number of members
-constexpr double kAstray_m = 0.1;  // nobody stands exactly in line
+constexpr double kWidth_m = 1.5;   // times sqrt(number of members)
+constexpr double kAstray_m = 0.1;  // random offset, so that rows are not straight
 
-// How a member comes back to its place in the formation when its own steps lead it off: for each
-// metre that it is behind it walks faster by this share (or slower if it is ahead: stairs slow the
-// first one down before they slow it down), and for each metre beside it heads that much towards
-// it, both within bounds that do not show.
+// Keeps a member in its place of the formation. It walks faster by this share for each metre that
+// it is behind, slower if it is ahead (stairs slow the first character down earlier), and turns
+// towards its place by kAim_rad_m for each metre sideways. The bounds keep this inconspicuous.
 constexpr double kCatchUp_1_m = 0.4, kMostCatchUp = 0.15, kMostWait = 0.7;
-constexpr double kLeastSpeed = 0.1;  // of the first one's
+constexpr double kLeastSpeed = 0.1;  // share of the first character's speed
 constexpr double kAim_rad_m = 0.2, kMostAim_rad = 0.12;
-constexpr double kTurn_1_s = 0.8, kMostTurn_rad_s = 0.15;  // towards the heading that it aims at
+constexpr double kTurn_1_s = 0.8, kMostTurn_rad_s = 0.15;  // towards the aim
 
-// Numbers that look random and are the same on every machine (splitmix64).
+// Pseudorandom numbers, equal on every machine (splitmix64).
 std::uint64_t mixed_bits(std::uint64_t number) noexcept {
   std::uint64_t x = (number + 1) * 0x9e3779b97f4a7c15ull;
   x = (x ^ (x >> 30)) * 0xbf58476d1ce4e5b9ull;
@@ -50,7 +49,7 @@ vec3 place_of(int member, int count, const vec3& middle_m) noexcept {
          kForward * ((row + 1) * kRow_m + astray_m(5));
 }
 
-// Styles of different names; of equal names the first one counts.
+// Indices of the styles with different names; of equal names the first one counts.
 std::vector<int> different(const std::vector<Style>& styles) {
   std::vector<int> all;
   for (int i = 0; i < static_cast<int>(styles.size()); ++i) {
@@ -95,7 +94,7 @@ Followers::Followers(const Options& options,
       kind.build = build;
       kind.style = style;
       kind.values = styles[static_cast<std::size_t>(style)];
-      kind.values.fatigue = 0.0;  // who is tired does not keep up
+      kind.values.fatigue = 0.0;  // a tired follower could not keep up
       kind.limits = gait_limits(*builds[static_cast<std::size_t>(build)]);
     }
   }
@@ -122,14 +121,14 @@ Followers::Followers(const Options& options,
   keep_shown();
 }
 
-// The speed and turn rate of the first character as overrides of a stick at rest: gait_params()
-// finds the member's own steps at that speed. `ahead`: the first one's heading as a direction.
+// Overrides a stick at rest with the first character's speed and turn rate; gait_params() then
+// finds the member's own steps. `ahead`: the first character's heading, a unit vector.
 GaitParams Followers::params_of(int member, const GaitParams& first, const WalkState& first_state,
                                 const vec3& ahead) const noexcept {
   const Kind& kind = kinds_[kind_[static_cast<std::size_t>(member)]];
   if (!first.walking) return gait_params(Stick{}, kind.values, kind.limits);
   const PathState& path = crowd_.state(member).path;
-  // From where the member is to its place in the formation.
+  // Vector from the member to its place in the formation.
   const vec3 off_m = (first_state.path.hips_m - first_m_) -
                      (path.hips_m - start_m_[static_cast<std::size_t>(member)]);
   const double behind_m = glm::dot(vec3(off_m.x, 0.0, off_m.z), ahead);
@@ -142,7 +141,8 @@ GaitParams Followers::params_of(int member, const GaitParams& first, const WalkS
   if (speed > 0.0) {
     const double way = first.backward ? -1.0 : 1.0;
     const double more = std::clamp(way * behind_m * kCatchUp_1_m, -kMostWait, kMostCatchUp);
-    // Stairs make the first one slower than the stick asks; its running cycle shows by how much.
+    // Stairs make the first character slower than its stick asks; use the speed of its present
+    // cycle.
     const double real_m_s = is_flat_ ? speed : std::min(speed, first_state.frame.speed_m_s);
     const double wanted_m_s = std::max(real_m_s + speed * more, kLeastSpeed * speed);
     // Short legs keep up by quicker steps.

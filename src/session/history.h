@@ -1,4 +1,4 @@
-// The last seconds of a session, tick by tick.
+// The last seconds of a session, one sample a tick.
 #pragma once
 #include <cstddef>
 #include <vector>
@@ -7,8 +7,8 @@
 
 namespace gaitpad {
 
-// A ring buffer; index 0 is the oldest sample. A sample that does not follow the newest one clears
-// it first.
+// A ring buffer; index 0 is the oldest sample. Adding a sample that does not follow the newest one
+// clears the buffer first.
 class History {
  public:
   explicit History(std::size_t capacity = 2400) : samples_(capacity > 0 ? capacity : 1) {}
@@ -19,8 +19,8 @@ class History {
     return samples_[(begin_ + i) % samples_.size()];
   }
   // The newest `cycles` complete gait cycles of a walker without a rest between them, from one
-  // landing of the right foot to a later one, as indices [begin, end). Both are size() if there are
-  // not so many.
+  // landing of the right foot to a later one, as indices [begin, end). If there are fewer, both are
+  // size().
   struct Span {
     std::size_t begin = 0, end = 0;
   };

@@ -7,7 +7,7 @@ namespace {
 
 const vec3 kDown = -kUp;
 
-// The T pose, bone by bone, from the world frames of the standing pose.
+// Builds the T pose bone by bone from the world frames of the standing pose.
 class HumanoidBuilder {
  public:
   HumanoidBuilder(const Skeleton& skeleton, const JointFrames& standing)
@@ -20,19 +20,19 @@ class HumanoidBuilder {
   }
   const quat& facing() const { return facing_; }
 
-  // What turns the line between two joints, as they stand, to `aim`, after it was made to face.
+  // World rotation that faces the body forward and then points the line from -> to along `aim`.
   quat pointing(int from, int to, const vec3& aim) const {
     const vec3 line = facing_ * (standing_.position_m[to] - standing_.position_m[from]);
     return rotation_between(glm::normalize(line), aim) * facing_;
   }
-  // The same about y alone.
+  // The same, but turns only about y.
   quat heading_forward(int from, int to) const {
     const vec3 line = facing_ * (standing_.position_m[to] - standing_.position_m[from]);
     return rotation_y(-heading_of(line)) * facing_;
   }
 
-  // Adds a bone that `turn` brings from the standing pose to the T pose, and returns its index. A
-  // joint that does not exist or that nothing turns is no bone: then `parent` is returned.
+  // Adds a bone, which `turn` brings from the standing pose to the T pose, and returns its index.
+  // Returns `parent` if the joint does not exist or is an end site.
   int add(const char* name, int joint, int parent, const quat& turn) {
     if (joint < 0 || skeleton_.joints[joint].is_end_site) return parent;
     bones_.push_back({name, joint, parent, turn * standing_.rotation[joint]});
@@ -53,7 +53,7 @@ struct BonesOfLeg {
 struct ArmNames {
   const char *shoulder, *upper, *lower, *hand;
 };
-// By Side.
+// Indexed by Side.
 constexpr BonesOfLeg kLegBones[2] = {{"LeftUpperLeg", "LeftLowerLeg", "LeftFoot", "LeftToes"},
                                      {"RightUpperLeg", "RightLowerLeg", "RightFoot", "RightToes"}};
 constexpr ArmNames kArmNames[2] = {
@@ -81,7 +81,7 @@ void add_arm(const ArmChain& arm, const ArmNames& names, const vec3& aside, int 
   builder.add(names.hand, arm.wrist, bone, lower);
 }
 
-// Returns the bone that carries arms and neck.
+// Adds the spine and returns the bone that carries arms and neck.
 int add_spine(const std::vector<int>& spine, int hips, HumanoidBuilder& builder) {
   const std::size_t n = spine.size();
   int bone = hips;

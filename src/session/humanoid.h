@@ -1,6 +1,6 @@
-// A character's joints as the bones of a humanoid, the common language of avatar programs: bones of
-// fixed names (those of Unity's HumanBodyBones), whose rotations are identity in a T pose that
-// faces +z. So the bones of any character move any other one.
+// Maps a character's joints to the bones of a humanoid, as avatar programs expect them: the names
+// are those of Unity's HumanBodyBones, and all rotations are identity in a T pose that faces +z.
+// Therefore the bones of one character can move any other character.
 #pragma once
 #include <vector>
 
@@ -12,26 +12,26 @@ namespace gaitpad {
 struct HumanoidBone {
   const char* name;
   int joint = -1;           // in the skeleton
-  int parent = -1;          // in Humanoid::bones, before this one; -1: the bone hangs on the root
+  int parent = -1;          // in Humanoid::bones, before this one; -1: a child of the root
   quat t_pose = kIdentity;  // the joint's world rotation in the T pose
 };
 struct Humanoid {
-  std::vector<HumanoidBone> bones;  // the hips first; bones that the skeleton lacks are left out
-  double hips_m = 0.0;              // their height when standing
+  std::vector<HumanoidBone> bones;  // the hips first; without those that the skeleton lacks
+  double hips_m = 0.0;              // height of the hips when standing
 };
 
-// The T pose is made of the standing pose: it is turned until the hips face +z, each bone of a leg
-// is turned to point down, each bone of an arm to point sideways, and each foot to point forward;
-// hands and toes turn with the bone that carries them. Trunk and head keep their posture.
+// The T pose is computed from the standing pose: the hips face +z, the bones of a leg point down,
+// those of an arm sideways, and the feet forward; hands and toes turn with the bone that carries
+// them. Trunk and head keep their posture.
 Humanoid humanoid_of(const WalkModel& model);
 
-// Right-handed, y up, +x to the left, as everywhere; a bone in the frame of its parent.
+// Pose of a bone in its parent's frame: right-handed, y up, +x to the left.
 struct BonePose {
   vec3 place_m{0.0};
   quat rotation = kIdentity;
 };
-// What `pose` is in these bones. They hang on `root`: where the walker is on the floor, and where
-// it heads. One entry of `out` a bone.
+// Converts `pose` to these bones. `root` is the walker's place on the floor and its heading; the
+// bones are relative to it. `out` has one entry for each bone.
 void humanoid_pose(const Humanoid& humanoid, const Skeleton& skeleton, const Pose& pose,
                    const BonePose& root, std::vector<BonePose>& out);
 

@@ -21,7 +21,7 @@
 
 namespace gaitpad {
 
-// A session before it touches a device.
+// A session that is prepared but has not opened a device yet.
 struct LiveSession::Prepared {
   SessionSpec spec;
   int rate_hz;
@@ -60,8 +60,9 @@ struct LiveSession::Impl {
   Simulation simulation;
   Cast cast;
   Script script;
-  std::vector<Style> styles;  // that commands may name; the viewing thread's
-  // Lists that the loop has taken over or has given back: never freed on its thread.
+  std::vector<Style> styles;  // that commands may name; used by the viewing thread only
+  // Style lists that the loop uses or has given back. They are freed here, never on the loop's
+  // thread.
   std::deque<std::shared_ptr<const std::vector<Style>>> style_lists;
   RecordedSession recorded;
   std::unique_ptr<PoseStream> stream;       // may be null
@@ -71,15 +72,15 @@ struct LiveSession::Impl {
   std::unique_ptr<Recording> recording;
   std::unique_ptr<LiveLoop> loop;
   std::thread thread;
-  std::string time_policy;  // of the thread, as it began
+  std::string time_policy;  // of the thread when it started
   bool is_memory_locked = false;
   bool is_stopped = false;
 
-  mutable std::mutex mutex;              // of what follows
-  std::optional<PadStreamCounts> final;  // once it was stopped
+  mutable std::mutex mutex;              // guards the members below
+  std::optional<PadStreamCounts> final;  // set when the session was stopped
   std::vector<std::string> remarks;
-  LiveStatus remarked;           // what users have been told about late ticks
-  bool is_failure_said = false;  // the recording's
+  LiveStatus remarked;           // status at the last remark about late ticks
+  bool is_failure_said = false;  // of the recording
 };
 
 std::optional<Error> LiveSession::Impl::open_recording() {
@@ -93,7 +94,7 @@ std::optional<Error> LiveSession::Impl::open_recording() {
 }
 
 void LiveSession::Impl::start_loop() {
-  // In the recording, too, which then needs no option.
+  // Recorded as a command, so that a replay needs no option.
   if (spec.walk.stick == StickMeans::points) pads->command("stick points");
   const LiveLoop::Options options = {rate_hz,
                                      spec.live.rumble,
@@ -296,7 +297,7 @@ bool LiveSession::has_ended() const noexcept { return impl_->loop->has_ended(); 
 
 LiveStatus LiveSession::status() const noexcept {
   LiveStatus status = impl_->loop->status();
-  // After an overload the loop has given its priority up.
+  // After an overload the loop runs at normal priority.
   if (impl_->stream) status.streamed = impl_->stream->frames();
   status.time_policy = status.overloads > 0 ? "normal priority" : impl_->time_policy;
   const std::lock_guard lock(impl_->mutex);
@@ -322,7 +323,7 @@ Result<RunSummary> LiveSession::stop() {
   RunSummary run = run_summary(impl_->simulation, impl_->cast);
   if (impl_->recording == nullptr) return run;
   if (auto problem = impl_->finish_recording(run.ticks)) return *problem;
-  run.recording_lost = impl_->recording->lost();  // if any, it does not replay to this pose_hash
+  run.recording_lost = impl_->recording->lost();  // if > 0, a replay does not give this pose_hash
   return run;
 }
 

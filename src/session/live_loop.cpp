@@ -46,7 +46,7 @@ void TickClock::set_pace(double pace, std::int64_t tick, std::int64_t now_ns) no
   if (stood_still) {
     last_late_ns_ = 0;
   } else {
-    run_anew(tick, std::min(before_ns, due_ns(tick + 1)));  // not later than a tick from now
+    run_anew(tick, std::min(before_ns, due_ns(tick + 1)));  // at most one tick from now
   }
 }
 
@@ -62,7 +62,7 @@ TickClock::Begin TickClock::begin(std::int64_t tick, std::int64_t now_ns) noexce
 
 // --- TimeHistogram
 
-// Values below 128 have a class each; above, the highest seven bits make the class.
+// Values below 128 have a class each; above that, the highest seven bits choose the class.
 std::size_t TimeHistogram::class_of(std::uint64_t time_ns) noexcept {
   const int octave = std::max(0, static_cast<int>(std::bit_width(time_ns)) - kStepBits - 1);
   const std::size_t index =
@@ -82,7 +82,7 @@ void TimeHistogram::add(std::int64_t time_ns) noexcept {
   const std::int64_t time = std::max<std::int64_t>(time_ns, 0);
   constexpr auto kRelaxed = std::memory_order_relaxed;
   std::atomic<std::uint64_t>& count = counts_[class_of(static_cast<std::uint64_t>(time))];
-  count.store(count.load(kRelaxed) + 1, kRelaxed);  // nobody else writes
+  count.store(count.load(kRelaxed) + 1, kRelaxed);  // only this thread writes
   if (time > max_ns_.load(kRelaxed)) max_ns_.store(time, kRelaxed);
 }
 
@@ -135,7 +135,8 @@ std::span<const Report> TickReports::take_reports(std::int64_t now_ns) noexcept 
 
 bool TickReports::gather(std::int64_t now_ns) noexcept {
   begin_anew();
-  // No more in one go than a tick would take: a flood of reports must not keep the thread.
+  // Takes at most the reports of one tick at once, so that a flood of reports cannot hold the
+  // thread.
   std::size_t seen = 0;
   for (; seen < kMaxInTick && count_ < kMaxInTick; ++seen) {
     const Report* oldest = pads_.front();
@@ -148,7 +149,7 @@ bool TickReports::gather(std::int64_t now_ns) noexcept {
   return seen > 0;
 }
 
-// A device becomes known by its first `added`; nothing that comes before counts.
+// A device is known from its first `added` report; earlier reports are ignored.
 bool TickReports::is_of_known_device(const Report& report) noexcept {
   if (report.kind == ReportKind::command) return true;
   if (report.device >= is_known_.size()) return false;
@@ -200,18 +201,18 @@ bool TickReports::is_known(std::uint16_t device) const noexcept {
 
 namespace {
 
-constexpr std::int64_t kNap_ns = 20'000'000;  // longest sleep; then the loop looks at its orders
-constexpr std::size_t kSamples = 1024;        // that wait to be taken, four seconds
-constexpr std::size_t kUnshown = 4096;        // reports that wait for a frame, of a second and more
+constexpr std::int64_t kNap_ns = 20'000'000;  // longest sleep between two looks at the orders
+constexpr std::size_t kSamples = 1024;        // samples that wait to be taken: 4 s
+constexpr std::size_t kUnshown = 4096;        // reports that wait for a frame: over 1 s
 constexpr std::int64_t kDueWait_ns = 2'000'000, kDueNap_ns = 100'000;
 constexpr std::chrono::milliseconds kBeat{80};
 constexpr double kFullBeatSpeed_m_s = 1.5;
-constexpr double kFeltBeat = 0.25;  // of full strength; less does not turn a motor within 80 ms
+constexpr double kFeltBeat = 0.25;  // of full strength; less does not turn a motor in 80 ms
 constexpr auto kRelaxed = std::memory_order_relaxed;
 
 static_assert(std::atomic<double>::is_always_lock_free);
 
-// For the only thread that writes it.
+// Only for counters that a single thread writes.
 void count(std::atomic<std::int64_t>& n) noexcept { n.store(n.load(kRelaxed) + 1, kRelaxed); }
 
 }  // namespace
@@ -266,7 +267,7 @@ void LiveLoop::advance(int ticks) noexcept {
   for (int i = 0; i < ticks; ++i) run_tick(now_ns(), 0);
 }
 
-// False: the loop must stop.
+// Returns false if the loop must stop.
 bool LiveLoop::wait_for_tick() noexcept {
   while (!is_stopping_.load(kRelaxed)) {
     follow_orders();
@@ -287,7 +288,8 @@ void LiveLoop::step(int ticks) noexcept {
   if (ticks > 0) wanted_steps_.fetch_add(ticks, std::memory_order_release);
 }
 
-// Steps are read first: a thread that sets the pace to 0 and then asks for steps gets them at 0.
+// Reads the steps first: if a thread sets the pace to 0 and then asks for steps, they run at pace
+// 0.
 void LiveLoop::follow_orders() noexcept {
   const std::int64_t steps = wanted_steps_.exchange(0, std::memory_order_acquire);
   const double pace = wanted_pace_.load(std::memory_order_acquire);
@@ -314,7 +316,7 @@ std::int64_t LiveLoop::due_ns() const noexcept {
   return last_begin_ns_ + static_cast<std::int64_t>(step_ns);
 }
 
-// While ticks stand still, reports show in the frame though no tick has used them.
+// While ticks stand still, the frame shows new reports although no tick has used them.
 void LiveLoop::look_at_pads(std::int64_t now_ns) noexcept {
   if (reports_.gather(now_ns)) publish(shown_ns_);
 }
@@ -355,8 +357,8 @@ void LiveLoop::run_tick(std::int64_t now_ns, std::int64_t shown_ns) noexcept {
   ticks_.store(tick_, kRelaxed);
 }
 
-// The script comes before the other reports of the tick. It is recorded, so a replay needs no
-// script.
+// Runs the script before the tick's other reports. Its commands are recorded, so that a replay
+// needs no script.
 void LiveLoop::follow_script(std::int64_t now_ns) noexcept {
   for (; next_event_ < script_.events.size() &&
          tick_of(script_.events[next_event_], options_.rate_hz) <= tick_;
@@ -379,7 +381,7 @@ void LiveLoop::use(std::span<const Report> reports, std::int64_t now_ns) noexcep
   }
 }
 
-// A full ring drops the report from the measurement: nobody shows frames.
+// If the ring is full, no viewer shows frames: the report is left out of the measurement.
 void LiveLoop::count_wait(std::int64_t report_ns, std::int64_t now_ns) noexcept {
   const std::int64_t wait_ns = now_ns - report_ns;
   static_cast<void>(unshown_.push({tick_, report_ns}));
@@ -406,7 +408,7 @@ void LiveLoop::publish(std::int64_t shown_ns) noexcept {
     options_.forward->put(forwarded_tick(simulation_.pads(), simulation_.stick()));
 }
 
-// A full ring drops the sample: nobody takes samples, or not fast enough.
+// If the ring is full, no viewer takes samples fast enough: the sample is dropped.
 void LiveLoop::sample(std::int64_t took_ns) noexcept {
   tick_times_.add(took_ns);
   copy_sample(simulation_, sample_);
@@ -421,8 +423,8 @@ void LiveLoop::beat() noexcept {
   pads_.rumble(device, heel_beat(speed_m_s), kBeat);
 }
 
-// If the pad is a recording, the session ends a second after it, as a replay without an end line
-// does.
+// A pad that is a recording ends the session one second after its last report, as a replay of a
+// recording without an end line does.
 void LiveLoop::look_for_the_end(bool has_reports) noexcept {
   const bool is_over = pads_.has_ended() && !has_reports;
   if (is_over || ticks_behind_end_ > 0) ++ticks_behind_end_;
@@ -436,8 +438,8 @@ const SessionFrame& LiveLoop::latest(bool& is_new) noexcept {
   return frame;
 }
 
-// On a busy processor the viewing thread would else draw what the tick is about to change: its
-// sleep lets the loop's thread run.
+// Sleeps briefly so that a due tick runs first; otherwise, on a busy processor, the viewing thread
+// draws an old pose.
 const SessionFrame& LiveLoop::latest_due() noexcept {
   bool is_new = false;
   latest(is_new);

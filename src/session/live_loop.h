@@ -1,5 +1,5 @@
-// What the loop thread of a live session does, tick by tick: when a tick is due (TickClock), which
-// reports it uses (TickReports), and the loop itself (LiveLoop). No heap, lock, file or driver.
+// The loop thread of a live session: TickClock says when a tick is due, TickReports which reports
+// it uses, and LiveLoop runs the ticks. No heap, lock, file or driver.
 #pragma once
 #include <array>
 #include <atomic>
@@ -24,37 +24,40 @@ namespace gaitpad {
 
 inline constexpr std::int64_t kSecond_ns = 1'000'000'000;
 
-// When ticks are due. Tick k is due k / rate seconds after the start, in whole nanoseconds and
-// without drift. A late tick does not move the ticks after it, so lost time is made up for. But if
-// a tick is more than a second late, the clock is set forward: a character should not race through
-// what was missed. The pace is ticks in a second over the rate; a tick computes the same at every
-// pace.
+// Computes when ticks are due. At pace 1 tick k is due k / rate seconds after the start, in whole
+// nanoseconds and without drift. A late tick does not move the later ones, so lost time is made up
+// for. If a tick is more than a second late, the clock is set forward instead, so that the
+// character does not race. The pace is (ticks per second) / rate; it does not change a tick's
+// result.
 class TickClock {
  public:
   static constexpr std::int64_t kTooLate_ns = kSecond_ns;
   static constexpr std::int64_t kNever_ns = std::numeric_limits<std::int64_t>::max();
   static constexpr double kMinPace = 1.0 / 1024.0, kMaxPace = 8.0;
-  // `pace` within 0 and kMaxPace; 0 if it is less than kMinPace or not a number.
+  // Clamps to kMaxPace; returns 0 if `pace` is less than kMinPace or not a number.
   static double usable_pace(double pace) noexcept;
 
   TickClock(int rate_hz, std::int64_t start_ns) : rate_hz_(rate_hz), base_ns_(start_ns) {}
   std::int64_t due_ns(std::int64_t tick) const noexcept;  // kNever_ns at pace 0
 
-  // The pace from `tick` on, which is the next one. A late tick stays late, but after standing
-  // still it is due now.
+  // Sets the pace from `tick`, the next one, on. A late tick stays late; after pace 0 it is due
+  // now.
   void set_pace(double pace, std::int64_t tick, std::int64_t now_ns) noexcept;
   double pace() const noexcept { return pace_; }
 
   enum class Begin {
-    on_time,  // not more than one tick late
+    on_time,  // at most one tick late
     late,
-    // More than a second late: this tick is due now, and the clock runs anew from it.
-    after_standstill,  // it became late all at once: the process was stopped
-    after_overload,    // it became late tick by tick: ticks take longer than their time
+    // More than a second late: this tick is due now, and the clock restarts with it.
+    after_standstill,  // late at once: the process was stopped
+    after_overload,    // late by degrees: ticks take longer than their time
   };
-  // Not at pace 0.
+  // Must not be called at pace 0.
   Begin begin(std::int64_t tick, std::int64_t now_ns) noexcept;
-  std::int64_t skipped_ns() const noexcept { return skipped_ns_; }  // by setting the clock forward
+  std::int64_t skipped_ns() const noexcept {
+    return skipped_ns_;
+  }  // total time by which the clock
+     // was set forward
 
  private:
   void run_anew(std::int64_t tick, std::int64_t due_ns) noexcept;
@@ -67,12 +70,12 @@ class TickClock {
   std::int64_t skipped_ns_ = 0;
 };
 
-// Percentiles and maximum of many durations in a fixed space: it counts them in classes no wider
-// than 1/64 of the value. One thread adds, any thread reads; both wait-free.
+// Percentiles and maximum of any number of durations in a fixed space: counts durations in classes
+// no wider than 1/64 of the value. One thread adds, any thread reads; both are wait-free.
 class TimeHistogram {
  public:
   void add(std::int64_t time_ns) noexcept;  // negative counts as 0
-  // The duration that this share of all does not exceed, within 1 %; 0 if nothing was added.
+  // Smallest duration that this share of all does not exceed, within 1 %; 0 if there is none.
   double percentile_us(double share) const noexcept;
   double median_us() const noexcept { return percentile_us(0.5); }
   double max_us() const noexcept;
@@ -88,27 +91,28 @@ class TimeHistogram {
   std::atomic<std::int64_t> max_ns_{0};
 };
 
-// The reports on their way from the pads to the tick that uses them. No system call.
+// Collects the reports of the pads until a tick uses them. No system call.
 //
-// While ticks stand still, reports gather for the next one. Of those that only move a stick the
-// newest is kept; one that presses or releases a button is never left out. When kMaxInTick have
+// While ticks stand still, reports gather for the next tick. If several reports only move a stick,
+// the newest is kept; reports that press or release a button are all kept. When kMaxInTick have
 // gathered, the rest stays in the PadStream, which keeps the newest state of each device.
 class TickReports {
  public:
   static constexpr std::size_t kMaxInTick = 256;  // more reports wait for the next tick
 
-  // Both outlive it.
+  // Both must outlive this object.
   TickReports(PadStream& pads, Simulation& simulation);
 
-  // Those of the tick that begins now. Valid until the next call.
+  // Reports of the tick that begins now. Valid until the next call.
   std::span<const Report> take_reports(std::int64_t now_ns) noexcept;
-  // While ticks stand still, any number of times. True if something has come.
+  // Gathers reports while ticks stand still; can be called any number of times. True: there was
+  // one.
   bool gather(std::int64_t now_ns) noexcept;
-  // Puts what was gathered into the frame, though no tick has used it: the driving pad's state and
-  // the buttons that were pressed.
+  // Shows the gathered reports in the frame although no tick has used them: the driving pad's state
+  // and the pressed buttons.
   void show(SessionFrame& frame) const noexcept;
 
-  // Any thread: the device was added, so what PadStream knows of it may be read.
+  // Any thread. True: the device was added, so its description in the PadStream may be read.
   bool is_known(std::uint16_t device) const noexcept;
 
  private:
@@ -119,7 +123,7 @@ class TickReports {
   };
 
   bool is_of_known_device(const Report& report) noexcept;
-  // True: it took the place of an older one. `report` stands in reports_.
+  // Returns true if `report`, which stands in reports_, replaced an older one.
   bool replaces_older(Report& report) noexcept;
   void begin_anew() noexcept;
 
@@ -127,14 +131,13 @@ class TickReports {
   Simulation& simulation_;
   std::vector<Report> reports_;  // kMaxInTick
   std::size_t count_ = 0;
-  bool is_used_ = false;  // the last tick has used what stands in reports_
+  bool is_used_ = false;  // the last tick has used reports_
   std::array<Gathered, kMaxPads> gathered_{};
-  NewestReports
-      newest_;  // in reports_; of a device only its newest report, if that may be replaced
+  NewestReports newest_;  // newest replaceable report of each device, in reports_
   std::array<std::atomic<bool>, kMaxPads> is_known_{};
 };
 
-// What a player feels of a heel strike at this speed of walking.
+// The rumble of a heel strike at this walking speed.
 Rumble heel_beat(double speed_m_s) noexcept;
 
 class LiveLoop {
@@ -144,7 +147,7 @@ class LiveLoop {
     bool rumble = true;
     int frame_ticks = 1;  // as in SessionSpec::Live
     bool report_times = false;
-    // What other programs get of each tick; may be null.
+    // Receives each tick for other programs; may be null.
     Latest<StreamedTick>* stream = nullptr;
     ForwardMail* forward = nullptr;
   };
@@ -152,14 +155,14 @@ class LiveLoop {
   LiveLoop(const Options& options, const Script& script, Simulation& simulation, PadStream& pads,
            Recording* recording);
 
-  // Either run(): runs ticks by the clock on the calling thread until stop().
+  // Use either run(), which runs ticks by the clock on the calling thread until stop(),
   void run() noexcept;
-  // Or, without a clock: begin(), then any number of ticks at any time.
+  // or, without a clock, begin() and then advance() at any time.
   void begin() noexcept;
   void advance(int ticks) noexcept;
   void stop() noexcept { is_stopping_.store(true, std::memory_order_relaxed); }
 
-  // From one thread, as LiveSession says.
+  // All from one thread; see LiveSession.
   const SessionFrame& latest(bool& is_new) noexcept;
   const SessionFrame& latest_due() noexcept;
   void end_frame(FrameEnd end) noexcept;
@@ -167,13 +170,14 @@ class LiveLoop {
   bool take_report_time(ReportTime& time) noexcept { return report_times_.pop(time); }
   void set_pace(double pace) noexcept;
   void step(int ticks) noexcept;
-  // From the next tick on, before its commands. `styles` is swapped and must outlive the loop.
+  // Takes effect at the next tick, before its commands. Swaps `styles`, which must outlive the
+  // loop.
   void set_styles(std::shared_ptr<const std::vector<Style>>& styles) noexcept {
     new_styles_.store(&styles, std::memory_order_release);
   }
   void beat_once() noexcept { wants_beat_.store(true, std::memory_order_relaxed); }
-  // The recording ends before the next tick: recorded_ticks() has then as many as it holds; -1: not
-  // yet.
+  // Ends the recording before the next tick. Then recorded_ticks() is the number of ticks that it
+  // holds; -1 before that.
   void leave_recording() noexcept { leaves_recording_.store(true, std::memory_order_release); }
   std::int64_t recorded_ticks() const noexcept {
     return recorded_ticks_.load(std::memory_order_acquire);
@@ -181,7 +185,7 @@ class LiveLoop {
   // Any thread.
   bool has_ended() const noexcept { return has_ended_.load(std::memory_order_relaxed); }
   bool is_known(std::uint16_t device) const noexcept { return reports_.is_known(device); }
-  // The fields of LiveStatus that the loop itself knows.
+  // Fills the fields of LiveStatus that the loop itself knows.
   LiveStatus status() const noexcept;
 
  private:
@@ -209,23 +213,23 @@ class LiveLoop {
   TickClock clock_;
   TickReports reports_;
   std::int64_t tick_ = 0;        // the next one
-  std::int64_t steps_left_ = 0;  // to run while it stands still
+  std::int64_t steps_left_ = 0;  // ticks to run at pace 0
   std::int64_t last_begin_ns_ = 0;
   std::int64_t shown_ns_ = 0;  // SessionFrame::time_ns of the last tick
   std::int64_t real_time_ns_ =
-      0;  // when the pace changed last: waits that began before do not count
+      0;  // time of the last change of pace; waits that began earlier are not measured
   std::int64_t ticks_behind_end_ = 0;
   Latest<SessionFrame> frames_;
   TickSample sample_;
   SpscRing<TickSample> samples_;
   SpscRing<ReportTime> report_times_;
 
-  // Reports on their way from a tick to the first frame that shows them.
+  // Reports used by a tick and not yet shown in a frame.
   struct UnshownReport {
     std::int64_t tick, time_ns;
   };
   SpscRing<UnshownReport> unshown_;
-  std::int64_t viewed_tick_ = -1, viewed_ns_ = 0;  // of the frame read last; the viewing thread's
+  std::int64_t viewed_tick_ = -1, viewed_ns_ = 0;  // last frame read; viewing thread only
 
   std::atomic<bool> is_stopping_{false}, has_ended_{false};
   std::atomic<double> wanted_pace_{1.0};

@@ -1,7 +1,8 @@
-// The driving pad of a live session for other programs: its calibrated state goes to a virtual pad.
+// Forwards the calibrated state of a live session's driving pad to a virtual pad for other
+// programs.
 //
-// A thread of its own sends what a tick has changed; the loop wakes it only then. A stick reaches
-// other programs at most a tick late. `gaitpad forward` has no ticks: pads/stand_in.h.
+// A thread of its own sends the changes; the loop wakes it only if a tick has changed something. A
+// stick's motion arrives at most one tick late. `gaitpad forward` has no ticks: pads/stand_in.h.
 #pragma once
 #include <atomic>
 #include <memory>
@@ -16,22 +17,22 @@
 
 namespace gaitpad {
 
-// The driving pad after a tick. At rest if no pad is plugged in.
+// State of the driving pad after a tick; a pad at rest if none is plugged in.
 struct ForwardedTick {
   VirtualPadState state;
   PressCounts presses{};
 };
 bool is_same(const ForwardedTick& a, const ForwardedTick& b) noexcept;
-// `stick`: of that tick.
+// `stick`: the stick of that tick.
 ForwardedTick forwarded_tick(const Pads& pads, const Stick& stick) noexcept;
-// The state to send between two ticks so that no press is missed: a button that is as it was, but
-// was pressed in between, is turned over. `after` itself if there is none.
+// If a button was pressed and released between two ticks, the state to send first, with that button
+// inverted, so that the press is not lost. Otherwise returns `after`.
 VirtualPadState between(const ForwardedTick& before, const ForwardedTick& after) noexcept;
 
-// The newest tick on its way from the loop to the thread that sends it.
+// Hands the newest tick from the loop to the sending thread.
 class ForwardMail {
  public:
-  // From the loop, after each tick. Without heap or lock; a system call where something has
+  // Called by the loop after each tick. No heap, no lock; a system call only if the state has
   // changed.
   void put(const ForwardedTick& tick) noexcept;
   // Waits for a change, or for wake().
@@ -40,14 +41,14 @@ class ForwardMail {
   const ForwardedTick& read(bool& is_new) noexcept { return newest_.read(is_new); }
 
  private:
-  ForwardedTick put_;  // the loop's
+  ForwardedTick put_;  // used by the loop only
   Latest<ForwardedTick> newest_;
   Bell bell_;
 };
 
 class PadForward {
  public:
-  // The errors of XboxPad::create().
+  // Fails with the errors of XboxPad::create().
   static Result<std::unique_ptr<PadForward>> open();
   ~PadForward() { stop(); }
 

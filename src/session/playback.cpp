@@ -13,8 +13,8 @@
 namespace gaitpad {
 namespace {
 
-// A device is plugged in from the start unless its first event says that it was added. Error: none
-// of them is a pad, so the walk has no stick.
+// A device is plugged in from the start unless its first event is `added`. Error: none of the
+// devices is a pad, so that there is no stick.
 std::optional<Error> settle_pads(const Trace& trace, std::vector<PadConfig>& pads) {
   std::vector<bool> is_seen(pads.size(), false);
   for (const TraceEvent& event : trace.events) {
@@ -64,7 +64,7 @@ Result<PreparedTrace> prepared_trace(const SessionSpec& asked) {
   const std::vector<std::string> left_out = left_out_styles(spec, *trace, *config);
   config->remarks.insert(config->remarks.end(), left_out.begin(), left_out.end());
   auto start = Simulation::create(*config);
-  if (!start) {  // a zone's style may be one of these
+  if (!start) {  // a zone's style may be missing
     const std::string cause = left_out.empty() ? "" : "; " + left_out.front();
     return Error{start.error().message + cause};
   }
@@ -100,7 +100,7 @@ namespace {
 constexpr std::size_t kMaxSnapshots = 1024, kLeastSnapshots = 4;
 constexpr std::size_t kMostCrowdBytes = std::size_t{256} << 20;  // of all snapshots
 
-// Fewer of a large crowd.
+// Returns fewer snapshots for a large crowd, whose states need more memory.
 std::size_t most_snapshots(const Simulation& simulation) {
   const std::size_t bytes = std::max<std::size_t>(simulation.followers().bytes(), 1);
   return std::clamp(kMostCrowdBytes / bytes, kLeastSnapshots, kMaxSnapshots);
@@ -133,12 +133,12 @@ std::vector<PlaybackMark> marks_of(const PreparedTrace& prepared) {
   return marks;
 }
 
-// After how many ticks the samples of a jump to this place begin.
+// Tick at which the samples for a jump to `ticks` begin.
 std::int64_t history_of(std::int64_t ticks) {
   return std::max<std::int64_t>(0, ticks - Playback::kHistoryTicks);
 }
 
-// States along the way, evenly spaced, the first one before tick 0. When there are many, every
+// Saved states at even distances; the first one is before tick 0. If there are too many, every
 // other one is dropped.
 class Snapshots {
  public:
@@ -146,13 +146,13 @@ class Snapshots {
       : most_(most_snapshots(start.simulation())), spacing_ticks_(spacing_ticks) {
     runs_.push_back(std::move(start));
   }
-  // Keeps the state if one is due.
+  // Saves the state if it is due.
   void keep_if_due(const TraceRun& run) {
     if (run.ticks() < runs_.back().ticks() + spacing_ticks_) return;
     if (runs_.size() == most_) thin_out();
     if (run.ticks() % spacing_ticks_ == 0) runs_.push_back(run);
   }
-  // The latest snapshot after at most so many ticks.
+  // The latest snapshot at or before `ticks`.
   const TraceRun& before(std::int64_t ticks) const {
     const auto next = std::ranges::upper_bound(runs_, ticks, {}, &TraceRun::ticks);
     return *std::prev(next);
@@ -196,7 +196,7 @@ struct Playback::Impl {
 
   TraceRun run;
   Snapshots snapshots;
-  std::int64_t first_sample = 0;  // ticks before it are in no history that is needed
+  std::int64_t first_sample = 0;  // earlier ticks are in no history that is needed
   std::deque<TickSample> samples;
   SessionFrame frame;
 };
@@ -208,7 +208,8 @@ void Playback::Impl::name_later_styles(const std::vector<Style>& styles) {
   }
 }
 
-// False also if the history begins too late: that of a later place, asked for on the way there.
+// True if the run can continue to `ticks`. False also if its samples begin too late: they were
+// begun for a later place.
 bool Playback::Impl::goes_on(std::int64_t ticks) const {
   const std::int64_t ahead = ticks - run.ticks();
   return ahead >= 0 && ahead <= kHistoryTicks && first_sample <= history_of(ticks);

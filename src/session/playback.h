@@ -1,5 +1,5 @@
-// A recording as a session: prepared to run, run from its beginning (TraceRun), or moved through on
-// a time line (Playback).
+// A recording as a session: prepared_trace() reads it, TraceRun runs it from its beginning, and
+// Playback moves through it on a time line.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -18,23 +18,23 @@
 namespace gaitpad {
 
 struct PreparedTrace {
-  Trace trace;  // its events, and the script's, have their ticks
+  Trace trace;  // its events, and the script's, with their ticks
   std::int64_t ticks = 0;
-  SimulationConfig config;  // its rate is the one to run at
+  SimulationConfig config;  // with the rate to run at
   Simulation start;
   std::vector<StyleChange> style_changes;
-  std::vector<UsedFile> used_files;  // besides the recording
+  std::vector<UsedFile> used_files;  // without the recording itself
 };
-// Reads `spec.replay.trace` and every file of the session, and adds the script's events. Error
-// also: `spec.rate_hz` differs from the trace's rate, or none of the trace's devices is a pad.
+// Reads `spec.replay.trace` and every file of the session, and adds the script's events. Also an
+// error: `spec.rate_hz` differs from the trace's rate or none of the trace's devices is a pad.
 Result<PreparedTrace> prepared_trace(const SessionSpec& spec);
 
-// A place in a run. Copies go on from there, independent of each other.
+// State of a run after some ticks. A copy continues independently.
 class TraceRun {
  public:
   static TraceRun begin(const PreparedTrace& prepared) { return TraceRun(prepared.start); }
 
-  // Runs one tick with the reports that belong to it. `prepared`: what it began with.
+  // Runs one tick with its reports. `prepared` must be the one given to begin().
   void step(const PreparedTrace& prepared) noexcept;
   std::int64_t ticks() const { return simulation_.counts().ticks; }  // so far
   const Simulation& simulation() const { return simulation_; }
@@ -45,43 +45,43 @@ class TraceRun {
   std::size_t next_event_ = 0, next_change_ = 0;
 };
 
-struct PlaybackMark {  // for the time line
+struct PlaybackMark {  // a mark of the time line
   std::int64_t tick = 0;
   std::string text;  // `style limp_left`, `unplugged`, `plugged in`
 };
 
-// A trace on a time line: goes to any tick of it, exactly. It keeps snapshots of the simulation
-// along the way and computes again what lies between them.
+// Moves to any tick of a trace, exactly. It keeps snapshots of the simulation and computes the
+// ticks between them again.
 class Playback {
  public:
-  static constexpr int kHistoryTicks = 1440;  // of samples before a place after a jump
+  static constexpr int kHistoryTicks = 1440;  // ticks before the target of a jump that have samples
   static constexpr std::size_t kMaxMarks = 4096;
 
-  // The same errors as replay().
+  // Fails with the errors of replay().
   static Result<std::unique_ptr<Playback>> open(const SessionSpec& spec);
   ~Playback();
 
   const Cast& cast() const noexcept;
-  std::int64_t ticks() const noexcept;  // as replay runs it
-  // Commands (except a bare `mark`) and plugging, in order of time; the first kMaxMarks.
+  std::int64_t ticks() const noexcept;  // number of ticks that replay() runs
+  // Commands (except a bare `mark`) and plugging, ordered by time; at most kMaxMarks.
   const std::vector<PlaybackMark>& marks() const noexcept;
-  // What a user should know: damaged lines that were skipped.
+  // Sentences for the user: damaged lines that were skipped.
   const std::vector<std::string>& remarks() const noexcept;
-  // The devices of the trace by their index.
+  // The trace's devices by index.
   const std::vector<TraceDevice>& devices() const noexcept;
 
-  // Goes towards the state after `tick` (clamped to 0 .. ticks()-1), computing at most `budget`
-  // ticks. frame() is then the place that it reached; false: not there yet, call it again. Up to
-  // kHistoryTicks ahead it simply goes on. Everything else is a jump: it starts at the snapshot
-  // before the history, so a jump into a known part costs kHistoryTicks and about a second of
-  // ticks.
+  // Moves towards the state after `tick` (clamped to 0 .. ticks()-1) and computes at most `budget`
+  // ticks. frame() then shows the state that was reached; false: not there yet, call again. A
+  // target up to kHistoryTicks ahead is reached tick by tick. Any other is a jump, which starts at
+  // the snapshot before the target's history. A jump into a part that was computed before costs
+  // kHistoryTicks and about one second of ticks.
   bool seek(std::int64_t tick, int budget);
   const SessionFrame& frame() const noexcept;  // tick -1, standing, before the first seek()
-  // The oldest sample that was not taken yet; false: there is none. None is left out if seek() goes
-  // on without a jump and no more than kHistoryTicks wait. After a jump they begin again,
-  // kHistoryTicks before the place; TickSample::tick says where.
+  // Takes the oldest sample that was not taken yet; false: there is none. None is lost while seek()
+  // does not jump and at most kHistoryTicks samples wait. After a jump the samples begin
+  // kHistoryTicks before the target; TickSample::tick tells the tick.
   bool take_sample(TickSample& sample);
-  // Of all ticks up to frame(); at the end the same as replay()'s.
+  // Summary of all ticks up to frame(); at the end it equals replay()'s.
   RunSummary summary() const;
   std::uint64_t pose_hash() const noexcept;
 

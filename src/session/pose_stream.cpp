@@ -44,7 +44,7 @@ Result<StreamAddress> StreamAddress::parse(const std::string& text) {
   address.port = is_osc ? kOscPort : kJsonPort;
   if (divider == std::string::npos) return address;
   std::string_view rest = std::string_view(text).substr(divider + 3);
-  if (rest.starts_with('[')) {  // an IPv6 address has colons of its own
+  if (rest.starts_with('[')) {  // an IPv6 address contains colons
     const std::size_t end = rest.find(']');
     if (end == std::string_view::npos) return address_error(text, "has no ]");
     address.host = rest.substr(1, end - 1);
@@ -70,11 +70,11 @@ std::string json_datagram(const StreamedFrame& frame) {
   const auto append_place = [&end](const BonePose& bone) {
     const vec3& p = bone.place_m;
     const quat& q = bone.rotation;
-    // + 0.0: no "-0"
+    // + 0.0 avoids "-0"
     fmt::format_to(end, "[{:.6f},{:.6f},{:.6f},{:.9f},{:.9f},{:.9f},{:.9f}]", p.x + 0.0, p.y + 0.0,
                    p.z + 0.0, q.x + 0.0, q.y + 0.0, q.z + 0.0, q.w + 0.0);
   };
-  const nlohmann::json name = frame.character;  // its text may have quotes
+  const nlohmann::json name = frame.character;  // escapes quotes in the name
   fmt::format_to(
       end, R"({{"source":{},"character":{},"tick":{},"time_s":{:.6f},"hips_m":{:.6f},"root":)",
       frame.source, name.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), frame.tick,
@@ -93,9 +93,9 @@ std::string json_datagram(const StreamedFrame& frame) {
 
 namespace {
 
-constexpr std::size_t kMaxBundleBytes = 1400;  // with the headers of IP and UDP below 1500
+constexpr std::size_t kMaxBundleBytes = 1400;  // below 1500 with the headers of IP and UDP
 
-constexpr lo_timetag kAtOnce = {.sec = 0, .frac = 1};  // LO_TT_IMMEDIATE is no C++
+constexpr lo_timetag kAtOnce = {.sec = 0, .frac = 1};  // LO_TT_IMMEDIATE is not valid C++
 
 // Collects messages into bundles.
 class OscBundles {
@@ -126,7 +126,7 @@ class OscBundles {
   std::vector<std::string> datagrams_;
 };
 
-// Unity's world is left-handed with +x to the right: x is mirrored.
+// Unity's world is left-handed with +x to the right, so x is mirrored.
 lo_message placed(const char* name, const BonePose& bone) {
   lo_message message = lo_message_new();
   lo_message_add_string(message, name);
@@ -173,7 +173,7 @@ void copy_tick(const Simulation& simulation, StreamedTick& streamed) noexcept {
 
 namespace {
 
-// A socket that sends to this address alone and never waits.
+// A non-blocking socket that sends to this address alone.
 Result<OwnedFd> socket_to(const std::string& host, int port) {
   addrinfo hints{}, *found = nullptr;
   hints.ai_socktype = SOCK_DGRAM;
@@ -234,7 +234,7 @@ void PoseStream::run() {
   std::int64_t frame = 0;
   std::unique_lock lock(mutex_);
   while (!is_ending_) {
-    // By the clock, so that the frames keep their rate; those that were missed are not made up.
+    // Follow the clock, so that the frames keep their rate; missed frames are not sent later.
     frame = std::max(frame + 1, frame_at(now_ns()));
     const std::chrono::nanoseconds wait(start_ns + frame * kSecond_ns / fps_ - now_ns());
     if (ending_.wait_for(lock, wait, [this] { return is_ending_; })) break;
@@ -244,7 +244,7 @@ void PoseStream::run() {
   }
 }
 
-// A receiver that is not there, or too slow, loses datagrams: that is no error.
+// It is no error if the receiver is missing or too slow: the datagrams are lost.
 void PoseStream::send(const StreamedTick& tick) {
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     const Source& source = sources_[i];

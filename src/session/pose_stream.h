@@ -1,9 +1,9 @@
-// The poses of a live session for other programs, as datagrams: VMC messages over OSC, which avatar
-// programs and add-ons of game engines receive, or the same bones as JSON. docs/embed.md describes
+// Sends the poses of a live session to other programs as datagrams: VMC messages over OSC, for
+// avatar programs and add-ons of game engines, or the same bones as JSON. docs/embed.md describes
 // both.
 //
-// The stream has a thread of its own, which wakes so many times a second and sends the newest pose
-// that the loop has published. The loop copies its poses out once a tick and waits for nothing.
+// A thread of its own wakes `fps` times a second and sends the newest pose that the loop has
+// published. The loop copies its poses once a tick and never waits.
 #pragma once
 #include <array>
 #include <condition_variable>
@@ -23,8 +23,8 @@
 
 namespace gaitpad {
 
-// `osc://HOST:PORT` or `json://HOST:PORT`. Without a host the address is the loopback's, without a
-// port it is 39539 (VMC's) or 39540; `osc` and `json` alone mean both.
+// `osc://HOST:PORT` or `json://HOST:PORT`. The default host is the loopback address; the default
+// port is 39539 (VMC's) for osc and 39540 for json. `osc` and `json` alone use both defaults.
 struct StreamAddress {
   enum class Format { osc, json } format = Format::osc;
   std::string host = "127.0.0.1";
@@ -32,7 +32,7 @@ struct StreamAddress {
   static Result<StreamAddress> parse(const std::string& text);
 };
 
-// What the loop publishes for the stream.
+// The poses of one tick, as the loop publishes them for the stream.
 struct StreamedTick {
   struct Walker {
     Pose pose;
@@ -46,15 +46,15 @@ void copy_tick(const Simulation& simulation, StreamedTick& streamed) noexcept;
 
 class PoseStream {
  public:
-  // The n-th character of the cast goes to the n-th port from the address' on. Nothing is sent
-  // before start(). Error: `address` is none or has no host, too many ports, OSC was not built.
+  // Character n (from 0) is sent to port + n. Nothing is sent before start(). Error: `address` is
+  // invalid, its host cannot be resolved, too many ports, or built without OSC.
   static Result<std::unique_ptr<PoseStream>> open(const std::string& address, int fps,
                                                   const Cast& cast);
   ~PoseStream() { stop(); }
 
   void start();
   void stop();
-  // Where the loop writes.
+  // The loop writes here.
   Latest<StreamedTick>& newest() noexcept { return newest_; }
   std::int64_t frames() const noexcept { return frames_.load(std::memory_order_relaxed); }
 
@@ -82,7 +82,7 @@ class PoseStream {
   std::thread thread_;
 };
 
-// One frame of one character, as datagrams.
+// One character's frame, to be encoded as datagrams.
 struct StreamedFrame {
   int source = 1;  // 1: the first character
   std::string_view character;
@@ -93,8 +93,7 @@ struct StreamedFrame {
   const std::vector<BonePose>* bones = nullptr;
 };
 std::string json_datagram(const StreamedFrame& frame);
-// Each is an OSC bundle that fits into an Ethernet packet. Empty if gaitpad was built without
-// liblo.
+// Each string is an OSC bundle that fits into an Ethernet packet. Empty if built without liblo.
 std::vector<std::string> osc_datagrams(const StreamedFrame& frame);
 
 }  // namespace gaitpad

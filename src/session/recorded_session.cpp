@@ -25,7 +25,7 @@ std::string held_name(const std::string& path, const std::vector<std::string>& f
   return name;
 }
 
-// The path of the file that has an entry for the device; empty: none has.
+// Path of the file with an entry for the device; empty if there is none.
 std::string pad_file_of(const PadOverrides& overrides, const DeviceInfo& info) {
   const PadOverride* own = find_override(overrides, info);
   return own == nullptr ? "" : own->origin.substr(0, own->origin.rfind(':'));
@@ -85,7 +85,7 @@ Result<SessionSpec> with_recorded(const SessionSpec& spec, const Trace& trace) {
     std::string_view value = option;
     const std::string_view key = take_word(value);
     value = trimmed(value, " ");
-    // No name leads out of the recording.
+    // A name cannot lead out of the recording.
     const fs::path inside = (fs::path("/") / value).lexically_normal().relative_path();
     const std::string path = fmt::format("{}/{}", trace.path, inside.string());
     if (key == "motion" && spec.walk.motion.empty()) full.walk.motion = path;
@@ -134,7 +134,7 @@ std::uint64_t bytes_hash(std::string_view bytes) {
 
 namespace {
 
-// Styles that characters walk in, and that zones and the recording's commands name.
+// Names of the styles that characters walk in, zones have, or the recording's commands choose.
 std::set<std::string, std::less<>> named_styles(const Trace& trace,
                                                 const SimulationConfig& config) {
   std::set<std::string, std::less<>> styles;

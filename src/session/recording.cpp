@@ -88,7 +88,7 @@ void RecordingLines::style(std::int64_t tick, const Style& style) {
   writer_.file("styles/" + style.name + ".toml", style_text(style));
 }
 
-// A tick is recorded whole or not at all.
+// Records a tick completely or not at all.
 bool RecordingLines::is_over(std::int64_t tick) {
   if (is_full_ || (rate_hz_ && events_ > 0 && tick == tick_)) return is_full_;
   if (bytes_ + text_size() < limits_.bytes && events_ < limits_.events) return false;
@@ -122,7 +122,7 @@ bool RecordingLines::describe(std::uint16_t device) {
   return true;
 }
 
-// Writes marks into a gap that would be too long, half the longest gap apart.
+// Fills a gap that is too long with marks, half the longest permitted gap apart.
 void RecordingLines::bridge(std::int64_t tick, std::int64_t time_us) {
   const std::int64_t from_us = latest_us_, from_tick = tick_;
   std::int64_t pieces = 1 + (time_us - from_us) / kBridge_us;
@@ -182,10 +182,10 @@ bool is_same(const Style& a, const Style& b) {
 }
 
 constexpr std::size_t kRingItems = 4096;
-constexpr std::chrono::milliseconds kPause{20};  // between looks at the ring: nobody wakes it
+constexpr std::chrono::milliseconds kPause{20};  // between two looks at the ring
 constexpr std::size_t kWriteBytes = std::size_t{1} << 18;
 
-// A new file, locked for this session, in place of what a killed one has left.
+// Creates and locks the file; replaces one that a killed session has left.
 Result<OwnedFd> opened_part(const std::string& part) {
   // O_NONBLOCK: a pipe without a reader is an error instead of a wait.
   OwnedFd left(::open(part.c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
@@ -228,11 +228,11 @@ Recording::~Recording() { end_thread(); }
 void Recording::add(std::int64_t tick, const Report& report) noexcept {
   Item item;
   item.tick = tick;
-  copy_used_bytes(report, now_ns(), item.report);  // a stamp of the future would end the recording
+  copy_used_bytes(report, now_ns(), item.report);  // a future time would end the recording
   if (!ring_.push(item)) lost_.fetch_add(1, std::memory_order_relaxed);
 }
 
-// A comment for people: without it the recording is still exact.
+// Writes a comment for readers; the recording is exact without it.
 void Recording::clock(std::int64_t tick, std::int64_t time_ns, double pace) noexcept {
   Item item;
   item.tick = tick;
@@ -289,7 +289,7 @@ void Recording::write(std::string_view text) {
       text.remove_prefix(static_cast<std::size_t>(count));
     } else if (errno != EINTR) {
       problem_ = errno;
-      // Half a line would damage the trace; if even this fails, `replay --lenient` skips the line.
+      // Half a line would damage the trace. If truncation fails, `replay --lenient` skips the line.
       static_cast<void>(!::ftruncate(file_.get(), written_));
       return;
     }

@@ -1,4 +1,4 @@
-// The recording of a session, or of pads alone, into a trace that replays to the same poses: which
+// Records a session, or pads alone, into a trace that replays to the same poses: it stores which
 // tick used which report.
 #pragma once
 #include <algorithm>
@@ -25,10 +25,10 @@
 
 namespace gaitpad {
 
-// What is known of a device whose first report has come.
+// Returns the description of a device that has sent a report.
 using RecordedDevices = std::function<const TraceDevice&(std::uint16_t device)>;
 
-// Copies a report without the bytes that it does not use, stamped no later than `latest_ns`.
+// Copies a report's used bytes only and clamps its time to `latest_ns`.
 inline void copy_used_bytes(const Report& from, std::int64_t latest_ns, Report& to) noexcept {
   to.time_ns = std::min(from.time_ns, latest_ns);
   to.device = from.device;
@@ -37,41 +37,41 @@ inline void copy_used_bytes(const Report& from, std::int64_t latest_ns, Report& 
   std::memcpy(to.bytes.data(), from.bytes.data(), to.size);
 }
 
-// What a session is made of, so that its recording replays wherever it is.
+// Everything that a session is made of, so that its recording replays on any machine.
 struct RecordedSession {
   std::optional<Pace> pace;
   std::vector<std::string> options;  // as Trace::options
   std::vector<TraceFile> files;
-  // That of `config/pads` which has an entry for the pad; null: none. May be empty.
+  // The file of `config/pads` with an entry for the pad; null if there is none. May be empty.
   std::function<const TraceFile*(const DeviceInfo&)> pad_file;
 };
 
-// The lines of a recording. They stay within what the reader of traces accepts: times never go
-// back; a gap of ten minutes or more holds commands `mark`, which do nothing; the end is late
-// enough for its ticks, which may have run faster than the clock; and it ends before the file is
+// The lines of a recording, within the limits of the reader of traces: times never decrease; a gap
+// of ten minutes or more holds `mark` commands, which do nothing; the end time is late enough for
+// all ticks, which may have run faster than the clock; and the recording ends before the file is
 // too large.
 class RecordingLines {
  public:
-  struct Limits {  // with room for one more tick and for the devices' lines
+  struct Limits {  // leave room for one more tick and for the devices' lines
     std::size_t bytes = kMaxTraceBytes - (std::size_t{4} << 20);
     std::size_t events = kMaxTraceEvents - 8192;
   };
-  // Without a rate there are no ticks, only times.
+  // Without a rate events have times only, no ticks.
   RecordingLines(std::optional<int> rate_hz, RecordedDevices devices, const Limits& limits,
                  RecordedSession session = {});
 
-  // `tick` began at `time_ns`, and the next ones follow at the rate times the pace; at pace 0 it
-  // has not begun yet. For tick 0, and whenever the clock was set forward or the pace has changed.
+  // Says that `tick` began at `time_ns`, and that the next ones follow at rate * pace; at pace 0 it
+  // has not begun yet. Called for tick 0 and after each change of the clock or the pace.
   void clock(std::int64_t tick, std::int64_t time_ns, double pace = 1.0);
-  // False: the recording cannot hold it.
+  // Returns false if the recording is full.
   bool add(std::int64_t tick, const Report& report);
-  // From `tick` on, before its reports, a style of this name has these values. Only with a rate.
+  // Sets the style's values from `tick` on, before its reports. Only with a rate.
   void style(std::int64_t tick, const Style& style);
   void end(std::int64_t ticks, std::int64_t time_ns);
   std::string take_text();  // whole lines, since the last call
   std::size_t text_size() const { return writer_.text().size(); }
 
-  // Nothing more is added: a larger file could not be read.
+  // Full: adding more would make the file too large to read.
   bool is_full() const { return is_full_; }
   bool has_devices() const { return has_devices_; }
   double duration_s() const { return static_cast<double>(latest_us_) * 1e-6; }
@@ -98,15 +98,15 @@ class RecordingLines {
   std::optional<std::int64_t> zero_ns_;               // time 0 of the file
   std::int64_t tick_ = 0;                             // of the last event
   std::int64_t latest_us_ = 0;
-  std::int64_t end_tick_ = 0;  // is_full(): the first tick that is left out
+  std::int64_t end_tick_ = 0;  // is_full(): the first tick that is not recorded
   std::size_t bytes_ = 0, events_ = 0;
   bool is_full_ = false, has_devices_ = false;
-  std::set<std::string> pad_files_;  // that were written
+  std::set<std::string> pad_files_;  // already written
 };
 
-// Writes a trace while the session runs, on a thread of its own. The file is FILE.part until the
-// end, then it is renamed to FILE; an older FILE stays until then. A program that is killed leaves
-// FILE.part, which replays as far as it goes.
+// Writes a trace on a thread of its own while the session runs. The file is named FILE.part until
+// the end and then renamed to FILE, which replaces an older FILE. If the program is killed,
+// FILE.part stays and replays to its last whole line.
 class Recording {
  public:
   struct Options {
@@ -120,19 +120,20 @@ class Recording {
   static Result<std::unique_ptr<Recording>> start(const Options& options, RecordedDevices devices);
   ~Recording();
 
-  // From one thread, wait-free: `tick` used the report; `tick` began at that time, and the next
-  // ones follow at the rate times the pace (0: they stand still).
+  // Both from one thread, wait-free. add(): `tick` used the report. clock(): `tick` began at
+  // `time_ns`, and the next ones follow at rate * pace (0: they stand still).
   void add(std::int64_t tick, const Report& report) noexcept;
   void clock(std::int64_t tick, std::int64_t time_ns, double pace = 1.0) noexcept;
-  // From `tick` on the styles are others. Both lists outlive the recording.
+  // Changes the styles from `tick` on. Both lists must outlive the recording.
   void styles(std::int64_t tick, const std::vector<Style>& before,
               const std::vector<Style>& after) noexcept;
 
-  // Missing reports: there was no room for them in the ring or the file. The recording is inexact.
+  // Number of reports that did not fit into the ring or the file. If > 0 the recording is inexact.
   std::int64_t lost() const noexcept { return lost_.load(std::memory_order_relaxed); }
-  // Why the file cannot be written, once it could not; what stands in it replays. Any thread.
+  // The error of the first failed write; all lines written before it replay. Any thread.
   std::optional<Error> problem() const;
-  // Ends the recording after so many ticks and renames the file. Once. Sentences for the user.
+  // Ends the recording after `ticks` ticks and renames the file. Call it once. Returns sentences
+  // for the user.
   Result<std::vector<std::string>> finish(std::int64_t ticks, std::int64_t time_ns);
 
  private:

@@ -14,7 +14,7 @@
 namespace gaitpad {
 namespace {
 
-// How many poses a second are written.
+// Number of poses that are written per second.
 Result<int> written_fps(const SessionSpec& spec, int rate_hz) {
   const int fps = spec.replay.fps.value_or(rate_hz);
   if (fps >= 1 && fps <= rate_hz) return fps;
@@ -39,7 +39,7 @@ Result<std::vector<WalkExport>> opened_exports(std::optional<OutputFiles>& files
   return exports;
 }
 
-// The members of the crowd that get files.
+// The followers whose walks are written to files.
 std::vector<ExportedFollower> exported_followers(const SessionSpec& spec,
                                                  const Simulation& simulation) {
   std::vector<ExportedFollower> followers;
@@ -49,11 +49,11 @@ std::vector<ExportedFollower> exported_followers(const SessionSpec& spec,
   return followers;
 }
 
-// False: `progress` has ended it.
+// Returns false if `progress` has ended the run.
 bool run_to_end(const PreparedTrace& prepared, TraceRun& run,
                 std::vector<ExportedFollower>& followers, std::vector<WalkExport>& exports,
                 const ReplayProgress& progress) {
-  constexpr std::int64_t kTicksBetween = 32;  // of a large crowd each takes milliseconds
+  constexpr std::int64_t kTicksBetween = 32;  // a tick of a large crowd takes milliseconds
   for (std::int64_t tick = 0; tick < prepared.ticks; ++tick) {
     if (progress && tick % kTicksBetween == 0 && !progress(tick, prepared.ticks)) return false;
     run.step(prepared);
@@ -63,7 +63,7 @@ bool run_to_end(const PreparedTrace& prepared, TraceRun& run,
   return true;
 }
 
-// Pads of the recording that send reports but never where their stick is.
+// Adds a remark on each pad whose reports never contain a stick.
 void add_stickless(const PreparedTrace& prepared, std::vector<std::string>& remarks) {
   const std::vector<PadConfig>& pads = prepared.config.pads;
   std::vector<const TraceEvent*> stickless(pads.size());

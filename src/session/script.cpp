@@ -23,7 +23,7 @@ constexpr double kMostCamera_deg = 1e6;
 
 std::string_view next_word(std::string_view& text) noexcept { return take_word(text, kGaps); }
 
-// Cuts the number of the walker off, if a word follows it.
+// Removes and returns the walker's number if a word follows it.
 int next_walker(std::string_view& text) noexcept {
   std::string_view rest = text;
   const int n = parse_number<int>(next_word(rest)).value_or(0);
@@ -32,7 +32,7 @@ int next_walker(std::string_view& text) noexcept {
   return n;
 }
 
-// The rest of `KEY VALUE`; `command` has the key already.
+// Parses the VALUE of `KEY VALUE`; `command` has the key already.
 std::optional<Command> with_value(Command command, std::string_view word) noexcept {
   const auto value = parse_number<double>(word);
   if (!value || !std::isfinite(*value)) return std::nullopt;
@@ -50,7 +50,7 @@ std::optional<Command> gait_command(Command command, std::string_view second) no
   return command;
 }
 
-// `steers` or `points [DEGREES]`; `command` has the word.
+// Parses `steers` or `points [DEGREES]`; `command` has the first word.
 std::optional<Command> stick_command(Command command, std::string_view camera_deg) noexcept {
   if (command.name == "steers" && camera_deg.empty()) {
     command.verb = Verb::steers;
@@ -69,7 +69,7 @@ std::optional<Command> parsed_command(std::string_view text) noexcept {
   Command command;
   if (verb == "mark") return command;
   if (verb != "reset" && verb != "stick") command.walker = next_walker(text);
-  if (verb == "style") {  // the rest is its name, which may have blanks
+  if (verb == "style") {  // the rest is the style's name, which may contain blanks
     command.verb = Verb::style;
     command.name = trimmed(text, kGaps);
     return command.name.empty() ? std::nullopt : std::optional(command);

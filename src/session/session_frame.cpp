@@ -82,8 +82,8 @@ void copy_sample(const Simulation& simulation, TickSample& sample) noexcept {
     WalkerSample& s = sample.walkers[i];
     for (const Side side : {kLeftSide, kRightSide}) {
       for (std::size_t j = 0; j < kShownJoints.size(); ++j) {
-        // In a sample flexion is positive at every joint; in the model it is negative at the hip
-        // and the ankle.
+        // In a sample flexion is positive at every joint; in the model hip and ankle flexion is
+        // negative.
         const double angle_rad = walkers[i].state.legs.angles_rad[side][kShownJoints[j]];
         s.joint_rad[side][j] =
             static_cast<float>(kShownJoints[j] == kKneeX ? angle_rad : -angle_rad);

@@ -19,7 +19,7 @@ std::vector<std::string> folders_of_lists(const SessionSpec& spec) {
   return spec.recording.empty() ? spec.config_folders : std::vector{spec.recording};
 }
 
-// Where the styles are that no option names.
+// Folders of the styles that no option names.
 std::vector<std::string> style_folders(const SessionSpec& spec) {
   std::vector<std::string> folders = folders_of_lists(spec);
   const bool is_live = spec.replay.trace.empty();
@@ -27,8 +27,8 @@ std::vector<std::string> style_folders(const SessionSpec& spec) {
   return folders;
 }
 
-// The chosen files come first, so that they win over equal names in the folders of configuration.
-// `remarks` gets a sentence on each file that no option names and that cannot be read.
+// Loads the chosen files first, so that they override equal names in the folders of configuration.
+// `remarks` gets a sentence on each unreadable file that no option names.
 Result<std::vector<Style>> all_styles(const SessionSpec& spec, std::vector<int>& chosen,
                                       std::vector<std::string>& remarks) {
   std::vector<Style> styles;
@@ -83,8 +83,8 @@ Result<std::shared_ptr<const Terrain>> terrain_of(const SessionSpec& spec) {
   return std::shared_ptr<const Terrain>(std::make_shared<Terrain>(std::move(*terrain)));
 }
 
-// Ticks of a live session have a deadline. They wait for no other thread, unless one is too slow
-// for so many.
+// A live session's ticks have a deadline, so they wait for other threads only if one thread is too
+// slow for the crowd.
 int crowd_threads(const SessionSpec& spec) {
   constexpr int kAlone = 64, kAloneLive = 1000;
   const bool is_live = spec.replay.trace.empty();
@@ -124,7 +124,7 @@ bool is_built_in(const SessionSpec& spec) {
 
 Result<PadFiles> load_pad_files(const SessionSpec& spec) {
   auto files = load_pad_files(folders_of_lists(spec), spec.pad.map, spec.pad.calibration);
-  // A recording's devices have their own calibrations, or none.
+  // The devices of a recording have their own calibrations, or none.
   if (files && !spec.recording.empty()) files->calibration_folders.clear();
   return files;
 }

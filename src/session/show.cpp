@@ -9,7 +9,7 @@
 namespace gaitpad {
 namespace {
 
-// A live session, which ticks on its own thread or, for pictures, by hand.
+// A live session, which runs on its own thread or, for pictures, tick by tick on demand.
 class LiveShow final : public Show {
  public:
   explicit LiveShow(std::unique_ptr<LiveSession> session)
@@ -87,13 +87,13 @@ class LiveShow final : public Show {
   std::unique_ptr<LiveSession> session_;
   const SessionFrame* frame_ = nullptr;
   LiveStatus status_;
-  double due_ticks_ = 0.0;  // pictures: the part of a tick that is left over
+  double due_ticks_ = 0.0;  // pictures: fraction of a tick that is left over
 };
 
 constexpr int kTicksAtOnce = 48;
 constexpr std::int64_t kComputing_ns = 12'000'000;  // per frame, so that drawing stays smooth
 
-// A trace on a time line, computed as far as it is looked at.
+// A trace on a time line, computed up to the tick that is shown.
 class PlaybackShow final : public Show {
  public:
   PlaybackShow(const SessionSpec& options, std::unique_ptr<Playback> playback)
@@ -116,7 +116,7 @@ class PlaybackShow final : public Show {
 
   void update_for_picture() override {
     if (!std::exchange(is_for_pictures_, true))
-      position_ = -1.0;  // so that the first picture shows one step, too
+      position_ = -1.0;  // the first picture also shows one step
     go_on(static_cast<double>(cast().rate_hz) / kPictureRateHz);
     do {
       is_there_ = playback_->seek(tick(), kTicksAtOnce);
@@ -170,13 +170,13 @@ class PlaybackShow final : public Show {
   }
 
   std::unique_ptr<Playback> playback_;
-  double position_ = 0.0;  // ticks; where the playback is to be
+  double position_ = 0.0;  // in ticks; target of the playback
   bool is_there_ = true;
   bool is_for_pictures_ = false, are_remarks_taken_ = false;
   Timeline timeline_;
 };
 
-// The last state of a show that has ended.
+// The last state of an ended show.
 class StillShow final : public Show {
  public:
   explicit StillShow(Show& show)

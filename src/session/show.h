@@ -1,4 +1,4 @@
-// What a viewer shows: a live session, or a trace on a time line, behind one interface.
+// The common interface of the sessions that a window shows: live ones, and traces on a time line.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -29,8 +29,8 @@ struct Timeline {
 class Show {
  public:
   static Result<std::unique_ptr<Show>> open(const SessionSpec& spec);
-  // The same in two parts, so that a running show is ended only if the next one can be opened:
-  // reads the files; the function that it returns, called once, opens the show.
+  // The same in two parts, so that a running show ends only if the next one can be opened:
+  // prepare() reads the files; the function that it returns opens the show and is called once.
   using Start = std::function<Result<std::unique_ptr<Show>>()>;
   static Result<Start> prepare(const SessionSpec& spec);
   virtual ~Show() = default;
@@ -41,39 +41,42 @@ class Show {
   virtual const SessionFrame& frame() const noexcept = 0;
   const History& history() const noexcept { return history_; }
   const SessionSpec& options() const noexcept { return options_; }
-  // Used by shows that are opened with these options later.
+  // Applies to shows that are opened with these options later.
   void add_config_folder(const std::string& folder);
   void set_stick(StickMeans means) noexcept { options_.walk.stick = means; }
   bool is_live() const noexcept { return options_.replay.trace.empty(); }
 
-  // Takes over what is new; call it once for each drawn frame. `passed_s`: wall time since the last
+  // Takes over the new state; call once for each drawn frame. `passed_s`: wall time since the last
   // call, by which a playback advances.
   virtual void update(double passed_s) = 0;
-  // The same for pictures: computes 1 / kPictureRateHz seconds of the session now.
+  // The same for pictures: computes 1 / kPictureRateHz seconds of the session at once.
   virtual void update_for_picture() = 0;
-  // What update() took over has gone to the display, or will not go there.
+  // Says that the state of the last update() was displayed, or will not be displayed.
   virtual void end_frame(FrameEnd) {}
-  // Where the moment to draw, one tick ago, lies between WalkerFrame::before (0) and pose (1).
+  // Fraction for drawing one tick in the past: 0 at WalkerFrame::before, 1 at pose.
   virtual double share(std::int64_t now_ns) const noexcept = 0;
 
   double pace() const noexcept { return pace_; }  // 0: paused
   virtual void set_pace(double pace) = 0;
   virtual void step() = 0;  // one tick, while paused
 
-  // Live only; otherwise without effect.
+  // Live sessions only; otherwise without effect.
   virtual void steer(const vec2&) {}
   virtual void command(std::string_view) {}
   virtual void add_style(const Style&) {}
   virtual void rumble() {}
   virtual std::optional<Error> end_recording() { return std::nullopt; }
-  virtual bool has_ended() const noexcept { return false; }  // of a recording that plays as the pad
+  virtual bool has_ended() const noexcept {
+    return false;
+  }  // the recording that plays as the pad
+     // has ended
   virtual const LiveStatus* status() { return nullptr; }
   // Playback only.
   virtual const Timeline* timeline() { return nullptr; }
   virtual void seek(std::int64_t) {}
   virtual void set_looping(bool) {}
 
-  virtual std::string pad_name() const = 0;  // of the pad that steers; empty: none
+  virtual std::string pad_name() const = 0;  // of the driving pad; empty: none
   virtual std::vector<std::string> take_remarks() = 0;
   virtual Result<RunSummary> stop() = 0;  // ends the show
 
@@ -84,7 +87,7 @@ class Show {
   double pace_ = 1.0;
 };
 
-// Shows the present state of another show while nothing runs.
+// Shows the present state of another show; nothing runs.
 std::unique_ptr<Show> still_show(Show& show);
 
 }  // namespace gaitpad

@@ -15,8 +15,8 @@ namespace {
 
 constexpr double kSpacing_m = 1.2;  // between neighbours, to the right of the first
 
-// A character with its own skeleton brings the retargeted cycle. Only the length of the motion's
-// leg comes from the motion itself then.
+// A character with its own skeleton has the retargeted cycle; only the motion's leg length is still
+// taken from the motion itself.
 Result<WalkModel> model_of(const SimulationConfig& config, const WalkerConfig& walker) {
   if (!walker.own_cycle) return walk_model(config.cycle, walker.character);
   Character build = walker.character;
@@ -26,8 +26,9 @@ Result<WalkModel> model_of(const SimulationConfig& config, const WalkerConfig& w
   return model;
 }
 
-// --- which style a walker walks in: chosen by commands, given by zones, blended, tired. All but
-// the commands follows from the state alone, so a replay computes it again.
+// The style of a walker: commands choose it, zones replace it, changes are blended, fatigue is
+// added. Only commands are input; the rest follows from the state, so that a replay computes the
+// same.
 
 void change_style(Walker& w, int style, const StyleValues& values) noexcept {
   w.blend = begun_blend(w.in_force, w.values, values);
@@ -35,7 +36,7 @@ void change_style(Walker& w, int style, const StyleValues& values) noexcept {
   w.values = values;
 }
 
-// The zone at this place; if several overlap there, the last one. -1: none.
+// The zone at this place; the last one if zones overlap; -1 if there is none.
 int zone_at(const Terrain& terrain, const vec3& place_m) noexcept {
   for (int i = static_cast<int>(terrain.zones.size()) - 1; i >= 0; --i) {
     const TerrainZone& zone = terrain.zones[static_cast<std::size_t>(i)];
@@ -46,22 +47,22 @@ int zone_at(const Terrain& terrain, const vec3& place_m) noexcept {
   return -1;
 }
 
-// By a command. In a zone too it counts at once: the zone's style is not given back, and not given
-// again before the walker has left the zone.
+// Chooses a style by a command. It takes effect at once, inside a zone as well: the style from
+// before the zone is not restored, and the zone's style returns only when the walker enters it
+// again.
 void choose_style(Walker& w, int style, std::span<const Style> styles) noexcept {
   w.zone.gives_back = false;
   change_style(w, style, styles[static_cast<std::size_t>(style)]);
 }
 
-// The style follows the zone under the hips: a walker that enters one takes its style, and a walker
-// that leaves it takes back the style from before, with the values that commands had changed in it.
-// `zone_styles`: of each zone the index of its style.
+// Applies the zone under the hips: entering a zone sets its style; leaving it restores the previous
+// style with the values that commands had changed. `zone_styles[i]`: style index of zone i.
 void follow_zones(Walker& w, const Terrain& terrain, std::span<const int> zone_styles,
                   std::span<const Style> styles) noexcept {
   if (terrain.zones.empty()) return;
   const int zone = zone_at(terrain, w.state.path.hips_m);
   if (zone == w.zone.index) return;
-  // From one zone straight into another: keep the style from before both.
+  // From one zone directly into another: keep the style from before both.
   const bool has_own = w.zone.gives_back;
   const ZoneStyle before = w.zone;
   w.zone.index = zone;
@@ -78,13 +79,13 @@ void follow_zones(Walker& w, const Terrain& terrain, std::span<const int> zone_s
   change_style(w, style, styles[static_cast<std::size_t>(style)]);
 }
 
-// Blends and tires the style by one tick; what the walker walks by in this tick.
+// Advances blend and fatigue by one tick; returns the values for this tick.
 StyleValues advance_style(Walker& w, double dt_s) noexcept {
   w.in_force = advance(w.blend, with_fatigue(w.values, w.tired), dt_s);
   return w.in_force;
 }
 
-// As at the beginning: in the style that was chosen last, rested, in no zone.
+// Restores the start: the style that was chosen last, rested, in no zone.
 void restart_style(Walker& w, std::span<const Style> styles) noexcept {
   if (w.zone.gives_back) w.style = w.zone.own_style;
   w.values = w.in_force = styles[static_cast<std::size_t>(w.style)];
@@ -95,7 +96,7 @@ void restart_style(Walker& w, std::span<const Style> styles) noexcept {
 
 // --- commands
 
-// For all walkers or for none: the value must be possible for each of them.
+// Sets the value for all walkers or for none: it must be valid for each of them.
 bool set_values(std::span<Walker> walkers, std::string_view key, double value) noexcept {
   for (const Walker& w : walkers) {
     StyleValues changed = w.values;
@@ -122,7 +123,7 @@ bool give_back(std::span<Walker> walkers, std::string_view name) noexcept {
   return true;
 }
 
-// Keeps its chosen style and the numbers that count from the beginning.
+// Keeps the chosen style and the counts since the session's start.
 void restart(std::span<const Style> styles, Walker& w) noexcept {
   const std::array<int, 2> steps = w.state.frame.steps;
   restart_style(w, styles);
@@ -217,7 +218,7 @@ Result<Simulation> Simulation::create(const SimulationConfig& config) {
   return s;
 }
 
-// Those of the walkers, then the builds of the crowd. All share one ground, large enough for the
+// Models of the walkers, then of the crowd's builds. All share one ground, large enough for the
 // largest foot.
 Result<std::vector<std::shared_ptr<const WalkModel>>> Simulation::models_of(
     const SimulationConfig& config) {
@@ -331,7 +332,7 @@ bool Simulation::obey(std::string_view text) noexcept {
       return true;
     case Verb::restart:
       for (Walker& w : walkers) restart(styles(), w);
-      if (command->walker <= 1) followers_.restart();  // the first one leads them
+      if (command->walker <= 1) followers_.restart();  // walker 1 leads the followers
       return true;
   }
   return false;

@@ -23,7 +23,7 @@ void give_back_gait(int walker, GaitKey key, const GaitOverrides& before,
                                  : fmt::format("gait {} {} stick", walker, name));
 }
 
-// The style, and what was changed of it.
+// Restores the style and the values that were changed in it.
 void give_back_style(int walker, const WalkerFrame& before, const Cast& cast,
                      std::vector<std::string>& out) {
   const auto style = static_cast<std::size_t>(before.style_index);
@@ -67,7 +67,7 @@ void give_back(const Command& command, int walker, const WalkerFrame& before, co
   }
 }
 
-// Equal for the commands of one drag.
+// A key that is equal for all commands of one drag.
 std::string what_of(std::string_view command) {
   const auto parsed = parsed_command(command);
   if (!parsed || (parsed->verb != Verb::set && parsed->verb != Verb::gait)) return {};
@@ -108,7 +108,7 @@ void UndoList::add(const std::string& command, const SessionFrame& frame, const 
 
 std::vector<std::string> UndoList::undo() {
   if (done_ == 0) return {};
-  changes_[done_ - 1].what.clear();  // what is dragged next is a change of its own
+  changes_[done_ - 1].what.clear();  // the next drag is a change of its own
   return changes_[--done_].back;
 }
 

@@ -1,5 +1,5 @@
-// Undo and redo of what a person changes of the characters: sliders, styles, overrides. A change is
-// commands for the session; its opposite is worked out from the frame before it.
+// Undo and redo of a user's changes to the characters: sliders, styles, overrides. A change is a
+// list of commands; its opposite is computed from the frame before it.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -10,19 +10,19 @@
 
 namespace gaitpad {
 
-// The commands that give the addressed characters back what `command` would change of them; empty
-// if it is malformed or changes nothing that a command can give back (`reset`, `mark`).
+// The commands that restore for the addressed characters what `command` changes; empty if it is
+// malformed or changes nothing that a command can restore (`reset`, `mark`).
 std::vector<std::string> opposite_of(std::string_view command, const SessionFrame& frame,
                                      const Cast& cast);
 
 class UndoList {
  public:
-  // Remembers a command that is being sent. Commands of one drag of a slider are one change.
+  // Remembers a command that is being sent. The commands of one drag of a slider form one change.
   void add(const std::string& command, const SessionFrame& frame, const Cast& cast);
   // The commands to send; empty: there is nothing to undo or redo.
   std::vector<std::string> undo();
   std::vector<std::string> redo();
-  void clear();  // a new session begins
+  void clear();  // called when a new session begins
 
  private:
   struct Change {
@@ -32,7 +32,7 @@ class UndoList {
   };
   static constexpr std::size_t kMost = 200;
   std::vector<Change> changes_;
-  std::size_t done_ = 0;  // of changes_; those behind can be redone
+  std::size_t done_ = 0;  // changes_ before this index are done; the later ones can be redone
 };
 
 }  // namespace gaitpad

@@ -42,7 +42,7 @@ Result<std::fstream> OutputFiles::scratch() const {
   std::fstream stream(file->name_for_streams(),
                       std::ios::binary | std::ios::in | std::ios::out | std::ios::trunc);
   if (!stream) return write_error(file->path(), errno);
-  return stream;  // which keeps the file, though it loses its name now
+  return stream;  // the stream keeps the file open, though the name goes now
 }
 
 std::optional<Error> OutputFiles::publish() {
@@ -78,7 +78,7 @@ std::string_view swing_name(const WalkFrame& frame) {
 
 void append_number(double value, std::string& out) {
   out += ',';
-  append_fixed(out, value + 0.0, 9);  // + 0.0: no "-0"
+  append_fixed(out, value + 0.0, 9);  // + 0.0 avoids "-0"
 }
 
 void append_place(const vec3& place_m, std::string& out) {
@@ -153,14 +153,14 @@ GltfLayout gltf_layout(const Walker& walker, int fps) {
           .rest_root_m = vec3(0.0, model.stand_m, 0.0)};
 }
 
-// Whether a frame of the file shows this tick: if a frame's time j / fps lies in (tick - 1, tick]
-// ticks. The first frame shows tick 0.
+// True if a frame of the file shows this tick, that is, if a frame's time j / fps lies in (tick -
+// 1, tick] ticks. The first frame shows tick 0.
 bool is_shown(std::int64_t tick, int rate_hz, int fps) {
   const auto frames_until = [=](std::int64_t t) { return (t * fps + rate_hz) / rate_hz; };
   return tick == 0 || frames_until(tick) != frames_until(tick - 1);
 }
 
-// In the frame of the ankle joint, as the files have it.
+// The heel in the frame of the ankle joint, as the files have it.
 vec3 heel_offset_m(const LegModel& leg) { return glm::conjugate(leg.standing[2]) * leg.heel_m; }
 
 WalkerSummary walker_summary(const Simulation& simulation, const Walker& walker) {
@@ -229,11 +229,11 @@ void WalkExport::write(std::int64_t tick, const Stick& stick) {
 }
 
 std::optional<Error> WalkExport::finish(const nlohmann::ordered_json& summary) {
-  // Of a walk without a tick the header is still to be written.
+  // If the walk had no tick, the header is not written yet.
   frames_->write(row_.data(), static_cast<std::streamsize>(row_.size()));
   row_.clear();
   poses_->finish();
-  // The motion's file name comes from outside.
+  // The motion's file name may be invalid UTF-8.
   *summary_ << summary.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace)
             << '\n';
   if (!gltf_) return std::nullopt;

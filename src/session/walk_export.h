@@ -1,4 +1,4 @@
-// What a run leaves behind: files that appear in their folder together and complete, or not at all.
+// Output files of a run: they appear in their folder together and complete, or not at all.
 #pragma once
 #include <cstdint>
 #include <fstream>
@@ -20,18 +20,18 @@
 
 namespace gaitpad {
 
-// Files of one run. They get their names in publish(); without it files of an earlier run stay.
+// Files of one run. publish() names them; without it the files of an earlier run stay.
 class OutputFiles {
  public:
   // Makes the folder if it is missing.
   static Result<OutputFiles> open(const std::string& folder);
-  // A new, empty file. The stream lives as long as this object. Errors of writing come out of
-  // publish().
+  // Adds a new, empty file. The stream lives as long as this object. publish() reports its write
+  // errors.
   Result<std::ostream*> add(const std::string& name);
   std::optional<Error> publish();
   std::string path_of(const std::string& name) const;
-  // A nameless file in the same folder, to write and read while running. It goes with its stream,
-  // even if the program is killed.
+  // A nameless temporary file in the same folder. It vanishes with its stream, even if the program
+  // is killed.
   Result<std::fstream> scratch() const;
 
  private:
@@ -45,14 +45,14 @@ class OutputFiles {
   std::vector<File> files_;
 };
 
-// frames.csv: one row a tick with what a character did, in metres, seconds and radians, world
-// frame.
+// frames.csv: one row for each tick with the state of the character, in metres, seconds and
+// radians, world frame.
 void append_frames_header(std::string& out);
 // The row of `tick`: its stick and the state after it.
 void append_frames_row(std::int64_t tick, int rate_hz, const Stick& stick, const WalkFrame& frame,
                        std::string& out);
 
-// `pose.bvh` for the first character, `pose-2.bvh` ... for further ones.
+// `pose.bvh` for the first character, `pose-2.bvh` and so on for the others.
 std::string numbered_name(const std::string& stem, const std::string& extension,
                           std::size_t walker);
 
@@ -62,15 +62,15 @@ struct ExportFormat {
   bool with_gltf = false;  // pose.glb beside pose.bvh
 };
 
-// Writes pose.bvh, frames.csv, summary.json and perhaps pose.glb of one character while it walks.
-// The walker and the files must outlive it.
+// Writes pose.bvh, frames.csv, summary.json and, if asked for, pose.glb of one character while it
+// walks. The walker and the files must outlive it.
 class WalkExport {
  public:
   static Result<WalkExport> open(OutputFiles& files, const Walker& walker, std::size_t index,
                                  const ExportFormat& format);
-  // Writes the walker after `tick`. Ticks come in order, from 0.
+  // Writes the walker's state after `tick`. Ticks come in order, from 0.
   void write(std::int64_t tick, const Stick& stick);
-  // Writes the rest, and the summary last. Error: the walk does not fit into a file's format.
+  // Writes the rest, and the summary last. Error: the walk does not fit into a file format.
   std::optional<Error> finish(const nlohmann::ordered_json& summary);
 
  private:
@@ -87,23 +87,23 @@ class WalkExport {
   std::string row_;
 };
 
-// summary.json of one character: the numbers of the run and its own. The keys are in interface.md's
-// order; units stand in the keys.
+// summary.json of one character: the run's numbers, then its own. The order of the keys is part of
+// the interface; keys end with their units.
 nlohmann::ordered_json summary_json(const RunSummary& run, std::size_t walker);
 nlohmann::ordered_json summary_json(const RunSummary& run, const WalkerSummary& walker);
 
-// A member of the crowd in the shape of a walker, so that it has the same files.
+// Presents a follower as a walker, so that the same files can be written.
 class ExportedFollower {
  public:
   ExportedFollower(const Simulation& simulation, int member);
-  // Takes over the state after a tick.
+  // Copies the follower's state after a tick.
   void follow(const Simulation& simulation) noexcept;
   const Walker& walker() const noexcept { return *walker_; }
   WalkerSummary summary(const Simulation& simulation) const;
 
  private:
   int member_;
-  std::unique_ptr<Walker> walker_;  // stays in place while an export writes it
+  std::unique_ptr<Walker> walker_;  // on the heap, because an export keeps its address
 };
 
 }  // namespace gaitpad

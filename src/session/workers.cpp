@@ -19,7 +19,7 @@ struct Workers::Arena {
   explicit Arena(int threads)
       : most(tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(threads)),
         arena(threads) {}
-  tbb::global_control most;  // else oneTBB warns of more threads than cores
+  tbb::global_control most;  // otherwise oneTBB warns of more threads than cores
   tbb::task_arena arena;
 #endif
 };
@@ -30,7 +30,7 @@ int startable_threads(int wanted) {
   try {
     while (static_cast<int>(others.size()) + 1 < wanted)
       others.emplace_back([&end] { end.wait(); });
-  } catch (const std::system_error&) {  // a limit of the user's or of the container
+  } catch (const std::system_error&) {  // a limit of the user or of the container
   }
   end.count_down();
   return static_cast<int>(others.size()) + 1;

@@ -1,4 +1,4 @@
-// Threads that share out the blocks of a crowd.
+// Threads that share the blocks of a crowd.
 #pragma once
 #include <functional>
 #include <memory>
@@ -7,7 +7,7 @@ namespace gaitpad {
 
 class Workers {
  public:
-  // At most so many threads, the caller's among them. Built without oneTBB: the caller's alone.
+  // Uses at most `threads` threads, with the caller's; built without oneTBB, the caller's alone.
   explicit Workers(int threads);
   ~Workers();
   Workers(Workers&&) noexcept;
@@ -22,9 +22,9 @@ class Workers {
   std::unique_ptr<Arena> arena_;  // null: one thread
 };
 
-// How many threads can be started now, the caller's among them: 1 .. `wanted`.
+// Number of threads that can be started now, with the caller's: 1 .. `wanted`.
 int startable_threads(int wanted);
-// How many threads this machine runs at once.
+// Number of threads that this machine runs at once.
 int machine_threads() noexcept;
 
 }  // namespace gaitpad

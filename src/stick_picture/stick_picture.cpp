@@ -19,21 +19,21 @@ namespace {
 struct Plane {
   Box box;
   vec2 middle{0.0};          // position at the box's middle
-  double half_height = 1.2;  // positions from there to the upper edge
+  double half_height = 1.2;  // in positions, from the middle to the upper edge
 };
 vec2 pixel_in(const Plane& plane, const vec2& position) noexcept {
-  constexpr double kFar = 1e5;  // pixels: cairo counts them in 24 bits
+  constexpr double kFar = 1e5;  // in pixels: cairo stores them with 24 bits
   const double scale = plane.box.height / 2.0 / plane.half_height;
   const vec2 offset = (position - plane.middle) * scale;
   return {plane.box.x + plane.box.width / 2.0 + std::clamp(offset.x, -kFar, kFar),
           plane.box.y + plane.box.height / 2.0 - std::clamp(offset.y, -kFar, kFar)};
 }
 
-constexpr std::size_t kMaxSegments = 20000;  // of a track; of more, only every n-th is drawn
-constexpr double kLeastMove = 0.7;           // pixels; shorter moves are joined to the next
+constexpr std::size_t kMaxSegments = 20000;  // of a longer track only every n-th is drawn
+constexpr double kLeastMove = 0.7;           // pixels; a shorter move is joined to the next
 constexpr int kCurvePoints = 180;            // of a zone's edge
 constexpr double kTurn = 2.0 * kPi;          // rad
-constexpr double kFarDeflection = 3.0;       // outside every plane
+constexpr double kFarDeflection = 3.0;       // outside of every plane
 
 using PixelOf = std::function<std::optional<vec2>(const vec2& raw)>;
 
@@ -91,8 +91,8 @@ std::vector<Segment> segments_of(const StickPicture& stick, const PixelOf& pixel
   return segments;
 }
 
-// Half-transparent lines add up where the stick was often. If there are too many segments, some are
-// left out rather than joined: a joined segment would show a way that the stick never took.
+// Half-transparent lines darken where the stick was often. If there are too many segments, every
+// n-th is drawn; joined segments would show moves that the stick never made.
 void draw_track(cairo_t* cr, const StickPicture& stick, const PixelOf& pixel_of) {
   const std::vector<Segment> segments = segments_of(stick, pixel_of);
   const std::size_t stride = segments.size() / kMaxSegments + 1;
@@ -112,7 +112,7 @@ std::optional<vec2> outline_point(const Outline& outline, int i) {
   return outline.middle + r * direction(i * kTurn / kOutlineDirections);
 }
 
-// Has a gap at each direction that was not seen.
+// Has a gap at each direction that the stick did not reach.
 void draw_outline(cairo_t* cr, const Outline& outline, const PixelOf& pixel_of) {
   set_colour(cr, rgb(colour::kVermilion));
   cairo_set_line_width(cr, 2.0);
@@ -136,7 +136,7 @@ void zone_path(cairo_t* cr, const Plane& plane, const StickCalibration& c, doubl
   cairo_close_path(cr);
 }
 
-// The calibrated stick's length for a deflection's length, without the sideways zone.
+// Length of the calibrated stick for a length of the deflection, without the sideways zone.
 double response_of(const StickCalibration& c, double deflection) {
   StickCalibration round = c;
   round.frame = {};
@@ -145,10 +145,10 @@ double response_of(const StickCalibration& c, double deflection) {
   return stick_position(round, {std::min(deflection, 1.0), 0.0}).x;
 }
 
-// Adds one half (forward or back) of the region in which the sideways zone sets x to 0: where the
+// Adds one half (forward or back) of the sideways zone, in which x is set to 0: where the
 // response's x is smaller than `sideways`.
 void sideways_path(cairo_t* cr, const Plane& plane, const StickCalibration& c, double forward) {
-  std::vector<vec2> edge;  // right of it
+  std::vector<vec2> edge;  // right edge
   for (int i = 0; i <= 300; ++i) {
     const double length = c.inner + (kFarDeflection - c.inner) * i * i / (300.0 * 300.0);
     const double response = response_of(c, length);
@@ -261,7 +261,7 @@ Plane plane_about_rest(const Box& box, const StickPicture& stick) {
     const double reach = std::max(c.y.max - c.y.centre, c.y.centre - c.y.min);
     plane.half_height = 1.3 * c.inner * reach;
   }
-  // Written so that a value that is not a number fails the comparison.
+  // NaN fails these comparisons.
   for (double* v : {&plane.middle.x, &plane.middle.y}) *v = std::fabs(*v) <= 1.0 ? *v : 0.0;
   plane.half_height =
       plane.half_height > kLeastHalfHeight ? std::min(plane.half_height, 2.0) : kLeastHalfHeight;
@@ -312,7 +312,7 @@ void draw_grid(cairo_t* cr, const Plane& plane) {
   });
 }
 
-// Positions that were reported, darker where they were reported often.
+// Reported positions, darker where they were reported often.
 void draw_positions(cairo_t* cr, const Plane& plane, const StickPicture& stick) {
   std::vector<vec2> dots;
   for (const StickTrack& track : stick.tracks) {
@@ -357,14 +357,14 @@ std::vector<LegendEntry> rest_legend(const StickPicture& stick) {
   return entries;
 }
 
-// The least radius from the stick's centre in each bin, as the verdict has it. 0: not seen.
+// Smallest radius from the stick's centre in each bin, as for the verdict. 0: not reached.
 using Reaches = std::array<double, kCircularityBins>;
 
 bool is_seen(const Reaches& reaches) {
   return std::any_of(reaches.begin(), reaches.end(), [](double r) { return r > 0.0; });
 }
 
-// The radii that the plot shows: those around the circle's 1, and all that was reached.
+// Range of the plot's radii: around 1, the circle, and all that were reached.
 PlotRange range_of(const Reaches& reaches) {
   PlotRange range{0.8, 1.2};
   for (const double r : reaches) {
@@ -396,8 +396,8 @@ void draw_reach_grid(cairo_t* cr, const Box& plot, const PlotRange& range) {
   }
 }
 
-// Bars start at the circle's 1 and go up where the stick reaches beyond it, down where it falls
-// short. The first bar is centred on the direction "right", so half of it stands at either end.
+// Bars begin at the circle's 1 and point up if the stick reaches farther, down if less far. The
+// first bar is centred on the direction "right", so half of it is at each end.
 void draw_bars(cairo_t* cr, const Box& plot, const PlotRange& range, const Reaches& reaches) {
   const double height = plot.height / (range.max - range.min),
                base = plot.y + height * (range.max - 1.0);
@@ -420,7 +420,7 @@ void draw_bars(cairo_t* cr, const Box& plot, const PlotRange& range, const Reach
   cairo_stroke(cr);
 }
 
-// A pointer at the direction that reaches least far, from the stick's centre, and its name.
+// Points at the direction with the smallest reach from the stick's centre, and names it.
 void draw_worst(cairo_t* cr, const Box& plot, const Outline& outline) {
   const std::optional<int> worst = worst_direction(outline);
   if (!worst) return;
@@ -501,7 +501,7 @@ std::vector<LegendEntry> reach_legend(const StickPicture& stick) {
 
 // --- hands-off time: position over time, one time after the other
 
-// Raw, along the axis that reaches least far.
+// Raw radius of the inner zone along the axis with the smallest range.
 double inner_zone_of(const StickPicture& stick) {
   if (!stick.advice) return 0.05;
   const StickCalibration& c = stick.advice->calibration;
@@ -509,7 +509,7 @@ double inner_zone_of(const StickPicture& stick) {
                              c.y.max - c.y.centre});
 }
 
-// What was found of the stick while nobody held it.
+// Summary of the stick's rest.
 std::string strip_caption(const StickStatistics& s) {
   std::string text =
       fmt::format("Hands off for {:.1f} s: distance from the centre, raw", seconds_of(s.hands_off));
@@ -534,7 +534,7 @@ void draw_strip(cairo_t* cr, const Box& box, const StickPicture& stick) {
       for (const vec2& place : hands_off.places) {
         const double away = glm::length(place - *stick.statistics->centre);
         inside.points.emplace_back(time_s += 0.1, away);
-        highest = std::max(highest, 1.4 * away);  // room for a word above
+        highest = std::max(highest, 1.4 * away);  // leaves space for a word above
         if (away > radius)
           plot.marks.push_back({PlotMark::Shape::dot, {time_s, away}, rgb(colour::kVermilion)});
       }
@@ -750,7 +750,7 @@ vec2 raw_of(const StickCalibration& c, const vec2& p) noexcept {
 
 namespace {
 
-// A heading above one card for each stick.
+// A heading, and below it one card for each stick.
 template <typename Stick>
 Surface page_of(const std::string& heading, std::span<const Stick> sticks, double card_height,
                 void (*draw)(cairo_t*, const Box&, const Stick&)) {
@@ -777,7 +777,7 @@ Surface page_of(const std::string& heading, std::span<const Stick> sticks, doubl
 constexpr double kComparisonHeight =
     2.0 * kPadding + kTitleHeight + kCaptionHeight + kPlot + kTicksHeight + kLegendRow;
 
-// The zones of both, side by side, and the numbers; those that differ are bold.
+// Draws the zones of both calibrations side by side, and their numbers; differing ones are bold.
 void draw_comparison(cairo_t* cr, const Box& card, const ComparedStick& stick) {
   const Box box{card.x + kPadding, card.y + kPadding, kInnerWidth, kTitleHeight};
   draw_text(cr, {19.0, colour::kInk, Align::left, true}, {box.x, box.y + 18.0}, stick.title,

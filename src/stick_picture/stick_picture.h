@@ -1,5 +1,5 @@
-// The picture of measured sticks: tracks, outline and zones, raw and calibrated, the rest position
-// magnified, the reach by direction, the numbers and the verdict.
+// A picture of measured sticks: tracks, outline and zones, raw and calibrated, the magnified rest
+// position, the reach by direction, the numbers and the verdict.
 #pragma once
 #include <optional>
 #include <span>
@@ -19,18 +19,18 @@ struct StickPicture {
   const StickStatistics* statistics = nullptr;
   const StickAdvice* advice = nullptr;
 };
-// The raw position of a deflection that is centred and scaled by the range: a zone's edge is the
+// Converts a deflection, centred and scaled by the range, to a raw position: a zone's edge is the
 // image of a circle or square of deflections.
 vec2 raw_of(const StickCalibration& calibration, const vec2& deflection) noexcept;
 
-// One card for each stick, opaque (CAIRO_FORMAT_RGB24); cairo's error surface if there is no
-// memory.
+// One card for each stick, opaque (CAIRO_FORMAT_RGB24); cairo's error surface if memory is
+// exhausted.
 Surface stick_picture(const std::string& heading, std::span<const StickPicture> sticks);
-// The same as a PNG, written beside `path` first: on error an old file is unchanged.
+// The same as a PNG, written beside `path` first: an error leaves an old file unchanged.
 std::optional<Error> write_stick_picture(const std::string& path, const std::string& heading,
                                          std::span<const StickPicture> sticks);
 
-// Two calibrations of one stick, for instance before and after a repair.
+// Two calibrations of one stick, for example before and after a repair.
 struct ComparedStick {
   std::string title;
   std::string names[2];

@@ -14,8 +14,8 @@
 namespace gaitpad {
 namespace {
 
-constexpr std::size_t kMaxLineBytes = 4096;  // longer lines are cut
-constexpr int kMaxReads = 64;                // at once, from a writer that never stops
+constexpr std::size_t kMaxLineBytes = 4096;  // a longer line is cut
+constexpr int kMaxReads = 64;                // at once, if a writer never stops
 
 constexpr int kEndingSignals[] = {SIGINT, SIGTERM, SIGHUP};
 
@@ -26,7 +26,7 @@ sigset_t ending_signals() noexcept {
   return set;
 }
 
-// The sum with the clock stays in range.
+// Keeps the sum with the clock in range.
 constexpr double kMaxSeconds = 1e9;
 
 // A second signal within this time counts as the first: a terminal and `timeout` may both send one.
@@ -37,7 +37,7 @@ void end_at_once(int signal) {
   if (now_ns() - end_began_ns.load() > kOneWish_ns) ::_exit(128 + signal);
 }
 
-// From now on a signal interrupts the calling thread, whatever it waits for.
+// After this call a signal interrupts the calling thread, even while it waits.
 void allow_ending_at_once() noexcept {
   end_began_ns = now_ns();
   struct sigaction action = {};
@@ -55,8 +55,7 @@ RunEnd::RunEnd() {
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
   ::signal(SIGPIPE, SIG_IGN);
   signals_ = OwnedFd(signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC));
-  if (signals_.get() < 0)
-    pthread_sigmask(SIG_UNBLOCK, &set, nullptr);  // better cut off than never ended
+  if (signals_.get() < 0) pthread_sigmask(SIG_UNBLOCK, &set, nullptr);  // or no signal could end it
 }
 
 void RunEnd::end_after(double seconds) noexcept {
@@ -94,7 +93,7 @@ std::vector<std::string> InputLines::take_lines() {
     char bytes[1024];
     const ssize_t count = ::read(0, bytes, sizeof bytes);
     if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) is_open_ = false;  // the end; a last line without a line break counts
+    if (count <= 0) is_open_ = false;  // end of input; a last line without a line break counts
     if (count <= 0 && !rest_.empty()) rest_ += '\n';
     if (count > 0) rest_.append(bytes, static_cast<std::size_t>(count));
     for (std::size_t end; (end = rest_.find('\n')) != std::string::npos; rest_.erase(0, end + 1)) {
@@ -113,7 +112,7 @@ void StatusLine::write_all(std::string_view text) const {
   while (!text.empty()) {
     const ssize_t count = ::write(file_, text.data(), text.size());
     if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return;  // a status that nobody can read is no failure
+    if (count <= 0) return;  // it is not an error if the status cannot be shown
     text.remove_prefix(static_cast<std::size_t>(count));
   }
 }

@@ -1,5 +1,5 @@
-// What commands share that run until somebody ends them: the end, the lines that they read, and the
-// status line that they rewrite in place.
+// Shared by commands that run until the user ends them: the end, lines of input, and the status
+// line that is rewritten in place.
 #pragma once
 #include <poll.h>
 
@@ -14,16 +14,16 @@
 
 namespace gaitpad {
 
-// The end of a command: SIGINT, SIGTERM, SIGHUP, or the time that was given to it. Make it before
-// any thread starts: it blocks these signals, so that nothing is cut off half-way, and reads them
-// here. A further signal more than a second after the end has begun ends the process at once.
-// SIGPIPE is ignored: writing to a reader that has gone is a failed write like any other.
+// The end of a command: SIGINT, SIGTERM, SIGHUP, or a time limit. Make it before any thread starts:
+// it blocks these signals, so that no work is cut off, and reads them. Another signal more than a
+// second after the first ends the process at once. SIGPIPE is ignored: writing to a reader that has
+// gone is an ordinary write error.
 class RunEnd {
  public:
   RunEnd();
-  void end_after(double seconds) noexcept;  // from now on; 0: only signals end
+  void end_after(double seconds) noexcept;  // from this call; 0: only signals end
   bool is_reached() noexcept;
-  // Of a command that was cut off: 128 and the signal that ended it, as shells count; 0: none has.
+  // Exit status of an interrupted command: 128 + signal, as in shells; 0: no signal came.
   int cut_off_status() const noexcept { return signal_ == 0 ? 0 : 128 + signal_; }
   pollfd fd() const noexcept { return {signals_.get(), POLLIN, 0}; }  // of the signals
   // Sleeps until the end, until one of `others` is ready, or for `time`.
@@ -36,7 +36,7 @@ class RunEnd {
   std::int64_t end_ns_ = 0;  // 0: none
 };
 
-// Lines of standard input, without waiting for them.
+// Reads lines of standard input without waiting.
 class InputLines {
  public:
   pollfd fd() const noexcept { return {is_open_ ? 0 : -1, POLLIN, 0}; }
@@ -47,7 +47,7 @@ class InputLines {
   std::string rest_;  // an incomplete line
 };
 
-// Lines on a terminal, rewritten in place. Nothing is shown if `file` is not a terminal.
+// Lines on a terminal, rewritten in place. Shows nothing if `file` is not a terminal.
 class StatusLine {
  public:
   explicit StatusLine(int file);
@@ -55,7 +55,7 @@ class StatusLine {
   bool is_terminal() const noexcept { return is_terminal_; }
   void show(std::span<const std::string> lines);
   void show(const std::string& line) { show(std::span(&line, 1)); }
-  void clear();  // before anything else is printed
+  void clear();  // call it before other output
 
  private:
   void write_all(std::string_view text) const;
@@ -65,11 +65,11 @@ class StatusLine {
   std::size_t shown_ = 0;  // lines
 };
 
-// How far long work is: percent and the time that is left, on a terminal, from two seconds on.
+// Progress of long work: percent and remaining time, on a terminal, after two seconds.
 class Progress {
  public:
   explicit Progress(std::string_view work) : work_(work) {}
-  void show(double share);  // 0 .. 1 of the work is done
+  void show(double share);  // 0 .. 1, share of the work done
   void clear() { line_.clear(); }
   double seconds() const;  // since the work began
 

@@ -20,7 +20,7 @@ constexpr std::size_t kMaxTypedBytes = 256;
 constexpr char kEscape = 0x1b, kEndOfInput = 0x04;
 constexpr int kMaxEscapeBytes = 16;
 
-// For the signal handlers, which are set while there is a TerminalKeys.
+// Used by the signal handlers, which are installed while a TerminalKeys exists.
 termios mode_before, mode_of_keys;
 bool is_in_use = false;
 constexpr int kHandledSignals[] = {SIGTSTP, SIGQUIT};
@@ -34,7 +34,7 @@ void put_back_and_obey(int signal) {
     ::tcsetattr(0, TCSANOW, &mode_of_keys);
   } else {
     ::signal(signal, SIG_DFL);
-    ::raise(signal);  // comes when the handler has returned
+    ::raise(signal);  // delivered when the handler has returned
   }
   errno = error;
 }
@@ -69,7 +69,7 @@ TerminalKeys::~TerminalKeys() {
   is_in_use = false;
 }
 
-// Reads one byte, not more: the bytes behind it may be for the next reader.
+// Reads only one byte: later bytes may be for the next reader.
 std::optional<char> TerminalKeys::byte() {
   pollfd ready = {0, POLLIN, 0};
   if (is_at_end_ || ::poll(&ready, 1, 0) <= 0) return std::nullopt;
@@ -114,7 +114,7 @@ std::optional<std::size_t> terminal_columns(int descriptor) noexcept {
 
 namespace {
 
-// Bytes of the first `count` characters, at most all of them.
+// Number of bytes of the first `count` characters.
 std::size_t bytes_of(std::string_view text, std::size_t count) {
   std::size_t at = 0;
   for (; at < text.size() && count > 0; --count)
@@ -122,8 +122,8 @@ std::size_t bytes_of(std::string_view text, std::size_t count) {
   return std::min(at, text.size());
 }
 
-// Cuts off the first line of at most `width` characters. A word that is longer is broken behind a
-// comma, else anywhere.
+// Removes and returns the first line of at most `width` characters. A longer word is broken after a
+// comma, or else anywhere.
 std::string_view take_fitting(std::string_view& rest, std::size_t width) {
   const std::size_t most = bytes_of(rest, std::max<std::size_t>(width, 1));
   std::size_t end = most;
@@ -142,7 +142,7 @@ std::string_view take_fitting(std::string_view& rest, std::size_t width) {
   return line;
 }
 
-// Where the last column in the left half of the width begins; 2 where the line has none.
+// Start of the last column in the left half of the width; 2 if the line has no columns.
 std::size_t hanging_indent(std::string_view line, std::size_t width) {
   std::size_t indent = 0;
   for (std::size_t i = 2; i < line.size() && i <= width / 2; ++i) {
@@ -168,7 +168,7 @@ std::string fitted(std::string_view text, std::size_t width) {
     const bool is_whole = text.find('\n') != std::string_view::npos;
     std::string_view line = take_line(text);
     const std::size_t indent = hanging_indent(line, width);
-    // The blanks before the first word are no place to break at.
+    // Do not break at the blanks before the first word.
     const std::size_t begin = std::min(line.find_first_not_of(' '), line.size());
     const std::size_t lead = std::min(begin, width / 2);
     all.append(lead, ' ');

@@ -1,5 +1,4 @@
-// The terminal that a guided command talks to: single keys of standard input, and the room on the
-// screen.
+// The terminal of a guided command: single keys of standard input, and the size of the screen.
 #pragma once
 #include <cstddef>
 #include <optional>
@@ -10,9 +9,9 @@
 namespace gaitpad {
 
 // Single keys of standard input: on a terminal at once and without echo, else the first letter of
-// each line. The terminal is in another mode meanwhile; the mode is restored by the destructor,
-// when the process is stopped (Ctrl-Z) or quit (Ctrl-\), and set again when the process continues.
-// Ctrl-C stays a signal. At most one object at a time.
+// each line. The terminal's mode is changed meanwhile. It is restored by the destructor and when
+// the process is stopped (Ctrl-Z) or quit (Ctrl-\), and changed again when the process continues.
+// Ctrl-C still sends a signal. At most one object at a time.
 class TerminalKeys {
  public:
   enum class Earlier { count, forgotten };  // keys that were pressed before
@@ -21,10 +20,10 @@ class TerminalKeys {
   TerminalKeys(const TerminalKeys&) = delete;
   TerminalKeys& operator=(const TerminalKeys&) = delete;
 
-  // The next key, '\n' for Enter or an empty line; nothing if there is none now. Never waits.
-  // Arrows and other escape sequences are left out.
+  // The next key, '\n' for Enter or an empty line; nothing if none was pressed. Never waits. Skips
+  // arrows and other escape sequences.
   std::optional<char> take_key();
-  bool is_at_end() const noexcept { return is_at_end_; }  // of input: no key will come
+  bool is_at_end() const noexcept { return is_at_end_; }  // end of input: no more keys
 
  private:
   std::optional<char> byte();
@@ -34,7 +33,7 @@ class TerminalKeys {
   std::string line_;  // an incomplete line
 };
 
-// Of standard error, one column less than there is; 79 x 24 if it is no terminal.
+// Size of standard error, one column less than the terminal's; 79 x 24 without a terminal.
 struct ScreenSize {
   std::size_t columns = 79, rows = 24;
 };
@@ -43,10 +42,10 @@ ScreenSize screen_size() noexcept;
 // Lines of at most `width` characters, broken at blanks.
 std::vector<std::string> wrapped_lines(const std::string& text, std::size_t width);
 
-// The text with its lines broken at blanks to at most `width` characters. What goes on stands below
-// the last column that begins in the left half: a column has two blanks before it.
+// Breaks the text's lines at blanks to at most `width` characters. Continuation lines are indented
+// to the last column that begins in the left half; two blanks precede a column.
 std::string fitted(std::string_view text, std::size_t width);
-// Columns of a terminal; nothing if the descriptor is none.
+// Columns of a terminal; nothing if the descriptor is not one.
 std::optional<std::size_t> terminal_columns(int descriptor) noexcept;
 
 }  // namespace gaitpad

@@ -29,7 +29,7 @@ std::string shown_name(const DeviceInfo& info) {
 
 ImVec2 operator+(const ImVec2& a, const ImVec2& b) { return {a.x + b.x, a.y + b.y}; }
 
-// The next button stands beside the last one, or below it where the dialog is too narrow.
+// Places the next button beside the last one, or below it if the dialog is too narrow.
 void go_beside_or_below(const Ui& ui, const char* label) {
   const float end =
       ImGui::GetItemRectMax().x + ImGui::GetStyle().ItemSpacing.x + button_width(ui, label, {});
@@ -118,7 +118,7 @@ void CalibrationView::read_pad(std::vector<std::string>& messages) {
   if (guide->step() == GuideStep::done) finish(messages);
 }
 
-// Analyses what was recorded and releases the pad.
+// Analyses the recorded tracks and releases the pad.
 void CalibrationView::finish(std::vector<std::string>& messages) {
   pad_ = guided_->finish();
   guided_.reset();
@@ -159,7 +159,7 @@ void CalibrationView::upload_picture() {
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MIN_FILTER, GL_LINEAR_MIPMAP_LINEAR);
   glTexParameteri(GL_TEXTURE_2D, GL_TEXTURE_MAG_FILTER, GL_LINEAR);
   glPixelStorei(GL_UNPACK_ALIGNMENT, 4);
-  // Cairo's pixels are numbers in the machine's byte order; the upper byte is unused.
+  // Cairo stores a pixel as a number in the machine's byte order; its upper byte is unused.
   glTexImage2D(GL_TEXTURE_2D, 0, GL_RGB8, picture_width_, picture_height_, 0, GL_BGRA,
                GL_UNSIGNED_INT_8_8_8_8_REV, bytes);
   glGenerateMipmap(GL_TEXTURE_2D);
@@ -180,7 +180,7 @@ void CalibrationView::draw_control(Ui& ui, const GuideProgress& control, bool is
   keep_area("calibration of the " + control.control, at, ImGui::GetItemRectMax());
 }
 
-// Scrolls where the window is lower than the text and the smallest pictures.
+// The guide scrolls if the window is lower than the text and the smallest pictures.
 void CalibrationView::draw_guide(Ui& ui, CalibrationGuide& guide, float height_px) {
   ImGui::BeginChild("guide", ImVec2(0.0f, height_px - ImGui::GetCursorPosY()));
   draw_step(ui,

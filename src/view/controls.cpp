@@ -17,7 +17,7 @@ constexpr std::string_view kSession = "Session", kStyles = "Styles and character
                            kFiles = "Files", kView = "View", kPanelGroup = "Panels",
                            kWindow = "Window";
 
-// No key next to the walking keys ends anything.
+// No key next to the walking keys ends a session, a recording or the program.
 constexpr ActionInfo kActions[] = {
     {Action::pause, SDLK_SPACE, SDLK_p, kButtonStart, "pause", kSession, "pause or continue"},
     {Action::step, SDLK_PERIOD, kNoKey, kButtonDpadRight, "step", kSession,
@@ -149,7 +149,7 @@ constexpr HelpLine kWalkingHelp[] = {
 };
 
 constexpr double kDollyAStep = 0.9;
-constexpr std::uint32_t kMostPresses = 8;  // of one button between two frames
+constexpr std::uint32_t kMostPresses = 8;  // of one button, counted between two frames
 
 constexpr SDL_Keycode kWalkingKeys[] = {SDLK_w,  SDLK_a,    SDLK_s,    SDLK_d,
                                         SDLK_UP, SDLK_LEFT, SDLK_DOWN, SDLK_RIGHT};
@@ -261,7 +261,7 @@ void Controls::handle_key(const SDL_KeyboardEvent& key, const TakenInput& taken)
   }
 }
 
-// Whether the key moves between buttons and sliders, and is no more than that.
+// True if the key was used to move between buttons and sliders; it then has no other effect.
 bool Controls::navigate(SDL_Keycode key, bool is_back, const TakenInput& taken) {
   if (!taken.navigates && !(taken.is_modal && key == SDLK_TAB)) return false;
   NavigationInput& wish = wishes_.navigation;

@@ -1,5 +1,5 @@
-// What a person can ask the window for by key, pad button or mouse. One table of actions serves the
-// dispatch, the help page and the tests.
+// Actions of the window and their keys, pad buttons and mouse gestures. One table of actions serves
+// the dispatch, the help page and the tests.
 #pragma once
 #include <SDL2/SDL_events.h>
 #include <SDL2/SDL_keycode.h>
@@ -22,7 +22,7 @@ enum class Action : std::uint8_t {
   step,         // one tick; pauses first
   slow_motion,  // on and off
   reset,
-  stick,    // steers, or points where to go
+  stick,    // the stick steers, or points where to go
   style_1,  // the first style of the session's list ...
   style_2,
   style_3,
@@ -36,8 +36,8 @@ enum class Action : std::uint8_t {
   previous_style,
   undo,  // of sliders, styles and overrides
   redo,
-  next_terrain,  // another ground; the session starts again on it
-  next_walker,   // chosen for camera and panels; after the last one: all
+  next_terrain,  // the next ground; starts the session again
+  next_walker,   // selects the next walker for camera and panels; after the last one: all
   record,
   screenshot,
   open_file,
@@ -46,33 +46,33 @@ enum class Action : std::uint8_t {
   reset_camera,
   theme,
   trails,
-  source,  // the stick figure
+  source,  // shows the source motion as a stick figure
   panel_pad,
   panel_control,
   panel_style,
   panel_graphs,
   panel_solver,
   panel_loop,
-  navigate,  // keys and pad go to buttons and sliders
+  navigate,  // keys and pad move between buttons and sliders
   help,
   fullscreen,
   quit,
-  back,  // closes what is open: help, browser, calibration
+  back,  // closes the open help, browser or dialog
 };
 
 struct ActionInfo {
   Action action;
   SDL_Keycode key;         // SDLK_UNKNOWN: none
-  SDL_Keycode second_key;  // does the same
+  SDL_Keycode second_key;  // has the same effect
   int button;              // PadButton, -1: none
   std::string_view name;   // "pause"
   std::string_view group;  // heading on the help page
   std::string_view text;   // one line for the help page
 };
-// Every action once, in the order of the help page. Walking keys (WASD, arrows) are not among them.
+// Every action once, in the order of the help page. The walking keys (WASD, arrows) are not listed.
 std::span<const ActionInfo> actions() noexcept;
 const ActionInfo& info_of(Action action) noexcept;
-// Keys pressed together with Ctrl. They are not in the table's columns.
+// Keys pressed with Ctrl. They are not in the table's columns.
 struct Chord {
   SDL_Keycode key;
   bool has_shift;
@@ -89,8 +89,8 @@ struct HelpLine {
 };
 std::span<const HelpLine> walking_help() noexcept;
 
-// Translates SDL's events into actions, a direction to walk in, camera moves and dropped files. It
-// polls no SDL state, so that events pushed by a test count like real ones.
+// Translates SDL's events into actions, a walking direction, camera moves and dropped files. It
+// does not poll SDL's state, so that events pushed by a test have the same effect as real ones.
 
 struct Mouse {
   vec2 place_px{0.0};  // in the window
@@ -98,26 +98,26 @@ struct Mouse {
   std::array<bool, 3> is_down{};  // left, right, middle: Dear ImGui's order
 };
 
-// Input that the panels used in the frame before.
+// Input that the panels used in the previous frame.
 struct TakenInput {
   bool keys = false;       // text is being typed
   bool mouse = false;      // the pointer is over a panel
   bool navigates = false;  // arrows, Tab, Enter and Space go to the panels
-  bool is_modal = false;   // Tab begins that
+  bool is_modal = false;   // a modal box is open: Tab starts the navigation
 };
 
-// Moves between buttons and sliders, and what is done to the one that was reached.
+// Moves between buttons and sliders, and changes of the focused one.
 struct NavigationInput {
-  int steps = 0;     // to the next ones; negative: to those before
-  int sideways = 0;  // of a slider: to the right
+  int steps = 0;     // to following items; negative: to earlier ones
+  int sideways = 0;  // steps of a slider to the right
   bool press = false;
 };
 
-// What was asked for since the last call of take_wishes().
+// Requests since the last call of take_wishes().
 struct Wishes {
   std::vector<Action> actions;
   std::vector<std::string> files;  // dropped
-  std::vector<SDL_Keycode> keys;   // pressed, by what is engraved on them, but not typed as text
+  std::vector<SDL_Keycode> keys;   // pressed, by the engraved letter; without those typed as text
   NavigationInput navigation;
   vec2 orbit_px{0.0}, pan_px{0.0};
   double dolly = 1.0;  // factor for the camera's distance

@@ -13,16 +13,16 @@ namespace {
 
 constexpr double kTrail_s = 3.0;         // length of a trail
 constexpr double kTrailPoint_s = 0.025;  // between two points of a trail
-constexpr double kLook_m = 0.95;         // height of the place that a camera follows, for an adult
+constexpr double kLook_m = 0.95;         // height of the camera's target, for an adult
 constexpr double kSourceAside_m = 1.2;   // the distance between neighbours
 constexpr double kAdult_m = 1.8;
-constexpr double kHeightOverLeg = 2.1;  // a person's height over thigh + shank
-constexpr double kOnePerson_m = 4.2;    // least distance from which one person is seen
-constexpr double kWithCrowd_m = 9.0;    // and a crowd behind it
-constexpr double kLabelAbove_m = 0.14;  // of a name above the head
+constexpr double kHeightOverLeg = 2.1;                    // body height / (thigh + shank)
+constexpr double kOnePerson_m = 4.2;                      // least framing distance of one person
+constexpr double kWithCrowd_m = 9.0;                      // least framing distance with a crowd
+constexpr double kLabelAbove_m = 0.14;                    // height of a name above the head
 constexpr double kHalfLabel_px = 40.0, kLabel_px = 22.0;  // half its width; its height
-constexpr double kReach = 0.25;     // of a foot from below the root, over the person's height
-constexpr double kHeadReach = 0.5;  // of the head, over that of the feet
+constexpr double kReach = 0.25;     // of a foot from below the root, in body heights
+constexpr double kHeadReach = 0.5;  // reach of the head, in reaches of the feet
 
 std::string with_blanks(std::string name) {
   std::ranges::replace(name, '_', ' ');
@@ -35,7 +35,7 @@ bool have_one_build(const Cast& cast) {
   });
 }
 
-// The style's name, and the character's if the characters differ.
+// The style's name, with the character's name if the characters differ.
 std::string label_text(const WalkerFrame& walker, const Cast& cast, std::size_t index) {
   const auto style = static_cast<std::size_t>(std::max(walker.style_index, 0));
   const std::string name = style < cast.styles.size() ? with_blanks(cast.styles[style]) : "?";
@@ -43,7 +43,7 @@ std::string label_text(const WalkerFrame& walker, const Cast& cast, std::size_t 
   return fmt::format("{}, {}", with_blanks(cast.members[index].character), name);
 }
 
-// The two, if both are among so many; else nobody.
+// The two overlaid characters if both exist, else none.
 std::vector<int> overlaid_of(const UiState& state, std::size_t characters) {
   const auto is_there = [=](int i) { return i >= 0 && static_cast<std::size_t>(i) < characters; };
   const bool is_pair = state.overlaid.size() == 2 && std::ranges::all_of(state.overlaid, is_there);
@@ -87,7 +87,7 @@ void Ensemble::fill(const SessionFrame& frame, const History& history, double sh
     const auto mark = std::ranges::find(overlaid, static_cast<int>(i));
     const int layer = mark == overlaid.end() ? 0 : static_cast<int>(mark - overlaid.begin()) + 1;
     for (std::size_t c = first; c < content.capsules.size(); ++c) content.capsules[c].layer = layer;
-    // The trails of the one that is moved are elsewhere.
+    // The overlaid character is drawn away from its path, so its trails are left out.
     if (state.has_trails && layer != 2) add_trails(history, static_cast<int>(i), colour, content);
   }
   has_source_ = state.has_source && cast.source != nullptr && count > 0;
@@ -100,7 +100,7 @@ void Ensemble::fill(const SessionFrame& frame, const History& history, double sh
   crowd_.fill(frame.crowd, share, theme, terrain_.get(), content.focus_m, content);
 }
 
-// The second one stands where the first one is and faces the same way.
+// Places the second overlaid character at the first one's place, with the same heading.
 void Ensemble::stand_in_one_place(const SessionFrame& frame,
                                   const std::vector<int>& overlaid) noexcept {
   if (overlaid.empty()) return;
@@ -136,7 +136,7 @@ void Ensemble::add_trails(const History& history, int walker, const Colour& colo
   }
 }
 
-// Stands beside the first character, on the side away from the others, and moves with it.
+// Places the source beside the first character, away from the others, and moves it along.
 void Ensemble::add_source(const SessionFrame& frame, double share, const Cast& cast,
                           const Theme& theme, SceneContent& content) {
   const WalkerFrame& first = frame.walkers[0];
@@ -149,7 +149,7 @@ void Ensemble::add_source(const SessionFrame& frame, double share, const Cast& c
   lift_source(lines, joints, content);
 }
 
-// The figure walks as on a floor. On steps it is lifted, so that no part of it is in the ground.
+// The source walks as on level ground. On steps it is lifted until no part is below the ground.
 void Ensemble::lift_source(std::size_t first_line, std::size_t first_joint, SceneContent& content) {
   if (terrain_ == nullptr) return;
   double lift_m = 0.0;

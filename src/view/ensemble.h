@@ -1,5 +1,5 @@
-// What stands in the scene: the characters of a session with their trails and names, and the source
-// motion beside them.
+// The contents of the scene: the characters of a session with their trails and names, and the
+// source motion beside them.
 #pragma once
 #include <string>
 #include <vector>
@@ -16,25 +16,25 @@ class Ensemble {
  public:
   explicit Ensemble(const Cast& cast);
 
-  // Replaces the content: every character between its two latest poses (share 0 .. 1), its trails,
-  // and the source.
+  // Replaces the content: every character, interpolated between its two latest poses by `share` (0
+  // .. 1), its trails, and the source.
   void fill(const SessionFrame& frame, const History& history, double share, const Cast& cast,
             const UiState& state, const Theme& theme, SceneContent& content);
-  // The place that a camera follows, of one character or of all (-1), as filled last.
+  // The camera's target for one character or all (-1), as of the last fill().
   vec3 focus_m(int walker) const noexcept;
-  // Where the camera was last: what is near it is drawn finely.
+  // The camera's last place; members of the crowd near it are drawn in detail.
   void look_from(const vec3& eye_m) noexcept { crowd_.look_from(eye_m); }
   bool has_crowd() const noexcept { return has_crowd_; }
   bool is_on_uneven_ground() const noexcept { return terrain_ != nullptr; }
-  // How much higher the ground is ahead (+z) than behind the place that a camera follows, in
-  // metres.
+  // Height of the ground ahead (+z) minus that behind the camera's target, in metres.
   double rise_ahead_m(int walker) const noexcept;
-  // Tells the camera the ground's height; call it when the camera has moved.
+  // Tells the camera the ground's height; call it after the camera has moved.
   void stand_on_ground(Camera& camera) const noexcept;
-  // How a camera that is turned so sees everybody, from head to foot and with their names.
+  // The framing that shows all characters from head to foot, with their names, at the camera's
+  // angles.
   Framing framing(const Camera& camera, const Viewport& viewport, const UiState& state,
                   double scale) const;
-  // Names above heads, in window pixels.
+  // Names above the heads, in window pixels.
   std::vector<UiLabel> labels(const SessionFrame& frame, const Cast& cast, const Camera& camera,
                               const Viewport& viewport, const UiState& state,
                               const Theme& theme) const;
@@ -45,7 +45,7 @@ class Ensemble {
   void add_source(const SessionFrame& frame, double share, const Cast& cast, const Theme& theme,
                   SceneContent& content);
 
-  std::int64_t trail_ticks_, point_ticks_;  // length of a trail, and between two of its points
+  std::int64_t trail_ticks_, point_ticks_;  // length of a trail; distance of its points
   double ground_m(const vec3& place_m) const noexcept;
   void lift_source(std::size_t first_line, std::size_t first_joint, SceneContent& content);
 

@@ -58,7 +58,7 @@ void FileBrowser::go_to(std::string folder) {
   path_[size] = '\0';
 }
 
-// Enters a folder; any other existing path is the result.
+// Enters a folder; any other existing path becomes the result.
 void FileBrowser::enter(const std::string& path) {
   problem_.clear();
   std::error_code error;
@@ -130,7 +130,7 @@ void FileBrowser::draw_entries(Ui& ui, float height_px) {
                     ImGuiWindowFlags_AlwaysUseWindowPadding);
   ImGui::PushFont(ui.fonts.body);
   std::optional<std::string> entered;
-  ImGuiListClipper clipper;  // draws only the visible ones of thousands of rows
+  ImGuiListClipper clipper;  // draws only the visible rows of thousands
   clipper.Begin(static_cast<int>(list_.entries.size()));
   while (clipper.Step()) {
     for (int i = clipper.DisplayStart; i < clipper.DisplayEnd; ++i) {
@@ -138,8 +138,8 @@ void FileBrowser::draw_entries(Ui& ui, float height_px) {
       ImGui::PushID(i);
       const ImVec2 at = ImGui::GetCursorScreenPos();
       if (ImGui::Selectable("##entry", i == chosen_, ImGuiSelectableFlags_AllowDoubleClick)) {
-        // A double click counts only if both clicks hit the same entry: after the first one the
-        // list may be that of another folder.
+        // Both clicks of a double click must hit the same entry: the first one may have opened
+        // another folder.
         const bool is_second = chosen_ == i && ImGui::IsMouseDoubleClicked(0);
         chosen_ = i;
         const bool is_wanted = entry.is_folder || is_second;

@@ -1,4 +1,4 @@
-// A browser to find files and open them without leaving the window.
+// A browser for opening files inside the window.
 #pragma once
 #include <array>
 #include <optional>
@@ -12,18 +12,18 @@ namespace gaitpad {
 
 class FileBrowser {
  public:
-  // `recent_file`: where the last files are kept; empty: nowhere.
+  // `recent_file` stores the recently opened files; empty: they are not stored.
   explicit FileBrowser(std::string recent_file) : recent_(std::move(recent_file)) {}
 
-  // In the folder shown last, at first the working directory. `config_folders`: whose recordings
-  // and motions are offered as bundled.
+  // Opens the folder that was shown last, first the working directory. Recordings and motions of
+  // `config_folders` are offered as bundled.
   void open(const std::vector<std::string>& config_folders);
   void close() noexcept { is_open_ = false; }
   bool is_open() const noexcept { return is_open_; }
   void remember(const std::string& path) { recent_.add(path); }
 
-  // Draws it over everything else, in the middle of a window of this size. Returns the chosen file,
-  // which closes the browser; whether the file can be opened is not checked.
+  // Draws the browser over everything else, in the middle of a window of this size. Returns the
+  // chosen file and closes; it does not check whether the file can be opened.
   std::optional<std::string> draw(Ui& ui, const ImVec2& window_px);
 
  private:
@@ -31,7 +31,7 @@ class FileBrowser {
   void enter(const std::string& path);
   void draw_path(Ui& ui);
   void draw_places(Ui& ui);
-  struct Place {  // a file that one click opens
+  struct Place {  // opened by one click
     std::string path, tip;
   };
   void draw_place(Ui& ui, const std::string& id, const Place& place);
@@ -48,7 +48,7 @@ class FileBrowser {
   std::string problem_;            // of the path that was typed
   std::optional<std::string> result_;
   RecentFiles recent_;
-  std::vector<Place> last_, bundled_;  // as they were when the browser was opened
+  std::vector<Place> last_, bundled_;  // as of the opening of the browser
 };
 
 }  // namespace gaitpad

@@ -9,7 +9,7 @@ namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr std::int64_t kWarmFrames = 5;
-constexpr double kLongest_s = 0.25;  // after a suspended machine wakes up
+constexpr double kLongest_s = 0.25;  // limit after a suspended machine wakes up
 
 }  // namespace
 
@@ -27,7 +27,7 @@ void FramePacer::measure(std::int64_t free_ns) noexcept {
 
 std::int64_t FramePacer::begin_ns(std::int64_t free_ns) noexcept {
   const bool is_first = last_free_ns_ == 0, was_paced = frame_ > kMeasured && period_ns_ > 0;
-  // A frame that missed its refresh: later ones begin sooner, and only slowly later again.
+  // A frame missed its refresh: begin the next ones earlier, and return to later begins slowly.
   if (was_paced && free_ns - last_free_ns_ > period_ns_ + period_ns_ / 2)
     margin_ns_ = std::min(margin_ns_ + kMargin_ns, period_ns_);
   margin_ns_ = std::max(kMargin_ns, margin_ns_ - kMargin_ns / kCycle);
@@ -64,7 +64,7 @@ double FrameClock::begin_frame(std::int64_t time_ns) noexcept {
 void FrameClock::wait_for_next() noexcept {
   if (least_s_ <= 0.0) return;
   const auto least_ns = static_cast<std::int64_t>(least_s_ * 1e9);
-  // Counted from the planned time, so that the frame after a late one can catch up.
+  // Counted from the planned time, so that the frame after a late one catches up.
   due_ns_ = std::max(due_ns_ + least_ns, now_ns_);
   while (gaitpad::now_ns() < due_ns_) sleep_until(due_ns_);  // a signal may end it early
 }

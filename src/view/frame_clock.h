@@ -1,4 +1,4 @@
-// When frames begin, how many there are in a second, and how late a frame may begin for the
+// Times frames: when each begins, how many there are per second, and how late one may begin for the
 // display.
 #pragma once
 #include <array>
@@ -7,8 +7,8 @@
 
 namespace gaitpad {
 
-// Begins a frame as late as the display allows, so that it shows the newest reports. Without it a
-// frame is drawn right after a refresh and then waits, growing old, for the next one.
+// Begins a frame as late as the display allows, so that it shows the newest reports. A frame that
+// is drawn right after a refresh would wait until the next one, and its state would grow old.
 //
 // The display's period is measured: of every kCycle frames the first kMeasured begin at once, and
 // the median distance between their refreshes is the period.
@@ -16,12 +16,12 @@ class FramePacer {
  public:
   static constexpr int kCycle = 1024, kMeasured = 16;
   static constexpr std::int64_t kShortest_ns = 2'000'000, kLongest_ns = 50'000'000;
-  static constexpr std::int64_t kMargin_ns = 2'000'000;  // that a frame is ready before the refresh
+  static constexpr std::int64_t kMargin_ns = 2'000'000;  // between ready and refresh
 
-  // When the next frame should begin: `free_ns` is when the display took the last one. Not before
-  // free_ns.
+  // Time at which the next frame should begin, not before `free_ns`, the time at which the display
+  // took the last one.
   std::int64_t begin_ns(std::int64_t free_ns) noexcept;
-  // How long a frame took from its begin until it was ready for the display.
+  // Reports the time from a frame's begin until it was ready for the display.
   void note_work(std::int64_t work_ns) noexcept;
   void start_again() noexcept { *this = {}; }
 
@@ -32,16 +32,16 @@ class FramePacer {
   int frame_ = 0;  // of the cycle
   std::int64_t last_free_ns_ = 0;
   std::int64_t period_ns_ = 0;  // 0: unknown, or the display does not limit the frames
-  std::int64_t work_ns_ = 0;    // of the slowest of the last frames
+  std::int64_t work_ns_ = 0;    // slowest of the last frames
   std::int64_t margin_ns_ = kMargin_ns;
 };
 
-// When frames begin, how many there are in a second, and how many reports a pad sends meanwhile.
+// Times the frames, counts them, and measures the rate of a pad's reports.
 class FrameClock {
  public:
   // Least time between two frames; 0: no limit.
   void set_least(double seconds) noexcept { least_s_ = seconds; }
-  // Returns the seconds since the last frame began, at most a quarter.
+  // Returns the seconds since the last frame began, at most 0.25.
   double begin_frame(std::int64_t now_ns) noexcept;
   // Sleeps until the next frame may begin.
   void wait_for_next() noexcept;
@@ -49,10 +49,10 @@ class FrameClock {
   double passed_s() const noexcept { return passed_s_; }
 
   double frames_per_second() const noexcept { return shown_; }  // over the last half second
-  // Over all frames except the first few, in which shaders are compiled.
+  // Mean over all frames except the first few, which compile shaders.
   double mean_frames_per_second() const noexcept;
 
-  // How fast a growing count grows, over the last second.
+  // Growth of a count per second, over the last second.
   double rate_hz(std::uint64_t count) noexcept;
 
  private:

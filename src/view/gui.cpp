@@ -22,7 +22,7 @@ namespace {
 constexpr double kBodyPixels = 14.5, kSmallPixels = 12.0, kTickPixels = 10.5, kTitlePixels = 17.0;
 constexpr double kLeastScale = 0.5, kMaxWish = 4.0;
 constexpr double kMaxScale = kMaxWish * kMostTypeSize;
-constexpr double kMaxDisplayScale = 3.0;  // a higher value from the display is taken as wrong
+constexpr double kMaxDisplayScale = 3.0;  // a larger value of the display is assumed wrong
 constexpr double kUsualDotsPerInch = 96.0;
 constexpr std::size_t kMaxFontBytes = 64 << 20;
 
@@ -30,8 +30,8 @@ struct FontFiles {
   std::string family, regular, semibold;
 };
 
-// The user's own font first, then that of Debian's fonts-dejavu-core. No other that may happen to
-// be installed: the window looks the same on every machine.
+// The user's own font first, then that of Debian's fonts-dejavu-core. Other installed fonts are not
+// used, so that the window looks the same on every machine.
 std::vector<FontFiles> candidates() {
   std::vector<FontFiles> all;
   if (const char* own = std::getenv("GAITPAD_FONT"); own != nullptr && *own != '\0') {
@@ -59,7 +59,7 @@ ImFont* add_font(const std::string& bytes, double pixels) {
                                         &config, kRanges);
 }
 
-// Returns empty fonts if a file is not a font, which shows only when the atlas is built.
+// Returns empty fonts if a file is not a font, which is known only when the atlas is built.
 Fonts fonts_of(const std::string& family, const std::string& regular, const std::string& semibold,
                double scale) {
   ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
@@ -203,10 +203,10 @@ TakenInput Gui::taken_input() const noexcept {
 
 void Gui::begin(const Mouse& mouse, double passed_s) {
   ImGui_ImplOpenGL3_NewFrame();
-  ImGui::GetIO().Fonts->ClearTexData();  // the texture has it now
+  ImGui::GetIO().Fonts->ClearTexData();  // the texture holds the pixels now
   ImGui_ImplSDL2_NewFrame();
-  // The back end asks SDL for the pointer, which does not exist offscreen, so the events' place is
-  // set.
+  // The back end asks SDL for the pointer, which does not exist offscreen; use the place in the
+  // events.
   ImGuiIO& io = ImGui::GetIO();
   io.MousePos = mouse.is_inside ? ImVec2(static_cast<float>(mouse.place_px.x),
                                          static_cast<float>(mouse.place_px.y))

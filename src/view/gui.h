@@ -19,15 +19,15 @@ struct Fonts {
   ImFont* tick = nullptr;
   ImFont* heading = nullptr;  // of a panel: as high as body, bolder
   ImFont* title = nullptr;
-  std::string family;  // the one that was found: "DejaVu Sans", "built in"
+  std::string family;  // the family that was found: "DejaVu Sans", "built in"
 };
-// Loads the fonts into the current ImGui context. Call it before the context's first frame, or
-// between frames and then rebuild the font texture. Without a font file ImGui's own font is used.
+// Loads the fonts into the current ImGui context, before its first frame, or between frames and
+// followed by a rebuild of the font texture. Without a font file ImGui's own font is used.
 Fonts load_fonts(double scale);
 void apply_style(const Theme& theme, double scale);
 
-// `wish` if it is positive, else $GDK_SCALE, else the display's dots per inch over 96, at least 1
-// and at most 3; 1 if nothing is known.
+// Returns `wish` if it is positive, else $GDK_SCALE, else (display's dots per inch) / 96 within
+// 1 .. 3; 1 if all are unknown.
 double display_scale(double wish, double dots_per_inch) noexcept;
 
 class Gui {
@@ -39,11 +39,11 @@ class Gui {
 
   const Fonts& fonts() const noexcept { return fonts_; }
   void apply(const Theme& theme);
-  // Other sizes of type and of everything around it; between frames.
+  // Changes the size of type and of everything else; call it between frames.
   void set_scale(double scale);
   void handle_event(const SDL_Event& event);
   TakenInput taken_input() const noexcept;
-  // `passed_s` > 0 replaces the time that ImGui measures, for pictures.
+  // `passed_s` > 0 replaces ImGui's measured time, for pictures.
   void begin(const Mouse& mouse, double passed_s);
   void end();  // draws into the bound frame buffer
   void end_undrawn();

@@ -57,7 +57,7 @@ bool is_flying(const WalkerSample& s, Side side) noexcept {
   return s.stage == Stage::flight && s.swing == side;
 }
 
-// Adds marks at lift, peak and landing of each flight of that foot in the span.
+// Adds marks at lift, peak and landing of each flight of the foot in the span.
 void add_marks(const History& history, const GraphSpan& span, int walker, Side side,
                const Theme& theme, Plot& plot) {
   const Colour colour = leg_colour(theme, side);
@@ -80,7 +80,7 @@ void add_marks(const History& history, const GraphSpan& span, int walker, Side s
   }
 }
 
-// Turns runs of equal keys into the parts of a row; key 0 is a gap.
+// Joins runs of equal keys to the parts of a row; key 0 is a gap.
 template <class Key, class Part>
 SpanRow row_of(std::string_view label, const GraphSpan& span, const Key& key, const Part& part) {
   SpanRow row;
@@ -153,7 +153,7 @@ Plot heel_plot(const History& history, const GraphSpan& span, int walker, const 
   Plot plot = leg_plot(
       history, span, walker, theme,
       [](const WalkerSample& s, Side side) { return s.heel_above_m[side] * 100.0; }, 4.0);
-  plot.y.min -= 0.06 * (plot.y.max - plot.y.min);  // room for curves that lie on the floor
+  plot.y.min -= 0.06 * (plot.y.max - plot.y.min);  // room for curves along the floor
   if (!has_walker(history, walker)) return plot;
   for (const Side side : {kLeftSide, kRightSide}) {
     add_marks(history, span, walker, side, theme, plot);

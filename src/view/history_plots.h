@@ -1,4 +1,4 @@
-// The plots that the panels show of the last seconds of a session.
+// The plots of a session's last seconds.
 #pragma once
 #include <cstddef>
 
@@ -12,8 +12,8 @@ namespace gaitpad {
 
 inline constexpr std::size_t kShownJointCount = 3;  // hip, knee, ankle: WalkerSample::joint_rad
 
-// The samples [begin, end) up to now that are as long as a walker's last two cycles, or two seconds
-// if it has not walked so far.
+// The newest samples [begin, end): a walker's last two cycles, or two seconds if it has not walked
+// that far.
 struct GraphSpan {
   std::size_t begin = 0, end = 0;
   double tick_s = 1.0 / 240.0;
@@ -24,20 +24,19 @@ struct GraphSpan {
 };
 GraphSpan graph_span(const History& history, int walker, int rate_hz);
 
-// A joint's angle in degrees, one curve for each walker; that of the `chosen` one (-1: none) is
+// A joint's angle in degrees, one curve for each walker; the curve of walker `chosen` (-1: none) is
 // thicker.
 Plot joint_plot(const History& history, const GraphSpan& span, Side leg, std::size_t joint,
                 const Theme& theme, int chosen, double least_span_deg);
-// The height of both heels above the ground below them in cm, with marks at the lift, the peak and
-// the landing.
+// Heights of both heels above the ground below them in cm, with marks at lift, peak and landing.
 Plot heel_plot(const History& history, const GraphSpan& span, int walker, const Theme& theme);
-// The stage, and when each heel and toe is planted.
+// The stage, and the times at which each heel and toe is planted.
 SpanPlot stage_plot(const History& history, const GraphSpan& span, int walker, const Theme& theme);
 
 // The inverse kinematics of a walker's legs.
 Plot iteration_plot(const History& history, const GraphSpan& span, int walker, const Theme& theme);
 Plot error_plot(const History& history, const GraphSpan& span, int walker, const Theme& theme);
-// The time that each tick took, ms, over the whole history.
+// Duration of each tick in ms over the whole history.
 Plot tick_time_plot(const History& history, int rate_hz, const Theme& theme);
 
 }  // namespace gaitpad

@@ -18,7 +18,7 @@ namespace {
 constexpr std::array<std::string_view, 2> kThemeNames = {"dark", "light"};
 constexpr std::array<std::string_view, 2> kLegNames = {"left", "right"};
 
-// The index of the key's word in `words`; none if the key is absent or has another word.
+// Index of the key's word in `words`; none if the key is absent or its word is unknown.
 template <std::size_t N>
 std::optional<std::size_t> read_word(TomlTable& root, std::string_view key,
                                      const std::array<std::string_view, N>& words) {

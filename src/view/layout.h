@@ -1,5 +1,5 @@
-// The file that remembers the window from one start to the next: open panels, theme, parts of the
-// scene. Its keys are those of layout.cpp; each may be absent.
+// The file that stores the window's layout between two starts: open panels, theme, parts of the
+// scene. layout.cpp lists its keys; each is optional.
 #pragma once
 #include <optional>
 #include <string>
@@ -11,11 +11,12 @@ namespace gaitpad {
 
 struct Layout {
   UiState state;
-  std::string remark;  // why a damaged file was not used; else empty
+  std::string remark;  // why a damaged file was ignored; else empty
 };
 // Returns the defaults if the path is empty or there is no such file.
 Layout load_layout(const std::string& path);
-// Writes beside `path` first, so that on error the old file is unchanged. Makes the folder.
+// Writes to a file beside `path` first, so that an error leaves the old file unchanged. Makes the
+// folder.
 std::optional<Error> save_layout(const std::string& path, const UiState& state);
 
 }  // namespace gaitpad

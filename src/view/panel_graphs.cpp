@@ -18,7 +18,7 @@ constexpr std::array<std::string_view, kShownJointCount> kGraphs = {"graph hip",
                                                                     "graph ankle"};
 constexpr std::array<double, kShownJointCount> kLeastSpan_deg = {20.0, 30.0, 10.0};
 
-// A plot's title, and at the right the latest values of its curves.
+// Draws a plot's title, and at the right the latest values of its curves.
 void draw_title(Ui& ui, std::string_view title, std::string_view unit, const Plot& plot,
                 int decimals) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
@@ -41,7 +41,7 @@ void draw_title(Ui& ui, std::string_view title, std::string_view unit, const Plo
     needed += text_width(ui.fonts.tick, values.back().text) + gap;
   }
   const float room = width - text_width(ui.fonts.small, text);
-  if (values.size() > 1 && needed > room) {  // the first one's, and how many there are
+  if (values.size() > 1 && needed > room) {  // only the selected one's, and the number
     const auto one = static_cast<std::size_t>(std::max(ui.state.walker, 0));
     const Value& shown = values[std::min(one, values.size() - 1)];
     values = {{fmt::format("{}  of {}", shown.text, values.size()), shown.colour}};
@@ -54,7 +54,7 @@ void draw_title(Ui& ui, std::string_view title, std::string_view unit, const Plo
   }
 }
 
-// Reserves a box over the column's width and draws into it if it is in sight. `name`: in
+// Reserves a box over the column's width and draws into it if it is visible. `name`: its name in
 // ui_items().
 template <class Draw>
 void draw_box(Ui& ui, std::string_view name, double height_px, Draw draw) {
@@ -71,7 +71,7 @@ void draw_plot_box(Ui& ui, std::string_view name, const Plot& plot, double heigh
   });
 }
 
-// A plot below its title and the latest values.
+// Draws a plot below its title and the latest values.
 void draw_graph(Ui& ui, std::string_view name, std::string_view title, std::string_view unit,
                 const Plot& plot, int decimals, double height_px) {
   draw_title(ui, title, unit, plot, decimals);
@@ -101,7 +101,7 @@ void draw_leg_choice(Ui& ui) {
   ImGui::SetCursorScreenPos({at.x, at.y + std::round(ui.px(26))});
 }
 
-// Which character each curve belongs to.
+// Draws the number of each curve's character.
 void draw_names(Ui& ui) {
   const int count = ui.in.frame.walker_count;
   if (count <= 1) return;
@@ -159,8 +159,8 @@ void draw_feet(Ui& ui, const GraphSpan& span, int walker) {
   note(ui, "F flight, R roll, each of the left or right foot", 1);
 }
 
-// Of each leg the iterations and the error, and the failures since the start. The numbers take what
-// they need in this font, the name has the rest.
+// Draws iterations and error of each leg, and the failures since the start. The numbers get the
+// width that they need in this font, the names the rest.
 void draw_table(Ui& ui) {
   ImGui::PushStyleVar(ImGuiStyleVar_CellPadding, ImVec2{ui.px(3), ui.px(1)});
   const bool is_begun = ImGui::BeginTable("legs", 4);
@@ -201,7 +201,7 @@ void draw_table(Ui& ui) {
   ImGui::EndTable();
 }
 
-// Which solver walks, live and recorded, and what differs.
+// Draws the active solver, live and recorded, and the difference.
 void draw_mode(Ui& ui) {
   const float gap = std::round(ui.px(6)), width = ImGui::GetContentRegionAvail().x;
   ButtonLook look;
@@ -232,7 +232,7 @@ void draw_tick_times(Ui& ui) {
                 84.0);
 }
 
-// A count that should be 0; otherwise it is marked with '!' and a note.
+// Shows a count that should be 0; a larger one is marked with '!' and a note.
 void count_row(Ui& ui, std::string_view label, std::int64_t count,
                std::string_view note_text = {}) {
   std::string value = fmt::format("{}", count);

@@ -12,10 +12,10 @@
 namespace gaitpad {
 namespace {
 
-constexpr double kHalfHeight = 1.15;  // of the plane, in fractions of the logical range
+constexpr double kHalfHeight = 1.15;  // half the plane's height, in half logical ranges
 constexpr int kCirclePoints = 40, kBandPoints = 12;
 constexpr double kTurn = 2.0 * std::numbers::pi;
-constexpr double kLeastReach = 0.2;  // of a direction that is drawn
+constexpr double kLeastReach = 0.2;  // least radius of a direction that is drawn
 
 struct StickPlane {
   ImVec2 min;
@@ -41,8 +41,8 @@ std::array<ImVec2, kCirclePoints> zone_edge(const StickPlane& plane, const Stick
   return edge;
 }
 
-// Between the two zones the stick counts as straight ahead if s sin(angle) <= sideways, with s = (r
-// - inner) / (outer - inner).
+// Between the zones the stick points straight ahead if s sin(angle) <= sideways, with s = (r -
+// inner) / (outer - inner).
 void draw_sideways(ImDrawList& list, const StickPlane& plane, const StickCalibration& c,
                    ImU32 colour, float width) {
   if (c.shape != ZoneShape::both || !(c.sideways > 0.0) || c.sideways >= 1.0) return;
@@ -50,7 +50,7 @@ void draw_sideways(ImDrawList& list, const StickPlane& plane, const StickCalibra
   for (const vec2 sign : {vec2(1, 1), vec2(-1, 1), vec2(1, -1), vec2(-1, -1)}) {
     std::array<ImVec2, kBandPoints + 1> curve;
     for (int i = 0; i <= kBandPoints; ++i) {
-      // Denser near the inner zone, where the curve bends.
+      // More points near the inner zone, where the curve bends.
       const double share = 1.0 - std::pow(1.0 - static_cast<double>(i) / kBandPoints, 2.0);
       const double angle = kTurn / 4.0 + (least - kTurn / 4.0) * share;
       const double r = c.inner + (c.outer - c.inner) * c.sideways / std::sin(angle);
@@ -87,7 +87,7 @@ void draw_trail(Ui& ui, ImDrawList& list, const StickPlane& plane, Side side) {
   }
 }
 
-// The outline reached in the last ten seconds.
+// Draws the outline that was reached in the last ten seconds.
 void draw_reached(Ui& ui, ImDrawList& list, const StickPlane& plane, Side side) {
   const ReachedOutline& reached = ui.state.memory.reached[side];
   const auto point = [&](std::size_t k) {
@@ -101,7 +101,7 @@ void draw_reached(Ui& ui, ImDrawList& list, const StickPlane& plane, Side side) 
   }
 }
 
-// A square plot of a stick over its zones; `min` is its upper left corner.
+// Draws a square plot of a stick over its zones; `min` is its upper left corner.
 void draw_stick_plane(Ui& ui, const ImVec2& min, float side_px, Side side,
                       const StickCalibration& calibration) {
   const StickPlane plane{min, side_px};
@@ -135,8 +135,8 @@ UiMemory::StickPlace place_of(const SessionFrame& frame) {
   return place;
 }
 
-// --- a picture of the pad: what is pressed is lit, sticks lean, triggers fill. Places are shares
-// of the picture's width, from its upper left corner.
+// A picture of the pad: pressed buttons are lit, sticks lean, triggers fill. Positions are
+// fractions of the picture's width, from its upper left corner.
 
 struct PadSpot {
   PadButton button;
@@ -154,10 +154,10 @@ constexpr PadSpot kSpots[] = {
     {kButtonPaddle2, 0.360f, 0.425f, 0.016f, ""},   {kButtonPaddle3, 0.690f, 0.425f, 0.016f, ""},
     {kButtonPaddle4, 0.310f, 0.425f, 0.016f, ""},
 };
-constexpr float kPictureHeight = 0.47f;  // of its width
+constexpr float kPictureHeight = 0.47f;  // fraction of its width
 constexpr float kStickRadius = 0.062f;
 
-// Those that few pads have show while they are pressed alone.
+// True for buttons that few pads have; they are drawn only while pressed.
 bool is_rare(PadButton button) noexcept { return button > kButtonDpadRight; }
 
 bool is_lit(const PadState& pad, PadButton button) noexcept {
@@ -188,7 +188,7 @@ void draw_body(Ui& ui, ImDrawList& list, const ImVec2& at, float w) {
   list.AddLine({at.x + 0.30f * w, at.y + 0.07f * w}, {at.x + 0.70f * w, at.y + 0.07f * w}, edge);
 }
 
-// Shoulder buttons, and above them the triggers, filled as far as they are pulled.
+// Draws the shoulder buttons, and the triggers above them, filled by their deflection.
 void draw_shoulders(Ui& ui, ImDrawList& list, const ImVec2& at, float w) {
   const PadFrame& pad = ui.in.frame.pad;
   for (const Side side : {kLeftSide, kRightSide}) {
@@ -210,7 +210,7 @@ void draw_shoulders(Ui& ui, ImDrawList& list, const ImVec2& at, float w) {
   }
 }
 
-// Those of the buttons that are too small for a letter, as most pads engrave them.
+// Draws the words of buttons that are too small for a letter, as most pads engrave them.
 void draw_pad_words(Ui& ui, ImDrawList& list, const ImVec2& at, float w) {
   const auto word = [&](std::string_view text, float x, float y, float align) {
     const float width = text_width(ui.fonts.tick, text);

@@ -28,7 +28,7 @@ constexpr ControlRow kRows[] = {
     {"hip bounce", "x", GaitKey::hip_bounce, std::nullopt},
 };
 
-// The value that all walkers have; none if they differ.
+// The value if all walkers have the same one; else none.
 template <class Value>
 std::optional<double> shared_value(std::span<const WalkerFrame> walkers, const Value& value) {
   const double first = value(walkers.front());
@@ -39,8 +39,8 @@ std::optional<double> shared_value(std::span<const WalkerFrame> walkers, const V
   return is_shared ? std::optional(first) : std::nullopt;
 }
 
-// The selected walkers, and the parameters that the stick and the first one's style alone would
-// give.
+// The selected walkers, and the parameters that the stick and the first walker's style give without
+// overrides.
 struct Controlled {
   std::span<const WalkerFrame> walkers;
   const GaitParams from_stick;
@@ -57,7 +57,7 @@ double asked_value(const WalkerFrame& walker, GaitKey key) {
   return walker.overrides.is_set[k] ? walker.overrides.value[k] : value_of(key, walker.params);
 }
 
-// What the walk makes of it, as in `frames.csv`; none if that does not tell.
+// The walk's present value, as in `frames.csv`; none if it has none.
 std::optional<double> done_value(const WalkerFrame& walker, GaitKey key) {
   switch (key) {
     case GaitKey::speed_m_s:
@@ -80,8 +80,8 @@ void give_back(Ui& ui, const Controlled& c, std::optional<GaitKey> key) {
   forget_wish(ui, "gait " + name);
 }
 
-// "does 0.37", of both feet "does 0.64 | 0.31", of several who differ "does 0.31 to 0.64". Empty
-// for a parameter of which the walk has no value.
+// "does 0.37", for both feet "does 0.64 | 0.31", for walkers that differ "does 0.31 to 0.64". Empty
+// if the walk has no value of the parameter.
 std::string done_text(const ControlRow& row, const Controlled& c) {
   if (!done_value(c.walkers.front(), row.left)) return {};
   std::vector<std::string> texts;
@@ -108,8 +108,8 @@ std::string stick_text(const ControlRow& row, const Controlled& c) {
   return text;
 }
 
-// The name, and at the right what the walk does or else the stick's value, and a button that gives
-// an overridden value back.
+// Draws the name, at the right the walk's value or else the stick's, and a button that releases an
+// overridden value.
 void draw_row_head(Ui& ui, const ControlRow& row, const Controlled& c) {
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float width = ImGui::GetContentRegionAvail().x, y = at.y + ui.px(1);
@@ -180,7 +180,7 @@ bool is_any_set(const Ui& ui) {
 
 constexpr std::string_view kLeftOf = "left_", kRightOf = "right_";
 constexpr std::string_view kOfBoth[] = {"legs.", "arms.", "hands."};
-// Keys behind the button below: the upper body, and those that are rarely changed.
+// Keys behind the button below: the upper body, and keys that are rarely changed.
 constexpr std::string_view kRare[] = {"arm.", "hand.",   "spine.",        "head.",
                                       "idle", "blend_s", "fatigue_model."};
 
@@ -201,7 +201,7 @@ bool is_axis_weight(std::string_view key) {
          (key.ends_with("_x") || key.ends_with("_y") || key.ends_with("_z"));
 }
 
-// Rows of legs and arms need no prefix; others name their table.
+// Rows of legs and arms need no prefix; others begin with their table.
 std::string row_label(std::string_view name) {
   for (const std::string_view plain : {"leg.", "arm."}) {
     if (name.starts_with(plain)) return words_of_key(name.substr(plain.size()));
@@ -229,7 +229,7 @@ std::vector<StyleRow> rows_of(const UiMemory& memory) {
   return rows;
 }
 
-// The value of the style as loaded; none if it is not known.
+// The value of the style as loaded; none if it is unknown.
 std::optional<double> own_value(const Ui& ui, const WalkerFrame& walker, const StyleKey& key) {
   const auto& all = ui.in.cast.style_values;
   const auto index = static_cast<std::size_t>(walker.style_index);
@@ -271,12 +271,12 @@ void draw_value(Ui& ui, const StyleKey& key, float width, std::string_view lette
   }
 }
 
-// The number that commands know a selected walker by.
+// Number of a selected walker in commands.
 int number_of(const Ui& ui, const WalkerFrame& walker) {
   return static_cast<int>(&walker - ui.in.frame.walkers.data()) + 1;
 }
 
-// Each selected walker gets the value of its own style.
+// Sets the key of each selected walker to the value of its own style.
 void give_own_back(Ui& ui, const StyleKey* key) {
   if (key == nullptr) return;
   for (const WalkerFrame& walker : ui.selected()) {
@@ -319,7 +319,7 @@ void draw_row(Ui& ui, const StyleRow& row) {
 constexpr double kStyleListPixels = 236.0;
 constexpr int kSummaryLines = 4;
 
-// The numbers of the selected walkers that walk in this style: "1 3".
+// The numbers of the selected walkers with this style: "1 3".
 std::string who_walks_so(const Ui& ui, const std::string& style) {
   std::string numbers;
   for (const WalkerFrame& walker : ui.selected()) {
@@ -329,8 +329,8 @@ std::string who_walks_so(const Ui& ui, const std::string& style) {
   return numbers;
 }
 
-// The list of styles: number, name and what each does; of several selected characters, who walks
-// so. A click lets them all walk so.
+// Draws the list of styles: number, name, effect and, if several characters are selected, the
+// numbers of those with the style. A click gives the style to all of them.
 void draw_choice(Ui& ui) {
   const std::vector<int> choices = style_choices(ui.in.cast);
   const float number = ui.px(18), line = ui.fonts.tick->FontSize + ui.px(1);
@@ -392,7 +392,7 @@ int accept(ImGuiInputTextCallbackData* data) {
   return is_fit ? 0 : 1;
 }
 
-// A field for the file's name, and the button that saves.
+// Draws a field for the file's name, and the button that saves.
 void draw_save(Ui& ui) {
   auto& name = ui.state.memory.style_name;
   const float save = std::round(ui.px(60)), gap = std::round(ui.px(6));
@@ -418,7 +418,7 @@ void draw_save(Ui& ui) {
 
 constexpr double kMostExaggerated = 3.0;
 
-// The keys in which a style differs from an even walk, each once.
+// Visits each key in which a style differs from an even walk once.
 template <class Visit>
 void each_deviation(const Ui& ui, const WalkerFrame& walker, Visit visit) {
   static const StyleValues kEven;
@@ -429,8 +429,8 @@ void each_deviation(const Ui& ui, const WalkerFrame& walker, Visit visit) {
   }
 }
 
-// How many times its style's deviation from an even walk a character shows, by the key that
-// deviates most; none: it walks evenly.
+// Exaggeration of the key that deviates most: (present - even) / (style - even). None if the style
+// is even.
 std::optional<double> exaggeration(const Ui& ui, const WalkerFrame& walker) {
   std::optional<double> times;
   double most = 0.0;
@@ -466,7 +466,7 @@ void draw_exaggerate(Ui& ui) {
   }
 }
 
-// A chip for each character: two that are marked stand in one place.
+// Draws a chip for each character; two marked characters are overlaid in one place.
 void draw_overlay(Ui& ui) {
   const int count = ui.in.frame.walker_count;
   if (count < 2) return;

@@ -8,7 +8,7 @@ namespace gaitpad {
 namespace {
 
 constexpr double kLeftGutterPixels = 30.0, kRightGutterPixels = 14.0, kTickRowPixels = 14.0;
-constexpr float kTolerancePixels = 0.15f;  // too small to be seen at any scale
+constexpr float kTolerancePixels = 0.15f;  // invisible at any scale
 constexpr double kTickSpacePixels = 18.0, kTickWidthPixels = 46.0;
 
 // The part of a plot's box that holds the curves.
@@ -49,7 +49,7 @@ int y_steps(float height, float scale) {
   return std::max(1, static_cast<int>(height / (kTickSpacePixels * scale)));
 }
 
-// Width of the space left of the area: as wide as the longest number needs.
+// Width of the space left of the area, enough for the longest number.
 float left_gutter(const Plot& plot, float height, const PlotStyle& style) {
   const int steps = y_steps(height, style.scale);
   float width = static_cast<float>(kLeftGutterPixels) * style.scale;
@@ -89,7 +89,7 @@ void draw_curve(ImDrawList& list, const PlotArea& area, const PlotSeries& series
   static thread_local std::vector<PlotPoint> shown;
   static thread_local std::vector<ImVec2> pixels;
   decimate(series.points, area.x, static_cast<int>(area.width()), shown);
-  // ImGui draws lines of whole pixels from a texture, with a third of the triangles.
+  // ImGui draws lines of whole pixels with a texture, which takes a third of the triangles.
   const float width = std::max(1.0f, std::round(static_cast<float>(series.width_px) * scale));
   const auto flush = [&] {
     thin_out(pixels, kTolerancePixels);
@@ -133,7 +133,7 @@ struct EndLabel {
   const PlotSeries* series = nullptr;
 };
 
-// Letters at the curves' ends, moved apart where they would overlap; none where there is no room.
+// Draws letters at the curves' ends, moved apart to avoid overlaps; none if there is no room.
 void draw_ends(ImDrawList& list, const PlotArea& area, const Plot& plot, const PlotStyle& style) {
   std::vector<EndLabel> ends;
   for (const PlotSeries& series : plot.series) {
@@ -179,8 +179,8 @@ void draw_nothing(ImDrawList& list, const PlotArea& area, const std::string& tex
 
 }  // namespace
 
-// Keeps, for each point that stays, the range of slopes whose line passes all later points within
-// the tolerance; the first point outside this range is the next one to stay.
+// For each kept point, narrows the range of slopes of lines that pass all later points within the
+// tolerance; the first point outside the range is kept next.
 void thin_out(std::vector<ImVec2>& line, float tolerance) {
   if (line.size() < 3) return;
   std::size_t kept = 1;

@@ -9,9 +9,8 @@
 
 namespace gaitpad {
 
-// Removes points of a line from left to right that lie within `tolerance` pixels (measured
-// vertically) of the straight line between the points that stay. A software rasterizer is slower
-// with every triangle.
+// Removes points of a line, from left to right, that lie within `tolerance` pixels (vertically) of
+// the straight line between the kept points. Each triangle costs time in a software rasterizer.
 void thin_out(std::vector<ImVec2>& line, float tolerance);
 
 struct PlotStyle {
@@ -19,7 +18,7 @@ struct PlotStyle {
   const Fonts* fonts = nullptr;
   float scale = 1.0f;
 };
-// `min` to `max`: the whole box with its tick labels, pixels.
+// `min` to `max`: the whole box with its tick labels, in pixels.
 void draw_plot(ImDrawList& list, const ImVec2& min, const ImVec2& max, const Plot& plot,
                const PlotStyle& style);
 

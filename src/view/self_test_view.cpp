@@ -29,8 +29,8 @@ std::string outcome(const Result<std::optional<SelfTestResult>>& result) {
   return fmt::format("{}: {}", done.folder, found);
 }
 
-// Runs the test on a thread of its own, because it waits for the person, and stands between this
-// thread and the window's.
+// Runs the test on a thread of its own, because it waits for the user, and exchanges prompts and
+// answers with the window's thread.
 class WindowPerson final : public SelfTestPerson {
  public:
   explicit WindowPerson(const SelfTestOptions& options) : options_(options) {
@@ -41,7 +41,7 @@ class WindowPerson final : public SelfTestPerson {
       has_ended_ = true;
     });
   }
-  ~WindowPerson() override {  // gives the test up
+  ~WindowPerson() override {  // cancels the test
     is_leaving_ = true;
     answer(Answer::quit);
     thread_.join();
@@ -68,7 +68,7 @@ class WindowPerson final : public SelfTestPerson {
     const std::lock_guard lock(mutex_);
     return prompt_;
   }
-  // False once the test has ended and everything was told.
+  // Returns false when the test has ended and all remarks were taken.
   bool take_remarks(std::vector<std::string>& messages) {
     const std::lock_guard lock(mutex_);
     std::ranges::move(remarks_, std::back_inserter(messages));
@@ -78,7 +78,7 @@ class WindowPerson final : public SelfTestPerson {
 
  private:
   const SelfTestOptions options_;
-  std::mutex mutex_;  // of what follows
+  std::mutex mutex_;  // guards the members below
   SelfTestPrompt prompt_;
   Answer answer_ = Answer::none;
   std::vector<std::string> remarks_;

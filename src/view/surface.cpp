@@ -40,13 +40,13 @@ void set_hints(bool is_hidden) {
     SDL_SetHintWithPriority(SDL_HINT_VIDEODRIVER, "offscreen", SDL_HINT_OVERRIDE);
   } else {
     SDL_ResetHint(SDL_HINT_VIDEODRIVER);  // $SDL_VIDEODRIVER decides again
-    // Without this folder there is no Wayland, and its library would print an error.
+    // Without this folder Wayland cannot work, and its library would print an error.
     const char* runtime = std::getenv("XDG_RUNTIME_DIR");
     if (!runtime || *runtime == '\0') SDL_SetHint(SDL_HINT_VIDEODRIVER, "x11,KMSDRM,offscreen");
   }
 }
 
-// Why no window can be opened on the video driver that SDL has started; empty if one can.
+// The reason why SDL's video driver cannot open a window; empty if it can.
 std::string display_problem(const SurfaceOptions& options) {
   if (options.is_hidden || !is_offscreen(SDL_GetCurrentVideoDriver())) return {};
   const char* wish = std::getenv("SDL_VIDEODRIVER");
@@ -134,7 +134,7 @@ Result<std::unique_ptr<WindowSurface>> WindowSurface::open(const SurfaceOptions&
                              epoxy_gl_version() / 10, epoxy_gl_version() % 10)};
   }
   surface->outlive_x_server();
-  // Swaps in step with the display; if that is not possible, the caller limits the rate.
+  // Swaps in step with the display; if that is impossible, the caller limits the rate.
   SDL_GL_SetSwapInterval(options.is_hidden ? 0 : 1);
   return surface;
 }
@@ -146,9 +146,9 @@ bool WindowSurface::follow_display() noexcept {
 }
 
 // After an I/O error Xlib ends the program, in the error handler or right after it. Both handlers
-// have to be replaced, which versions before 1.7 do not allow. A swap that the lost server does not
-// answer is reported as an error of the request (GLXBadDrawable) first, which would end the program
-// too; it is ignored, and the next request fails as an I/O error.
+// must be replaced, which versions before 1.7 do not allow. A swap that the lost server does not
+// answer first gives a request error (GLXBadDrawable), which would also end the program. It is
+// ignored; the next request gives an I/O error.
 void WindowSurface::outlive_x_server() {
 #ifdef SDL_VIDEO_DRIVER_X11
   using SetHandler = void (*)(int (*)(Display*));
@@ -177,7 +177,7 @@ void WindowSurface::outlive_x_server() {
 bool WindowSurface::is_lost() const noexcept { return is_display_lost; }
 
 WindowSurface::~WindowSurface() {
-  if (is_display_lost) return;  // SDL would wait for the server for ever
+  if (is_display_lost) return;  // SDL would wait for the server without end
   if (frame_buffer_ != 0) {
     glDeleteRenderbuffers(1, &picture_);
     glDeleteFramebuffers(1, &frame_buffer_);
@@ -213,7 +213,7 @@ void WindowSurface::begin() {
 
 void WindowSurface::show() {
   SDL_GL_SwapWindow(window_);
-  // Without a display nothing waits for a frame, and the driver would queue them without end.
+  // Without a display the driver queues frames without end, so wait for each.
   if (is_offscreen(SDL_GetCurrentVideoDriver())) glFinish();
 }
 

@@ -4,7 +4,7 @@
 // thread. Four rules keep the two apart:
 // - Starting and stopping SDL's subsystems is not thread-safe: open a surface before the first
 //   LiveSession starts and close it after the last one has stopped.
-// - Each side stops what it started (SDL_QuitSubSystem); nobody calls SDL_Quit().
+// - Each side stops what it started (SDL_QuitSubSystem); SDL_Quit() is never called.
 // - Only the window's thread takes events off SDL's queue. It does not update joysticks then
 //   (SDL_HINT_AUTO_UPDATE_JOYSTICKS is off), because that waits for the kernel after a hot plug.
 //   The driver updates them on its own thread, sees their events by an event watch and removes
@@ -26,29 +26,29 @@ struct SurfaceOptions {
   std::string title = "gaitpad";
   int width = 1280, height = 720;  // pixels at scale 1
   double scale = 0.0;              // 0: the display's own
-  std::string without_display;     // what else can be done, for the error
-  bool is_hidden = false;          // draws pictures only, with SDL's offscreen driver, at scale 1
+  std::string without_display;     // the alternative that the error names
+  bool is_hidden = false;          // only draws pictures, with SDL's offscreen driver, at scale 1
 };
 
 class WindowSurface {
  public:
   // Only one surface may be open. The error says what to do without a display and without EGL.
-  // Without a display only a hidden surface opens, or one that $SDL_VIDEODRIVER asks for: nobody
-  // could close an invisible window.
+  // Without a display only a hidden surface opens, or one that $SDL_VIDEODRIVER asks for, because
+  // an invisible window could not be closed.
   static Result<std::unique_ptr<WindowSurface>> open(const SurfaceOptions& options);
   ~WindowSurface();
   SDL_Window* window() const noexcept { return window_; }
   SDL_GLContext context() const noexcept { return context_; }
   double scale() const noexcept { return scale_; }
-  // After the window was moved: takes the scale of the display that it is on. True: it is another.
+  // Call it after the window was moved: takes the scale of its display. Returns true if it changed.
   bool follow_display() noexcept;
   void size(int& width_px, int& height_px) const noexcept;  // drawable pixels
   // Call it before drawing a frame: binds the frame buffer to draw into, which has that size. It is
-  // the window's own or, because SDL's offscreen windows cannot grow, one in memory.
+  // the window's own, or one in memory, because SDL's offscreen windows cannot grow.
   void begin();
   void show();  // swaps the buffers
-  // True after the X server has gone. Then no function here or of SDL's video may be called any
-  // more, and the program has to end. (Xlib by itself would end it at once, in the middle of a
+  // True after the X server has gone. Then no function of this class or of SDL's video may be
+  // called, and the program has to end. (Xlib alone would end it at once, in the middle of a
   // recording.)
   bool is_lost() const noexcept;
 

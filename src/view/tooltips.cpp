@@ -16,7 +16,7 @@ struct Tip {
   std::string_view text;
 };
 
-// Items by their whole name.
+// Tips by an item's whole name.
 constexpr Tip kTips[] = {
     {"play", "Pause or continue the session."},
     {"timeline play", "Pause or continue."},
@@ -94,7 +94,7 @@ constexpr Tip kTips[] = {
      "turns the camera."},
 };
 
-// Items whose name begins like this.
+// Tips by the beginning of an item's name.
 constexpr Tip kBeginnings[] = {
     {"close ", "Close this panel."},
     {"walker ", "Select this character: styles and sliders then change it alone."},
@@ -102,7 +102,7 @@ constexpr Tip kBeginnings[] = {
     {"overlay ",
      "Two that are marked stand in one place, half transparent, the second where the first walks."},
     {"own ", "The value of the style as it was loaded."},
-    {"style slider ", ""},  // by its key
+    {"style slider ", ""},  // tip by its key
     {"slider ", ""},
     {"style ", "Walk like this. The change blends in over the style's time."},
     {"pace ", "How fast the recording plays."},
@@ -113,7 +113,7 @@ constexpr Tip kBeginnings[] = {
     {"help ", "What this key does."},
 };
 
-// Keys that do not explain themselves, and what a slider of theirs does.
+// Words for keys that are not self-explanatory, and the effect of their sliders.
 struct KeyWords {
   std::string_view key, words, text;
 };
@@ -151,7 +151,7 @@ std::string tip_of_key(std::string_view key) {
   return words + (is_weight ? ": 1 moves freely, 0 is locked." : ".");
 }
 
-// The key of an action, for what a button and a key both do.
+// Appends the key of an action that has both a button and a key.
 std::string with_key(std::string text, const ActionInfo& info) {
   for (const Chord& chord : chords()) {
     if (chord.action == info.action) return fmt::format("{}  ({})", text, chord.name);
@@ -180,7 +180,7 @@ std::string words_of_key(std::string_view key) {
 
 std::string tooltip_of(std::string_view item) {
   for (const ActionInfo& info : actions()) {
-    // A panel's button, or one that is called like its action.
+    // A panel's button, or one with the name of its action.
     const bool is_panel = item.starts_with("panel ") && info.name.ends_with(" panel") &&
                           item.substr(6) == info.name.substr(0, info.name.size() - 6);
     if (is_panel) return with_key(fmt::format("Open or close the panel {}.", item.substr(6)), info);

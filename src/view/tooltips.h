@@ -1,11 +1,11 @@
-// What the window says about a button, a slider or a graph under the pointer.
+// Explanations of buttons, sliders and graphs under the pointer.
 #pragma once
 #include <string>
 #include <string_view>
 
 namespace gaitpad {
 
-// For an item of ui_items(), by its name; empty if nothing is known of it.
+// Tooltip of an item of ui_items(), by its name; empty if there is none.
 std::string tooltip_of(std::string_view item);
 
 // A style's key or a gait parameter in words: "fatigue_model.per_100_m" is "tiring per 100 m".

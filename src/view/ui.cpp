@@ -30,7 +30,7 @@ bool is_any_open(const UiState& state, bool left) noexcept {
   return false;
 }
 
-// A line along the edge towards the scene.
+// Draws a line along the edge towards the scene.
 void draw_edge(Ui& ui, const UiRect& rect) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 size = ImGui::GetIO().DisplaySize, min = rect.min(), max = rect.max();
@@ -87,7 +87,7 @@ std::string session_text(const Ui& ui) {
   return text;
 }
 
-// Moves chips up that would overlap earlier ones.
+// Moves chips up if they overlap earlier ones.
 void spread(std::vector<ImRect>& chips) {
   for (std::size_t i = 0; i < chips.size(); ++i) {
     for (std::size_t tries = 0; tries < chips.size(); ++tries) {
@@ -146,7 +146,7 @@ void draw_status(Ui& ui, const UiRect& rect) {
   const float y = rect.y + (rect.height - ui.fonts.small->FontSize) / 2.0f;
   const float room = rect.width - ui.px(28);
   const float right = std::min(text_width(ui.fonts.small, drawable(ui.in.renderer)), room * 0.4f);
-  // What was changed last, and of whom, stands there for a moment.
+  // Show the last change and its characters for a while.
   const bool is_news = !ui.in.change.empty();
   put_text(list, ui.fonts.small, is_news ? ui.theme.left : ui.theme.secondary,
            {rect.x + ui.px(14), y}, is_news ? ui.in.change : session_text(ui),
@@ -195,7 +195,7 @@ void draw_labels(Ui& ui, const UiRect& scene) {
     const float text =
         std::min(text_width(ui.fonts.small, drawable(label.text)) + 1.0f, ui.px(140));
     const ImVec2 place(static_cast<float>(label.place_px.x), static_cast<float>(label.place_px.y));
-    // Kept whole near the scene's edge.
+    // Keep labels completely inside the scene.
     const float width = std::min(text + ui.px(28), scene.width);
     const float height = std::min(std::round(ui.px(20)), scene.height);
     const float x =
@@ -210,7 +210,7 @@ void draw_labels(Ui& ui, const UiRect& scene) {
   list.PopClipRect();
 }
 
-// What to do first, in the lower middle of the scene: "W A S D or plug a pad in; F1: keys".
+// Draws the first steps in the lower middle of the scene: "W A S D or plug a pad in; F1: keys".
 void draw_hint(Ui& ui, const UiRect& scene) {
   if (ui.in.hint.empty() || scene.is_empty() || ui.in.is_modal) return;
   const float pad = ui.px(16), room = std::min(scene.width - 4.0f * pad, ui.px(560));
@@ -294,12 +294,12 @@ void draw_separator(Ui& ui) {
 }
 
 constexpr float kChip = 22.0f, kChipGap = 4.0f, kCastPadding = 8.0f;
-constexpr int kNamedCast = 4;  // so many have room for their styles' names
+constexpr int kNamedCast = 4;  // up to this number the styles' names fit
 
 int chips_a_row(int characters) noexcept { return characters <= kNamedCast ? 2 : 7; }
 
-// A chip for each character and one for all: the selection, which styles and sliders change. They
-// stay in sight above the panels.
+// Draws a chip for each character and one for all. They select the characters that styles and
+// sliders change, and stay visible above the panels.
 void draw_cast(Ui& ui, const UiRect& rect) {
   const int count = ui.in.frame.walker_count;
   if (rect.is_empty()) return;
@@ -337,7 +337,7 @@ void draw_panel(Ui& ui, const PanelPart& part, bool has_just_opened) {
   ImGui::PopID();
   const float end = ImGui::GetCursorScreenPos().y;
   keep_area(fmt::format("area {}", kPanelNames[index]), begin, {begin.x + width, end});
-  // Scrolls to a panel that was just opened: to all of it, at least to its beginning.
+  // Scroll to a panel that was just opened: to all of it, or at least to its beginning.
   if (!has_just_opened) return;
   const ImRect seen = ImGui::GetCurrentWindow()->InnerRect;
   const float hidden = std::min(end - seen.Max.y, begin.y - seen.Min.y - ui.px(8));
@@ -384,7 +384,7 @@ void draw_columns(Ui& ui, const UiLayout& layout) {
 
 constexpr std::size_t kBarButtons = 6;  // the panels' buttons follow them
 
-// A button of the bar with its action, or without one if it opens the view menu.
+// A button of the bar with its action; without an action it opens the view menu.
 struct Entry {
   std::string_view id, label;
   std::optional<Action> action;
@@ -479,7 +479,7 @@ void draw_view_menu(Ui& ui) {
   ImGui::EndPopup();
 }
 
-// The entries for which the bar is too narrow.
+// Draws the menu of the entries that do not fit into the bar.
 void draw_menu(Ui& ui, const std::vector<Entry>& all, std::size_t first) {
   bool wants_view = false;
   if (ImGui::BeginPopup("menu")) {
@@ -505,7 +505,7 @@ struct Fact {
   bool has_dot = false;
 };
 
-// The state of loop and window at the right. Each dot's colour repeats what the words say.
+// State of loop and window, at the right. The colour of each dot repeats its text.
 std::vector<Fact> facts(const Ui& ui) {
   std::vector<Fact> all;
   if (!ui.in.recording.empty()) all.push_back({"recording", ui.theme.bad, true});
@@ -530,8 +530,8 @@ float fact_width(const Ui& ui, const Fact& fact) {
   return text_width(ui.fonts.small, fact.text) + ui.px(fact.has_dot ? 28 : 16);
 }
 
-// Draws as many as fit between `left` and the right edge, counted from the last; returns the x
-// where they begin.
+// Draws the last facts, as many as fit between `left` and the right edge; returns the x of the
+// first.
 float draw_facts(Ui& ui, const UiRect& rect, float left) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const std::vector<Fact> all = facts(ui);
@@ -571,7 +571,7 @@ void draw_top_bar(Ui& ui, const UiRect& rect) {
   const float menu = fits ? 0.0f : button_width(ui, "Panels", {}) + gap;
   const float end = rect.width - ui.px(8) - menu;
   const std::size_t most =
-      fits ? all.size() : kBarButtons;  // the panels' buttons are all in the bar or none is
+      fits ? all.size() : kBarButtons;  // either all of the panels' buttons are in the bar or none
   std::size_t i = 0;
   for (; i < most; ++i) {
     if (i == kBarButtons) x += ui.px(10);
@@ -593,7 +593,7 @@ void draw_top_bar(Ui& ui, const UiRect& rect) {
 }
 
 constexpr std::array<double, 5> kPaces = {0.1, 0.25, 0.5, 1.0, 2.0};
-constexpr float kFullWidth = 980.0f;  // at scale 1; narrower: two rows and one button for the pace
+constexpr float kFullWidth = 980.0f;  // at scale 1; if less: two rows, one button for the pace
 
 constexpr float kTrackWithSeconds = 28.0f;
 
@@ -641,7 +641,7 @@ void draw_seconds(Ui& ui, const Track& track) {
   }
 }
 
-// Marks below the line, with a tooltip under the mouse.
+// Draws marks below the line, with a tooltip under the mouse.
 void draw_marks(Ui& ui, const Track& track, float y) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const ImVec2 mouse = ImGui::GetIO().MousePos;
@@ -653,7 +653,7 @@ void draw_marks(Ui& ui, const Track& track, float y) {
     if (std::abs(mouse.x - x) <= r * 1.5f && std::abs(mouse.y - (y + r * 1.6f)) <= r * 2.0f) {
       pointed = &mark;
     }
-    if (x - last_x < 1.0f) continue;  // draws many marks in one place once
+    if (x - last_x < 1.0f) continue;  // draws overlapping marks once
     last_x = x;
     list.AddTriangleFilled({x - r, y + 2.6f * r}, {x + r, y + 2.6f * r}, {x, y + r},
                            packed(ui.theme.warning));
@@ -706,7 +706,7 @@ void icon_button(Ui& ui, std::string_view id, Icon icon, const ImVec2& at,
   if (id == "loop") ui.out.is_looping = !ui.in.timeline->is_looping;
 }
 
-// Draws the buttons and the time; returns the x behind them.
+// Draws the buttons and the time; returns the x at their end.
 float draw_transport(Ui& ui, float x, float y, bool is_full) {
   const Timeline& timeline = *ui.in.timeline;
   ButtonLook primary;
@@ -721,7 +721,7 @@ float draw_transport(Ui& ui, float x, float y, bool is_full) {
            clock_text(seconds_of(ui, timeline.tick)), ui.px(96));
   const std::string place = fmt::format("tick {} / {}{}", timeline.tick, last_tick(timeline),
                                         timeline.is_computing ? " ..." : "");
-  // A recording may change styles that the person chose: the time line says so.
+  // The time line says so if the recording changes styles that the user chose.
   const bool changes_styles = std::ranges::any_of(
       timeline.marks, [](const PlaybackMark& mark) { return mark.text.starts_with("style "); });
   put_text(list, ui.fonts.small, ui.theme.secondary, {text_x, y + ui.px(14)}, place, ui.px(128));
@@ -733,7 +733,7 @@ float draw_transport(Ui& ui, float x, float y, bool is_full) {
 
 std::string pace_text(double pace) { return fmt::format("{:g}x", pace); }
 
-// The next pace of the list, for the single button of a narrow window.
+// The pace that follows in the list, for the single button of a narrow window.
 double pace_after(double pace) {
   const auto next = std::upper_bound(kPaces.begin(), kPaces.end(), pace + 1e-9);
   return next == kPaces.end() ? kPaces.front() : *next;
@@ -803,7 +803,7 @@ bool is_numbered_style(Action action) {
   return action >= Action::style_1 && action <= Action::style_9;
 }
 
-// The nine keys of the styles in one row: "1 .. 9".
+// Joins the nine keys of the styles in one row: "1 .. 9".
 void add_style(const ActionInfo& info, KeyRow& row) {
   row.names.push_back(info.name);
   if (info.action != Action::style_9) return;
@@ -843,7 +843,7 @@ float height_of(const Ui& ui, const KeyRow& row) {
   return std::round(ui.px(row.heading.empty() ? kRowPixels : kHeadingPixels));
 }
 
-// Draws a key; returns the x behind it.
+// Draws a key; returns the x at its end.
 float draw_key(Ui& ui, const ImVec2& at, std::string_view text, float max_width) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const float width = std::min(text_width(ui.fonts.small, text) + ui.px(14), max_width);
@@ -879,7 +879,7 @@ void draw_row(Ui& ui, const ImVec2& at, const KeyRow& row, float width) {
   }
 }
 
-// Where to break the rows into columns of about equal height; a column starts with a heading.
+// Indices that break the rows into columns of similar height; a column starts with a heading.
 std::vector<std::size_t> column_ends(const Ui& ui, const std::vector<KeyRow>& all, int columns) {
   float total = 0.0f;
   for (const KeyRow& row : all) total += height_of(ui, row);
@@ -887,8 +887,7 @@ std::vector<std::size_t> column_ends(const Ui& ui, const std::vector<KeyRow>& al
   std::vector<std::size_t> ends;
   float height = 0.0f;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    // Whether more of the group that begins here would stand beyond the wanted height than above
-    // it.
+    // True if more than half of the group that begins here exceeds the wanted height.
     float group = height_of(ui, all[i]);
     for (std::size_t k = i + 1; k < all.size() && all[k].heading.empty(); ++k)
       group += height_of(ui, all[k]);

@@ -1,5 +1,5 @@
 // The user interface over the scene: bars, panels, plots, names above heads, help. It reads a frame
-// and returns what the person asked for; it changes only its own state.
+// and returns the user's requests; it changes only its own state.
 #pragma once
 #include <imgui.h>
 
@@ -28,20 +28,20 @@ inline constexpr int kPanels = 6;
 inline constexpr std::array<std::string_view, kPanels> kPanelNames = {"pad",    "control", "style",
                                                                       "graphs", "solver",  "loop"};
 
-// What draw_ui() keeps from frame to frame.
+// State of draw_ui() between frames.
 struct UiMemory {
-  // A slider that was moved shows the person's value until the session has taken it over.
+  // A moved slider shows the user's value until the session has applied it.
   struct Wish {
     std::string name;
     int walker = -1;
     double value = 0.0;
-    std::int64_t tick = 0;  // when it was sent
+    std::int64_t tick = 0;  // at which it was sent
   };
   struct StickPlace {
     std::array<vec2, 2> raw{}, calibrated{};  // left, right; raw in the stick's frame
   };
-  std::string focus;          // the item that keys and pad press; empty: they do not navigate
-  bool is_focus_new = false;  // it has to come into sight
+  std::string focus;          // the item that keys and pad press; empty: no navigation
+  bool is_focus_new = false;  // scroll to it
   std::vector<Wish> wishes;
   double held = 0.0;                    // the last value of the slider being dragged
   std::vector<StickPlace> stick_trail;  // oldest first
@@ -54,23 +54,23 @@ struct UiMemory {
   bool has_body_keys = false;     // the style panel shows the keys of the upper body
 };
 
-// The state that is remembered from one start to the next (view/layout.h), and what is open now.
+// The state that is stored between two starts (view/layout.h), and what is open now.
 struct UiState {
   std::array<bool, kPanels> is_open{true, true, false, true, false, false};
   ThemeName theme = ThemeName::dark;
   bool has_trails = true, has_grid = true, has_shadows = true, has_source = true, has_names = true;
   Side graph_leg = kLeftSide;
-  int walker = -1;  // chosen for panels and camera; -1: all, with the numbers of the first
-  std::vector<int> overlaid;  // two characters in one place, half transparent; else nobody is
-  double type_size = 1.0;     // factor on the display's scale: of type, buttons and columns
+  int walker = -1;  // selected for panels and camera; -1: all, with the numbers of the first
+  std::vector<int> overlaid;  // two characters in one place, half transparent; else empty
+  double type_size = 1.0;     // factor on the display's scale for type, buttons and columns
   bool is_help_open = false;
-  bool is_clean = false;  // the scene alone, without bars
+  bool is_clean = false;  // only the scene, without bars
   UiMemory memory;
 };
 
-// The parts of the scene that can be hidden, by the names that options and the layout file use.
+// Parts of the scene that can be hidden, by their names in options and the layout file.
 struct ScenePart {
-  std::string_view name, label;  // an action that shows and hides it is called like it
+  std::string_view name, label;  // the action that shows and hides the part has the same name
   bool UiState::*is_shown;
 };
 inline constexpr ScenePart kSceneParts[] = {{"trails", "Trails", &UiState::has_trails},
@@ -100,13 +100,13 @@ struct UiInput {
   std::string renderer{};
   std::vector<UiLabel> labels{};
   std::vector<std::string> messages{};         // errors and remarks, newest last
-  std::vector<std::string> style_summaries{};  // of Cast::styles: what each does
-  std::string change{};              // what was changed last, and of whom; empty: nothing lately
+  std::vector<std::string> style_summaries{};  // a line for each of Cast::styles
+  std::string change{};              // the last change and its characters; empty: none lately
   std::string finished_recording{};  // a message offers to replay it; empty: none
-  std::string hint{};                // over the scene until somebody walks
-  std::string pad_hint{};            // why a pad may not be seen, and what to do
-  bool can_leave = false;            // the playback, for the live session before it
-  bool can_rumble = false;           // the pad that steers
+  std::string hint{};                // shown over the scene until a character walks
+  std::string pad_hint{};            // why a pad may not be found, and what to do
+  bool can_leave = false;            // Esc leaves the playback for the previous live session
+  bool can_rumble = false;           // the driving pad has motors
   NavigationInput navigation{};
   std::span<const SDL_Keycode> keys{};  // pressed in this frame
   bool is_modal = false;                // calibration or browser is open, so panels take no input
@@ -117,7 +117,7 @@ struct UiOutput {
   std::optional<std::int64_t> seek_tick;
   std::optional<double> pace;
   std::optional<bool> is_looping;
-  std::optional<std::string> save_style;  // saves the chosen character's style by this name
+  std::optional<std::string> save_style;  // new name of the selected style
   bool dismisses_messages = false;
   std::optional<double> type_size;
   bool replays = false;  // UiInput::finished_recording
@@ -126,35 +126,35 @@ struct UiOutput {
 
 inline constexpr double kLeastTypeSize = 0.8, kMostTypeSize = 1.6, kTypeSizeStep = 0.1;
 
-// Indices in Cast::styles of the styles that a `style` command can name: the first of equal names.
+// Indices in Cast::styles of the styles that a `style` command can name; of equal names the first.
 // Action::style_1 + n - 1 chooses the n-th of them.
 std::vector<int> style_choices(const Cast& cast);
 
-// Where the scene is drawn while these panels are open.
+// The scene's part of the window while these panels are open.
 Viewport scene_viewport(const UiState& state, bool has_timeline, int width_px, int height_px,
                         double scale) noexcept;
-// Call it between ImGui::NewFrame and ImGui::Render. Panels, theme and help change by the returned
-// actions, not in here.
+// Call it between ImGui::NewFrame and ImGui::Render. It does not change panels, theme and help; the
+// returned actions do.
 UiOutput draw_ui(const UiInput& input, const Theme& theme, const Fonts& fonts, double scale,
                  UiState& state);
 
-// Moves UiMemory::focus; after everything was drawn.
+// Moves UiMemory::focus; call it after everything was drawn.
 void move_focus(const UiInput& input, UiMemory& memory);
 
-// For tests and scripts: rectangles of what can be clicked in the frame drawn last, in window
+// For tests and scripts: rectangles of the clickable items in the last drawn frame, in window
 // pixels, by name ("panel pad", "close pad", "play", "slider speed_m_s"). Items that are scrolled
-// out of sight are left out. "area pad" and so on are the panels, "left column", "top bar" and so
-// on what holds them.
+// out of sight are left out. "area pad" and similar names are panels; "left column", "top bar" and
+// similar names are the areas that contain them.
 struct UiItem {
   std::string name;
   ImVec2 min, max;
 };
 const std::vector<UiItem>& ui_items() noexcept;
-// The texts of that frame, as they were drawn, and whole those for which there was no room.
+// The texts of that frame as drawn, and the full texts of those that were cut.
 const std::vector<std::string>& drawn_texts() noexcept;
 const std::vector<std::string>& cut_texts() noexcept;
 
-// The layout of the window: bars at top and bottom and a column of panels on either side of the
+// The layout of the window: bars at top and bottom and a column of panels on each side of the
 // scene; one column in a narrow window, none in a very narrow one.
 
 struct UiRect {  // pixels; not shown if empty
@@ -168,9 +168,9 @@ struct UiLayout {
 };
 UiLayout ui_layout(const UiState& state, bool has_timeline, int width_px, int height_px,
                    double scale) noexcept;
-// How high the chips of so many characters are, above the panels; 0: there is but one.
+// Height of the chips above the panels for this number of characters; 0 for one character.
 float cast_height(int characters, float scale) noexcept;
-// Whether the panel is in the left column when both are shown.
+// True if the panel is in the left column while there are two.
 bool is_left(Panel panel) noexcept;
 
 }  // namespace gaitpad

@@ -13,7 +13,7 @@
 namespace gaitpad {
 namespace {
 
-constexpr std::size_t kMaxTextBytes = 1024;  // no row shows more; names from outside may be long
+constexpr std::size_t kMaxTextBytes = 1024;  // longer than any visible row
 
 std::string fit(std::string_view text) { return drawable(text.substr(0, kMaxTextBytes)); }
 
@@ -21,7 +21,7 @@ ImVec2 size_of(const ImFont* font, std::string_view text) {
   return font->CalcTextSizeA(font->FontSize, FLT_MAX, 0.0f, text.data(), text.data() + text.size());
 }
 
-// The beginning of the text that fits the width.
+// The longest beginning of the text that fits the width.
 std::string_view fitting(const ImFont* font, std::string_view text, float width) {
   if (width <= 0.0f) return {};
   const char* rest = nullptr;
@@ -29,10 +29,10 @@ std::string_view fitting(const ImFont* font, std::string_view text, float width)
   return text.substr(0, static_cast<std::size_t>(rest - text.data()));
 }
 
-// Of the frame drawn last; only one window draws, from one thread.
+// State of the last drawn frame; only one window draws, on one thread.
 std::vector<UiItem> items;
 std::vector<std::string> cut, drawn;
-std::vector<std::string> focusable;  // in the order of drawing, those out of sight too
+std::vector<std::string> focusable;  // in drawing order, with items out of sight
 
 void keep(std::string_view name, const ImVec2& min, const ImVec2& max, const ImRect& clip) {
   ImRect rect(min, max);
@@ -58,7 +58,7 @@ void draw_button_back(Ui& ui, const ImVec2& min, const ImVec2& max, const Button
                  ui.px(1));
 }
 
-// Icon or dot, then the label, centred on the button.
+// Draws icon or dot, then the label, centred on the button.
 void draw_button_face(Ui& ui, const ImVec2& min, const ImVec2& max, std::string_view label,
                       const ButtonLook& look) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
@@ -93,7 +93,7 @@ double value_under_mouse(Ui& ui, float left, float right, const SliderLook& look
   return std::clamp(std::round(value * unit) / unit, look.min, look.max);
 }
 
-// In the middle, or beside the knob if the knob would cover it.
+// Draws the number in the middle, or beside the knob if the knob would cover it.
 void draw_number(Ui& ui, const ImVec2& min, const ImVec2& max, float knob, double value,
                  const SliderLook& look) {
   std::string text = look.is_mixed ? "mixed" : tick_text(value, std::pow(10.0, -look.decimals));
@@ -147,12 +147,12 @@ void draw_slider(Ui& ui, const ImVec2& min, const ImVec2& max, double value,
   draw_number(ui, min, max, grab, value, look);
 }
 
-constexpr float kRest_s = 0.45;       // of the pointer, before it is explained
+constexpr float kRest_s = 0.45;       // time that the pointer rests before the tip appears
 constexpr double kTipPixels = 300.0;  // at most as wide
 
 constexpr double kVeil = 0.55;
-constexpr double kRoom = 24.0;       // to the window's edges, at scale 1
-constexpr double kMessages = 104.0;  // left free above for messages if both fit
+constexpr double kRoom = 24.0;       // distance to the window's edges, at scale 1
+constexpr double kMessages = 104.0;  // space for messages above, if both fit
 
 }  // namespace
 
@@ -277,7 +277,7 @@ const std::vector<std::string>& cut_texts() noexcept { return cut; }
 bool is_focused(Ui& ui, std::string_view name) {
   ImGuiWindow& window = *ImGui::GetCurrentWindow();
   const bool is_in_menu = (window.Flags & ImGuiWindowFlags_Popup) != 0;
-  // Behind an open box or menu nothing is reached.
+  // Items behind an open box or menu cannot be focused.
   const bool is_behind = (window.RootWindow->Flags & ImGuiWindowFlags_NoMouseInputs) != 0;
   if (is_behind || is_menu_open() != is_in_menu) return false;
   focusable.emplace_back(name);
@@ -311,14 +311,14 @@ void move_focus(const UiInput& input, UiMemory& memory) {
 
 namespace {
 
-// Whether the pointer rests on the last widget.
+// True if the pointer rests on the last widget.
 bool is_rested_on() {
   if (!ImGui::IsItemHovered(ImGuiHoveredFlags_AllowWhenDisabled) || ImGui::IsItemActive())
     return false;
   return ImGui::GetCurrentContext()->HoveredIdTimer >= kRest_s;
 }
 
-// A card with the text at the pointer.
+// Draws a card with the text at the pointer.
 void draw_tip(Ui& ui, std::string_view text) {
   if (text.empty()) return;
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2{ui.px(10), ui.px(7)});
@@ -345,7 +345,7 @@ void explain(Ui& ui, std::string_view item) {
 void keep_picture(Ui& ui, std::string_view name, const ImVec2& min, const ImVec2& max) {
   keep_item(name, min, max);
   const ImGuiIO& io = ImGui::GetIO();
-  // It has no identity whose time could be counted, so it is explained while the mouse is still.
+  // A picture has no ImGui id and so no hover time: explain it while the mouse is still.
   const bool is_still = io.MouseDelta.x == 0.0f && io.MouseDelta.y == 0.0f && !io.MouseDown[0];
   if (is_still && ImGui::IsWindowHovered() && ImGui::IsMouseHoveringRect(min, max))
     draw_tip(ui, tooltip_of(name));
@@ -455,7 +455,7 @@ bool slider(Ui& ui, std::string_view id, double& value, const SliderLook& look) 
   ImGui::PopID();
   if (look.is_enabled) keep_item(id);
   const ImVec2 min = ImGui::GetItemRectMin(), max = ImGui::GetItemRectMax();
-  double& held = ui.state.memory.held;  // the value last asked for in this drag
+  double& held = ui.state.memory.held;  // the value last requested in this drag
   if (is_taken) held = look.is_mixed ? std::numeric_limits<double>::quiet_NaN() : value;
   bool is_moved = false;
   if (is_held && look.max > look.min) {
@@ -522,7 +522,7 @@ ImVec2 begin_modal(Ui& ui, const char* id, double width, double height, const Im
   ImGui::PushStyleVar(ImGuiStyleVar_WindowPadding, ImVec2(ui.px(20), ui.px(16)));
   ImGui::Begin(id, nullptr, ImGuiWindowFlags_NoDecoration | ImGuiWindowFlags_NoMove);
   if (ImGui::IsWindowAppearing()) ImGui::SetWindowFocus();
-  // Drawn in this window: a separate one would take the focus from a text field.
+  // Draw in this window: a separate one would take the focus from a text field.
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.PushClipRectFullScreen();
   const Colour veil = with_alpha(ui.theme.window, kVeil);

@@ -1,4 +1,4 @@
-// What bars and panels are made of: text, buttons, icons, sliders, rows, modal boxes. An `id` is
+// The elements of bars and panels: text, buttons, icons, sliders, rows, modal boxes. An `id` is
 // always a constant of the program, never text from outside; it is also the name in ui_items().
 #pragma once
 #include <imgui.h>
@@ -13,7 +13,7 @@
 
 namespace gaitpad {
 
-// What every part of the user interface reads and writes.
+// The input and output that all parts of the user interface share.
 struct Ui {
   const UiInput& in;
   const Theme& theme;
@@ -24,9 +24,9 @@ struct Ui {
 
   float px(double at_scale_1) const noexcept { return static_cast<float>(at_scale_1) * scale; }
   bool is_live() const noexcept { return in.timeline == nullptr; }
-  // The walker that panels show: the chosen one, else the first; -1: none.
+  // The walker that panels show: the selected one, else the first; -1: none.
   int walker() const noexcept;
-  // Those whose values they show and change: the chosen one, else all.
+  // The walkers whose values panels show and change: the selected one, else all.
   std::span<const WalkerFrame> selected() const noexcept;
   PlotStyle plot_style() const noexcept { return {&theme, &fonts, scale}; }
 };
@@ -37,55 +37,55 @@ inline Colour with_alpha(Colour colour, double alpha) noexcept {
 }
 
 float text_width(const ImFont* font, std::string_view text);
-// Draws one line at `at`; text wider than `max_width` is cut and ends with `...`. Text from outside
-// is made drawable first.
+// Draws one line at `at`, after drawable(); text wider than `max_width` is cut and ends with `...`.
 void put_text(ImDrawList& list, const ImFont* font, const Colour& colour, const ImVec2& at,
               std::string_view text, float max_width);
-// The same at the cursor, at most as wide as the rest of the row or `max_width`.
+// The same at the cursor; the width is limited by the rest of the row or `max_width`.
 void text_line(Ui& ui, const ImFont* font, const Colour& colour, std::string_view text,
                float max_width = 0.0f);
 // A label at the left and a value at the right end of a row, or of two rows if one is too narrow.
 void value_row(Ui& ui, std::string_view label, std::string_view value);
 // Small grey text over at most `max_lines` lines.
 void note(Ui& ui, std::string_view text, int max_lines = 3);
-// A bar over the rest of the row that is filled as far as `done`, 0 to 1; in another colour at 1.
+// A bar over the rest of the row, filled to `done`, 0 to 1; its colour changes at 1.
 void progress_bar(Ui& ui, double done);
-// Breaks the text into at most `max_lines` lines of this width. The last line holds all the rest,
-// which put_text() then cuts.
+// Breaks the text into at most `max_lines` lines of this width. The last line holds the rest, which
+// put_text() cuts.
 std::vector<std::string> text_lines(const ImFont* font, std::string_view text, float width,
                                     int max_lines);
 
-// Records, for ui_items(), the last widget or a rectangle, as far as it is visible.
+// Records the last widget or a rectangle for ui_items(), clipped to its visible part.
 void clear_items();
 void keep_item(std::string_view name);
 void keep_item(std::string_view name, const ImVec2& min, const ImVec2& max);
 void keep_area(std::string_view name, const ImVec2& min, const ImVec2& max);  // not a widget
-// Keys and pad reach the last widget by this name. True: they are there; it is outlined.
+// Makes the last widget reachable by keys and pad. Returns true if it has the focus, and outlines
+// it.
 bool is_focused(Ui& ui, std::string_view name);
-// Whether the key was pressed (by what is engraved on it); Enter only while nothing is focused.
+// True if the key was pressed (by its engraved letter); Enter only while no item has the focus.
 bool is_typed(const Ui& ui, SDL_Keycode key);
 // Explains the last widget while the pointer rests on it (view/tooltips.h).
 void explain(Ui& ui, std::string_view item);
 void show_tip(Ui& ui, std::string_view text);  // the same with another text
-// Keeps and explains a rectangle that is no widget: a graph, a picture.
+// Records and explains a rectangle that is not a widget: a graph, a picture.
 void keep_picture(Ui& ui, std::string_view name, const ImVec2& min, const ImVec2& max);
 
 enum class Icon { none, play, pause, record, stop, close, to_begin, step, loop };
 void draw_icon(ImDrawList& list, Icon icon, const ImVec2& middle, float radius, ImU32 colour);
 struct ButtonLook {
   Icon icon = Icon::none;
-  bool is_on = false;       // pressed in, open
+  bool is_on = false;       // shown as pressed
   bool is_primary = false;  // the most important button
   bool is_enabled = true;
-  float width = 0.0f;   // 0: by the label
-  float height = 0.0f;  // 0: a row's height
+  float width = 0.0f;   // 0: width of the label
+  float height = 0.0f;  // 0: height of a row
   std::optional<Colour> dot;
 };
 float button_width(const Ui& ui, std::string_view label, const ButtonLook& look);
 bool button(Ui& ui, std::string_view id, std::string_view label, const ButtonLook& look = {});
 
-// A slider as wide as the rest of the row, or `width`. `mark`: a notch, for instance at the stick's
-// value.
+// A slider as wide as the rest of the row, or `width`. `mark` draws a notch, for example at the
+// stick's value.
 struct SliderLook {
   double min = 0.0, max = 1.0;
   int decimals = 2;
@@ -94,19 +94,19 @@ struct SliderLook {
   bool is_mixed = false;    // the characters have different values
   bool is_enabled = true;
   float width = 0.0f;
-  std::string_view letter;  // before the number, for instance "L"
+  std::string_view letter;  // before the number, for example "L"
 };
-// Returns true in frames in which the person moved it; the value then has the decimals that are
-// shown. While the slider is dragged `value` is the person's.
+// Returns true in frames in which the user moved it; `value` is then rounded to `decimals`. While
+// the slider is dragged, `value` is the user's.
 bool slider(Ui& ui, std::string_view id, double& value, const SliderLook& look);
 
-// The value to show for `name`: the person's, until the session has taken it over. None of both:
+// The value to show for `name`: the user's until the session has applied it, then `value`. None:
 // the characters have different values.
 std::optional<double> wished_value(Ui& ui, const std::string& name, std::optional<double> value);
 void remember_wish(Ui& ui, const std::string& name, double value);
 void forget_wish(Ui& ui, const std::string& name);  // "": all
-// Sends `VERB 2 KEY VALUE` to the session, without the number for all characters. The value has the
-// fewest digits that read back the same.
+// Sends `VERB 2 KEY VALUE` to the session, without the number if all characters are selected. The
+// value has the fewest digits that read back exactly.
 void send(Ui& ui, std::string_view verb, std::string_view rest);
 void send(Ui& ui, std::string_view verb, std::string_view key, double value);
 
@@ -115,13 +115,13 @@ Colour walker_colour(const Ui& ui, int walker);
 std::string walker_name(const Ui& ui, int walker);
 std::string style_name(const Ui& ui, int style_index);
 
-// Menus that a button has opened.
+// Menus opened by a button.
 bool is_menu_open() noexcept;
 void close_menus() noexcept;
 
 // Begins a box in the middle of the window and darkens everything else; end it with end_modal().
-// The size is at scale 1 and limited by the window's; returns it in pixels. ui_items() has the box
-// as "area ID".
+// The size is at scale 1 and limited by the window; returns it in pixels. ui_items() has the box as
+// "area ID".
 ImVec2 begin_modal(Ui& ui, const char* id, double width, double height, const ImVec2& window_px);
 void end_modal();
 

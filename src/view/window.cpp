@@ -45,7 +45,7 @@
 namespace gaitpad {
 namespace {
 
-// Errors and remarks for the person, each shown for a while, newest last.
+// Errors and remarks for the user, each shown for some seconds, newest last.
 class Messages {
  public:
   void add(std::string sentence, std::int64_t time_ns) {
@@ -74,8 +74,8 @@ class Messages {
 };
 
 constexpr int kIcon_px = 64;
-constexpr std::int64_t kChange_ns = 5'000'000'000;   // how long the last change stays in sight
-constexpr std::int64_t kPadHint_ns = 3'000'000'000;  // between looks at the system's pads
+constexpr std::int64_t kChange_ns = 5'000'000'000;   // time that the last change stays visible
+constexpr std::int64_t kPadHint_ns = 3'000'000'000;  // between two looks at the system's pads
 
 double distance_to(const vec2& place, const vec2& a, const vec2& b) {
   const vec2 along = b - a;
@@ -83,7 +83,7 @@ double distance_to(const vec2& place, const vec2& a, const vec2& b) {
   return glm::distance(place, a + share * along);
 }
 
-// A walking figure on a dark disc, drawn by its distance to six bones.
+// Draws a walking figure on a dark disc; a pixel's colour follows from its distance to six bones.
 void set_window_icon(SDL_Window* window) {
   constexpr std::pair<vec2, vec2> kBones[] = {{{33, 21}, {30, 37}}, {{30, 37}, {40, 45}},
                                               {{40, 45}, {41, 55}}, {{30, 37}, {24, 46}},
@@ -116,10 +116,10 @@ constexpr double kFrame_s = 1.0 / 120.0;         // if the display does not limi
 constexpr double kUnseenFrame_s = 0.1;           // minimized
 constexpr double kOrbitMouse_rad = 0.006;        // per pixel at scale 1
 constexpr double kOrbitStick_rad_s = 1.8;
-constexpr double kStickRest = 0.02;  // of the right stick; less does not move the camera
+constexpr double kStickRest = 0.02;  // of the right stick; the camera ignores less
 constexpr std::int64_t kMessage_ns = 15'000'000'000;
 
-// Runs the window: opens it, draws frame after frame, does what the person asks for, and closes it.
+// Runs the window: opens it, draws frames, executes the user's requests, and closes it.
 class WindowLoop {
  public:
   explicit WindowLoop(const WindowOptions& options);
@@ -128,7 +128,7 @@ class WindowLoop {
   Result<WindowResult> run();
 
  private:
-  // The order of a frame.
+  // The steps of a frame, in order.
   bool makes_pictures() const noexcept;
   bool makes_still() const noexcept;  // only the last frame is kept
   bool draw_frame();                  // false after the last frame
@@ -148,7 +148,7 @@ class WindowLoop {
   void remember_layout();
   Result<WindowResult> result();
 
-  // What a frame shows.
+  // The contents of a frame.
   void update_show();
   void draw_window(bool is_last);
   UiOutput draw_panels(int width_px, int height_px, bool is_drawn);
@@ -164,10 +164,10 @@ class WindowLoop {
   bool has_walked() const;
   void keep_pictures(int width_px, int height_px, bool is_last);
 
-  // What the person asked for.
+  // The user's requests.
   void run_actions(const UiOutput& out);
   void run_action(Action action);
-  bool is_read_only();  // the playback; says so
+  bool is_read_only();  // true for a playback, with a message
   void choose_style(const std::string& name);
   void choose_style_number(std::size_t number);  // from 0, of the session's list
   void choose_style_after(int steps);
@@ -180,8 +180,8 @@ class WindowLoop {
   void go_back();
   void save_walkers_style(const std::string& name);
 
-  // Ends one show and begins another.
-  void send_command(const std::string& command);  // of the person, who may undo it
+  // Changes of the show.
+  void send_command(const std::string& command);  // by the user, who can undo it
   void send_again(const std::vector<std::string>& commands, const char* what);
   void say_change(std::string what);
   void show_message(std::string sentence);
@@ -204,33 +204,33 @@ class WindowLoop {
   WindowResult result_;
   std::optional<Error> failure_;  // ends the window
 
-  // In the order in which they depend on each other.
+  // In the order of their dependencies.
   std::unique_ptr<WindowSurface> surface_;
   std::unique_ptr<Gui> gui_;
   std::unique_ptr<Scene> scene_;
   std::unique_ptr<VideoWriter> video_;
-  std::unique_ptr<PadDialog> pad_dialog_;  // the show has ended meanwhile
+  std::unique_ptr<PadDialog> pad_dialog_;  // the show has ended while it is open
   std::unique_ptr<Show> show_;
   std::unique_ptr<Ensemble> ensemble_;
-  std::optional<SessionSpec> live_before_;  // during a playback: the live session before it
+  std::optional<SessionSpec> live_before_;  // during a playback: the previous live session
 
   UiState state_;
-  UiState remembered_;  // the layout file's
+  UiState remembered_;  // as in the layout file
   std::optional<ThemeName> applied_theme_;
   Camera camera_;
   bool is_camera_new_ = true;
   SceneContent content_;
   Controls controls_;
   ButtonPresses presses_;
-  std::vector<SDL_Keycode> keys_;  // of this frame, like the next
+  std::vector<SDL_Keycode> keys_;  // of this frame, as the next member
   NavigationInput navigation_;
   FileBrowser browser_;
   Messages messages_;
   UndoList undo_;
-  std::string change_;  // what was changed last, and of whom
+  std::string change_;  // the last change and its characters
   std::int64_t change_ns_ = 0;
   std::vector<std::string> style_summaries_;  // of the show's styles
-  std::string finished_recording_;            // that a message offers to replay
+  std::string finished_recording_;            // a message offers to replay it
   std::string pad_hint_;
   std::int64_t pad_hint_ns_ = 0;
   FrameClock clock_;
@@ -241,16 +241,16 @@ class WindowLoop {
   std::optional<std::string> chosen_file_;  // in the browser, in this frame
   PadDialog::State pad_dialog_state_ = PadDialog::State::goes_on;
   bool wants_screenshot_ = false, is_quitting_ = false;
-  bool is_end_told_ = false, is_untouched_told_ = false;  // to the person
-  bool is_camera_moved_ = false;  // by the person: it turns by itself no more
-  std::optional<int> aimed_deg_;  // the camera's heading that the session was told last
+  bool is_end_told_ = false, is_untouched_told_ = false;  // the user was told
+  bool is_camera_moved_ = false;  // by the user: it no longer turns by itself
+  std::optional<int> aimed_deg_;  // the last heading that the session was told
   std::int64_t aimed_tick_ = 0;
-  bool has_walked_ = false;  // somebody, since the show began
+  bool has_walked_ = false;  // a character has walked since the show began
 };
 
 WindowLoop::WindowLoop(const WindowOptions& options)
     : options_(options), browser_(options.recent_file) {
-  // Without a pad the keyboard steers. For pictures the session's time is that of the frames.
+  // Without a pad the keyboard steers. For pictures the session's clock is that of the frames.
   options_.session.live.keyboard = true;
   if (const std::string& record = options_.session.live.record; !record.empty())
     options_.record_folder = std::filesystem::path(record).parent_path();
@@ -260,7 +260,7 @@ WindowLoop::WindowLoop(const WindowOptions& options)
 WindowLoop::~WindowLoop() {
   show_.reset();  // before SDL is stopped
   if (surface_ == nullptr || !surface_->is_lost()) return;
-  // Closing anything on a lost display could wait for ever, so it is left to the program's end.
+  // Closing anything on a lost display could wait without end, so leave it to the program's end.
   static_cast<void>(pad_dialog_.release());
   static_cast<void>(scene_.release());
   static_cast<void>(gui_.release());
@@ -275,12 +275,12 @@ bool WindowLoop::makes_still() const noexcept {
   return makes_pictures() && options_.video.empty() && options_.frames > 0;
 }
 
-// The remembered layout, changed by the options of this start.
+// Applies the stored layout, changed by the options of this start.
 void WindowLoop::apply_layout(const UiState& layout) {
   state_ = remembered_ = layout;
   if (options_.theme) state_.theme = *options_.theme;
   state_.is_clean = options_.is_clean;
-  if (makes_pictures()) state_.type_size = 1.0;  // --scale says how large
+  if (makes_pictures()) state_.type_size = 1.0;  // --scale sets the size
   if (options_.are_panels_given) {
     state_.is_open.fill(false);
     for (const Panel panel : options_.panels)
@@ -294,7 +294,7 @@ void WindowLoop::apply_layout(const UiState& layout) {
 std::optional<Error> WindowLoop::open() {
   Layout layout = load_layout(options_.layout_file);
   apply_layout(layout.state);
-  // Files are checked before anything is opened.
+  // Checks the files before anything is opened.
   if (auto problem = picture_problem()) return problem;
   auto start = Show::prepare(options_.session);
   if (!start) return start.error();
@@ -327,7 +327,7 @@ Result<WindowResult> WindowLoop::run() {
   return result();
 }
 
-// Pictures that could not be written are not begun.
+// The error if a picture or video could not be written, found before anything is drawn.
 std::optional<Error> WindowLoop::picture_problem() const {
   if (!options_.screenshot.empty()) {
     if (auto problem = saving_problem(options_.screenshot)) return problem;
@@ -335,8 +335,8 @@ std::optional<Error> WindowLoop::picture_problem() const {
   return options_.video.empty() ? std::nullopt : VideoWriter::problem_of(options_.video);
 }
 
-// A driver may return from the swap of buffers at once and make the next drawing wait instead. So
-// that this wait ends before the newest reports are taken, something is drawn.
+// A driver may return from the swap of buffers at once and block the next drawing call instead.
+// Draw and finish here, so that this wait ends before the newest reports are taken.
 void WindowLoop::wait_for_display() {
   if (!is_paced_ || result_.frames == 0 || surface_->is_lost()) return;
   surface_->begin();
@@ -438,8 +438,8 @@ void WindowLoop::follow_wishes(Wishes wishes) {
   navigation_.press |= wishes.navigation.press;
 }
 
-// A recording that plays as the pad steers and moves the camera as it did, but its buttons cannot
-// record, open, calibrate or quit: its last press may be the one that ended the recording.
+// A recording that plays as the pad steers and moves the camera, but its buttons cannot record,
+// open, calibrate or quit: its last press may be the one that ended the recording.
 void WindowLoop::add_button_actions(std::vector<Action>& wanted) {
   std::vector<Action> pressed;
   presses_.add_new_presses(show_->frame(), pressed);
@@ -454,7 +454,7 @@ void WindowLoop::add_button_actions(std::vector<Action>& wanted) {
   wanted.insert(wanted.end(), pressed.begin(), pressed.end());
 }
 
-// While the pad is in the panels its D-pad and its lower button have no other meaning.
+// While the pad navigates the panels, its D-pad and lower button have no other effect.
 bool WindowLoop::navigates(Action action) {
   const int button = info_of(action).button;
   navigation_.steps += (button == kButtonDpadDown) - (button == kButtonDpadUp);
@@ -496,7 +496,7 @@ void WindowLoop::update_show() {
 
 void WindowLoop::remember_layout() {
   if (options_.layout_file.empty()) return;
-  // Options of this start are not remembered.
+  // Options of this start are not stored.
   if (options_.theme == state_.theme) state_.theme = remembered_.theme;
   if (options_.are_panels_given) state_.is_open = remembered_.is_open;
   if (!options_.hidden.empty()) {
@@ -530,7 +530,7 @@ Result<WindowResult> WindowLoop::result() {
 
 constexpr double kAside_rad = 1.1, kAbove_rad = 0.3, kAboveCrowd_rad = 0.36;
 // On uneven ground the camera stands where it sees the risers: behind the walkers on the way up,
-// before them on the way down. It goes from one place to the other in about two seconds.
+// ahead of them on the way down. It changes sides in about two seconds.
 constexpr double kBehind_rad = 2.05, kLeastRise_m = 0.1, kTurn_per_s = 1.1;
 
 void WindowLoop::draw_window(bool is_last) {
@@ -539,7 +539,7 @@ void WindowLoop::draw_window(bool is_last) {
   const Theme& theme = theme_of(state_.theme);
   if (applied_theme_ != state_.theme) gui_->apply(theme);
   applied_theme_ = state_.theme;
-  // Of a still only the frames that are kept reach the driver.
+  // For a still picture only the kept frames are drawn.
   const bool is_drawn = !makes_still() || is_last || wants_screenshot_;
   if (is_drawn) {
     surface_->begin();
@@ -573,7 +573,7 @@ void WindowLoop::draw_window(bool is_last) {
   surface_->show();
 }
 
-// Everybody, in what the panels leave free. What is zoomed in is the chosen character.
+// Frames all characters beside the panels. Zooming in moves the target to the selected character.
 Framing WindowLoop::wished_framing(const Viewport& viewport) const {
   Framing wish = ensemble_->framing(camera_, viewport, state_, scale());
   const double zoomed = std::clamp(2.0 * (1.0 - camera_.distance_m / camera_.framed_m), 0.0, 1.0);
@@ -585,7 +585,7 @@ Framing WindowLoop::wished_framing(const Viewport& viewport) const {
 void WindowLoop::reset_camera(const Viewport& viewport) {
   camera_ = Camera();
   is_camera_moved_ = false;
-  if (ensemble_->is_on_uneven_ground()) {  // from the side, so that steps ahead hide no feet
+  if (ensemble_->is_on_uneven_ground()) {  // from the side: steps ahead hide no feet
     const bool is_upward = ensemble_->rise_ahead_m(state_.walker) > kLeastRise_m;
     camera_.yaw_rad = is_upward ? kBehind_rad : kAside_rad;
     camera_.pitch_rad = kAbove_rad;
@@ -599,7 +599,8 @@ void WindowLoop::reset_camera(const Viewport& viewport) {
 }
 
 void WindowLoop::turn_to_risers(double passed_s) {
-  // A stick that points is seen from the camera: turned by itself, it would turn the walkers, too.
+  // A pointing stick is relative to the camera: if the camera turned by itself, so would the
+  // walkers.
   const bool is_free = !is_camera_moved_ && camera_.is_following && options_.camera_deg.empty() &&
                        show_->options().walk.stick == StickMeans::steers;
   if (!is_free || !ensemble_->is_on_uneven_ground()) return;
@@ -616,7 +617,7 @@ void WindowLoop::set_type_size(double size) {
   applied_theme_.reset();
 }
 
-// Whether somebody has begun to walk: then nobody needs to be told how.
+// True if a character walks; then the hint on walking is no longer needed.
 bool WindowLoop::has_walked() const {
   const SessionFrame& frame = show_->frame();
   for (int w = 0; w < frame.walker_count; ++w) {
@@ -625,7 +626,7 @@ bool WindowLoop::has_walked() const {
   return false;
 }
 
-// For pictures without the values that depend on the machine's speed.
+// For pictures, leaves out the values that depend on the machine's speed.
 const LiveStatus* WindowLoop::shown_status() {
   const LiveStatus* status = show_->status();
   if (status == nullptr || !makes_pictures()) return status;
@@ -833,8 +834,8 @@ void WindowLoop::toggle_stick() {
 
 constexpr int kMostAims_per_s = 20;
 
-// Tells the session where the camera looks, in whole degrees, if the stick points: as commands, so
-// that a replay needs no camera. The direction from a script holds until the camera turns.
+// If the stick points, tells the session the camera's heading in whole degrees, by commands, so
+// that a replay needs no camera. A heading from a script holds until the camera turns.
 void WindowLoop::aim_stick() {
   const std::int64_t tick = show_->frame().tick;
   const bool points = show_->is_live() && show_->options().walk.stick == StickMeans::points;
@@ -866,7 +867,7 @@ void WindowLoop::choose_style_number(std::size_t number) {
   if (number < choices.size()) choose_style(cast.styles[static_cast<std::size_t>(choices[number])]);
 }
 
-// Goes `steps` places on in the list, from the style of the chosen character or of the first.
+// Moves by `steps` in the list, from the style of the selected or first character.
 void WindowLoop::choose_style_after(int steps) {
   const Cast& cast = show_->cast();
   const auto choices = style_choices(cast);
@@ -961,7 +962,7 @@ void WindowLoop::save_walkers_style(const std::string& name) {
 constexpr std::size_t kMostRemarks = 200;
 constexpr int kMostOfOneName = 100;
 
-// A new name such as gaitpad-20240229-235959.hid in the folder; empty if none is free.
+// A free name such as gaitpad-20240229-235959.hid in the folder; empty if none is free.
 std::string new_file(const std::string& folder, const char* ending) {
   std::error_code error;
   if (!folder.empty()) std::filesystem::create_directories(folder, error);
@@ -1029,7 +1030,7 @@ bool WindowLoop::switch_to(const SessionSpec& next) {
   SessionSpec otherwise = show_->options();
   otherwise.live.record.clear();
   if (next.replay.trace.empty()) {
-    auto start = Show::prepare(next);  // reads its files before the running show is ended
+    auto start = Show::prepare(next);  // reads its files before the running show ends
     if (!start) {
       show_message(start.error().message);
       return false;
@@ -1037,8 +1038,8 @@ bool WindowLoop::switch_to(const SessionSpec& next) {
     end_show();
     return restart((*start)(), otherwise);
   }
-  // A playback needs no pad, so the running session goes on until it is open. What its stick means
-  // is in the recording.
+  // A playback needs no pad, so the running session continues until the playback is open. The
+  // recording says whether its stick steers or points.
   SessionSpec recorded = next;
   recorded.walk.stick = StickMeans::steers;
   auto playback = Show::open(recorded);
@@ -1052,8 +1053,8 @@ bool WindowLoop::switch_to(const SessionSpec& next) {
   return true;
 }
 
-// After end_show(): opens the next show, or else the one that ran before. If neither opens, nothing
-// runs and the last state stays visible.
+// Called after end_show(): opens the next show or, if that fails, the previous one. If both fail,
+// nothing runs and the last state stays visible.
 bool WindowLoop::restart(Result<std::unique_ptr<Show>> show, const SessionSpec& otherwise) {
   const bool is_begun = static_cast<bool>(show);
   if (!is_begun) {
@@ -1078,8 +1079,8 @@ void WindowLoop::open_file(const std::string& path) {
   show_message(fmt::format("opened {}{}", path, back));
 }
 
-// The next terrain of the configuration folders; the first one if the present one is from
-// elsewhere.
+// Chooses the next terrain of the configuration folders; the first one if the present one is not in
+// them.
 void WindowLoop::choose_next_terrain() {
   if (pad_dialog_) return;
   if (is_read_only()) return;
@@ -1105,7 +1106,7 @@ void WindowLoop::toggle_recording() {
   if (!next.live.record.empty()) return end_recording();
   next.live.record = new_file(options_.record_folder, ".hid");
   if (next.live.record.empty()) return show_message("no name is free for a recording");
-  // A recording begins with its session, which walks in the styles of the one before.
+  // A recording begins with a new session, which keeps the styles of the previous one.
   const auto styles = [this] {
     return opposite_of("style " + show_->cast().styles.front(), show_->frame(), show_->cast());
   };
@@ -1116,7 +1117,7 @@ void WindowLoop::toggle_recording() {
   show_message("recording to " + next.live.record);
 }
 
-// The session goes on.
+// Ends the recording; the session continues.
 void WindowLoop::end_recording() {
   const std::string path = show_->options().live.record;
   if (auto problem = show_->end_recording()) return show_message(problem->message);
@@ -1146,13 +1147,13 @@ void WindowLoop::begin_pad_dialog(PadDialogStart& start) {
   }
 }
 
-// Another dialog follows, or the session goes on.
+// Opens the next dialog or continues the session.
 void WindowLoop::end_pad_dialog(PadDialog::State state) {
   pad_dialog_.reset();  // frees the pad
   if (state == PadDialog::State::wants_map) return begin_pad_dialog(start_mapping);
   if (state == PadDialog::State::wants_test) return begin_pad_dialog(start_self_test);
   SessionSpec next = show_->options();
-  // A calibration that was asked for would override the new one.
+  // A calibration given by an option would override the new one.
   if (state == PadDialog::State::calibrated) next.pad.calibration.clear();
   restart(Show::open(next), show_->options());
 }

@@ -1,4 +1,4 @@
-// The window: shows a live session or a playback and lets a person steer and inspect it.
+// The window: shows a live session or a playback and lets a user steer and inspect it.
 #pragma once
 #include <functional>
 #include <optional>
@@ -15,7 +15,7 @@
 
 namespace gaitpad {
 
-// What a test's script sees of the window.
+// The state of the window as a test's script sees it.
 struct WindowGlance {
   std::int64_t frame = 0;  // the frame that is drawn next
   const SessionFrame& session;
@@ -32,31 +32,31 @@ struct WindowOptions {
   SessionSpec session;  // live, or a playback if session.replay.trace is not empty
   std::string without_display = "play --no-window walks without one";  // for the error
   std::string program = "gaitpad";  // its name and version, for the report of a self-test
-  // Where new recordings and pictures go, made when missing; empty: the working directory. A
-  // recording that the session begins with (session.live.record) says where the next ones go.
+  // Folder of new recordings and pictures, made when missing; empty: the working directory. If the
+  // session starts with a recording (session.live.record), its folder is used for the next ones.
   std::string record_folder;
-  std::string calibration_folder;  // where calibrations are kept (calibration_store.h)
-  std::string layout_file;  // remembers the window from one start to the next; empty: nothing does
-  std::string recent_file;  // remembers the files that were opened; empty: nothing does
-  // Ends after so many; 0: when closed, or with the trace if pictures are made of one.
+  std::string calibration_folder;  // folder of calibrations (calibration_store.h)
+  std::string layout_file;         // stores the layout between starts; empty: not stored
+  std::string recent_file;         // stores the recently opened files; empty: not stored
+  // Number of frames to draw; 0: until closed, or until the trace ends if pictures are made of one.
   int frames = 0;
-  std::string screenshot, video;   // files; with either of them a frame is 1/60 s of the session
+  std::string screenshot, video;   // files; each makes a frame last 1/60 s of the session
   std::optional<ThemeName> theme;  // else the remembered theme
   std::vector<Panel> panels;       // open panels, if are_panels_given
   bool are_panels_given = false;
   std::vector<std::string> hidden;  // names of kSceneParts
-  bool is_clean = false;            // the scene alone: no bars, panels, messages
-  // Where the camera stands, degrees: yaw from ahead of the walkers (90: from their left), pitch
-  // above the horizon. Empty: as it starts.
+  bool is_clean = false;            // only the scene: no bars, panels, messages
+  // Direction of the camera in degrees: yaw from ahead of the walkers (90: from their left), pitch
+  // above the horizon. Empty: the default.
   std::vector<double> camera_deg;
   double scale = 0.0;              // 0: the display's
   int width = 1280, height = 720;  // at scale 1
   bool is_hidden = false;          // draws without a display (SDL's offscreen driver)
   // For tests: called before each frame; may push SDL events.
   std::function<void(const WindowGlance& glance)> script;
-  std::function<bool()> is_ended_from_outside;      // Ctrl-C; pictures are given up then
-  std::function<void(double share)> show_progress;  // of pictures: 0 .. 1 of the frames are done
-  // Commands for the session, for instance from standard input.
+  std::function<bool()> is_ended_from_outside;      // Ctrl-C; pictures are then given up
+  std::function<void(double share)> show_progress;  // of pictures: share of frames done
+  // Commands for the session, for example from standard input.
   std::function<std::vector<std::string>()> take_commands;
 };
 struct WindowResult {
@@ -68,8 +68,8 @@ struct WindowResult {
   bool is_cut_off = false;          // before its pictures were complete: none was written
   std::vector<std::string> remarks;
 };
-// Call it from the main thread. Fails if the session or the window cannot be opened, before
-// anything is drawn, or if a picture cannot be written.
+// Call it from the main thread. Error: the session or the window cannot be opened, which is found
+// before anything is drawn, or a picture cannot be written.
 Result<WindowResult> run_window(const WindowOptions& options);
 
 }  // namespace gaitpad

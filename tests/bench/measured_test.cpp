@@ -32,7 +32,7 @@ TEST(BenchList, ARowTellsItsRatioToItsPeerAndWhetherItsBoundIsMet) {
   EXPECT_FALSE(json_of(rows[2], rows)["met"].get<bool>());
 }
 
-// A tick solves two legs.
+// A tick solves two legs, so a leg's share is half of the stage.
 TEST(BenchList, AStageOfTheTickIsALegsShareToo) {
   const Work stages = work("stage");
   const std::vector<BenchRow> rows = {{&stages, 2, {60.0}}};
@@ -44,7 +44,7 @@ TEST(BenchList, AStageOfTheTickIsALegsShareToo) {
   EXPECT_EQ(list[1]["processor"], "a processor");
 }
 
-// Each work runs in each round, but those that take part in fewer.
+// Each work runs in each round, except those with a larger `every`.
 TEST(Measured, WorksTakeTurns) {
   std::vector<Work> works = {work("each"), work("every third")};
   int passes = 0;

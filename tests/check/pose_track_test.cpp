@@ -12,7 +12,7 @@ namespace {
 
 constexpr int kRateHz = 240, kTicks = 700, kPlanted = 400;
 
-// A walk of two characters; with `command`, that is given in tick kPlanted.
+// A walk of two characters; `command`, if any, is given in tick kPlanted.
 struct Walked {
   PoseTrack poses;
   std::vector<std::uint64_t> hashes;       // after each tick
@@ -76,7 +76,7 @@ TEST(PoseTrack, ShowsRotationsAndPlacesWithinItsSteps) {
   }
 }
 
-// The tick by the hash of the walk itself, the joints by their exact rotations.
+// The walk's own hashes give the tick, its exact rotations the joint.
 TEST(PoseTrack, FindsTheFirstTickAndJointThatDiffer) {
   for (const char* command : {"style 2 even", "set 2 legs.weight.knee 0.2", "reset"}) {
     const Walked before = walked_with(""), after = walked_with(command);
@@ -104,7 +104,7 @@ TEST(PoseTrack, FindsTheFirstTickAndJointThatDiffer) {
 TEST(PoseTrack, TellsByHowManyDegreesAJointIsOff) {
   PoseChannel a{1, "LeftLeg", {1}, {{{0}, {0}, {0}}}};
   PoseChannel b = a;
-  b.values[1][0] = 2856;  // the sine of half of 20.08 degrees, times 16384
+  b.values[1][0] = 2856;  // 16384 * sin(20.08 degrees / 2)
   EXPECT_NEAR(distance_of(a, b, 0), 20.08, 0.01);
   a.joint = b.joint = "";
   EXPECT_NEAR(distance_of(a, b, 0), 0.2856, 1e-9);
@@ -125,8 +125,8 @@ TEST(PoseTrack, OtherJointsAreNoDifferenceButAnError) {
   EXPECT_EQ(found.error().message, "the characters have other joints than the poses that are kept");
 }
 
-// Two bits of a zlib header tell how hard was compressed (RFC 1950, FLEVEL): a file in which they
-// alone differ, with the header's check to match, is sound and holds the same poses.
+// Two bits of a zlib header tell the level of compression (RFC 1950, FLEVEL). A file that differs
+// in them alone, with a matching check of the header, is valid and holds the same poses.
 TEST(PoseTrack, RefusesDamageInOneSentence) {
   const std::string bytes = walked_with("").poses.bytes();
   std::mt19937 random(7);
@@ -146,7 +146,7 @@ TEST(PoseTrack, RefusesDamageInOneSentence) {
 
 TEST(PoseTrack, ReadsAFileThatSaysItWasCompressedHarder) {
   std::string bytes = walked_with("").poses.bytes();
-  constexpr std::size_t kHeader = 24;  // behind the first line and the length
+  constexpr std::size_t kHeader = 24;  // after the first line and the length
   ASSERT_EQ(bytes.substr(kHeader, 2), "\x78\x9c");
   const std::string written = bytes;
   bytes[kHeader + 1] = '\xda';

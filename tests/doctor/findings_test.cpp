@@ -12,7 +12,7 @@ namespace {
 using State = Finding::State;
 const RulesFile kNoRules = {"rules", ""};
 
-// A machine with udev, and a pad whose nodes are not in /dev.
+// A machine with udev, and a pad without nodes in /dev.
 Machine made_machine() {
   Machine machine;
   machine.has_udev = true;
@@ -93,7 +93,7 @@ TEST(Findings, APadThatTheKernelHasIsUsableByUsbOnlyIfAsked) {
 
 TEST(Findings, WhatTheDriverSaysIsTheCauseIfNothingElseExplainsIt) {
   Machine machine = made_machine();
-  machine.pads[0].hidraw[0].node = "/dev/null";  // may be used
+  machine.pads[0].hidraw[0].node = "/dev/null";  // accessible to everyone
   machine.pads[0].events.emplace_back().node = "/dev/null";
   machine.sightings = {sighting_of(machine.pads[0], "hidraw")};
   machine.sightings[0].problem = "/dev/null: the descriptor is cut off at byte 4";

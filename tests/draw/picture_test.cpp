@@ -1,4 +1,4 @@
-// A PNG holds the pixels that were given, read here by cairo's own reader.
+// A PNG holds the given pixels; cairo's own reader reads it.
 #include "draw/picture.h"
 
 #include <cairo/cairo.h>

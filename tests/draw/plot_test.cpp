@@ -42,7 +42,7 @@ TEST(PlotScale, TicksAreTheStepsMultiplesWithinTheRange) {
   EXPECT_EQ(nice_ticks(-2.0, 0.0, 4), (std::vector<double>{-2.0, -1.5, -1.0, -0.5, 0.0}));
   EXPECT_EQ(nice_ticks(-21.0, 33.0, 3), (std::vector<double>{-20.0, 0.0, 20.0}));
   const auto ticks = nice_ticks(0.0, 0.3, 3);
-  ASSERT_EQ(ticks.size(), 4u);  // 0.3 is one, though 3 * 0.1 is not 0.3
+  ASSERT_EQ(ticks.size(), 4u);  // 0.3 is a tick, though 3 * 0.1 != 0.3
   EXPECT_FALSE(std::signbit(nice_ticks(-1.0, 1.0, 2)[1]));
 }
 
@@ -89,7 +89,7 @@ std::vector<PlotPoint> wave(std::size_t count) {
 
 TEST(PlotScale, DecimationKeepsEachColumnsExtremesAndIsBounded) {
   std::vector<PlotPoint> points = wave(20000), shown;
-  points[7777].y = 9.0;  // one tick that stands out
+  points[7777].y = 9.0;  // a single outlier
   points[12345].y = -7.0;
   decimate(points, {0.0, 1.0}, 200, shown);
   EXPECT_LE(shown.size(), 800u);

@@ -1,5 +1,5 @@
-// Contrast by WCAG 2.1, computed here from the colours: 4.5 for text (all of it is small), 3 for
-// what shows that something is a control or in which state it is.
+// Contrast by WCAG 2.1, computed from the colours: 4.5 for text (all of it is small), 3 for marks
+// of a control and its state.
 #include "draw/theme.h"
 
 #include <gtest/gtest.h>
@@ -33,7 +33,7 @@ class Contrast : public testing::TestWithParam<ThemeName> {
   const Theme& theme = theme_of(GetParam());
   const std::vector<Named> backs = {
       {"bar", theme.bar}, {"panel", theme.panel}, {"card", theme.card}, {"plot", theme.plot}};
-  // A chosen button, a chosen row.
+  // Selected buttons and rows.
   const std::vector<Named> chosen = {
       {"chosen button", mixed(theme.panel, theme.accent, kChosenShare)},
       {"chosen on the bar", mixed(theme.bar, theme.accent, kChosenShare)},

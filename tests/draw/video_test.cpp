@@ -1,5 +1,5 @@
-// Videos are looked at by ffprobe and ffmpeg; where they are not installed, the tests of the file
-// are skipped. What goes wrong is played by small scripts in ffmpeg's place.
+// ffprobe and ffmpeg check the videos; without them these tests are skipped. Small scripts in place
+// of ffmpeg produce the failures.
 #include "draw/video.h"
 
 #include <gtest/gtest.h>
@@ -28,7 +28,7 @@ class Video : public testing::Test {
     std::sort(names.begin(), names.end());
     return names;
   }
-  // From now on this is what runs in ffmpeg's place.
+  // Replaces ffmpeg by this script.
   void pretend_ffmpeg(const std::string& script) {
     const std::string program = own_.write("bin/ffmpeg", "#!/bin/sh\n" + script + "\n");
     ::chmod(program.c_str(), 0755);
@@ -94,7 +94,7 @@ TEST_F(Video, HoldsEveryFrameTheRightWayUpInItsColours) {
   expect_colour(40, 56, {0, 114, 178});
 }
 
-// It would have ended this program by SIGPIPE.
+// Without protection SIGPIPE would have ended this program.
 TEST_F(Video, FfmpegsOwnReasonIsToldWhereItEndsEarly) {
   pretend_ffmpeg("echo 'first line' >&2; echo 'Unknown encoder libx264' >&2; exit 1");
   own_.write("a.mp4", "old");

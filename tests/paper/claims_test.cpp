@@ -52,8 +52,8 @@ TEST(Claims, JsonHasTheContractsKeysAndNullsWithReasons) {
   EXPECT_EQ(rows[2].at("note"), "a captured walk is not symmetric");
 }
 
-// Each group of claims fails where what it measures is broken: a walk is spoilt by hand and the
-// claim that is about it has to notice, while the walk as it is holds.
+// Each group of claims fails if its measurement is broken: a walk is damaged by hand and the claim
+// about it must fail, while the undamaged walk passes.
 
 using test::claim_of;
 using test::even;

@@ -1,4 +1,4 @@
-// Projection is derived here a second time, by similar triangles.
+// The projection is derived a second time here, by similar triangles.
 #include "scene/camera.h"
 
 #include <gtest/gtest.h>
@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-// The eye stands in the middle of the picture's plane; a point is as far from the middle, in half
-// heights, as the tangent of its angle over that of half the field of view.
+// A point's distance from the picture's middle, in half heights, is the tangent of its angle over
+// the tangent of half the field of view.
 vec3 by_triangles(const Camera& camera, const vec3& world_m, int width, int height) {
   const vec3 eye = camera.eye_m();
   const vec3 ahead = glm::normalize(camera.target_m - eye);
@@ -71,7 +71,7 @@ TEST(Camera, StaysAboveTheFloorAndInItsDistancesWhateverIsAsked) {
   };
   orbit(camera, 0.0, -10.0);
   expect_bounds();
-  dolly(camera, 1e9);  // farther away the same pitch would be below the floor
+  dolly(camera, 1e9);  // at this pitch a more distant eye would be below the floor
   expect_bounds();
   dolly(camera, 1e-9);
   expect_bounds();
@@ -95,7 +95,7 @@ TEST(Camera, StandsOnUnevenGround) {
   stand_on(camera, 2.0, 2.5);
   orbit(camera, 0.0, -10.0);
   EXPECT_NEAR(camera.eye_m().y, 2.6, 1e-9);
-  stand_on(camera, 2.0, 3.1);  // it went into a slope
+  stand_on(camera, 2.0, 3.1);  // the eye is inside a slope
   EXPECT_NEAR(camera.eye_m().y, 3.2, 1e-9);
   pan(camera, {0.0, -1e6}, 600.0);
   EXPECT_EQ(camera.target_m.y, 2.0);
@@ -115,7 +115,8 @@ TEST(Camera, PanningMovesTheTargetUnderThePointer) {
   EXPECT_FALSE(camera.is_following);
 }
 
-// Somebody walks 1.4 m/s; after two seconds the camera is where it is at any frame rate.
+// A character walks at 1.4 m/s; after two seconds the camera's place does not depend on the frame
+// rate.
 vec3 followed(const vec3& velocity_m_s, int frames) {
   Camera camera;
   const vec3 start = camera.followed_m;
@@ -130,7 +131,7 @@ TEST(Camera, FollowsEquallyAtAnyFrameRate) {
   const vec3 velocity(0.5, 0.0, 1.3);
   const vec3 slow = followed(velocity, 20), fast = followed(velocity, 480);
   EXPECT_LT(glm::distance(slow, fast), 1e-9);
-  // Behind somebody who walks evenly it does not lag.
+  // It does not lag behind a character that walks at constant velocity.
   const vec3 expected = Camera{}.target_m + velocity * 2.0;
   EXPECT_LT(glm::distance(slow, expected), 2e-3);
 }
@@ -144,8 +145,8 @@ TEST(Camera, GlidesWhereThePlaceJumps) {
   EXPECT_NEAR(camera.target_m.z, 30.0, 1e-3);
 }
 
-// People in a row, of different heights, seen from all sides: each place is in the picture with its
-// label, and from 2 % nearer one is not.
+// Places in a row, at different heights, seen from all sides: each is in the picture with its
+// label, and from 2 % nearer at least one is not.
 TEST(Camera, ItsFramingIsTheNearestThatShowsEverything) {
   const std::vector<vec3> places = {{-2.4, 0.0, 0.3}, {-2.4, 1.7, 0.3}, {0.0, 1.9, -0.4},
                                     {0.0, -0.2, 0.0}, {1.2, 1.1, 0.2},  {3.6, 0.4, 0.9}};
@@ -169,7 +170,7 @@ TEST(Camera, ItsFramingIsTheNearestThatShowsEverything) {
   }
 }
 
-// A panel opens: the picture becomes narrower. No frame moves the camera by more than a tenth.
+// A panel opens, so the picture becomes narrower. No frame moves the camera by more than a tenth.
 TEST(Camera, GoesToAFramingSmoothlyAndKeepsWhatIsZoomed) {
   Camera camera;
   show(camera, {{0.0, 0.8, 0.0}, 8.0}, vec3(0.0));

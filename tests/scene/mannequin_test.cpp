@@ -1,5 +1,5 @@
-// A mannequin's measures are judged by what is known of people and of the skeleton; where it is, by
-// forward kinematics and by the samples of the walk, which the drawing does not read.
+// A mannequin's measures are compared with people's and with the skeleton's; its position with
+// forward kinematics and with the walk's samples, which the drawing does not read.
 #include "scene/mannequin.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ std::shared_ptr<const WalkModel> model_of(const GaitCycle& cycle, const Characte
   return std::make_shared<const WalkModel>(value_of(walk_model(clean_cycle(cycle), character)));
 }
 
-// The deepest place of a hull of two balls that are stretched along `wide`.
+// Lowest height of a hull of two balls that are stretched along `wide`.
 double lowest_m(const Capsule& c) {
   const auto below = [&c](const vec3& at, double radius_m, vec3 wide, double width) {
     const vec3 along = c.b_m - c.a_m;
@@ -41,8 +41,8 @@ double lowest_m(const std::vector<Capsule>& capsules) {
   return lowest;
 }
 constexpr double kTouch_m = 1e-5;
-// A captured stride is solved with the floor as a soft one-sided row: where a flying toe grazes it,
-// it is 0.22 mm too low at most, which is a twentieth of a pixel at the window's usual distance.
+// The solver treats the floor of a captured stride as a soft one-sided row: a flying toe that
+// touches it is at most 0.22 mm too low, a twentieth of a pixel at the window's usual distance.
 constexpr double kGraze_m = 3e-4;
 
 std::vector<Capsule> posed(const Mannequin& mannequin, const Pose& pose) {
@@ -51,7 +51,7 @@ std::vector<Capsule> posed(const Mannequin& mannequin, const Pose& pose) {
   return content.capsules;
 }
 
-// Walks for two seconds and hands every tenth pose on.
+// Walks for two seconds and passes every tenth pose to `look`.
 template <class Look>
 void walk(const WalkModel& model, double turn, Look look) {
   Pose pose;
@@ -111,11 +111,11 @@ TEST(Mannequin, TheProceduralOneIsAPersonsSize) {
   EXPECT_EQ(skeleton.joints[joints.head].name, "Head");
   EXPECT_EQ(skeleton.joints[joints.arm[kLeftSide].elbow].name, "LeftForeArm");
   EXPECT_EQ(skeleton.joints[joints.arm[kRightSide].wrist].name, "RightHand");
-  // The skeleton says itself where the top of the head is.
+  // The skeleton itself has a joint at the top of the head.
   EXPECT_NEAR(mannequin.height_m, standing.position_m[skeleton.find("Head_End")].y, 0.05);
 }
 
-// A place on the skin of a standing body, and the joints that its bone lies between.
+// A place on the skin of a standing body, and the two joints of its bone.
 struct Spot {
   vec3 at_m{0.0};
   int from = 0, to = 0;
@@ -152,9 +152,9 @@ std::vector<Spot> skin(const Mannequin& mannequin) {
   return spots;
 }
 
-// Shares of the height, of adults: D: Drillis and Contini 1966, as in Winter 2009, figure 4.1
-// (breadths and lengths of segments); G: Gordon et al. 1989, the mean of men's and women's means
-// (breadths, depths, and girths over pi).
+// In fractions of the height, of adults: D: Drillis and Contini 1966, as in Winter 2009, figure 4.1
+// (breadths and lengths of segments); G: Gordon et al. 1989, mean of men's and women's means
+// (breadths, depths, and girths / pi).
 TEST(Mannequin, TheProceduralOneHasAPersonsProportions) {
   const Mannequin mannequin = mannequin_of(model_of(procedural_gait()));
   const std::vector<Spot> spots = skin(mannequin);
@@ -171,7 +171,7 @@ TEST(Mannequin, TheProceduralOneHasAPersonsProportions) {
     const ArmChain& right = joints.arm[kRightSide];
     return is_of(s, {arm.shoulder, arm.elbow, arm.wrist, right.shoulder, right.elbow, right.wrist});
   };
-  // Extent along a direction, of the spots that are meant, over the height.
+  // Extent of the selected spots along a direction, over the height.
   const auto extent = [&](const vec3& along, auto&& is_meant) {
     double low = 1e9, high = -1e9;
     for (const Spot& s : spots) {
@@ -181,7 +181,7 @@ TEST(Mannequin, TheProceduralOneHasAPersonsProportions) {
     }
     return (high - low) / height_m;
   };
-  // Of slices at these heights.
+  // Breadths of slices at these heights.
   const auto breadths = [&](const vec3& along, double from_m, double to_m, auto&& is_meant) {
     constexpr double kHalfSlice_m = 0.006;
     std::vector<double> all;
@@ -236,12 +236,12 @@ TEST(Mannequin, TheProceduralOneHasAPersonsProportions) {
   for (const Measure& m : measures) {
     EXPECT_NEAR(m.drawn, m.people, 0.07 * m.people) << m.name;
   }
-  // At the cost of the former ones.
+  // Not more bones than before.
   EXPECT_LE(mannequin.bones.size(), 39u);
 }
 
-// Where two parts of the trunk meet, both are as thick and as wide, and wide to the same side,
-// however it twists: a seam is not torn.
+// Two parts of a twisted trunk meet with equal thickness, width and direction of width, so that
+// there is no gap.
 TEST(Mannequin, PartsOfATwistedTrunkMeetInOneSeam) {
   const Mannequin mannequin = mannequin_of(model_of(procedural_gait()));
   const Skeleton& skeleton = mannequin.model->cycle.skeleton;
@@ -322,7 +322,7 @@ TEST(Mannequin, NothingOfItIsBelowTheFloorWhileItWalksAndTurns) {
   }
 }
 
-// Legs alone are a skeleton too.
+// A skeleton may have legs only.
 TEST(Mannequin, WithoutArmsAndHeadTheRestIsDrawn) {
   GaitCycle cycle = procedural_gait();
   ASSERT_EQ(cycle.skeleton.joints[11].name, "Spine");
@@ -337,7 +337,7 @@ TEST(Mannequin, WithoutArmsAndHeadTheRestIsDrawn) {
 
 TEST(Mannequin, EveryCapturedSkeletonHasItsArmsAndHeadAndStaysAboveTheFloor) {
   GAITPAD_NEEDS(kCapturedMotions);
-  // A fifth of them in each run (tests/support/slices.py).
+  // Each run tests a fifth of them (tests/support/slices.py).
   constexpr std::size_t kSlices = 5;
   const char *all = std::getenv("GAITPAD_ALL"), *slice = std::getenv("GAITPAD_SLICE");
   const bool is_all = all != nullptr && std::string(all) == "1";
@@ -386,7 +386,7 @@ double nearest_m(const std::vector<vec3>& places, const vec3& to) {
   return nearest;
 }
 
-// The samples know where the ankles are without any joint.
+// The samples have the ankles' places without any joint.
 TEST(StickFigure, ItsAnklesAreWhereTheSourceHasThem) {
   const GaitCycle cycle = procedural_gait();
   const vec3 place_m(4.0, 7.0, -2.0);

@@ -1,5 +1,5 @@
-// A scene drawn without a display, looked at pixel by pixel: what is drawn is where the camera
-// projects it, and does what the header says.
+// Draws a scene without a display and checks its pixels: each part is where the camera projects it
+// and looks as the header says.
 #include "scene/scene.h"
 
 #include <epoxy/gl.h>
@@ -80,7 +80,7 @@ class SceneTest : public testing::Test {
     return read_pixels(width, height);
   }
   vec3 place(const vec3& world_m) const { return projected(camera_, world_m, kWidth, kHeight); }
-  // How much brighter a place of the world is on the one than on the other, `right_px` beside it.
+  // Brightness of a world's place in `a` minus that in `b`, `right_px` beside it.
   double brighter(const Pixels& a, const Pixels& b, const vec3& world_m, int right_px = 0) const {
     const vec3 p = place(world_m);
     return brightness(a, p.x + right_px, p.y) - brightness(b, p.x + right_px, p.y);
@@ -126,7 +126,7 @@ TEST_F(SceneTest, ACapsulesPixelsAreWhereItsBallsAreProjected) {
   EXPECT_NEAR(seen.top, place(b).y - rb, 1.5);
 }
 
-// A wall of four steps between the eye and a ball hides the ball; the floor never does.
+// A wall of four steps between the eye and a ball hides the ball; level floor never does.
 TEST_F(SceneTest, UnevenGroundIsSeenAndHides) {
   camera_.yaw_rad = 0.0;
   camera_.pitch_rad = 0.1;
@@ -144,8 +144,8 @@ TEST_F(SceneTest, UnevenGroundIsSeenAndHides) {
   EXPECT_GT(difference(level, drawn(content_)).pixels, 100);
 }
 
-// From behind somebody who climbs, without the grid: the middle of the second riser, and of the
-// treads before and behind it.
+// Seen from behind a climbing character, without the grid: the middle of the second riser, and the
+// middles of the treads before and after it.
 TEST_F(SceneTest, RisersAndTreadsHaveTwoTonesAndHigherGroundIsLighter) {
   auto terrain = std::make_shared<Terrain>();
   ASSERT_FALSE(add_section(*terrain, StairsSection{0.3, 0.4, 4}));
@@ -207,7 +207,7 @@ TEST_F(SceneTest, AShadowFallsOnTheGroundThatIsThere) {
   auto terrain = std::make_shared<Terrain>();
   ASSERT_FALSE(add_section(*terrain, SlopeSection{10.0, 0.06, 5.0}));
   ASSERT_FALSE(add_section(*terrain, FlatSection{20.0}));
-  for (TerrainSection& s : terrain->sections) s.begin_m -= 20.0;  // level at 0.3 m round here
+  for (TerrainSection& s : terrain->sections) s.begin_m -= 20.0;  // level at 0.3 m around here
   content_.terrain = terrain;
   const Extent raised = shadow(0.3);
   EXPECT_NEAR(raised.pixels, level.pixels, 0.1 * level.pixels);
@@ -221,7 +221,7 @@ TEST_F(SceneTest, ABallInABallIsTheLargerOne) {
   const Extent ball = difference(empty, drawn(content_));
   content_.capsules = {bone(at, at + vec3(0.05, 0.0, 0.0), 0.2, 0.04)};
   const Extent both = difference(empty, drawn(content_));
-  EXPECT_NEAR(both.pixels, ball.pixels, 0.1 * ball.pixels);  // meshes that are turned
+  EXPECT_NEAR(both.pixels, ball.pixels, 0.1 * ball.pixels);  // meshes that are rotated
   EXPECT_NEAR(ball.right - ball.left, ball.bottom - ball.top, 2);
 }
 
@@ -249,7 +249,7 @@ TEST_F(SceneTest, AShadowDarkensTheFloorAwayFromTheLight) {
   content_.has_shadows = true;
   const Pixels with = drawn(content_);
   const auto darker = [&](const vec3& floor_m) { return brighter(without, with, floor_m); };
-  // The light comes from +x and +z. At 0.45 m of height it throws the bone 0.3 m aside.
+  // The light comes from +x and +z. A bone at 0.45 m casts its shadow 0.3 m aside.
   EXPECT_GT(darker({-0.2, 0.0, -0.17}), 12.0);
   EXPECT_LT(darker({0.35, 0.0, 0.3}), 2.0);
   EXPECT_NEAR(darker({1.2, 0.0, -1.0}), 0.0, 1.0);
@@ -266,7 +266,7 @@ TEST_F(SceneTest, AFootDarkensTheFloorRoundItAndALiftedFootDoesNot) {
     const Pixels without = drawn(content_);
     content_.has_shadows = true;
     const Pixels with = drawn(content_);
-    // Towards the light, which throws no shadow there.
+    // Towards the light, where there is no shadow.
     return brighter(without, with, {0.0, 0.0, 0.042});
   };
   EXPECT_GT(darker_beside(0.03), 3.0);
@@ -320,14 +320,14 @@ TEST_F(SceneTest, AnotherSceneDrawsTheSameInAnotherContext) {
   EXPECT_EQ(difference(first, drawn(content_)).pixels, 0);
 }
 
-// Four samples a pixel give an edge more than two shades.
+// Four samples per pixel give an edge more than two shades.
 TEST_F(SceneTest, HighQualitySmoothsEdges) {
   camera_.yaw_rad = camera_.pitch_rad = 0.0;
   content_.has_grid = false;
   const vec3 at = camera_.target_m;
   content_.capsules = {{at - vec3(2.0, 0.0, 0.0), at + vec3(2.0, 0.3, 0.0), 0.1, 0.1, vec3(0.0),
                         1.0, 1.0, rgb(0xffffff)}};
-  const auto shades = [&] {  // of the upper edge, where it passes a row of pixels
+  const auto shades = [&] {  // of the upper edge, where it crosses a row of pixels
     const Pixels pixels = drawn(content_);
     int between = 0;
     for (int x = 40; x < kWidth - 40; ++x) {
@@ -357,7 +357,7 @@ TEST_F(SceneTest, AShaderThatDoesNotCompileIsNamed) {
   EXPECT_NE(problem->message.find("nonsense"), std::string::npos);
 }
 
-// Lines are where the camera projects them: of the grid, trails, single ones.
+// Lines are where the camera projects them: the grid's, trails, single lines.
 
 TEST_F(SceneTest, GridLinesLieAtWholeMetresOfTheWorld) {
   look_down();
@@ -421,7 +421,7 @@ TEST_F(SceneTest, ALineThatPassesTheEyeIsCutThere) {
   content_.lines = {{camera_.target_m, behind, rgb(0xffffff), 3.0}};
   const Extent seen = difference(without, drawn(content_));
   EXPECT_GT(seen.pixels, 20);
-  EXPECT_NEAR(seen.bottom, kHeight / 2.0, 12.0);  // it rises from the middle, to above the eye
+  EXPECT_NEAR(seen.bottom, kHeight / 2.0, 12.0);  // it rises from the middle to above the eye
 }
 
 TEST_F(SceneTest, BodiesHideLinesBehindThem) {
@@ -441,7 +441,8 @@ FlatCapsule flat(const vec3& a, const vec3& b, double radius_a_m, double radius_
           glm::vec4(kRed.red, kRed.green, kRed.blue, 1.0f)};
 }
 
-// The same body, near the ground and seen likewise, is as bright on a height as on level 0.
+// The same body near the ground, seen from the same side, is as bright on raised ground as on level
+// 0.
 TEST_F(SceneTest, ABodysShadeNearTheGroundIsThatOfItsHeightAboveTheGround) {
   const auto shade_at = [this](double ground_m, bool is_crowd) {
     auto terrain = std::make_shared<Terrain>();
@@ -529,7 +530,7 @@ TEST_F(SceneTest, OfTwoLayersEachIsHalfTransparentWhicheverIsInFront) {
     green.layer = 3 - layer;
     expect_mean(picture({red, green}), only_red, only_green);
   }
-  green.layer = 0;  // is whole, in front
+  green.layer = 0;  // opaque, in front
   expect_mean(picture({red, green}), only_green, only_green);
 }
 

@@ -36,8 +36,8 @@ RATIOS = (0.6, 1.0, 1.6)
 THUMB_S = 0.06
 
 
-# Bounds that are not met yet: the check, where, from what to what it may be, and why. They are told apart from
-# broken ones, so that none gets worse unseen.
+# Bounds that are not met yet: the check, its cases, the permitted range, and the reason. They are reported apart from
+# broken bounds, so that they cannot get worse unnoticed.
 NOT_MET = {
     "leg d2, steady": ("", 0.0, 0.66, "short legs and limps step quicker, and angles change more from tick to tick"),
     "leg d2, changing": ("", 0.0, 2.7, "steps that start and stop in half a second turn short and straight legs faster"),
@@ -90,7 +90,7 @@ def gentle():
 
 
 def wander(seed):
-    """Random input of a thumb: all over the disc, rests, backward walking, changes of style."""
+    """Random thumb input: the whole disc, rests, backward walking, changes of style."""
     chance = random.Random(seed)
     time_s, stick, commands, last = 0.3, [], [], (0.0, 0.0)
     while time_s < 28.0:
@@ -148,7 +148,7 @@ def cases_of(motion, quick):
 
 
 def weight_cases(quick):
-    """Styles that differ in one weight alone, whose effect must be monotone."""
+    """Styles that differ only in one weight, whose effect must be monotone."""
     found = []
     for weight in () if quick else (0.9, 0.8, 0.5):
         found.append({"label": f"default hip {weight}", "motion": "default", "ratio": 1.0, "hip": weight,
@@ -158,7 +158,8 @@ def weight_cases(quick):
 
 # ---- the part of a run -----------------------------------------------------------------------
 PARTS = 6
-# Always run: their worst figure, or that of a comparison, is within a fifth of its bound. (A stretched knee's 1 degree is a joint's limit: not near.)
+# Always run: their worst figure, or that of a comparison, is within 20 % of its bound. (A stretched knee's 1 degree is
+# a joint limit and does not count.)
 NEAR = {*(f"default {rest}" for rest in (
             "stick 1.0", "leg 0.6 stick 1.0", "leg 1.6 stick 1.0", "style stiff_hip", "style limp_left", "style limp_left_hip",
             "style limp_left_knee", "style tired", "hip 0.5", "back", "leg 0.6 back", "leg 0.6 turn", "leg 0.6 style limp_left",
@@ -169,7 +170,7 @@ NEAR = {*(f"default {rest}" for rest in (
 
 
 def part_of(cases, compared):
-    """This run's part of both. The built-in motion's walks are always compared."""
+    """This run's part of the cases and comparisons. The built-in motion's walks are always compared."""
     def is_run(label):
         return label in NEAR or slices.is_chosen(label, PARTS)
 
@@ -297,7 +298,7 @@ def summary_table(results):
 
 
 def failures_text(results, most=4):
-    """The worst few runs of each broken bound, and the number of runs that break it."""
+    """The worst runs of each broken bound, and the number of runs that break it."""
     broken = {}
     for label, checks in results:
         for check in checks:

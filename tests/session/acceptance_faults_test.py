@@ -13,7 +13,7 @@ pytestmark = faults_mark("support/judge", "session/acceptance_faults_test")
 
 
 class Spot:
-    """Where faults are planted: ticks of the 8th flight and roll of the left foot, and its channels."""
+    """Places of the planted faults: ticks of the 8th flight and roll of the left foot, and its channels."""
 
     def __init__(self, files):
         self.files, self.col, self.bvh, self.summary = files, files.col, files.bvh, files.summary
@@ -60,7 +60,7 @@ def _raise(s, units):
     s.bvh.data[:, 1] += units
 
 
-# Each fault is named after the check that has to find it.
+# Each fault has the name of the check that has to find it.
 FILE_FAULTS = {
     "columns missing or out of order": _swap_columns,
     "rows minus pose frames": _drop_frame,

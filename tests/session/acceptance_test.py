@@ -13,7 +13,7 @@ from support.traces import write_trace
 from support.walk import Walk
 
 MOCAP = DATA / "mocap"
-# Key frames, Acclaim files, bodies of other names and joints: a motion, and whose body it walks on.
+# Key frames, Acclaim files, bodies with other names and joints: a motion, and the body that walks it.
 SOURCES = [("keyframe_walk", None), ("cmu_35_01.amc", None), ("endorphin_walking.amc", None),
            ("endorphin_walking.amc", "daz3d_170_joints.bvh"), ("cmu_m21_walk.bvh", "endorphin.asf"),
            ("freebvh_mixamo_names.bvh", "cmu_07.asf"), (None, "makehuman_walk1.bvh"),
@@ -65,7 +65,7 @@ def test_members_of_a_crowd_keep_the_bounds_of_single_walkers(run, pytestconfig,
     for index in range(2, 2 + JUDGED):
         walk = Walk(tmp_path, index=index)
         assert sum(walk.summary[f"steps_{side}"] for side in ("left", "right")) > 8
-        # Members follow their places in the crowd, so their sticks change all the time: legs as while a stick changes.
+        # Members follow their places in the crowd, so their sticks always change: judge legs as during such a change.
         legs = [check for check in judge.leg_checks(walk) if check.name.startswith("leg d2")]
         sharpest = max(legs, key=lambda check: check.value)
         found += broken(judge.file_checks(walk) + judge.stage_checks(walk) + judge.contact_checks(walk) +

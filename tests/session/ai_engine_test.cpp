@@ -11,11 +11,10 @@
 namespace gaitpad {
 namespace {
 
-// Walks until it is tired, then limps, rests when it is very tired, and walks again when it is
-// fresh.
+// Walks until it is tired, then limps, rests when it is very tired, and walks again when rested.
 class Engine {
  public:
-  // The commands that change to its present mood.
+  // The commands for its new mood; empty if the mood did not change.
   std::vector<std::string> thoughts(const Walker& walker) {
     const Mood mood = mood_of(walker);
     if (mood == mood_) return {};
@@ -58,7 +57,7 @@ TEST(AiEngine, DrivesByCommandsThatReplayWithoutIt) {
     }
     driven->step({});
   }
-  EXPECT_GE(recording.size(), 8u);  // it walked, limped, rested, twice at least
+  EXPECT_GE(recording.size(), 8u);  // it walked, limped and rested at least twice
   EXPECT_EQ(driven->counts().bad_commands, 0);
   std::size_t next = 0;
   for (int tick = 0; tick < kTicks; ++tick) {

@@ -31,8 +31,7 @@ void freed(void* memory) {
 
 void* operator new(std::size_t size) { return counted_or_thrown(size); }
 void* operator new[](std::size_t size) { return counted_or_thrown(size); }
-// AddressSanitizer's nothrow new would not match the operators delete below, so it is replaced,
-// too.
+// Also replaced: AddressSanitizer's nothrow new would not match the operators delete below.
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return counted(size); }
 void* operator new[](std::size_t size, const std::nothrow_t&) noexcept { return counted(size); }
 void operator delete(void* memory) noexcept { freed(memory); }

@@ -28,13 +28,13 @@ OTHERS = {f"{compiler}-{name}": (compiler, level) for compiler in ("g++", "clang
 if not slices.ALL:
     FIRST, *REST = sorted(OTHERS, key=lambda name: name != "clang++-O3native")
     OTHERS = {name: OTHERS[name] for name in (FIRST, REST[slices.NUMBER % len(REST)])}
-# For other processors: the compiler and its package; what runs the program there, and its package. The x87's registers
-# are wider than a double, so that i386 counts only with SSE2.
+# Other processors: compiler and its package; emulator and its package. The x87's registers are wider than a double, so
+# i386 is tested only with SSE2.
 FOREIGN = {"aarch64": (("aarch64-linux-gnu-g++", "g++-aarch64-linux-gnu"), ("qemu-aarch64-static", "qemu-user-static"), "-O2"),
            "i386": (("i686-linux-gnu-g++", "g++-i686-linux-gnu"), None, "-O2 -msse2 -mfpmath=sse -mstackrealign")}
 if slices.ALL:  # minutes
     OTHERS |= {variant: (compiler[0], level) for variant, (compiler, _, level) in FOREIGN.items()}
-# The ending that each compiler looks for behind the header's name.
+# The extension of each compiler's precompiled headers.
 PRECOMPILED = collections.defaultdict(lambda: "gch", {"clang++": "pch"})
 
 RULES = """
@@ -74,7 +74,7 @@ def parts_of_ordinary(build):
             folder, file = f"/{member[1]}.dir/", f"/{member[2]}"
             found += [row for output, row in rows.items() if folder in f"/{output}" and output.endswith(file)]
     command = re.sub(r"^.*?\+\+ | -(M[TF]|o|c) \S+| -MD| -O\S*| -W\S*", "", main["command"])
-    # A source may include what its main file does not, as Eigen.
+    # A source may include headers that its main file does not, such as Eigen.
     folders = {folder for row in found for folder in re.findall(r"-isystem \S+", row["command"])}
     command += "".join(f" {folder}" for folder in sorted(folders) if folder not in command)
     libraries = [word for word in link if re.search(r"\.so(\.[\d.]+)?$", word)]
@@ -163,7 +163,7 @@ def test_every_tick_has_the_same_hash(variant, program, folder, ordinary):
 
 @pytest.fixture(scope="module")
 def locales(tmp_path_factory):
-    """With decimal commas; Turkish has an I of its own."""
+    """Locales with decimal commas; Turkish also has its own upper case of i."""
     folder = tmp_path_factory.mktemp("locales")
     slices.need("/usr/share/i18n/locales/tr_TR", "locales")
     for name in ("tr_TR", "de_DE"):
@@ -173,7 +173,7 @@ def locales(tmp_path_factory):
 
 @pytest.mark.parametrize("name", ["tr_TR.UTF-8", "de_DE.UTF-8"])
 def test_a_hosts_locale_changes_no_bit(name, program, locales, tmp_path):
-    """The program `pose_hash` sets the locale of its user, as a host may; it writes and reads a motion, too."""
+    """The program `pose_hash` sets its user's locale, as a host program may; it also writes and reads a motion."""
     binary = program.parent / "tests/pose_hash"
     plain = walk(binary, tmp_path, LC_ALL="C", GAITPAD_SAY_LOCALE="1")
     there = walk(binary, tmp_path, LC_ALL=name, LOCPATH=str(locales), GAITPAD_SAY_LOCALE="1")

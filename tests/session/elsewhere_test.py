@@ -13,7 +13,7 @@ from support import slices
 from support.program import ROOT, ROUND, has_sanitizers
 from support.traces import beginning
 
-# A wall clock that jumps an hour back and two ahead with each look; the monotonic clock is as it is.
+# A wall clock that jumps an hour back and two hours ahead at each call; the monotonic clock is unchanged.
 STEPPING_CLOCK = r"""
 #define _GNU_SOURCE
 #include <dlfcn.h>
@@ -94,7 +94,7 @@ def test_while_the_wall_clock_is_set(run, short, tmp_path):
 
 
 def test_the_wall_clock_only_names_new_files():
-    """What can be set is asked for the date alone: in the names of folders and in `measured_on`."""
+    """The adjustable clock is read only for dates: in the names of folders and in `measured_on`."""
     asks = re.compile(r"system_clock|CLOCK_REALTIME|gettimeofday|\btime\(nullptr\)")
     found = {str(path.relative_to(ROOT)) for folder in ("src", "drivers", "tools/gaitpad")
              for path in (ROOT / folder).rglob("*.[ch]*") if asks.search(path.read_text())}

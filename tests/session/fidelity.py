@@ -57,7 +57,7 @@ TOLD_PACE = 0.03  # of what its frames show
 
 # ---- a stride, of a source or of a walk ----------------------------------------------------------
 class Stride:
-    """Frames that go once round: phase (N,) from 0, position and rotation of every joint, pelvis and legs by index.
+    """Frames of one stride: phase (N,) from 0, position and rotation of every joint, pelvis and legs by index.
     legs: per side (hip, knee, ankle, toe). heel_m: per side, in the ankle's frame."""
 
     def __init__(self, phase, seconds, position, rotation, pelvis, legs, heel_m):
@@ -87,8 +87,8 @@ def unit(vector):
 
 
 def standing_axes(s):
-    """What "sagittal" means, from the source: left, up, forward of the pelvis in its own frame, and per side the axis to
-    the left in the thigh's."""
+    """The sagittal plane of the source: left, up, forward of the pelvis in its own frame, and for each side the axis to
+    the left in the thigh's frame."""
     across = s.bone(s.legs[1][0], s.legs[0][0])
     left = unit(s.seen(s.pelvis, across).mean(0))
     up = s.seen(s.pelvis, np.tile(s.up, (len(s.phase), 1))).mean(0)
@@ -97,7 +97,7 @@ def standing_axes(s):
 
 
 def turn_about(axis, a, b):
-    """Degrees from a to b (N, 3) about the axis, both seen along it."""
+    """Degrees from a to b (N, 3) about the axis, both projected along it."""
     a, b = (v - np.outer(v @ axis, axis) for v in (a, b))
     return np.degrees(np.arctan2(np.cross(a, b) @ axis, np.sum(a * b, -1)))
 
@@ -120,7 +120,7 @@ def around(phase, curves, places):
 
 
 def best_shift(phase, source, walk_phase, walk):
-    """The shift of the walk's phase that brings all curves nearest to the source's frames."""
+    """The phase shift of the walk with the smallest distance of all curves from the source's frames."""
     def error(shift):
         return np.mean((around(walk_phase, walk, phase + shift) - source) ** 2)
     coarse = min(np.arange(100) / 100, key=error)
@@ -141,7 +141,7 @@ def maxima(curve, least=RIPPLE_DEG):
 
 
 def closed(curve):
-    """A captured stride does not end where it began: the difference is spread evenly over it."""
+    """A captured stride does not end in its first pose: the difference is spread evenly over it."""
     return curve - np.linspace(0, 1, len(curve)) * (curve[-1] - curve[0])
 
 
@@ -155,7 +155,7 @@ def vertical_acceleration(height, rate_hz, half_s, first, last):
 
 
 def foot_slide_mm(s):
-    """How far a standing foot strays in the source."""
+    """Largest distance of a standing toe from its mean place in the source."""
     worst = 0.0
     leg_m = np.linalg.norm(s.bone(*s.legs[0][:2])[0]) + np.linalg.norm(s.bone(*s.legs[0][1:3])[0])
     for (_, _, ankle, toe), heel_m in zip(s.legs, s.heel_m):
@@ -171,7 +171,7 @@ def foot_slide_mm(s):
 
 
 def compare(source, walk):
-    """Figures of a walk's stride beside its source's."""
+    """Figures of a walk's stride compared with its source's."""
     axes = standing_axes(source)
     ours, theirs = flexions(walk, axes), flexions(source, axes)
     ours += 360 * np.round((theirs.mean(0) - ours.mean(0)) / 360)
@@ -287,7 +287,7 @@ def judge_clip(options, folder, path=None):
 
 
 def sharpest_leg_joint(w, ticks):
-    """Greatest second difference in degrees a tick^2 at 240 Hz, and the joint that has it."""
+    """Largest second difference in degrees / tick^2 at 240 Hz, and its joint."""
     joints = sorted(set(w.leg_joints[0] + w.leg_joints[1]))
     d2 = w.second_differences[np.ix_(ticks, joints)].max(0)
     return float(d2.max()), w.bvh.names[joints[int(d2.argmax())]]
@@ -299,7 +299,7 @@ def contacts(w):
 
 
 def change_checks(w):
-    """What is judged where the walk starts, stops and changes its stride."""
+    """Figures of the walk's starts, stops and changes of stride."""
     value, joint = sharpest_leg_joint(w, np.arange(w.ticks))
     checks = [judge.Check("second difference", value, CHANGES_D2_DEG, unit="deg/tick2", note=joint), *contacts(w),
               *(c for c in judge.file_checks(w) if c.name == "ik_failures")]
@@ -330,8 +330,8 @@ def judge_row(row, w, walk, gait, is_built_in):
 
 
 def pace_checks(row, w, walk, gait, is_built_in):
-    """The walk against the gait that the program told, and that against the file's frames. The built-in motion has an
-    adult's pace: its stick gives its speed, with an adult's steps."""
+    """Compares the walk with the gait that the program printed, and that gait with the file's frames. The built-in
+    motion has an adult's pace: its stick sets its speed, with an adult's steps."""
     steps = [np.mean([m for k, m in judge.realised_steps(w, side) if w.steady[k]]) for side in (0, 1)]
     pairs = [("stride's time", walk.seconds, gait["stride_s"], OWN_PACE),
              ("left step", steps[0], gait["step_left_m"], OWN_PACE), ("right step", steps[1], gait["step_right_m"], OWN_PACE),
@@ -361,7 +361,7 @@ def short(row):
 
 
 def medians(rows):
-    """Checks of the median over the clips, the built-in motion left out."""
+    """Checks of the median over the clips, without the built-in motion."""
     clips = [r["rms_deg"] for r in rows if r["clip"] != "built-in"]
     return [judge.Check(f"median {j} RMS", float(v), b, unit="deg", note=f"{len(clips)} clips")
             for j, v, b in zip(JOINTS, np.median(clips, 0), MEDIAN_DEG)] if clips else []

@@ -23,7 +23,7 @@ def exact():
 
 
 def wave(files, height_deg, share, width):
-    """A bump once a stride at that share of it, counted from the right foot's landing."""
+    """One bump a stride at the phase `share`, counted from the right foot's landing."""
     landings = np.nonzero((files.col["stage"][:-1] == "flight") & (files.col["stage"][1:] == "roll") &
                           (files.col["swing"][1:] == "right"))[0] + 1
     phase = (np.arange(len(files.col["tick"])) - landings[0]) / np.diff(landings).mean()
@@ -185,7 +185,7 @@ def test_an_acclaim_bone_turns_in_its_own_axes(tmp_path):
                                           "2\nroot 0 10 0 0 90 0\nthigh 0 90\n")
     track = sources.read_source(tmp_path / "legs_01.amc", 0.5, 120)
     assert track.names == ["root", "thigh", "shank", "shank_End"] and track.tail(1) == 3
-    # The bone's own x axis is the world's y: a hanging thigh turns about itself.
+    # The bone's x axis is the world's y axis, so a hanging thigh turns about its own axis.
     assert track.position[0] * 2 == pytest.approx(np.array([[1, 10, 0], [1, 10, 0], [1, 8, 0], [1, 5, 0]]))
     # About z it swings towards +x, and the root carries +x to -z.
     assert track.position[1, 2:] * 2 == pytest.approx(np.array([[0, 10, -2], [0, 10, -5]]))

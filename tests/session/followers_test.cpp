@@ -20,7 +20,7 @@ SimulationConfig with_crowd(int crowd, int walkers = 1) {
   return config;
 }
 
-// After a varied walk: standing, straight, curves, commands, unplugging, a reset.
+// A simulation after a varied walk: standing, straight, curves, commands, unplugging, a reset.
 Simulation walked_varied(const SimulationConfig& config, int ticks) {
   Simulation simulation = made_simulation(config);
   for (int tick = 0; tick < ticks; ++tick) simulation.step(made_tick(tick));
@@ -72,7 +72,7 @@ TEST(Followers, HaveDifferentBuildsAndStyles) {
   EXPECT_LT(*legs_m.rbegin(), 1.19 * 0.84);
 }
 
-// The stick walks, turns both ways and stops; commands change and reset the first one.
+// The stick walks, turns both ways and stops; commands change and reset the first character.
 TEST(Followers, KeepTheirPlacesWhileTheFirstWalksAndTurns) {
   Simulation simulation = made_simulation(with_crowd(40));
   for (int tick = 0; tick < 3000; ++tick) {

@@ -1,9 +1,9 @@
-// How often the calling thread used the heap; counted in allocation_test.cpp for the executable.
+// Counts the calling thread's heap uses. allocation_test.cpp counts them for the executable.
 #pragma once
 
 namespace gaitpad {
 
 void begin_counting_heap_use();
-int heap_uses();  // since then: what was allocated and what was freed; ends the counting
+int heap_uses();  // allocations and frees since then; ends the counting
 
 }  // namespace gaitpad

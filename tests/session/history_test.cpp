@@ -45,7 +45,7 @@ TEST(History, BeginsAnewWhereATickDoesNotFollow) {
   history.add(sample(7));
   ASSERT_EQ(history.size(), 1u);
   EXPECT_EQ(history[0].tick, 7);
-  history.add(sample(7));  // the same one again is no successor
+  history.add(sample(7));  // the same tick again does not follow the newest one
   EXPECT_EQ(history.size(), 1u);
   TickSample other = sample(8);
   other.walker_count = 2;
@@ -79,7 +79,7 @@ TEST(History, ARestIsInNoCycle) {
   std::int64_t tick = add_cycles(history, add_rest(history, 0, 5), 3);
   tick = add_rest(history, tick, 30);
   add_cycles(history, tick, 1);
-  const History::Span two = history.newest_cycles(0, 2);  // those before the rest
+  const History::Span two = history.newest_cycles(0, 2);  // the cycles before the rest
   EXPECT_EQ(two.begin, 5u);
   EXPECT_EQ(two.end, 85u);
 }

@@ -63,7 +63,7 @@ TEST(TickClock, APaceStretchesTheTimeBetweenTicks) {
   EXPECT_EQ(clock.due_ns(10 + 1'000'000), kStart_ns + 100'000'000 + 40'000'000'000'000);
   EXPECT_EQ(clock.begin(11, clock.due_ns(11) + 39'000'000), TickClock::Begin::on_time);
   EXPECT_EQ(clock.begin(12, clock.due_ns(12) + 41'000'000), TickClock::Begin::late);
-  // Back at pace 1 the next tick is due sooner than at the old pace.
+  // At pace 1 the next tick is due sooner than at the old pace.
   clock.set_pace(1.0, 13, clock.due_ns(12) + 1'000'000);
   EXPECT_EQ(clock.due_ns(13), kStart_ns + 100'000'000 + 2 * 40'000'000 + 11'000'000);
 }
@@ -81,7 +81,7 @@ TEST(TickClock, StandingStillIsNeitherLateNorSkipped) {
   clock.set_pace(0.0, 7, clock.due_ns(7));
   EXPECT_EQ(clock.due_ns(7), TickClock::kNever_ns);
   const std::int64_t now_ns = kStart_ns + 3600 * kSecond_ns;
-  clock.set_pace(1.0, 9, now_ns);  // two ticks were stepped meanwhile
+  clock.set_pace(1.0, 9, now_ns);  // two ticks ran while time stood still
   EXPECT_EQ(clock.due_ns(9), now_ns);
   EXPECT_EQ(clock.begin(9, now_ns), TickClock::Begin::on_time);
   EXPECT_EQ(clock.skipped_ns(), 0);
@@ -99,7 +99,7 @@ TEST(TickClock, TicksThatTakeTooLongAreNotAStandstill) {
   TickClock clock(100, kStart_ns);
   std::int64_t now_ns = kStart_ns;
   int set_forward = 0;
-  for (int tick = 0; tick < 400; ++tick, now_ns += 15'000'000) {  // of 10 ms each
+  for (int tick = 0; tick < 400; ++tick, now_ns += 15'000'000) {  // a tick lasts 10 ms
     const TickClock::Begin begin = clock.begin(tick, now_ns);
     EXPECT_NE(begin, TickClock::Begin::after_standstill);
     set_forward += begin == TickClock::Begin::after_overload;
@@ -127,7 +127,7 @@ TEST(TimeHistogram, MedianOfOneValueIsThatValueWithinOnePercent) {
 
 TEST(TimeHistogram, HalfOfTheValuesLieBelowTheMedian) {
   const auto times = std::make_unique<TimeHistogram>();
-  for (int i = 1; i <= 1001; ++i) times->add((i * 7919 % 1001 + 1) * 1000);  // each once
+  for (int i = 1; i <= 1001; ++i) times->add((i * 7919 % 1001 + 1) * 1000);  // each value once
   EXPECT_NEAR(times->median_us(), 501.0, 5.1);
   EXPECT_NEAR(times->percentile_us(0.99), 991.0, 10.0);
   EXPECT_NEAR(times->percentile_us(0.01), 11.0, 0.2);
@@ -147,9 +147,9 @@ TEST(TimeHistogram, ValuesOutsideTheRangeCountAtTheEnds) {
 // --- TickReports
 
 constexpr std::int64_t kNow_ns = std::int64_t{1} << 60;
-constexpr std::uint8_t kHatAtRest = 0x08, kFirstButton = 0x10;  // of made_pad()'s fifth byte
+constexpr std::uint8_t kHatAtRest = 0x08, kFirstButton = 0x10;  // in made_pad()'s fifth byte
 
-// A pad on a real stream; its reports are gathered and taken as the loop does it.
+// A pad on a real stream; its reports are gathered and taken as in the loop.
 class LiveTickReports : public testing::Test {
  protected:
   void SetUp() override {
@@ -166,7 +166,7 @@ class LiveTickReports : public testing::Test {
     gather_until(1);
     step();
   }
-  // Gathers until the pads have sent so many reports, counting those that were left out.
+  // Gathers until the pads have sent `reports` reports, including those that were left out.
   void gather_until(std::int64_t reports) {
     comes_true([&] {
       reports_->gather(kNow_ns);
@@ -300,7 +300,7 @@ struct LoopParts {
   std::optional<Simulation> simulation;
   std::unique_ptr<Recording> recording;
   Script script;
-  // What other programs get.
+  // Receives the ticks for other programs.
   std::unique_ptr<Latest<StreamedTick>> stream = std::make_unique<Latest<StreamedTick>>();
   std::unique_ptr<ForwardMail> forward = std::make_unique<ForwardMail>();
   std::unique_ptr<LiveLoop> loop;
@@ -442,7 +442,7 @@ TEST_F(LiveLoopTest, EveryHeelStrikeIsABeatOf80MsThatGrowsWithTheSpeed) {
     lasted_ms.push_back(static_cast<double>(end_ns - start_ns) * 1e-6);
     before = beat.strong;
   }
-  // Either end of a beat may be late on a busy computer: half of the beats tell.
+  // On a busy computer a beat may begin or end late, so only the median is judged.
   std::ranges::sort(lasted_ms);
   EXPECT_GT(lasted_ms[lasted_ms.size() / 2], 70.0);
   EXPECT_LT(lasted_ms[lasted_ms.size() / 2], 160.0);

@@ -1,5 +1,4 @@
-// Live sessions, from their start to their summary, which equals that of a replay of their
-// recording.
+// Live sessions from start to summary, which equals the summary of a replay of the recording.
 #include "gaitpad/live.h"
 
 #include <gtest/gtest.h>
@@ -20,8 +19,8 @@
 namespace gaitpad {
 namespace {
 
-// --- real time; a recording stands in for the pads. However busy the machine is: what takes its
-// time is waited for, and rates are judged where the session was not kept from running.
+// Sessions in real time; a recording replaces the pads. The tests wait for what takes time, and
+// judge rates only while the session could run, so that they pass on a busy machine.
 
 namespace fs = std::filesystem;
 
@@ -68,7 +67,7 @@ TEST_F(Live, MeasuresFromTheReportToTheFrameThatShowsIt) {
   const LiveStatus status = session->status();
   EXPECT_GE(status.frame_us_p50, 1000.0 * kDraw_ms);
   EXPECT_GE(status.frame_us_p99, status.frame_us_p50);
-  // A report waits for its tick, for the rest of a frame, and for a whole one to be drawn.
+  // A report waits for its tick, for the rest of a frame, and for a whole frame to be drawn.
   const double longest_us = static_cast<double>(longest_ns) / 1000.0;
   EXPECT_LE(status.frame_us_p99, 1.01 * (status.wait_us_max + status.tick_us_max + 2 * longest_us));
 }
@@ -140,7 +139,7 @@ TEST_F(Live, TheSessionGoesOnWhenItsRecordingIsEnded) {
   EXPECT_GT(replayed().ticks, 0);
   EXPECT_LE(replayed().ticks, ticks);
   EXPECT_TRUE(comes_true([&] { return session->status().ticks > ticks + 10; }));
-  EXPECT_FALSE(session->end_recording());  // there is none
+  EXPECT_FALSE(session->end_recording());  // nothing is being recorded
   EXPECT_TRUE(session->stop());
 }
 
@@ -377,7 +376,7 @@ TEST_F(LivePace, NotANumberAndNegativePacesStandStill) {
   for (const double pace : {-1.0, std::nan(""), 1e-12}) {
     session->set_pace(pace);
     const std::int64_t still = ticks_when_still(*session);
-    session->set_pace(1e300);  // 8 is the most
+    session->set_pace(1e300);  // the limit is 8
     EXPECT_TRUE(comes_true([&] { return session->status().ticks > still; }));
   }
 }

@@ -1,5 +1,5 @@
-"""What the loop's thread asks of the kernel, by strace: its sleep, and waking a thread that sleeps. Nothing else, whatever
-walks, records and streams beside it. GAITPAD_ALL=1: for a minute, else for a few seconds."""
+"""The system calls of the loop's thread, by strace: only its sleep, and waking a sleeping thread, whatever walks,
+records and streams at the same time. GAITPAD_ALL=1: for a minute, else for a few seconds."""
 import collections
 import re
 import shutil
@@ -11,7 +11,7 @@ from support import slices
 from support.program import ROUND, has_sanitizers
 
 SECONDS = 60 if slices.ALL else 3
-# A write must be a wake-up: the eight bytes that an eventfd takes.
+# Each write must be a wake-up: the eight bytes of an eventfd.
 SLEEP, WAKE_UPS = "clock_nanosleep", (r"futex\(.*FUTEX_WAKE", r'write\(\d+, "\\1(\\0){7}", 8\b')
 
 

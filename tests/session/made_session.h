@@ -11,7 +11,7 @@
 
 namespace gaitpad {
 
-// A report of made_pad() with these counts of X and Y. 0x80 is the middle; Y grows backwards.
+// A report of made_pad() with X and Y at these values. 0x80 is the middle; Y grows backwards.
 inline Report made_report(int x, int y, std::uint16_t device = 0) {
   Report report;
   report.device = device;
@@ -94,8 +94,8 @@ inline Simulation walked(const SimulationConfig& config, int x, int y, int ticks
   return simulation;
 }
 
-// Everything that changes a pose besides the legs on level ground: slopes, stairs, waves, zones,
-// blends, tiring, stiff arms, hands that carry or hold a rail, and the look.
+// Covers all inputs of a pose except the legs on level ground: slopes, stairs, waves, zones,
+// blends, fatigue, stiff arms, hands that carry or hold a rail, and the look.
 inline SimulationConfig made_uneven_config(int walkers) {
   SimulationConfig config = made_config(walkers);
   Terrain terrain;

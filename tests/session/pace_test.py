@@ -13,7 +13,7 @@ ADULT_STEP_M, ADULT_SPEED_M_S, ADULT_LEG_M = 0.7225, 1.5, 0.84  # at full stick
 
 
 class Paces:
-    """A clip whose steps differ, made by a limping character, and walks of it."""
+    """A clip with unequal steps, made by a limping character, and walks of it."""
 
     def __init__(self, run, folder):
         self._run, self.folder, self.number = run, folder, 0
@@ -55,7 +55,7 @@ def paces(run, tmp_path_factory):
 
 @pytest.mark.parametrize("stick, legs", [(0.8, 1.0), (0.4, 1.0), (1.0, 1.0), (0.8, 0.6)])
 def test_stick_08_is_the_clips_own_gait(paces, stick, legs):
-    """Speed goes with the stick and steps with its root; lengths with the legs and times with their fourth root."""
+    """Speed is proportional to the stick, steps to its root; lengths scale with the legs, times with their 4th root."""
     gait, share = paces.gait, stick / 0.8
     assert gait["own_stick"] == 0.8 and gait["step_left_m"] < 0.7 * gait["step_right_m"], "the clip limps"
     (paces.folder / "legs.toml").write_text(f"leg_ratio = {legs}\n")

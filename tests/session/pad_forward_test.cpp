@@ -20,7 +20,7 @@ TEST(PadForward, HasTheCalibratedStickAndTheButtons) {
   EXPECT_GT(tick.state.stick.left.x, 0.9);
   EXPECT_EQ(tick.state.buttons, pads.driving_state().buttons);
   EXPECT_NE(tick.state.buttons, 0u);
-  ASSERT_TRUE(pads.take_report(made_report(0xa0, 0x80)));  // a quarter: inside the zone of a half
+  ASSERT_TRUE(pads.take_report(made_report(0xa0, 0x80)));  // a deflection of 0.25; the zone is 0.5
   EXPECT_EQ(forwarded_tick(pads, pads.finish_tick()).state.stick.left, vec2(0.0));
 }
 
@@ -53,7 +53,7 @@ TEST(PadForward, ATickThatChangesNothingWakesNobody) {
   EXPECT_TRUE(is_same(tick, ForwardedTick{}));
   ForwardedTick moved = tick, pressed = tick;
   moved.state.stick.right.y = 1e-9;
-  pressed.presses[kButtonA] = 1;  // and released again
+  pressed.presses[kButtonA] = 1;  // pressed and released
   EXPECT_FALSE(is_same(tick, moved));
   EXPECT_FALSE(is_same(tick, pressed));
 }

@@ -75,7 +75,7 @@ def differences(walk, side=0):
 
 
 def toe_clearance_mm(walk, side=0):
-    """The least between the toe's two highest places of a swing."""
+    """Smallest local minimum of the toe's height in a swing."""
     a, b = [lift for lift in walk.lift_offs[side] if lift < walk.landings[side][-1]][-1], walk.landings[side][-1]
     height = 1000 * (walk.toe_fk[side][a:b, 1] - walk.toe_rest[side])
     turns = np.nonzero((np.diff(height)[:-1] < 0) & (np.diff(height)[1:] >= 0))[0] + 1
@@ -83,7 +83,7 @@ def toe_clearance_mm(walk, side=0):
 
 
 def u_turns(player):
-    """[(seconds, landings)] from different moments of the stride."""
+    """[(seconds, landings)] from different phases of the stride."""
     found = []
     for k in range(8):
         turn_s = 4.0 + 0.14 * k
@@ -100,7 +100,7 @@ def u_turns(player):
 
 
 def row(name, values, bounds, unit, where=""):
-    """The value that is furthest out, or else the first."""
+    """The value that is farthest out of bounds, else the first."""
     low, high = bounds
     outside = [v for v in values if not low <= v <= high]
     worst = max(values, key=lambda v: max(low - v, v - high)) if len(values) > 1 else values[0]

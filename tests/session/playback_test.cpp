@@ -19,7 +19,7 @@ constexpr int kRateHz = 240;
 const std::string kConfig = kSourceFolder + "/config";
 const std::string kRound = kConfig + "/traces/round.hid";
 
-// The paper's cast on this recording.
+// The paper's four styles on this recording.
 SessionSpec paper_cast(const std::string& trace, Damage damage = Damage::refuse) {
   SessionSpec spec;
   spec.config_folders = {kConfig};
@@ -29,7 +29,7 @@ SessionSpec paper_cast(const std::string& trace, Damage damage = Damage::refuse)
   return spec;
 }
 
-// All fields of a frame that are drawn, and all fields of a sample.
+// Hashes of all drawn fields of a frame and of all fields of a sample.
 std::uint64_t print_of(const SessionFrame& frame) {
   WordHash hash;
   const auto add = [&hash](const vec3& v) {
@@ -66,7 +66,7 @@ std::uint64_t print_of(const TickSample& sample) {
   return hash.value();
 }
 
-// Each tick's frame and sample in a run from the beginning to the end.
+// Hash of each tick's frame and sample in a run from beginning to end.
 struct Straight {
   std::vector<std::uint64_t> frames, samples;
   std::uint64_t pose_hash = 0;
@@ -91,7 +91,7 @@ Straight straight_run(const std::string& path) {
 class PlaybackTest : public testing::Test {
  protected:
   void open(const std::string& path) { playback_ = value_of(Playback::open(paper_cast(path))); }
-  // Writes a session of so many ticks with walking, commands, buttons and unplugging.
+  // Writes a session of `ticks` ticks with walking, commands, buttons and unplugging.
   std::string write_session(std::int64_t ticks, int rate_hz = kRateHz) {
     TraceWriter writer;
     TraceDevice device;
@@ -205,12 +205,12 @@ TEST_F(PlaybackTest, SamplesHaveNoGapsAndRestartAfterAJump) {
   reach(2000, 100);  // back
   next = 2001 - Playback::kHistoryTicks;
   expect_up_to(2000);
-  reach(2000 + Playback::kHistoryTicks, 100);  // on
+  reach(2000 + Playback::kHistoryTicks, 100);  // continues
   expect_up_to(2000 + Playback::kHistoryTicks);
   reach(8000, 100);  // forward, beyond all ticks seen so far
   next = 8001 - Playback::kHistoryTicks;
   expect_up_to(8000);
-  reach(100, 100);  // there is less before it
+  reach(100, 100);  // fewer ticks than the history are before it
   next = 0;
   expect_up_to(100);
   // A seek to an earlier tick interrupts one to a later tick: the history is complete.

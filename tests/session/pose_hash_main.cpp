@@ -63,7 +63,7 @@ Result<GaitCycle> cycle_through_file(const std::string& path) {
   return with_clean_strides(std::move(*cycle));
 }
 
-// 64 characters for a minute, as wide as this build and processor allow and narrower.
+// 64 characters for a minute, at every lane width up to the widest of this build and processor.
 void walk_crowd() {
   for (const int lanes : {2, 4, 8}) {
     use_lanes(lanes);
@@ -91,8 +91,8 @@ int main(int argc, char** argv) {
   if (argc != 2) return fail("usage: pose_hash_main FOLDER");
   ::setenv("GAITPAD_CACHE", "off", 1);
   try {
-    std::locale::global(std::locale(""));  // as a host may do; std::setlocale(), too
-  } catch (const std::runtime_error&) {    // of the user's environment, and not installed
+    std::locale::global(std::locale(""));  // a host program may do this, or call std::setlocale()
+  } catch (const std::runtime_error&) {    // the environment's locale may not be installed
   }
   if (std::getenv("GAITPAD_SAY_LOCALE") != nullptr) std::printf("locale: %.1f\n", 0.5);
   SimulationConfig config = made_config(4);

@@ -1,5 +1,4 @@
-// A replay depends on its recording and on nothing else: sessions of files that are gone or changed
-// when the recording replays.
+// A replay depends on its recording alone: the session's files are gone or changed when it replays.
 #include "session/recorded_session.h"
 
 #include <algorithm>
@@ -20,14 +19,14 @@ class RecordedSessionTest : public Live {
     fs::copy(kSourceFolder + "/config", folder_ / "config", fs::copy_options::recursive);
     options_.config_folders = {own_.at("config")};
   }
-  // Until the recording that stands in for the pads is over.
+  // Runs until the recording that replaces the pads ends.
   static void walk(LiveSession& session) {
     ASSERT_TRUE(comes_true([&] {
       session.advance(8);
       return session.has_ended();
     }));
   }
-  // A replay that knows the recording alone, in a world without any of the session's files.
+  // Replays the recording after all files of the session were removed.
   RunSummary replayed_alone() const {
     fs::remove_all(folder_ / "config");
     fs::remove_all(folder_ / "own");
@@ -74,7 +73,7 @@ TEST_F(RecordedSessionTest, AStyleSavedOnTheWayCountsFromItsTickOn) {
   mine.name = "mine";
   mine.hip_sway = 2.0;
   session->advance(40);
-  session->command("style mine");  // not there yet
+  session->command("style mine");  // no style of this name yet
   sleep_for(50);
   session->advance(40);
   session->add_style(mine);
@@ -123,7 +122,7 @@ bool is_not_held(const std::string& cause) {
   return cause.ends_with(": the recording does not hold this file");
 }
 
-// What a stranger's recording names is looked for in the recording alone.
+// Files that a recording names are looked for in the recording alone, never on the disk.
 TEST_F(RecordedSessionTest, NoNameLeadsOutOfARecording) {
   const std::string secret = own_.write("own/secret.toml", "hip_sway = 1\n");
   Trace trace = two_pads_trace();

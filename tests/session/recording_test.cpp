@@ -140,7 +140,7 @@ TEST(RecordingLines, KeepTheOrderOfPluggingForAnyIndex) {
   EXPECT_EQ(trace.events[0].device, 0);
 }
 
-// A day of ticks runs by hand within a second; a pause of three hours precedes the last report.
+// Runs a day of ticks by hand within a second; the last report comes after a pause of three hours.
 TEST(RecordingLines, TicksFasterOrSlowerThanTheTimeReadBack) {
   Lines l(240);
   const std::int64_t day = 24 * 3600 * 240;
@@ -161,8 +161,7 @@ TEST(RecordingLines, TicksFasterOrSlowerThanTheTimeReadBack) {
   EXPECT_EQ(trace.events[1].tick, day - 9);
 }
 
-// A report may carry an earlier kernel time stamp than a report of another device that was read
-// before.
+// A report may have an earlier kernel time stamp than another device's report that was read before.
 TEST(RecordingLines, TimesMayDecreaseBetweenDevicesButNotWithinOne) {
   Lines l(240);
   l.lines.add(0, at(kStart_ns, made_plug(ReportKind::added, 0)));
@@ -195,7 +194,7 @@ TEST(RecordingLines, HaveOnlyTimesWithoutARate) {
   EXPECT_EQ(text.find("\nQ:"), std::string::npos);
 }
 
-// The reader refuses gaps of more than ten minutes, so the recorder has to fill them.
+// The reader refuses gaps of more than ten minutes, so the recorder fills them.
 TEST(RecordingLines, AnHourOfRestAnywhereCanBeRead) {
   Lines l(240);
   const std::int64_t hour_ticks = 3600 * 240;
@@ -288,7 +287,7 @@ class RecordingFile : public testing::Test {
   std::unique_ptr<Recording> started() const {
     return value_of(Recording::start({file_.string(), 240, {}}, made_devices));
   }
-  // Until the text is in FILE.part.
+  // Waits until the text is in FILE.part.
   bool is_written(const std::string& piece) const {
     return comes_true([&] { return text_in(part_).find(piece) != std::string::npos; });
   }

@@ -159,7 +159,7 @@ TEST_F(Scripted, EventsAreRecordedAndAReplayNeedsNoScript) {
   EXPECT_EQ(run.bad_commands, 0);
 }
 
-// Zones and tiring follow from the state. The recording has the terrain, and no command of theirs;
+// Zones and fatigue follow from the state. The recording has the terrain but no commands for them;
 // a replay applies them once.
 TEST_F(Scripted, ZonesAndTiringActOnceInAReplay) {
   options_.walk.terrain =

@@ -10,7 +10,7 @@
 namespace gaitpad {
 namespace {
 
-// Both are copied through wait-free buffers.
+// Both are copied through wait-free buffers, so they must be trivially copyable.
 static_assert(std::is_trivially_copyable_v<TickSample>);
 
 class SessionFrameTest : public testing::Test {
@@ -40,7 +40,7 @@ TEST_F(SessionFrameTest, TheCastStandsBeforeTheFirstTick) {
     const WalkerFrame& w = frame_.walkers[i];
     EXPECT_EQ(w.presence, 0.0);
     EXPECT_EQ(w.walk.stage, Stage::idle);
-    // The heels are planted, so lift-off and landing are where they stand.
+    // The heels are planted, so both points are the heel's present place.
     EXPECT_NEAR(glm::length(w.lift_m[kLeftSide] - w.walk.heel_m[kLeftSide]), 0.0, 1e-6);
     EXPECT_NEAR(w.landing_m.x, w.walk.heel_m[kLeftSide].x, 1e-6);
   }
@@ -64,7 +64,7 @@ TEST_F(SessionFrameTest, HoldsTheStateAfterATickAndThePoseBefore) {
   EXPECT_EQ(frame_.counts.ticks, 600);
 }
 
-// For each step of a walk, the landing that the frames predict in flight is where the heel lands.
+// During each flight, the predicted landing is the place where the heel then lands.
 TEST_F(SessionFrameTest, LiftAndLandingAreWhereTheHeelLeavesAndComesDown) {
   start(1);
   step({made_report(0x60, 0x10)});

@@ -27,7 +27,7 @@ TEST(Simulation, AForwardStickWalksStraight) {
   EXPECT_EQ(frame.heading_rad, 0.0);
 }
 
-// Seen from a camera that looks along +z, and from one that looks to the left.
+// Commanded by a camera that looks along +z, and by one that looks to the left.
 TEST(Simulation, AStickThatPointsLeadsThereWhereverTheCharacterFaces) {
   struct Case {
     int x, y;
@@ -60,8 +60,7 @@ TEST(Simulation, UnpluggingFinishesTheStepAndStands) {
   EXPECT_EQ(s.stick().left, vec2(0.0));
 }
 
-// A character with a skeleton of its own, in a T pose and 1.5 times as large, does the procedural
-// walk.
+// A character with its own skeleton, in a T pose and 1.5 times as large, does the procedural walk.
 TEST(Simulation, ACharacterWalksOnTheSkeletonThatItBrings) {
   SimulationConfig config = made_config(1);
   config.walkers[0].character = {};
@@ -137,7 +136,7 @@ TEST(Simulation, OneGroundForAllGrowsWithTheLongestFoot) {
 TEST(Simulation, CharactersStartOnTheGround) {
   SimulationConfig config = made_config(2);
   auto step_up = std::make_shared<Terrain>();
-  ASSERT_FALSE(add_section(*step_up, StairsSection{0.2, 2.0, 1}));  // its line is z = 0
+  ASSERT_FALSE(add_section(*step_up, StairsSection{0.2, 2.0, 1}));  // edge at z = 0
   config.terrain = step_up;
   const Simulation s = made_simulation(config);
   for (const Walker& w : s.walkers()) EXPECT_EQ(w.start_m.y, 0.2);
@@ -188,8 +187,8 @@ TEST(Simulation, TheHashDiffersForOneStickCount) {
             walked(config, 0x80, 0x21, 400).pose_hash());
 }
 
-// Two pads are plugged in and out. The second one is held, rests and drives in between. There are
-// also bad reports and a device that is not a pad.
+// Two pads are plugged in and out; the second one is held, rests and drives meanwhile. Also sends
+// bad reports and reports of a device that is not a pad.
 std::vector<Report> plugging_tick(int tick) {
   switch (tick) {
     case 30:
@@ -275,7 +274,7 @@ TEST(Simulation, RefusesNoCharacterAndTooMany) {
   EXPECT_FALSE(Simulation::create(crowd));
 }
 
-// --- commands at any moment of a walk
+// commands at any time of a walk
 
 TEST(Simulation, AStyleCommandIsForAllOrForOneAndUnknownOnesAreCounted) {
   Simulation s = made_simulation(made_config(3));
@@ -311,7 +310,7 @@ TEST(Simulation, AGaitCommandOverridesAParameterUntilItIsReturnedToTheStick) {
   Simulation s = made_simulation(made_config(2));
   step(s, {made_command("gait 2 speed_m_s 1"), made_command("gait hip_sway 0.5")}, 1200);
   EXPECT_EQ(s.walkers()[0].state.frame.stage, Stage::idle);
-  // Stages last whole ticks, and a cycle has only some hundred.
+  // A stage lasts a whole number of ticks, and a cycle has only some hundred.
   EXPECT_NEAR(s.walkers()[1].state.frame.speed_m_s, 1.0, 0.01);
   EXPECT_EQ(s.walkers()[0].params.hip_sway, 0.5);
   step(s, {made_command("gait 2 speed_m_s stick")}, 480);
@@ -334,7 +333,7 @@ TEST(Simulation, AResetRestoresTheStart) {
   const std::array<int, 2> steps = s.walkers()[0].state.frame.steps;
   const double walked_m = s.walkers()[0].walked_m;
   EXPECT_GT(walked_m, 1.0);
-  // A reset keeps a chosen style, so the first walker gets its style of the beginning back first.
+  // A reset keeps the chosen style, so the first walker's initial style is chosen first.
   step(s, {made_command("style 1 even"), made_report(0x60, 0x00), made_command("reset")}, 600);
   for (std::size_t i = 0; i < 3; ++i) {
     const Walker &w = s.walkers()[i], &f = fresh.walkers()[i];
@@ -373,7 +372,7 @@ TEST(Simulation, AnInvalidCommandChangesNothing) {
   }
 }
 
-// The command would lock the second walker's leg, so it applies to none of them.
+// The command would lock the second walker's leg, so it is applied to none of them.
 TEST(Simulation, ASetCommandAppliesToAllOrToNone) {
   Simulation s = made_simulation(made_config(3));
   step(s, {made_command("set 2 legs.weight.hip 0"), made_command("set 2 legs.weight.knee 0"),
@@ -436,9 +435,9 @@ void walk_at_random(IkMode mode, std::string (*command)(std::mt19937&), const Ch
       << "only commands that would lock a leg are refused";
 }
 
-// The commands change parameters abruptly and in mid-step, which a stick cannot do. The feet may
-// lag behind by a decimetre and a half, where one leg is asked to stand still and the other to take
-// its longest step, or to turn at once.
+// Commands change parameters abruptly in mid-step, which a stick cannot do. A foot may lag by 0.15
+// m where one leg has to stop while the other takes its longest step, or where it has to turn at
+// once.
 TEST(Simulation, LegsFollowRandomGaitCommands) {
   walk_at_random(IkMode::robust, any_gait_command, [](const Walker& w) {
     EXPECT_GT(w.state.frame.pelvis_m.y, 0.45 * w.model->stand_m);
@@ -460,8 +459,8 @@ TEST(Simulation, RandomCommandsKeepThePoseValid) {
   }
 }
 
-// Hips that were on their way back when a stop was planned went on for 0.8 m, and dived below the
-// floor for their feet.
+// A regression: when a stop was planned while the hips moved back, they continued for 0.8 m and
+// dived below the floor.
 TEST(Simulation, NoCommandsMakeTheHipsDive) {
   for (unsigned seed = 1; seed <= 60; ++seed) {
     const auto check = [](const Walker& w) {
@@ -480,7 +479,7 @@ TEST(Simulation, AMarkDoesNothing) {
   EXPECT_EQ(marked.counts().bad_commands, 0);
 }
 
-// --- what follows from the state itself: zones of the terrain, tiring, blending
+// effects of the state itself: zones of the terrain, fatigue, blending
 
 TerrainZone zone(double from_m, double to_m, const std::string& style) {
   TerrainZone zone;
@@ -524,7 +523,7 @@ TEST(Zones, ApplyTheirStyleOnlyInside) {
 }
 
 TEST(Zones, ApplyToEachWalkerByItsOwnPlace) {
-  Simulation s = made_simulation(zoned(2));  // the second one walks at x = -1.2
+  Simulation s = made_simulation(zoned(2));  // the second walker is at x = -1.2
   walk_to(s, 7.0);
   EXPECT_EQ(style_of(s, 0), "limp");
   EXPECT_EQ(style_of(s, 1), "even");
@@ -535,7 +534,7 @@ TEST(Zones, RestoreTheValuesSetBeforeThem) {
   s.take_report(made_command("set hip_sway 2"));
   walk_to(s, 3.0);
   EXPECT_EQ(s.walkers()[0].values.hip_sway, 1.0);
-  s.take_report(made_command("set hip_sway 0.5"));  // changes the zone's style and ends with it
+  s.take_report(made_command("set hip_sway 0.5"));  // changes the zone's style
   EXPECT_EQ(s.walkers()[0].values.hip_sway, 0.5);
   walk_to(s, 4.1);
   EXPECT_EQ(s.walkers()[0].values.hip_sway, 2.0);
@@ -549,7 +548,7 @@ TEST(Zones, AChosenStyleWinsAndStays) {
   EXPECT_EQ(style_of(s), "slow");
   walk_to(s, 4.2);
   EXPECT_EQ(style_of(s), "slow");
-  walk_to(s, 7.0);  // the next zone is another
+  walk_to(s, 7.0);  // a different zone follows
   EXPECT_EQ(style_of(s), "limp");
   walk_to(s, 8.2);
   EXPECT_EQ(style_of(s), "slow");
@@ -608,7 +607,7 @@ TEST(Zones, BlendOverTheTimeOfTheStyle) {
   walk_to(s, 4.02);
   const double length = s.walkers()[0].in_force.stride[kLeftSide].length;
   EXPECT_GT(length, 0.5);
-  EXPECT_LT(length, 1.0);  // the way back is blended, too
+  EXPECT_LT(length, 1.0);  // the return is blended as well
 }
 
 TEST(Tiring, SlowsAWalkWithDistanceAndRecoversAtRest) {
@@ -632,7 +631,7 @@ TEST(Tiring, SlowsAWalkWithDistanceAndRecoversAtRest) {
   EXPECT_LT(w.tired, 1e-9);
 }
 
-// Root mean square difference of the left leg's angles at the same ticks of the same walk, degrees.
+// RMS difference in degrees of the left leg's angles at the same ticks of the same walk.
 double difference_deg(const std::vector<double>& a, const std::vector<double>& b) {
   double sum = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);

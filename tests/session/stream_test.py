@@ -142,8 +142,8 @@ def test_a_rate_without_a_stream_is_wrong_usage(run, trace):
 
 
 def test_a_tick_does_not_notice(run, program, trace):
-    """In turns with and without a stream at a high rate, so that a busy machine is busy for both. Ticks copy their
-    poses out and wait for nobody: their time grows by a few microseconds at most."""
+    """Alternates runs with and without a stream at a high rate, so that other load affects both. Ticks copy their poses
+    and never wait: their time grows by a few microseconds at most."""
     if has_sanitizers(program):
         pytest.skip("times under a sanitizer say nothing about the program")
     took_us = {"": [], "json": []}

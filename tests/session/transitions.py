@@ -39,7 +39,7 @@ MOMENTS = 12
 
 # ---- a hand ----------------------------------------------------------------------------------
 def thumb(*moves):
-    """Reports of a stick that goes to (x, y) from each time on, in 60 ms: moves are (time_s, x, y)."""
+    """Reports of a stick that moves to (x, y) within 60 ms of each time: moves are (time_s, x, y)."""
     place, timeline = (0.0, 0.0), [(0.0, 0.0, 0.0)]
     for time_s, x, y in moves:
         for i in range(1, 16):
@@ -78,7 +78,7 @@ def at_60_hz(x):
 
 
 def along(walk):
-    """Way of the hips along the heading that the walk has when it begins to change."""
+    """Distance of the hips along the walk's heading at the start of the change."""
     return walk.root[:, 2]
 
 
@@ -139,7 +139,7 @@ def apart(walk):
 
 @dataclasses.dataclass
 class Steady:
-    """What the steady walk at this stick does by itself."""
+    """The same figures of the steady walk at this stick."""
     speed: float
     cycle_s: float
     fastest: float
@@ -167,7 +167,7 @@ def first_after(condition, since):
 
 
 def change(walk, since, until, steady):
-    """What starts and stops have in common."""
+    """Figures of both starts and stops."""
     at = slice(since, until)
     z = along(walk)
     rate, bend = at_60_hz(z)
@@ -215,7 +215,7 @@ def measure(player, stick):
 
 
 def reversal(player, stick=1.0):
-    """Time from the thumb's way back until the hips go back at half the speed that they then have."""
+    """Time from the thumb's return until the hips move back at 90 % of their later speed."""
     times = []
     for k in range(4):
         walk = player.walk((0.5, 0, stick), (4.0 + 0.27 * k, 0, -stick), end_s=10.0)

@@ -7,7 +7,7 @@ namespace {
 
 using Commands = std::vector<std::string>;
 
-// Two characters; what is sent goes through the list, as in the window.
+// Two characters; commands go through the undo list, as in the window.
 class Undo : public WalkingTest {
  protected:
   void SetUp() override {
@@ -38,7 +38,7 @@ TEST_F(Undo, ASliderGoesBackForEachCharacterToItsOwnValue) {
   EXPECT_EQ(value(0, "left_leg.stride_length"), 1.2);
   step(2, undo_.undo());
   EXPECT_EQ(value(0, "left_leg.stride_length"), 1.0);
-  EXPECT_EQ(value(1, "left_leg.stride_length"), 0.5);  // limp_left's
+  EXPECT_EQ(value(1, "left_leg.stride_length"), 0.5);  // the value of limp_left
   step(2, undo_.redo());
   EXPECT_EQ(value(0, "left_leg.stride_length"), 1.2);
   EXPECT_EQ(value(1, "left_leg.stride_length"), 1.2);

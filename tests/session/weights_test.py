@@ -100,7 +100,7 @@ def clearance_mm(walk, mask):
 
 
 def planted_mm(walk, mask):
-    """The farthest that a planted point is from where it was planted."""
+    """Largest distance of a planted point from where it was planted."""
     worst = 0.0
     for side, name in enumerate(SIDES):
         for end, track in (("heel", walk.heel_fk[side]), ("toe", walk.toe_fk[side])):
@@ -159,8 +159,8 @@ def limp_figures(program, folder, motion=None):
 
 
 def travels_mm(program, folder, action, motion=None):
-    """How far the hips rise and fall with hip_bounce 0, 1 and 2. Stairs lift and lower the hips by themselves:
-    there it is how far they leave the way that they take with bounce 0."""
+    """Range of the hips' height with hip_bounce 0, 1 and 2. Stairs lift and lower the hips themselves: there, the range
+    of the difference from the walk with bounce 0."""
     stick, seconds, stairs = ACTIONS[action]
     made = {b: f"hip_bounce = {b}\n" for b in (0, 1, 2)}
     walks = walked(program, folder, made, stick, seconds, stairs, motion)

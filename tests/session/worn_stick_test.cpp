@@ -1,4 +1,4 @@
-// The worst stick of the generator is measured, calibrated by the advice, and drives a walk.
+// The worst generated stick is measured, calibrated as advised, and then drives a walk.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +18,7 @@ constexpr int kCounts = 255;
 MadeStick worst_stick(std::uint32_t seed) {
   MadeStick stick;
   stick.seed = seed;
-  const double away = static_cast<double>(seed) * 2.4;  // to all sides
+  const double away = static_cast<double>(seed) * 2.4;  // a different direction for each seed
   stick.centre = vec2(0.15 * std::cos(away), 0.15 * std::sin(away));
   stick.sigma = vec2(0.02);
   stick.hysteresis = 0.1;
@@ -37,7 +37,7 @@ StickCalibration calibrated(const MadeStick& stick) {
   return advice.calibration;
 }
 
-// What the stick reports for a true position: with noise and rounding.
+// The stick's reports for a true position, with noise and rounding.
 class Reported {
  public:
   explicit Reported(const MadeStick& stick) : stick_(stick), random_(stick.seed + 100) {}
@@ -70,11 +70,11 @@ Simulation simulation_with(const StickCalibration& calibration) {
 
 struct Straightness {
   int strides = 0;
-  double drift_m = 0.0;    // sideways, a stride, on average
-  double longest_m = 0.0;  // sideways, of any one
-  double stride_m = 0.0;   // the last
+  double drift_m = 0.0;    // sideways per stride, mean
+  double longest_m = 0.0;  // sideways, largest of a stride
+  double stride_m = 0.0;   // of the last stride
 };
-// Walks `ticks` ticks with one report each. A stride is from one strike of the left heel to the
+// Walks `ticks` ticks with one report each. A stride lasts from one strike of the left heel to the
 // next.
 template <typename Raw>
 Straightness straightness(const StickCalibration& calibration, int ticks, const Raw& raw) {
@@ -101,7 +101,7 @@ Straightness straightness(const StickCalibration& calibration, int ticks, const 
   return found;
 }
 
-constexpr std::uint32_t kSeeds = 5;  // the centre is off to all sides
+constexpr std::uint32_t kSeeds = 5;  // the centre is off in a different direction for each
 
 TEST(WornStick, WalksStraightWithTheFullStride) {
   StickCalibration ideal;
@@ -112,8 +112,8 @@ TEST(WornStick, WalksStraightWithTheFullStride) {
     const MadeStick stick = worst_stick(seed);
     const StickCalibration calibration = calibrated(stick);
     Reported reported(stick);
-    // The thumb holds the stick forward; the worn spring moves it by up to half of the hysteresis
-    // to either side.
+    // The thumb holds the stick forward; the worn spring shifts it sideways by up to half of the
+    // hysteresis.
     const Straightness found = straightness(calibration, 9600, [&](int tick) {
       const double astray = 0.5 * stick.hysteresis * std::sin(0.002 * tick);
       return reported.at(stick.centre + vec2(astray, gate_radius(stick, 0.5 * kPi)));
@@ -121,7 +121,7 @@ TEST(WornStick, WalksStraightWithTheFullStride) {
     EXPECT_GE(found.strides, 30);
     EXPECT_LE(found.drift_m, 0.001) << "seed " << seed;
     EXPECT_LE(found.longest_m, 0.001) << "seed " << seed;
-    // Noise to the side shortens the forward part by its cosine.
+    // Sideways noise reduces the forward part by its cosine.
     EXPECT_GE(found.stride_m, 0.999 * best.stride_m) << "seed " << seed;
     longest_m = std::max(longest_m, found.longest_m);
     drift_m = std::max(drift_m, found.drift_m);

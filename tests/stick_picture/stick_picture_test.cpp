@@ -1,5 +1,5 @@
-// The PNG is read again and looked at pixel by pixel. Where the planes lie is not assumed: one
-// known outline tells their scale, another one is then looked for.
+// Reads the PNG and checks its pixels. The planes' positions are not assumed: a known outline gives
+// their scale, then another outline is searched for.
 #include "stick_picture/stick_picture.h"
 
 #include <cairo/cairo.h>
@@ -118,7 +118,7 @@ TEST_F(StickPictureFile, TheOutlineStandsWhereItWasMeasured) {
   const Found big = find(drawn(made), kVermilion, 0, kRawEnd, 12);
   ASSERT_GT(big.count, 500);
   EXPECT_NEAR(big.width(), big.height(), 2.0);
-  const double scale = big.width() / 1.6;  // pixels a unit, as the first one tells
+  const double scale = big.width() / 1.6;  // pixels per unit, from the first outline
 
   made.statistics.outline = circle(0.4, {0.2, -0.3});
   const Found small = find(drawn(made), kVermilion, 0, kRawEnd, 12);
@@ -142,7 +142,7 @@ TEST_F(StickPictureFile, TheInnerZoneIsFourQuartersOfEllipses) {
   made.advice.calibration.y = {-0.5, -0.1, 0.8};
   made.advice.calibration.inner = 0.5;
   const Found zone = find(drawn(made), kInnerZone, 0, kRawEnd, 4);
-  // Its edge, 1.5 pixels wide, covers half of itself inwards; grid lines run through it.
+  // The inner half of its edge, 1.5 pixels wide, covers it; grid lines cross it.
   const double area = std::numbers::pi / 4.0 * (1.0 + 0.6) * (0.4 + 0.9) * 0.25 * scale * scale;
   EXPECT_NEAR(zone.count, area, 0.08 * area);
   EXPECT_NEAR(zone.width(), 0.5 * 1.6 * scale, 4.0);
@@ -172,7 +172,7 @@ TEST_F(StickPictureFile, TheTrackIsDrawnWhereTheStickWas) {
   made.statistics.outline = {};
   made.advice.calibration.inner = 0.0;
   made.tracks.resize(1);
-  // Often along one line, so that its thin blue adds up; not-a-number interrupts it.
+  // Often along one line, so that its thin blue adds up; NaN interrupts it.
   for (int k = 0; k < 60; ++k) {
     for (int i = -50; i <= 50; ++i) {
       made.tracks[0].push_back({0, {(k % 2 == 0 ? i : -i) / 100.0, 0.4}});
@@ -212,7 +212,7 @@ TEST_F(StickPictureFile, AnUnwritableFileIsOneSentenceAndTheOldOneStays) {
   EXPECT_EQ(own.entries(), 1) << "nothing is left behind";
 }
 
-// Names and numbers that no pad should have, and no data at all.
+// Impossible names and numbers, and no data at all.
 TEST_F(StickPictureFile, OddValuesAreDrawnAroundNotThrough) {
   Made odd;
   odd.statistics.centre = vec2(kNan, 1e300);

@@ -69,7 +69,7 @@ TEST_F(Walking, WhatIsSwitchedOffIsNotThere) {
   EXPECT_TRUE(content_.trails.empty());
   EXPECT_TRUE(content_.lines.empty());
   EXPECT_FALSE(content_.capsules.empty());
-  EXPECT_TRUE(content_.crowd.empty());  // there is none
+  EXPECT_TRUE(content_.crowd.empty());  // there is no crowd
   EXPECT_TRUE(content_.crowd_shades.empty());
   EXPECT_EQ(content_.reach_m, 0.0);
   const Viewport viewport{0, 0, 800, 600};
@@ -90,7 +90,7 @@ TEST_F(Walking, AMomentBetweenTwoTicksIsDrawnBetweenTheirPoses) {
   EXPECT_GT(to - from, 0.001);
 }
 
-// Every end of every drawn bone and line, on level ground, on a slope and on stairs.
+// Compares every end of every drawn bone and line.
 TEST_F(Walking, TwoThatAreOverlaidStandInOnePlaceHalfTransparent) {
   begin({"even", "limp_left", "stiff_knee"});
   run(600);
@@ -105,7 +105,7 @@ TEST_F(Walking, TwoThatAreOverlaidStandInOnePlaceHalfTransparent) {
     return sum;
   };
   EXPECT_GT(glm::distance(middle_m(0), middle_m(2)), 1.0);
-  state_.overlaid = {2, 0};  // the first one marked is the one that stays
+  state_.overlaid = {2, 0};  // the first marked one keeps its place
   fill();
   ASSERT_EQ(content_.capsules.size(), apart.size());
   EXPECT_LT(glm::distance(middle_m(0), middle_m(2)), 0.15);
@@ -113,15 +113,15 @@ TEST_F(Walking, TwoThatAreOverlaidStandInOnePlaceHalfTransparent) {
     EXPECT_EQ(content_.capsules[i].layer, i < bones ? 2 : i < 2 * bones ? 0 : 1);
     if (i >= bones) EXPECT_EQ(content_.capsules[i].a_m, apart[i].a_m);
   }
-  EXPECT_EQ(content_.trails.size(), 4u);  // of those that are on their paths
-  // The first bone is the pelvis, from hip to hip. It faces the same way.
+  EXPECT_EQ(content_.trails.size(), 4u);  // of the characters on their paths
+  // The first bone is the pelvis, from hip to hip. Both face the same way.
   const auto turned_rad = [](const Capsule& pelvis) {
     return std::atan2(pelvis.b_m.z - pelvis.a_m.z, pelvis.b_m.x - pelvis.a_m.x);
   };
   const double there_rad = turned_rad(apart[2 * bones]);
   EXPECT_GT(std::abs(std::remainder(turned_rad(apart[0]) - there_rad, 2.0 * kPi)), 0.5);
   EXPECT_LT(std::abs(std::remainder(turned_rad(content_.capsules[0]) - there_rad, 2.0 * kPi)), 0.3);
-  state_.overlaid = {0, 7};  // there is no such character
+  state_.overlaid = {0, 7};  // no such character
   fill();
   EXPECT_EQ(content_.capsules[0].layer, 0);
 }
@@ -172,7 +172,7 @@ TEST_F(Walking, InItsFramingTheCameraSeesEverybodyWithTheirNames) {
   }
 }
 
-// The crowd is the members behind the walkers, on the floor and as wide and high as persons.
+// The crowd's members stand behind the walkers, on the floor, as wide and high as persons.
 TEST_F(Walking, ACrowdStandsBehindTheWalkers) {
   begin({"even"}, 30);
   run(300);
@@ -216,7 +216,7 @@ TEST_F(Walking, ACrowdMovesBetweenTwoTicksByTheirShare) {
   EXPECT_NEAR(z[1], 0.5 * (z[0] + z[2]), 1e-4);
 }
 
-// The source walks as on a floor; its stick figure is the only one made of lines.
+// The source walks as on level ground; only its stick figure has lines.
 TEST_F(Walking, OnStairsTheSourceIsNeverInTheGround) {
   begin({"even"}, 0, "stairs");
   double highest_m = 0.0, most_above_m = 0.0;
@@ -238,7 +238,7 @@ TEST_F(Walking, OnStairsTheSourceIsNeverInTheGround) {
   EXPECT_LT(most_above_m, 0.25) << "nor does it fly";
 }
 
-// The distance from a place to the nearest end of a drawn bone.
+// Distance from a place to the nearest end of a drawn bone.
 double nearest_end_m(const SceneContent& content, const vec3& place_m) {
   double nearest_m = 1e9;
   for (const Capsule& bone : content.capsules)
@@ -247,8 +247,8 @@ double nearest_end_m(const SceneContent& content, const vec3& place_m) {
   return nearest_m;
 }
 
-// Heel and toe of `frames.csv` have an end of a drawn bone as near as in a standing foot: the
-// drawing moves no foot by more than 2 cm, neither above level 0 nor below it.
+// Heel and toe of `frames.csv` are as near to an end of a drawn bone as in a standing foot: drawing
+// moves no foot by more than 2 cm, above level 0 and below it.
 TEST_F(Walking, OnEveryTerrainTheFeetAreDrawnWhereTheyAreExported) {
   constexpr double kMoved_m = 0.02;
   struct Heights {
@@ -269,7 +269,7 @@ TEST_F(Walking, OnEveryTerrainTheFeetAreDrawnWhereTheyAreExported) {
     };
     const std::array standing = {reach_m(kLeftSide), reach_m(kRightSide)};
     double lowest_m = 0.0, highest_m = 0.0, most_m = 0.0;
-    for (int i = 0; i < 460; ++i) {  // 27 m: the whole of all but the course
+    for (int i = 0; i < 460; ++i) {  // 27 m: the whole length of each terrain except the course
       run(12);
       fill();
       for (const Side side : {kLeftSide, kRightSide}) {

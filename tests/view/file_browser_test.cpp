@@ -21,7 +21,7 @@ long long bytes_read() {
 
 class OpenBrowser : public UiTest {};
 
-// What it says of bundled and recent files it read when it was opened.
+// The browser reads its bundled and recent files when it opens.
 TEST_F(OpenBrowser, ReadsNoFileWhileItIsShown) {
   if (bytes_read() < 0) GTEST_SKIP() << "this kernel does not count what a process reads";
   FileBrowser browser("");

@@ -1,4 +1,4 @@
-// When frames begin on a display that takes one at each refresh.
+// Begins of frames on a display that takes one frame at each refresh.
 #include "view/frame_clock.h"
 
 #include <gtest/gtest.h>
@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
 
-// Takes a picture at the first refresh after it is ready; the next frame can be drawn from then on.
+// Takes a picture at the first refresh after it is ready; then the next frame can be drawn.
 struct Display {
   double period_ns;
   std::int64_t refresh_ns(std::int64_t ready_ns) const {
@@ -21,12 +21,12 @@ struct Display {
 };
 
 struct Seen {
-  std::int64_t worst_age_ns = 0;  // of what a frame shows, when the display takes it
+  std::int64_t worst_age_ns = 0;  // age of a frame's state when the display takes it
   int missed = 0;                 // refreshes without a new frame
 };
 
-// Draws `frames`; `work` gives the time of each. What came before the pacer knew the display does
-// not count.
+// Draws `frames` frames; `work` gives the time of each. Frames before the pacer has measured the
+// display are not counted.
 template <class Work>
 Seen draw(FramePacer& pacer, const Display& display, int frames, const Work& work) {
   Seen seen;

@@ -1,4 +1,4 @@
-// What the panels ask for, and that what they draw stays in its place.
+// The requests of panels, and the limits of what they draw.
 #include "view/panels.h"
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@ namespace {
 
 using Commands = std::vector<std::string>;
 
-// Not a line's and not a surface's, which the atlas keeps in places of their own.
+// True for a letter; the atlas stores lines and surfaces in rectangles of their own.
 bool is_letter(const ImDrawVert& v) {
   ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
   for (const int place : {atlas.PackIdLines, atlas.PackIdMouseCursors}) {
@@ -32,7 +32,8 @@ bool is_letter(const ImDrawVert& v) {
   return true;
 }
 
-// Everything within the area; letters beside its scroll bar and inside its margins, too.
+// Expects everything inside the area, and letters also inside its margins and beside its scroll
+// bar.
 void expect_inside(const ImDrawList& list, const UiItem& area, const UiItem* panel, int panels) {
   for (const ImDrawVert& v : list.VtxBuffer) {
     const UiItem& limits = panel != nullptr && is_letter(v) ? *panel : area;
@@ -44,7 +45,7 @@ void expect_inside(const ImDrawList& list, const UiItem& area, const UiItem* pan
 
 class PanelTest : public UiTest {
  protected:
-  // Every list that is drawn in an area that ui_items() names.
+  // Checks every list that is drawn in an area of ui_items().
   void expect_all_inside(int panels) {
     int seen = 0;
     const ImDrawData* data = ImGui::GetDrawData();
@@ -69,7 +70,7 @@ class PanelTest : public UiTest {
     state.is_open[static_cast<std::size_t>(panel)] = true;
     draw();
   }
-  // Puts the mouse down on the item at a share of its width; it stays down.
+  // Presses the mouse on the item at a fraction of its width and holds it.
   UiOutput press_at(const std::string& name, double share) {
     draw();
     const UiItem item = *find(name);
@@ -106,7 +107,7 @@ TEST_F(PanelTest, ASliderSendsEachNewValueOnceForTheChosenCharacter) {
   EXPECT_EQ(first.commands[0].rfind("gait 2 speed_m_s ", 0), 0u) << first.commands[0];
   EXPECT_NEAR(last_number(first.commands[0]), 0.5 * (range.min + range.max), 0.02);
   EXPECT_LE(first.commands[0].size(), std::string("gait 2 speed_m_s 0.75").size());
-  EXPECT_TRUE(draw().commands.empty());  // held still
+  EXPECT_TRUE(draw().commands.empty());  // the mouse does not move
   EXPECT_EQ(move_to("slider speed_m_s", 1.0).commands.size(), 1u);
   EXPECT_TRUE(move_to("slider speed_m_s", 1.0).commands.empty());
   EXPECT_TRUE(release().commands.empty());
@@ -126,7 +127,7 @@ TEST_F(PanelTest, ASliderStaysWhereItWasLetGoUntilTheSessionFollows) {
   press_at("slider hip_bounce", 1.0 / 3.0);
   move_to("slider hip_bounce", 0.75);
   release();
-  draw();  // the session has not run since
+  draw();  // the session has not run yet
   ASSERT_EQ(state.memory.wishes.size(), 1u);
   const double asked = state.memory.wishes[0].value;
   step(2, {"gait hip_bounce " + std::to_string(asked)});
@@ -180,7 +181,9 @@ TEST_F(PanelTest, EveryStyleKeyOfOneSideAndOfTheWholeHasASlider) {
   int seen = 0;
   for (const StyleKey& key : style_keys()) {
     const std::string table = key.name.substr(0, key.name.find('.'));
-    if (table == "legs" || table == "arms" || table == "hands") continue;  // each side has its own
+    if (table == "legs" || table == "arms" || table == "hands")
+      continue;  // the sides have keys of
+                 // their own
     EXPECT_NE(find("style slider " + key.name), nullptr) << key.name;
     ++seen;
   }
@@ -221,7 +224,7 @@ TEST_F(PanelTest, AStyleIsSavedUnderANameThatFitsAFile) {
   open(1280, 1200, 1.0);
   walk();
   show(Panel::style);
-  EXPECT_EQ(find("save style"), nullptr);  // without a name there is nothing to save
+  EXPECT_EQ(find("save style"), nullptr);  // nothing to save without a name
   click("style name");
   for (const char c : std::string("../my walk_2")) {
     ImGui::GetIO().AddInputCharacter(static_cast<unsigned>(c));
@@ -250,14 +253,14 @@ TEST_F(PanelTest, TheChosenCharacterIsOneOrAll) {
   EXPECT_EQ(state.walker, 2);
   click("walker all");
   EXPECT_EQ(state.walker, -1);
-  state.walker = 9;  // of an earlier session
+  state.walker = 9;  // from an earlier session
   draw();
   EXPECT_EQ(state.walker, -1);
 }
 
 bool is_drawn(const std::string& text) { return std::ranges::count(drawn_texts(), text) > 0; }
 
-// The row of `frames.csv` of the tick that a frame shows, by column.
+// The row of `frames.csv` for the tick of a frame, by column.
 std::map<std::string, double> file_row(const SessionFrame& frame, int rate_hz) {
   std::string text;
   append_frames_header(text);
@@ -273,7 +276,7 @@ std::map<std::string, double> file_row(const SessionFrame& frame, int rate_hz) {
   return columns;
 }
 
-// On stairs the steps are as long as the treads, whatever the stick asks for.
+// On stairs a step is as long as a tread, whatever the stick asks for.
 TEST_F(PanelTest, WhatTheWalkDoesIsBesideWhatIsAskedAndIsTheFiles) {
   start({"even"}, 0, "stairs");
   show(Panel::control);
@@ -294,7 +297,7 @@ TEST_F(PanelTest, WhatTheWalkDoesIsBesideWhatIsAskedAndIsTheFiles) {
   EXPECT_LT(least_m_s, 0.8) << "it was on the stairs";
 }
 
-// The plotted heights are those above the ground below each heel, also high on the stairs.
+// Plotted heights are above the ground below each heel, high on the stairs as well.
 TEST_F(PanelTest, HeelsArePlottedAboveTheGroundBelowThemAsTheFileHasThem) {
   start({"even"}, 0, "stairs");
   double highest_m = 0.0;
@@ -315,7 +318,7 @@ TEST_F(PanelTest, HeelsArePlottedAboveTheGroundBelowThemAsTheFileHasThem) {
   EXPECT_GT(highest_m, 0.9) << "it was on the stairs";
 }
 
-// With all selected no panel shows the first one's values for everybody's.
+// With all selected, no panel shows the first one's value as if it were common.
 TEST_F(PanelTest, WhereTheSelectedDifferTheirValuesAreShownAsMixed) {
   open(1280, 3200, 1.0);
   walk();
@@ -328,13 +331,13 @@ TEST_F(PanelTest, WhereTheSelectedDifferTheirValuesAreShownAsMixed) {
     draw();
     EXPECT_TRUE(is_mixed()) << "panel " << static_cast<int>(panel);
   }
-  // A mixed slider sends what it is pulled to, also its least value.
+  // A mixed slider sends the value that it is dragged to, even its minimum.
   const UiOutput out = press_at("style slider left_leg.stride_length", 0.0);
   ASSERT_EQ(out.commands.size(), 1u);
   EXPECT_TRUE(out.commands[0].starts_with("set left_leg.stride_length ")) << out.commands[0];
   release();
-  step(120);  // what was pulled to was not taken over
-  // Each goes back to the value of its own style.
+  step(120);  // the dragged value was not applied
+  // Each returns to the value of its own style.
   step(2, {"set left_leg.stride_length 1.25"});
   draw();
   EXPECT_TRUE(is_drawn("L 1.25"));
@@ -345,7 +348,7 @@ TEST_F(PanelTest, WhereTheSelectedDifferTheirValuesAreShownAsMixed) {
                                                  "style 3 stiff_knee", "style 4 limp_left"}));
 }
 
-// Names as bad as they come, everywhere a stranger's name is shown.
+// Uses malformed names wherever the window shows a name from outside.
 void make_hostile(Cast& cast, std::string& pad, std::string& renderer, std::string& source,
                   std::vector<std::string>& messages, std::vector<UiLabel>& labels) {
   const std::string bad = "%s%n%999999d##x###y \xff\xfe\n\t\x01 " + std::string(5000, 'W');
@@ -368,7 +371,7 @@ constexpr Look kLooks[] = {
     {2.0, 2560, 1440, ThemeName::dark, true}, {2.0, 1280, 720, ThemeName::light, false},
     {1.0, 320, 200, ThemeName::dark, true}};
 
-// The scissor cuts what leaves a panel, so a picture would not tell. The list before it does.
+// A picture would not tell, because the scissor cuts what leaves a panel; the draw list tells.
 TEST_F(PanelTest, NothingLeavesItsPanel) {
   const std::string pad = pad_name;
   for (const Look& look : kLooks) {
@@ -429,7 +432,7 @@ TEST_F(PanelTest, BeforeTheFirstTickThereIsNobody) {
   EXPECT_NE(find("area control"), nullptr);
 }
 
-// A software rasterizer pays by the triangle: 45,000 indices are 10 ms of one.
+// A software rasterizer's time grows with the triangles: 45,000 indices take 10 ms.
 TEST_F(PanelTest, AllPanelsTogetherAreFewTriangles) {
   walk();
   state.is_open.fill(true);

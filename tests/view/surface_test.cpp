@@ -1,4 +1,4 @@
-// What a surface shows is what was drawn on it.
+// A surface shows what was drawn on it.
 #include "view/surface.h"
 
 #include <epoxy/gl.h>
@@ -74,8 +74,8 @@ TEST(Surface, AWindowThatIsMadeLargerHasMorePixels) {
   EXPECT_EQ(at(drawn_corner(500, 300), 499, 0), (Rgb{0, 0, 255}));
 }
 
-// As the program does it: the driver starts and asks SDL's joysticks on its own thread, at any
-// moment after the window was opened, and they outlive the window.
+// As in the program: the driver starts and reads SDL's joysticks on its own thread, at any time
+// after the window was opened, and they outlive the window.
 TEST(Surface, JoysticksOnAnotherThreadOutliveTheWindow) {
   {
     GAITPAD_OFFSCREEN(surface, 64, 64);

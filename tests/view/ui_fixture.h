@@ -1,5 +1,5 @@
-// The flat picture without a display: ImGui draws into memory, a walk of the simulation stands
-// behind it, a mouse clicks on what ui_items() names.
+// The user interface without a display: ImGui draws into memory, a simulated walk is the input, and
+// a mouse clicks on items of ui_items().
 #pragma once
 #include <gtest/gtest.h>
 #include <imgui.h>
@@ -18,7 +18,7 @@ class UiTest : public WalkingTest {
   void SetUp() override { open(1280, 720, 1.0); }
   void TearDown() override { close(); }
 
-  // A window of that many pixels.
+  // Opens a window of this size in pixels.
   void open(int width, int height, double scale, ThemeName theme = ThemeName::dark) {
     close();
     context_ = ImGui::CreateContext();
@@ -41,7 +41,7 @@ class UiTest : public WalkingTest {
     context_ = nullptr;
   }
 
-  // The paper's four, walking.
+  // The paper's four styles, walking.
   void walk() {
     start({"even", "stiff_hip", "stiff_knee", "limp_left"});
     step(1200, {"gait speed_m_s 1.2"});
@@ -79,7 +79,7 @@ class UiTest : public WalkingTest {
   static ImVec2 middle(const UiItem& item) {
     return {(item.min.x + item.max.x) / 2.0f, (item.min.y + item.max.y) / 2.0f};
   }
-  // Moves there, presses, lets go: what came of it in all these frames.
+  // Moves there, presses and releases; returns the requests of all these frames.
   UiOutput click_at(const ImVec2& place) {
     UiOutput all;
     ImGuiIO& io = ImGui::GetIO();
@@ -88,12 +88,12 @@ class UiTest : public WalkingTest {
     io.MouseDown[0] = true;
     add(draw(), all);
     io.MouseDown[0] = false;
-    for (int i = 0; i < 3; ++i) add(draw(), all);  // a menu is there one frame later
+    for (int i = 0; i < 3; ++i) add(draw(), all);  // a menu opens one frame later
     return all;
   }
   UiOutput click(const std::string& name) {
     draw();
-    draw();  // scroll bars come one frame later
+    draw();  // scroll bars appear one frame later
     const UiItem* item = find(name);
     EXPECT_NE(item, nullptr) << "nothing to click on: " << name;
     return item == nullptr ? UiOutput{} : click_at(middle(*item));

@@ -207,7 +207,7 @@ TEST_F(UiTest, ATooltipComesWhileThePointerRests) {
   EXPECT_GT(ImGui::GetDrawData()->CmdListsCount, before);
 }
 
-// 800 x 500, 1280 x 720 and 1920 x 1080, in each size of type.
+// 800 x 500, 1280 x 720 and 1920 x 1080, with each size of type.
 TEST_F(UiTest, NoTextIsCutOff) {
   for (const ImVec2& size : {ImVec2{800, 500}, ImVec2{1280, 720}, ImVec2{1920, 1080}}) {
     for (const bool is_playback : {false, true}) {
@@ -320,11 +320,11 @@ TEST_F(UiTest, NamesAboveHeadsStayInTheSceneAndApart) {
   for (const ImDrawVert& vertex : list->VtxBuffer) {
     EXPECT_GE(vertex.pos.x, static_cast<float>(v.x) - 1.5f);
     EXPECT_LE(vertex.pos.x, static_cast<float>(v.x + v.width) + 1.5f);
-    if (vertex.pos.y < 150.0f || vertex.pos.y > 400.0f) continue;  // those in the corners
+    if (vertex.pos.y < 150.0f || vertex.pos.y > 400.0f) continue;  // labels in the corners
     top = std::min(top, vertex.pos.y);
     bottom = std::max(bottom, vertex.pos.y);
   }
-  EXPECT_GE(bottom - top, 4 * 20.0f);  // four chips in one place stand one above the other
+  EXPECT_GE(bottom - top, 4 * 20.0f);  // four chips at one place are stacked
 }
 
 TEST(UiState, StylesOfEqualNamesAreOneChoice) {
@@ -341,7 +341,7 @@ double area(const UiRect& r) {
   return r.is_empty() ? 0.0 : static_cast<double>(r.width) * static_cast<double>(r.height);
 }
 
-// Nothing covers anything, nothing is left over.
+// The parts cover the window without overlaps or gaps.
 void expect_tiles(const UiLayout& l, int width, int height) {
   const UiRect all[] = {l.top, l.left, l.right, l.timeline, l.status, l.scene};
   double sum = 0.0;

@@ -1,5 +1,5 @@
-// A person at the window, for tests: what is pressed, clicked and waited for, one thing a frame.
-// The window is in memory (SDL's offscreen driver).
+// A scripted user of the window: presses, clicks and waits, one step a frame. The window is in
+// memory (SDL's offscreen driver).
 
 #include "view/window.h"
 
@@ -108,7 +108,7 @@ class Script {
     point(static_cast<float>(to_x), static_cast<float>(to_y));
     mouse(SDL_MOUSEBUTTONUP, button, to_x, to_y);
   }
-  // Of ui_items(), once it is there; at `share` of its width.
+  // Clicks an item of ui_items() when it exists, at the fraction `share` of its width.
   void click(const std::string& item, float share = 0.5f) {
     until("there is \"" + item + "\" to click", [this, item, share](const Glance&) {
       const UiItem* found = find(item);
@@ -131,7 +131,7 @@ class Script {
     }
     wait(1);
   }
-  // By Tab, from item to item.
+  // Moves the focus to the item by Tab.
   void reach(const std::string& item) {
     until("\"" + item + "\" is reached", [item](const Glance& glance) {
       if (glance.ui.memory.focus == item) return true;
@@ -146,14 +146,14 @@ class Script {
     return nullptr;
   }
 
-  // What run_window() calls; quits behind the last step, and where one takes too long.
+  // Called by run_window(); quits after the last step, and if a step takes too long.
   void operator()(const Glance& glance) {
     if (next_ == steps_.size()) return quit();
     const auto now = std::chrono::steady_clock::now();
     if (next_ != waiting_for_) since_ = now;
     waiting_for_ = next_;
     while (next_ < steps_.size() && steps_[next_].act(glance)) {
-      if (steps_[next_++].what.empty()) return;  // what was waited for takes no frame
+      if (steps_[next_++].what.empty()) return;  // a wait that is over takes no frame
     }
     if (next_ == waiting_for_ && now - since_ > std::chrono::seconds(120)) {
       std::string said;
@@ -196,7 +196,7 @@ class Script {
   ImVec2 at_{0, 0};
 };
 
-// Four characters in a window of 960 x 540, in a folder of their own; no pad of the machine.
+// Four characters in a window of 960 x 540, in a folder of their own; without the machine's pads.
 class Window : public testing::Test {
  protected:
   void SetUp() override {
@@ -210,7 +210,7 @@ class Window : public testing::Test {
     options_.session.walk.styles = {"even", "stiff_hip", "stiff_knee", "limp_left"};
     options_.session.pad.wish.pad = "no pad of this machine";
     options_.scale = 1.0;
-    options_.width = 960;  // fewer pixels are sooner drawn
+    options_.width = 960;  // fewer pixels are drawn faster
     options_.height = 540;
   }
   void TearDown() override {
@@ -218,7 +218,7 @@ class Window : public testing::Test {
     ::unsetenv("SDL_VIDEODRIVER");
   }
 
-  // Done by the script to its end.
+  // Runs the window; the script must reach its end.
   WindowResult run(Script& script) {
     options_.script = std::ref(script);
     const WindowResult result = value_of(run_window(options_));
@@ -255,7 +255,7 @@ double forward_m(const Glance& glance) { return glance.session.walkers[0].walk.p
 
 bool runs(const Glance& glance) { return glance.session.tick > 0; }
 
-// The keys of actions; `pressed` holds those that were.
+// Presses keys of actions; `pressed` holds the pressed ones.
 class ActionScript : public Script {
  public:
   using Condition = std::function<bool(const Glance&)>;
@@ -270,7 +270,7 @@ class ActionScript : public Script {
     press_key_of(action);
     until(std::string(info_of(action).name) + " does it", is_so);
   }
-  // Turns a thing over and, by the same action or another one, back again.
+  // Switches a state and, by the same or another action, switches it back.
   void turn(Action action, Action back, const Condition& is_on) {
     for (const Action each : {action, back}) {
       then([this, is_on](const Glance& g) { was_on_ = is_on(g); });
@@ -294,7 +294,8 @@ TEST_F(Window, EveryActionsKeyDoesWhatTheTableSays) {
   std::int64_t tick = 0;
   double yaw_rad = 0.0;
   script.turn(Action::pause, [](const Glance& g) { return g.pace == 0.0; });
-  script.expect(Action::step, [](const Glance& g) { return g.pace == 0.0; });  // pauses first
+  script.expect(Action::step,
+                [](const Glance& g) { return g.pace == 0.0; });  // the action pauses first
   script.wait(3);
   script.then([&](const Glance& g) { tick = g.session.tick; });
   script.expect(Action::step, [&](const Glance& g) { return g.session.tick == tick + 1; });
@@ -321,7 +322,8 @@ TEST_F(Window, EveryActionsKeyDoesWhatTheTableSays) {
   script.expect(Action::previous_style, walk_in(7));
   script.expect(Action::next_style, walk_in(8));
   script.expect(Action::style_1, walk_in(0));
-  script.expect(Action::previous_style, walk_in(styles.size() - 1));  // before the first the last
+  script.expect(Action::previous_style,
+                walk_in(styles.size() - 1));  // the last one is before the first
   script.expect(Action::undo, walk_in(0));
   script.expect(Action::redo, walk_in(styles.size() - 1));
   script.turn(Action::stick,
@@ -353,7 +355,7 @@ TEST_F(Window, EveryActionsKeyDoesWhatTheTableSays) {
               [](const Glance& g) { return !g.ui.memory.focus.empty(); });
   script.turn(Action::help, [](const Glance& g) { return g.ui.is_help_open; });
   script.turn(Action::help, Action::back, [](const Glance& g) { return g.ui.is_help_open; });
-  // Of a window in memory it changes nothing to be seen.
+  // A window in memory shows no change.
   for (int i = 0; i < 2; ++i) script.press_key_of(Action::fullscreen);
   run(script);
   for (const ActionInfo& info : actions())
@@ -411,9 +413,9 @@ TEST_F(Window, TheMouseTurnsMovesAndNearsTheCamera) {
   run(script);
 }
 
-// Frames of 1/60 s that are not drawn, except the last. Four walk; panels open one after the other,
-// the selection changes, names and the source go and come. A second after each change everybody is
-// in what the panels leave free, from head to feet, and no frame before jumps.
+// Frames of 1/60 s; only the last is drawn. Four characters walk; panels open one after the other,
+// the selection changes, names and the source are switched. One second after each change all
+// characters are visible beside the panels from head to foot, and no frame before jumps.
 TEST_F(Window, EverybodyIsInSightWhateverIsOpenAtEverySize) {
   struct Size {
     int width, height;
@@ -490,7 +492,7 @@ TEST_F(Window, ASessionAndItsRecordingAreTheSamePoses) {
   Script script;
   script.press(SDLK_w);
   script.until("they walk", [](const Glance& g) { return forward_m(g) > 0.5; });
-  script.tap(SDLK_TAB);  // the first one alone
+  script.tap(SDLK_TAB);  // only the first character
   script.tap(SDLK_4);
   script.until("it limps", [](const Glance& g) { return style_of(g, 0) == "limp_left"; });
   script.click("slider flight_left", 0.8f);
@@ -557,7 +559,7 @@ TEST_F(Window, KeysReachWhatTheMouseReaches) {
   script.wait(2);
   script.type("mine");
   script.wait(2);
-  script.press(SDLK_RETURN);  // Dear ImGui sees keys that are down in a frame
+  script.press(SDLK_RETURN);  // Dear ImGui sees only keys that are down during a frame
   script.wait(2);
   script.release(SDLK_RETURN);
   script.until("it is saved", [](const Glance& g) { return says(g, "saved as"); });
@@ -575,7 +577,7 @@ TEST_F(Window, AStyleCanBeExaggerated) {
   Script script;
   script.until("it runs", runs);
   script.tap(SDLK_TAB);
-  script.tap(SDLK_TAB);  // the second one, stiff_hip
+  script.tap(SDLK_TAB);  // the second character, stiff_hip
   script.tap(SDLK_RETURN);
   script.reach("exaggerate");
   script.tap(SDLK_RIGHT);
@@ -591,7 +593,7 @@ TEST_F(Window, AStyleCanBeExaggerated) {
     }
     return deviating > 0;
   });
-  script.then([](const Glance& g) {  // nobody else
+  script.then([](const Glance& g) {  // no other character
     EXPECT_EQ(g.session.walkers[2].style,
               g.cast.style_values[static_cast<std::size_t>(g.session.walkers[2].style_index)]);
   });
@@ -614,16 +616,14 @@ TEST_F(Window, TwoCharactersAreMarkedForAnOverlayAndAThirdReplacesOne) {
   expect({0, 2});
   script.click("overlay 1");
   expect({2});
-  script.tap(SDLK_m);  // others walk there
+  script.tap(SDLK_m);  // other characters walk there
   expect({});
   run(script);
 }
 
-// Recordings go to a folder of their own. A recording begins a session in the styles of the one
-// before; when it ends, the session goes on.
 bool points(const Glance& g) { return g.session.stick_means == StickMeans::points; }
 
-// Whether the first character goes where the camera looks, turned by so much to the left.
+// True if the first character's heading is the camera's, turned to the left by `left_rad`.
 bool goes_along(const Glance& g, double left_rad) {
   const vec3 seen = g.camera.target_m - g.camera.eye_m();
   const double along_rad = std::atan2(seen.x, seen.z) + left_rad;
@@ -660,8 +660,7 @@ TEST_F(Window, AStickThatPointsIsSeenFromTheCameraAndReplaysWithoutOne) {
   replayed.replay.trace = options_.session.live.record;
   EXPECT_EQ(value_of(replay(replayed)).summary.pose_hash, result.summary.pose_hash);
   EXPECT_EQ(result.summary.bad_commands, 0);
-  // A drag of two frames turns the camera: at most 20 directions a second, and no more once it
-  // rests.
+  // A drag of two frames turns the camera: at most 20 directions a second, and none after it rests.
   const Trace trace = value_of(read_trace(replayed.replay.trace));
   std::vector<std::int64_t> aims;
   for (const TraceEvent& event : trace.events) {
@@ -690,6 +689,8 @@ TEST_F(Window, AStickThatPointsDoesSoOnTheNextGround) {
   run(script);
 }
 
+// Recordings go to a folder of their own. A recording begins a session in the styles of the
+// previous one; when it ends, the session continues.
 TEST_F(Window, TheSessionGoesOnWhenItsRecordingEnds) {
   options_.record_folder = (folder_ / "takes").string();
   Script script;
@@ -741,7 +742,7 @@ TEST_F(Window, FramesAreCountedAndEndedFromOutside) {
   result = run_window(options_);
   ASSERT_TRUE(result) << result.error().message;
   EXPECT_EQ(result->frames, 4);
-  // Pictures that are cut off are not written.
+  // Unfinished pictures are not written.
   options_.is_hidden = true;
   options_.frames = 100;
   options_.screenshot = own_.at("still.png");
@@ -789,9 +790,9 @@ TEST_F(Window, LayoutIsRememberedButNotWhatWasAskedForOnce) {
   run(again);
 }
 
-// The window and files: opened, dropped, typed, played, calibrated, and pictures made of it.
+// Files in the window: opened, dropped, typed, played, calibrated, and made into pictures.
 
-// A motion file: the bundled recording's walk, as replay exports it.
+// A motion file: the walk of the bundled recording, as replay exports it.
 std::string exported_walk(const fs::path& folder, const SessionSpec& session,
                           const std::string& trace) {
   SessionSpec spec;
@@ -914,7 +915,7 @@ TEST_F(WindowFiles, TheBrowserOpensWhatIsTypedOrClicked) {
   EXPECT_EQ(text_in(options_.recent_file), (folder_ / "walks/limp.hid").string() + "\n");
 }
 
-// So many reports of six bytes each: X, Y, Z, Rz and two more.
+// Appends `count` reports of six bytes: X, Y, Z, Rz and two more.
 void add_reports(std::string& text, int& ms, const std::array<int, 6>& bytes, int count,
                  int every_ms) {
   for (int i = 0; i < count; ++i, ms += every_ms) {
@@ -923,8 +924,8 @@ void add_reports(std::string& text, int& ms, const std::array<int, 6>& bytes, in
   }
 }
 
-// A pad whose left stick is let go four times from all sides and turned round twice, sooner than by
-// any thumb. At rest it trembles by one count.
+// A pad whose left stick is released four times from all sides and turned round twice, faster than
+// by a thumb. At rest it varies by one count.
 std::string thumb_trace() {
   std::string text =
       "R: 54 05 01 09 05 a1 01 15 00 26 ff 00 75 08 95 04 09 30 09 31 09 32 09 35 81 02 15 00 25 "
@@ -950,7 +951,7 @@ std::string thumb_trace() {
   return text;
 }
 
-// A person who pushes the left stick, which is Z and Rz on this pad, upside down.
+// The user pushes the left stick, which is Z and Rz on this pad, upside down.
 std::string odd_pad_trace() {
   std::string text =
       "D: 0\nN: Odd Pad\nP: made/0\nI: 3 1209 0077\nR: 30 05 01 09 05 a1 01 15 00 26 ff 00 75 08 "
@@ -987,7 +988,7 @@ TEST_F(WindowFiles, ControlsThatAreWrongAreAskedForAndKept) {
   script.until("it runs", runs);
   script.tap(SDLK_F8);
   script.click("calibration map");
-  script.click("map keep");  // is there once the left stick is known
+  script.click("map keep");  // appears when the left stick is known
   script.until("it is kept", [](const Glance& g) { return says(g, "2 controls are kept in"); });
   script.until("it runs again",
                [](const Glance& g) { return !g.is_calibrating && g.session.tick > 0; });
@@ -1018,7 +1019,7 @@ TEST_F(WindowFiles, ACalibrationIsMeasuredShownSavedAndInForce) {
   const auto file = load_calibration_file(found->path().string());
   ASSERT_TRUE(file) << file.error().message;
   EXPECT_EQ(file->name, "Thumb Pad");
-  // 0x80 and 0x81 by turns, in fractions of half of 0 .. 255.
+  // 0x80 and 0x81 alternate; in fractions of half of 0 .. 255.
   EXPECT_NEAR(file->calibration.left.x.centre, (128.5 - 127.5) / 127.5, 0.004);
 }
 
@@ -1042,7 +1043,7 @@ TEST_F(WindowFiles, TheGuideOfACalibrationFitsInASmallWindow) {
     EXPECT_NE(item, items.end()) << name;
     return item == items.end() ? UiItem{} : *item;
   };
-  // Items are as large as they are seen: nothing is cut, and no stick lies below the buttons.
+  // Items have their visible size: nothing is cut, and no stick is below the buttons.
   const float buttons_y = found("calibration skip").min.y;
   for (const char* name : {"calibration of the left stick", "calibration of the right stick"}) {
     const UiItem stick = found(name);
@@ -1071,7 +1072,7 @@ TEST_F(WindowFiles, ACalibrationIsGivenUp) {
 }
 
 TEST_F(WindowFiles, ASavedStyleKeepsItsNameAndIsUsedAtOnceAndInTheNextSession) {
-  options_.height = 640;  // its slider is in sight
+  options_.height = 640;  // makes the slider visible
   options_.are_panels_given = true;
   options_.panels = {Panel::style};
   Script script;
@@ -1089,13 +1090,13 @@ TEST_F(WindowFiles, ASavedStyleKeepsItsNameAndIsUsedAtOnceAndInTheNextSession) {
                [](const Glance& g) { return style_of(g, 0) == "my walk"; });
   script.tap(SDLK_TAB);
   script.until("the second one is chosen", [](const Glance& g) { return g.ui.walker == 1; });
-  script.tap(SDLK_b);  // before the first style the last one: the new
+  script.tap(SDLK_b);  // the last style, which is new, precedes the first
   script.wait(2);
   script.tap(SDLK_b);
   script.until("so does another", [](const Glance& g) {
     return style_of(g, 1) == "my walk" && g.session.walkers[1].style.fatigue > 0.5;
   });
-  script.drop(make("x.toml", "fatigue = 0\nhip_sway = 1\n"));  // another session
+  script.drop(make("x.toml", "fatigue = 0\nhip_sway = 1\n"));  // starts another session
   script.until("it is known",
                [](const Glance& g) { return std::ranges::count(g.cast.styles, "my walk") == 1; });
   const WindowResult result = run(script);

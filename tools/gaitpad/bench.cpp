@@ -1,5 +1,5 @@
-// gaitpad bench: how long a tick takes, of one character and of crowds, and its parts, beside bare
-// playback of the same skeleton; and how long a motion takes to load.
+// gaitpad bench: times of a tick of one character and of crowds, of its parts, and of loading a
+// motion, compared with bare playback of the same skeleton.
 #include <CLI/CLI.hpp>
 
 #include "tools/gaitpad/commands.h"
@@ -124,8 +124,8 @@ std::string plot_problem(const std::string& path) {
   return path.ends_with(".png") ? "" : "the picture is a PNG: its name ends with .png";
 }
 
-// A character's time over the size of its crowd, for each width, with bare playback as lines
-// across.
+// A character's time over the size of its crowd, for each width, with bare playback as horizontal
+// lines.
 std::optional<Error> write_plot(const std::string& path, const std::vector<BenchRow>& rows,
                                 const std::string& processor) {
   constexpr std::array kColours = {colour::kBlue, colour::kGreen, colour::kOrange, colour::kPurple};

@@ -1,5 +1,5 @@
-// gaitpad calibrate [PAD]: measures a pad's sticks, guided at the terminal or out of recordings,
-// says what it found and keeps it for play, record and monitor.
+// gaitpad calibrate [PAD]: measures a pad's sticks, guided at the terminal or from recordings,
+// prints the result and stores it for play, record and monitor.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -38,11 +38,11 @@ struct CalibrateArguments {
   bool as_json = false, exports_sdl = false, is_lenient = false;
 };
 
-// --- what was measured, for people and for machines
+// --- the measured values, for people and for machines
 
 constexpr const char* kUnknown = " not known";
 
-// A label, one value or those of x and y, and what they were measured from.
+// A label, one value or those of x and y, and their source.
 void print_row(const char* what, const std::string& value, const std::string& from) {
   say("  {:<18}  {:<20}  {}\n", what, value, from);
 }
@@ -222,7 +222,7 @@ void print_analysis(const DeviceInfo& device, const PadAnalysis& analysis) {
   say("\nPositions and lengths are raw: fractions of half the axis' range, from its middle.\n");
 }
 
-// As interface.md has it, with further keys.
+// The keys of interface.md, and further ones.
 nlohmann::ordered_json analysis_json(const DeviceInfo& device, const PadAnalysis& analysis) {
   nlohmann::ordered_json sticks = nlohmann::ordered_json::object();
   nlohmann::ordered_json triggers = nlohmann::ordered_json::object();
@@ -257,7 +257,7 @@ Result<std::string> import_text(const std::string& source) {
   return text;
 }
 
-// Opens the pad only to ask what it is.
+// Opens the pad only to identify it.
 Result<GuidedPad> live_pad(const PadWish& wish, const PadFiles& files,
                            std::vector<std::string>& remarks) {
   auto sightings = pad_sightings(files, wish, Drivers::preferred);
@@ -300,14 +300,14 @@ int print_or_save(const std::string& target, const CalibrationFile& file,
   return 0;
 }
 
-// Whether the text is a data base: it has Linux lines for different pads.
+// True if the text is a data base: it has Linux lines for different pads.
 bool is_data_base(const std::vector<std::string>& lines) {
   return std::ranges::any_of(lines, [&lines](const std::string& line) {
     return line.substr(0, line.find(',')) != lines.front().substr(0, lines.front().find(','));
   });
 }
 
-// --import of a gamecontrollerdb.txt without a pad: every Linux line goes to the user's own file.
+// --import of a gamecontrollerdb.txt without a pad: stores every Linux line in the user's own file.
 int import_data_base(const std::string& source, const std::vector<std::string>& lines) {
   const std::string target = user_mapping_file();
   const auto count = save_mappings(target, lines);
@@ -318,7 +318,7 @@ int import_data_base(const std::string& source, const std::vector<std::string>& 
   return 0;
 }
 
-// --import, for the pad of the recordings, else for the wished one. Returns the exit status.
+// --import, for the pad of the recordings, else for the requested one. Returns the exit status.
 int import_calibration(const CalibrateArguments& arguments, const PadFiles& files) {
   const std::string origin = arguments.import == "-" ? "standard input" : arguments.import;
   auto given = import_text(arguments.import);
@@ -349,7 +349,7 @@ int import_calibration(const CalibrateArguments& arguments, const PadFiles& file
   return print_or_save(*target, file, {"Imported from " + printable(origin)});
 }
 
-// --export-sdl, the same way.
+// --export-sdl, for the same pad.
 int export_sdl(const CalibrateArguments& arguments, const PadFiles& files) {
   auto pad = named_pad(arguments, files);
   if (!pad) return fail(kCalibrateCommand, pad.error().message);
@@ -373,7 +373,7 @@ struct ComparedFiles {
 #ifdef GAITPAD_HAS_WINDOW
 std::optional<Error> draw(const CalibrateArguments& arguments, const GuidedPad& pad,
                           const PadAnalysis& analysis) {
-  // It is not known when a recording was made.
+  // The date of a recording is unknown.
   const std::string date = arguments.traces.empty() ? ", " + today() : "";
   std::vector<StickPicture> pictures;
   constexpr const char* kTitles[] = {"Left stick", "Right stick"};
@@ -445,7 +445,7 @@ int compare(const CalibrateArguments& arguments) {
   return problem ? fail(kCalibrateCommand, problem->message) : 0;
 }
 
-// A problem that a person should know before the guided steps, not after them.
+// Finds problems before the guided steps instead of after them.
 std::optional<Error> problem_beforehand(const CalibrateArguments& arguments) {
   if (!arguments.check.empty()) {
     const auto file = load_calibration_file(arguments.check);
@@ -453,7 +453,7 @@ std::optional<Error> problem_beforehand(const CalibrateArguments& arguments) {
   }
   if (arguments.out == "-") return std::nullopt;
   if (!arguments.out.empty()) return saving_problem(arguments.out);
-  // It is not known yet which pad it will be.
+  // The pad is not known yet.
   const auto any = calibration_target("", CalibrationFile());
   return any ? saving_problem(std::filesystem::path(*any).replace_filename("*.toml"))
              : std::optional(any.error());
@@ -496,8 +496,8 @@ int check(const CalibrateArguments& arguments, const GuidedPad& pad, const PadAn
   return fail(kCalibrateCommand, "no stick was seen at rest with hands off: nothing to compare");
 }
 
-// Shows what was measured and writes the file. If somebody is at the terminal (`asked` is not
-// null), asks first.
+// Prints the result and writes the file. If `asked` is not null, a user is at the terminal: asks
+// first.
 int keep(const CalibrateArguments& arguments, const PadFiles& files, const GuidedPad& pad,
          const PadAnalysis& analysis, RunEnd* asked) {
   CalibrationFile file = calibration_for(pad.info, pad.has_factory_sticks);
@@ -568,7 +568,7 @@ std::string png_problem([[maybe_unused]] const std::string& path) {
 #endif
 }
 
-// The options of measuring, and of what becomes of the result.
+// Options of measuring and of the result.
 void add_measuring(CLI::App& command, CalibrateArguments& arguments) {
   add_pad_options(command, arguments.wish);
   auto* trace = command.add_option("--trace", arguments.traces,
@@ -595,7 +595,7 @@ void add_measuring(CLI::App& command, CalibrateArguments& arguments) {
                    "skip a recording's damaged lines and count them");
 }
 
-// The options that convert instead of measuring.
+// Options that convert instead of measuring.
 void add_conversions(CLI::App& command, CalibrateArguments& arguments) {
   auto* import = command.add_option("--import", arguments.import,
                                     "takes over a jscal line, evdev's absinfo or an SDL mapping; "

@@ -36,14 +36,14 @@ class GuideScreen {
   bool has_help_ = false;
   std::int64_t shown_ns_ = 0;
   GuideStep shown_step_ = GuideStep::done;
-  // Without a terminal: what was printed last, of each control, then of the plug.
+  // Without a terminal: the last printed line of each control, then of the plug.
   GuideStep printed_step_ = GuideStep::done;
   std::vector<std::string> printed_;
 };
 
 constexpr std::int64_t kGuideRewriteNs = 50'000'000;  // in place
 constexpr std::int64_t kPrintNs = 500'000'000;        // line below line
-constexpr std::size_t kBarWidth = 55;                 // narrower screens have no room for bars
+constexpr std::size_t kBarWidth = 55;                 // a narrower screen has no space for bars
 constexpr int kBarCells = 10;
 
 constexpr const char* kUnplugged = "UNPLUGGED: plug it in again, it goes on from here.";
@@ -174,7 +174,7 @@ Wish obey(char key, CalibrationGuide& guide, GuideScreen& screen) {
   return Wish::go_on;
 }
 
-// Until a pad has come only q counts.
+// Before a pad has come only q has an effect.
 Wish obey_keys(TerminalKeys& keys, CalibrationGuide* guide, GuideScreen& screen) {
   while (const std::optional<char> key = keys.take_key()) {
     if (guide && guide->step() == GuideStep::done) return Wish::go_on;
@@ -184,10 +184,10 @@ Wish obey_keys(TerminalKeys& keys, CalibrationGuide* guide, GuideScreen& screen)
   return keys.is_at_end() ? Wish::give_up : Wish::go_on;
 }
 
-// True: the guide has come to its end. False: the user gave up.
+// True: the guide is finished. False: the user gave up.
 Result<bool> run_guide(GuidedCalibration& calibration, const PadWish& wish, RunEnd& end) {
   GuideScreen screen;
-  TerminalKeys keys;  // destroyed before the stream, whose closing may take long
+  TerminalKeys keys;  // destroyed before the stream, which may take long to close
   MissingPad missing(kCalibrateCommand, wish);
   while (!end.is_reached()) {
     const bool was_there = calibration.guide() != nullptr;
@@ -196,7 +196,7 @@ Result<bool> run_guide(GuidedCalibration& calibration, const PadWish& wish, RunE
     print_remarks(kCalibrateCommand, calibration.take_remarks(), &screen.line());
     missing.look(calibration.plugged(), screen.line());
     if (guide && !was_there) {
-      if (guide->steps().size() <= 1)  // nothing but `done`
+      if (guide->steps().size() <= 1)  // only the step `done`
         return Error{name_of(calibration.pad()) + ": has no stick to calibrate"};
       print_remarks(kCalibrateCommand, driver_remarks(calibration.pad()), &screen.line());
     }

@@ -14,17 +14,17 @@ namespace gaitpad {
 
 inline constexpr const char* kCalibrateCommand = "calibrate";
 
-// Runs the guided steps on the first wished pad that comes. Nothing if the user gave up (q, Ctrl-C,
-// SIGTERM, end of input): then no file must be written. At the end of a recording the steps that
-// are left are skipped. Error: the wish is wrong, or the pad has no stick.
+// Runs the guided steps on the first matching pad. Returns nothing if the user gave up (q, Ctrl-C,
+// SIGTERM, end of input); then no file must be written. The end of a recording skips the remaining
+// steps. Error: `wish` is invalid, or the pad has no stick.
 Result<std::optional<GuidedPad>> guided_pad(const PadFiles& files, const PadWish& wish,
                                             RunEnd& end);
 
-// One remark if the driver may show other values than the pad's own; else empty.
+// A remark if the driver may show other values than the pad sends; else empty.
 std::vector<std::string> driver_remarks(const DeviceInfo& info);
 
-// Asks and waits. True at Enter; false at q, Ctrl-C, SIGTERM and the end of input. Keys that were
-// pressed before the question do not count.
+// Asks and waits. True at Enter; false at q, Ctrl-C, SIGTERM and the end of input. Keys pressed
+// before the question are ignored.
 bool confirmed(const std::string& question, RunEnd& end);
 
 }  // namespace gaitpad

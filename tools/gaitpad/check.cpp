@@ -1,5 +1,5 @@
-// gaitpad check PATH...: recordings with an expectation beside them are replayed and judged. TAP on
-// standard output, JUnit's XML and pictures in files.
+// gaitpad check PATH...: replays and judges recordings that have an expectation beside them. Prints
+// TAP on standard output; writes JUnit's XML and pictures to files.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -28,7 +28,7 @@ constexpr const char* kCheckCommand = "check";
 constexpr int kWrongUsage = 2;  // exit status
 constexpr int kMaxShards = 100'000, kMaxJobs = 1024;
 
-// The part of the recordings that is this run's: every `total`-th, counted from 1.
+// This run's part of the recordings: every `total`-th, from number `index`, counted from 1.
 struct Shard {
   int index = 1, total = 1;
 };
@@ -41,7 +41,7 @@ struct CheckArguments {
   std::optional<double> max_hours;
 };
 
-// `2/8`.
+// Parses `2/8`.
 std::optional<Shard> shard_of(std::string_view text) {
   Shard shard;
   shard.index = parse_number<int>(take_part(text, '/')).value_or(0);
@@ -98,7 +98,7 @@ void print_tap(std::size_t number, const CheckedTrace& trace, const CheckResult&
 
 // --- JUnit
 
-// XML 1.0 allows no control character and nothing that is not UTF-8.
+// XML 1.0 allows only valid UTF-8 without control characters.
 std::string xml_text(std::string_view text) {
   std::string out;
   while (!text.empty()) {
@@ -159,7 +159,7 @@ class JunitReport {
   double seconds_ = 0.0;
 };
 
-// --- the picture of two courses
+// --- the picture of two curves
 
 #ifdef GAITPAD_HAS_WINDOW
 std::optional<Error> draw_curves(const JointCurves& curves, const std::string& title,
@@ -175,7 +175,7 @@ std::optional<Error> draw_curves(const JointCurves&, const std::string&, const s
 std::string joints_plot_problem(const std::string&) { return missing_window(); }
 #endif
 
-// In the folder, below the recording's own folders: `../walks/round` becomes `walks/round.png`.
+// Keeps the recording's own folders inside `folder`: `../walks/round` becomes `walks/round.png`.
 std::string picture_path(const std::string& folder, const CheckedTrace& trace) {
   std::filesystem::path place = folder;
   for (const std::filesystem::path& part : std::filesystem::path(trace.path).lexically_normal()) {
@@ -186,7 +186,7 @@ std::string picture_path(const std::string& folder, const CheckedTrace& trace) {
 
 // --- the command
 
-// The last words, so that they are seen. Returns the exit status.
+// Printed last, so that it is seen. Returns the exit status.
 int tell_of_left_out(const CheckArguments& arguments, const std::vector<std::string>& without) {
   if (without.empty()) return 0;
   std::string text = fmt::format("recordings without an expectation, left out: {}", without.size());

@@ -1,6 +1,6 @@
 // The sub-commands of gaitpad. Each function adds its command to `app`. The chosen command runs
-// while the arguments are parsed and sets `status`, the exit status: 0 done, 1 failed. Wrong usage,
-// 2, is main's.
+// while the arguments are parsed and sets `status`, the exit status: 0 done, 1 failed. main handles
+// wrong usage, 2.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <optional>
@@ -29,7 +29,7 @@ void add_list(CLI::App& app, int& status);
 void add_map(CLI::App& app, int& status);
 void add_check(CLI::App& app, int& status);
 
-// What shells and packages ask for, from the commands that `app` has; no help lists them.
+// For shells and packages, from the commands of `app`; no help lists them.
 void print_completions(const CLI::App& app, std::vector<std::string> words);
 std::optional<Error> write_manual(const CLI::App& app, const std::string& folder);
 

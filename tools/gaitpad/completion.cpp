@@ -1,7 +1,7 @@
-// What may follow on the command line, for the completions of bash, zsh and fish
-// (tools/package/completions): `gaitpad __complete WORD... PREFIX`, the words behind `gaitpad`.
-// Prints a candidate a line, with a tab and its description, and `:files` or `:folders` where the
-// shell is to add those. Commands and options come from the commands themselves.
+// Completions of the command line for bash, zsh and fish (tools/package/completions): `gaitpad
+// __complete WORD... PREFIX`, with the words after `gaitpad`. Prints a candidate a line, with a tab
+// and its description, and `:files` or `:folders` if the shell should add those. Commands and
+// options come from the commands themselves.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -37,12 +37,12 @@ class Candidates {
   }
 
  private:
-  std::string prefix_, lead_;  // `lead_` stands before what is completed: `--style=`
+  std::string prefix_, lead_;  // `lead_` precedes the completed part: `--style=`
   std::set<std::string> seen_;
   Words lines_;
 };
 
-// Files of the configuration that options take by name, by the folder that they stand in.
+// Files of configuration that options take by name, with their folders.
 constexpr std::pair<std::string_view, const char*> kNamed[] = {{"--style", "styles"},
                                                                {"--character", "characters"},
                                                                {"--terrain", "terrain"},
@@ -61,7 +61,7 @@ void add_pads(Candidates& candidates) {
   }
 }
 
-// A set of values stands in the type's name: `TEXT:{own,adult}`.
+// The type's name contains a set of values: `TEXT:{own,adult}`.
 bool add_set(const CLI::Option& option, Candidates& candidates) {
   const std::string type = option.get_type_name();
   const std::size_t begin = type.find('{'), end = type.find('}');
@@ -71,7 +71,7 @@ bool add_set(const CLI::Option& option, Candidates& candidates) {
   return true;
 }
 
-// A positional's kind is told by its description.
+// True if the option is a positional whose description contains `what`.
 bool is_about(const CLI::Option& option, std::string_view what) {
   return option.get_positional() && option.get_description().find(what) != std::string::npos;
 }
@@ -100,7 +100,7 @@ const CLI::Option* option_named(const CLI::App& command, const std::string& word
   return nullptr;
 }
 
-// The one that the next word behind these belongs to; null: no further one is taken.
+// The positional that the next word belongs to; null: none is left.
 const CLI::Option* next_positional(const CLI::App& command, const Words& words) {
   int count = 0;
   for (std::size_t i = 0; i < words.size(); ++i) {
@@ -138,7 +138,7 @@ void add_commands(const CLI::App& app, Candidates& candidates) {
 
 void print_completions(const CLI::App& app, Words words) {
   if (words.empty()) words.emplace_back();
-  // bash takes `--style=limp` apart.
+  // bash splits `--style=limp`.
   std::string prefix = words.back(), lead;
   words.pop_back();
   if (prefix == "=") prefix.clear();

@@ -1,5 +1,5 @@
-// gaitpad decode: what report descriptors say, and what each report says by them, from a trace or
-// from a device as it is used.
+// gaitpad decode: prints report descriptors and the values of each report, from a trace or from a
+// live device.
 #include "gaitpad/decode.h"
 
 #include <fmt/format.h>
@@ -27,7 +27,7 @@ namespace {
 
 enum class OutputForm { text, json };
 
-// A device with what decoding needs. The state is that after its last report.
+// A device with everything that decoding needs. `state` is that after its last report.
 struct DecodedDevice {
   TraceDevice source;
   PadLayout layout;
@@ -72,15 +72,14 @@ ordered_json descriptor_json(const DecodedDevice& device) {
           {"fields", std::move(fields)}};
 }
 
-// Neighbouring fields that differ only in their place are one row.
+// Neighbouring fields that differ only in their position form one row.
 bool continues(const Field& a, const Field& b) {
   return a.kind == b.kind && a.report_id == b.report_id && a.usage == b.usage &&
          a.bit_size == b.bit_size && a.logical_min == b.logical_min &&
          a.logical_max == b.logical_max && a.is_array == b.is_array;
 }
 
-// By usage: of a usage that occurs several times the first field, of an array 1 for each usage that
-// it names.
+// Values by usage: of a repeated usage the first field; of an array 1 for each usage that it names.
 ordered_json values_json(const ReportDescriptor& descriptor, const Report& report,
                          std::uint8_t id) {
   ordered_json values = ordered_json::object();
@@ -174,7 +173,7 @@ void print_descriptor(const DecodedDevice& device, OutputForm form) {
   }
 }
 
-// Decodes the report, too. False: the device cannot send such a report.
+// Also decodes the report. False: the device cannot send this report.
 bool print_report(DecodedDevice& device, const Report& report, OutputForm form) {
   const bool is_good = decode(device.layout, report, device.state);
   if (form == OutputForm::json) {
@@ -211,7 +210,7 @@ Result<std::vector<DecodedDevice>> devices_of(const Trace& trace, const PadOverr
   return devices;
 }
 
-// A report counts as good where the device's descriptor, or what replaces it, can hold it.
+// A report is good if the device's descriptor, or its replacement, can hold it.
 void print_reports(const DecodeArguments& arguments, const Trace& trace,
                    std::vector<DecodedDevice>& devices) {
   long bad = 0;
@@ -225,7 +224,7 @@ void print_reports(const DecodeArguments& arguments, const Trace& trace,
     print_remarks("decode", {fmt::format("{} reports are too short or have an unknown id", bad)});
 }
 
-// Anything that exists and is not a device, and anything that looks like a path.
+// True for anything that exists and is not a device, and for anything that looks like a path.
 bool is_trace(const std::string& source) {
   std::error_code ignored;
   for (const char* nodes : {"/dev/hidraw", "/dev/input/", "/dev/bus/"}) {
@@ -248,7 +247,7 @@ int run_trace(const DecodeArguments& arguments, const PadOverrides& overrides) {
   return 0;
 }
 
-// A device with that node, pad or not; else the one that play would choose.
+// A device with that node, pad or not; else the device that play would choose.
 Result<PadSighting> sighting_of(const PadFiles& files, const PadWish& wish) {
   auto sightings = pad_sightings(files, wish, Drivers::preferred);
   if (!sightings) return sightings.error();
@@ -263,11 +262,11 @@ Result<PadSighting> sighting_of(const PadFiles& files, const PadWish& wish) {
   const auto wished = wished_pads(*sightings, wish);
   const bool is_told = wished && !wished->empty() && !wished->front().problem.empty();
   if (is_told)
-    return wished->front();  // opening it says why not, and its descriptor may be readable
+    return wished->front();  // opening it gives the reason, and its descriptor may be readable
   return Error{fmt::format("{}: no driver sees such a device; gaitpad pads lists them", wish.pad)};
 }
 
-// Reports as they come, their time counted from the first one. Returns when the device is gone.
+// Prints reports as they arrive, with times since the first one. Returns when the device is gone.
 void print_live(Device& device, DecodedDevice& decoded, OutputForm form, RunEnd& end) {
   std::optional<std::int64_t> start_ns;
   Report report;
@@ -284,12 +283,12 @@ void print_live(Device& device, DecodedDevice& decoded, OutputForm form, RunEnd&
       print_report(decoded, report, form);
       continue;
     }
-    if (std::fflush(stdout) != 0) return;  // main says so
+    if (std::fflush(stdout) != 0) return;  // main reports it
     end.wait(std::chrono::milliseconds(200), device.poll_fds());
   }
 }
 
-// Decoded as a recording of it would be.
+// Decoded like a recording of the device.
 Result<DecodedDevice> decoded_device(const DeviceInfo& info, const PadFiles& files) {
   std::vector<std::string> ignored;  // of calibrations, which decoding does not use
   TraceDevice recorded = recorded_device(files, info, std::nullopt, ignored).device;
@@ -303,7 +302,7 @@ int run_live(const DecodeArguments& arguments, const PadFiles& files) {
   const auto sighting = sighting_of(files, arguments.wish);
   if (!sighting) return fail("decode", sighting.error().message);
   std::unique_ptr<Device> device;
-  // The system shows most descriptors even to users who may not open the device.
+  // The system shows most descriptors even to users without access to the device.
   if (!arguments.descriptor_only || sighting->listing.info.descriptor.empty()) {
     auto opened = sighting->driver->open(sighting->listing, detach_asked(arguments.wish));
     if (!opened) return fail("decode", opened.error().message);

@@ -1,4 +1,4 @@
-// gaitpad doctor: why a pad does not work, and the command that mends it.
+// gaitpad doctor: finds why a pad does not work, and the command that fixes it.
 #include <algorithm>
 #include <memory>
 #include <nlohmann/json.hpp>

@@ -1,4 +1,4 @@
-// gaitpad figures: the paper's figures and claims out of the running code.
+// gaitpad figures: the paper's figures and claims, computed by the running code.
 #include <CLI/CLI.hpp>
 
 #include "tools/gaitpad/commands.h"

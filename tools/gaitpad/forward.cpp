@@ -1,8 +1,8 @@
-// gaitpad forward [PAD]: the calibrated pad in place of the real one, for every other program.
+// gaitpad forward [PAD]: gives other programs the calibrated pad instead of the real one.
 //
-// One thread that sleeps in poll() over the pad's event node, the virtual pad, udev's monitor and
-// the signals. A timer runs only while the calibration filters jumps, or while a pad that is there
-// cannot be taken.
+// One thread sleeps in poll() on the pad's event node, the virtual pad, udev's monitor and the
+// signals. A timer runs only while the calibration filters jumps, or while a present pad cannot be
+// grabbed.
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 #include <unistd.h>
@@ -50,13 +50,13 @@ class Forward {
         stand_in_({.look = arguments.as.empty() ? StandIn::Look::own : StandIn::Look::xbox_360,
                    .files = std::move(files)}) {}
 
-  // Until a signal ends it. Error: no pad could be looked for.
+  // Runs until a signal ends it. Error: the search for pads failed.
   std::optional<Error> run(RunEnd& end, HotplugMonitor& changes);
 
  private:
   enum class Found { nothing, taken, refused };
   Result<Found> look_for_the_pad();
-  // A sentence that a retry brings again is told once.
+  // Prints a sentence once, though a retry repeats it.
   void tell(const std::string& sentence) {
     if (told_.insert(sentence).second) print_remarks(kForward, {sentence});
   }
@@ -65,10 +65,10 @@ class Forward {
   const PadFiles files_;
   StandIn stand_in_;
   std::set<std::string> told_;
-  bool is_first_look_ = true;  // a name that fits several pads is then a wrong usage
+  bool is_first_look_ = true;  // then a name that matches several pads is an error
 };
 
-// The first that fits and can be taken.
+// Takes the first pad that matches and can be grabbed.
 Result<Forward::Found> Forward::look_for_the_pad() {
   const auto sightings = pad_sightings(files_, wish_, Drivers::preferred);
   if (!sightings) return sightings.error();
@@ -127,9 +127,9 @@ std::optional<Error> Forward::run(RunEnd& end, HotplugMonitor& changes) {
   }
 }
 
-// --- as a service of the user's
+// --- as a user's service
 
-// A word of ExecStart= in systemd's quotes.
+// A word of ExecStart=, quoted for systemd.
 std::string unit_word(const std::string& word) {
   std::string text = "\"";
   for (const char c : word) {

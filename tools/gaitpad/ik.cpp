@@ -96,7 +96,7 @@ void print_csv(const Task& task, const IkTrace& trace) {
   std::fputs(text.c_str(), stdout);
 }
 
-// The paper's method bounds neither an angle nor a step: says where an angle left the circle.
+// The paper's method limits neither angles nor steps: says which angle exceeded a full turn.
 std::string wild_turn(const Task& task, const IkTrace& trace, const IkAngles& end_rad) {
   constexpr double kTurn_rad = 6.283185307179586;
   int joint = 0, iteration = 1;

@@ -7,8 +7,8 @@
 
 namespace gaitpad {
 
-// Prints the text, asks unless the user has agreed already, replaces the target in one step and
-// makes udev apply it. The exit status. `as_root`: the command that the user has to give as root.
+// Prints the text, asks unless the user has already agreed, replaces the target atomically and
+// makes udev apply it. Returns the exit status. `as_root`: the command for the user to run as root.
 int install_rules(std::string_view command, const RulesTarget& target, const std::string& text,
                   bool is_agreed, const std::string& as_root);
 

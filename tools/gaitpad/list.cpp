@@ -1,4 +1,4 @@
-// gaitpad list: what can be named: styles, characters, terrains, motions, pads, recordings.
+// gaitpad list: names for options: styles, characters, terrains, motions, pads, recordings.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -32,7 +32,7 @@ struct Entry {
   std::string name, path, summary;
 };
 
-// Recordings are called by their path, all others by their name.
+// Recordings are listed by their path, all others by their name.
 std::vector<Entry> entries_of(const Kind& kind, const std::vector<std::string>& folders) {
   std::vector<Entry> entries;
   for (const std::string& path : config_files(folders, std::string(kind.folder), kind.ending)) {

@@ -1,4 +1,4 @@
-// gaitpad: one program with sub-commands. It parses; the commands do the rest.
+// gaitpad: one program with sub-commands. main() parses; the commands do the work.
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -27,9 +27,9 @@ namespace {
 
 constexpr int kFailed = 1, kWrongUsage = 2;
 
-// If the caller closed a standard descriptor, its number would go to a pad or a recording, and
-// output for the terminal would be written there. So it is opened here, in the wrong direction:
-// using it fails as on a closed one.
+// If the caller closed a standard descriptor, a pad or a recording would get its number, and output
+// for the terminal would be written there. Open it here in the wrong direction, so that using it
+// fails as on a closed one.
 void hold_standard_descriptors() {
   for (int fd = 0; fd <= 2; ++fd) {
     if (::fcntl(fd, F_GETFD) < 0)
@@ -66,7 +66,7 @@ constexpr Example kExamples[] = {
     {"list", "gaitpad list\ngaitpad list styles\n"},
 };
 
-// Below each command's own words: examples.
+// Appends examples to each command's footer.
 void add_examples(CLI::App& app) {
   for (const Example& example : kExamples) {
     CLI::App* command = app.get_subcommand(example.command);
@@ -86,8 +86,8 @@ std::vector<std::string> command_names(const CLI::App& app) {
   return names;
 }
 
-// `gaitpad help [COMMAND]` as `gaitpad [COMMAND] --help`; `gaitpad` alone likewise. Help on an
-// unknown command is that unknown command.
+// Treats `gaitpad help [COMMAND]` as `gaitpad [COMMAND] --help`, and `gaitpad` alone as `gaitpad
+// --help`. An unknown command gives the usual error.
 std::vector<std::string> arguments_of(const CLI::App& app, int argc, char** argv) {
   std::vector<std::string> words(argv + std::min(argc, 1), argv + argc);
   if (words.empty()) return {"--help"};
@@ -98,8 +98,8 @@ std::vector<std::string> arguments_of(const CLI::App& app, int argc, char** argv
   return words;
 }
 
-// What nothing expects: an unknown command, else the first unknown option, else the first word too
-// many. With what may have been meant.
+// Names the unknown command, else the first unknown option, else the first unexpected word, and
+// suggests a similar name.
 std::string unexpected(const CLI::App& app) {
   const auto chosen = app.get_subcommands();
   const std::vector<std::string> words = app.remaining(true);
@@ -124,8 +124,8 @@ std::string unexpected(const CLI::App& app) {
                      gaitpad::suggestion(word, known));
 }
 
-// `gaitpad __complete WORD...` and `gaitpad __manual FOLDER`, for completions and packages. The
-// exit status; nothing where the arguments are others.
+// Handles `gaitpad __complete WORD...` and `gaitpad __manual FOLDER`, for completions and packages.
+// Returns the exit status; nothing if the arguments are others.
 std::optional<int> answer_shell(const CLI::App& app, int argc, char** argv) {
   const std::string_view asked = argc > 1 ? argv[1] : "";
   if (asked == "__complete") {
@@ -137,7 +137,8 @@ std::optional<int> answer_shell(const CLI::App& app, int argc, char** argv) {
   return problem ? gaitpad::fail("__manual", problem->message) : 0;
 }
 
-// Help and version on standard output, a wrong usage on standard error. It may quote any argument.
+// Prints help and version on standard output, wrong usage on standard error. It may quote
+// arguments.
 int tell(const CLI::App& app, const CLI::ParseError& error) {
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
     gaitpad::warn(unexpected(app) + "\nRun with --help for more information.\n");
@@ -159,7 +160,7 @@ int main(int argc, char** argv) {
   CLI::App app("A physical gamepad walks a motion-captured character.", "gaitpad");
   app.set_version_flag("--version", "gaitpad " GAITPAD_VERSION);
   hold_standard_descriptors();
-  std::signal(SIGXFSZ, SIG_IGN);  // a file that is too large is a failed write like any other
+  std::signal(SIGXFSZ, SIG_IGN);  // writing beyond the size limit is an ordinary write error
   int status = 0;
   bool is_written = true;
   gaitpad::add_play(app, status);
@@ -180,7 +181,7 @@ int main(int argc, char** argv) {
   gaitpad::add_list(app, status);
   gaitpad::add_map(app, status);
   add_examples(app);
-  // Last: commands would inherit it.
+  // Set last: commands added later would inherit it.
   app.footer(
       "gaitpad help COMMAND says more. Exit status: 0 done, 1 failed, 2 wrong usage, 128 and the\n"
       "signal's number for work that Ctrl-C cut off.\n"
@@ -194,7 +195,7 @@ int main(int argc, char** argv) {
     gaitpad::warn(fmt::format("gaitpad: {}\n", problem));
     return kFailed;
   }
-  std::ranges::reverse(words);  // as CLI11 wants them
+  std::ranges::reverse(words);  // CLI11 expects them reversed
   try {
     if (const auto answered = answer_shell(app, argc, argv)) return *answered;
     app.parse(std::move(words));
@@ -204,7 +205,7 @@ int main(int argc, char** argv) {
     } catch (const std::system_error&) {
       is_written = false;
     }
-  } catch (const std::system_error& error) {  // fmt::print on a full disk
+  } catch (const std::system_error& error) {  // for example fmt::print on a full disk
     if (error.code() == std::errc::resource_unavailable_try_again) {
       gaitpad::warn(fmt::format("gaitpad: no thread can be started: {}\n", error.code().message()));
       return kFailed;

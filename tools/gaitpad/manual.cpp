@@ -1,4 +1,4 @@
-// The manual pages, from the same texts as --help: `gaitpad __manual FOLDER` writes gaitpad.1 and a
+// The manual pages, from the texts of --help: `gaitpad __manual FOLDER` writes gaitpad.1, and
 // gaitpad-COMMAND.1 for each command.
 #include <fmt/format.h>
 
@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::string_view kExamples = "Examples:";
 
-// Text for troff: a backslash and a hyphen stand for themselves, and no line is a request.
+// Escapes text for troff: backslashes and hyphens are literal, and no line is a request.
 std::string roff(std::string_view text) {
   std::string out;
   for (std::size_t i = 0; i < text.size(); ++i) {
@@ -55,7 +55,7 @@ std::vector<const CLI::App*> commands_of(const CLI::App& app) {
   return commands;
 }
 
-// `-j,--jobs INT:INT in [1 - 1024]`, as --help has it: names bold, the type in italics.
+// `-j,--jobs INT:INT in [1 - 1024]` as in --help: names bold, the type in italics.
 std::string option_heading(const CLI::Option& option) {
   std::string names;
   if (option.get_positional()) {
@@ -98,7 +98,7 @@ std::string synopsis(const CLI::App& app) {
   return text + " [\\fIOPTION\\fR]...";
 }
 
-// What stands in the footer before its examples, and the examples, a command a line.
+// The footer's text before its examples, and the examples, one command a line.
 std::pair<std::string, std::string> footer_parts(const CLI::App& app) {
   const std::string footer = app.get_footer();
   const std::size_t at = footer.find(kExamples);

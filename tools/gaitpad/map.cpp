@@ -1,5 +1,5 @@
-// gaitpad map [PAD]: "push the left stick forward". Finds which field of a pad is which control,
-// and keeps that for this pad as a line of SDL's, which games read too.
+// gaitpad map [PAD]: "push the left stick forward". Finds the field of each control, and stores the
+// result for this pad as an SDL mapping, which games also read.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
@@ -18,14 +18,14 @@ namespace {
 constexpr const char* kMapCommand = "map";
 constexpr std::chrono::milliseconds kMapWait{20};
 
-// Asks for one control after the other, until all were asked for or the recording is over. False:
-// the person gave up.
+// Asks for one control after the other until all are done or the recording ends. False: the user
+// gave up.
 bool ask(PadMapping& mapping, const PadWish& wish, RunEnd& end) {
   InputLines input;
   StatusLine line(2);
   MissingPad missing(kMapCommand, wish);
   bool is_pad_told = false;
-  const char* told = nullptr;  // the prompt
+  const char* told = nullptr;  // the prompt that was printed last
   std::size_t found = 0;
   while (!mapping.is_done() && !mapping.has_ended() && !end.is_reached()) {
     mapping.look(kMapWait);

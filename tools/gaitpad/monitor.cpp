@@ -29,7 +29,7 @@ std::string pad_name(const DeviceInfo& info) {
                      info.driver.empty() ? "recording" : info.driver);
 }
 
-// Whose calibration is in force: `PAD (DRIVER): calibration "NAME"`.
+// The calibration in force: `PAD (DRIVER): calibration "NAME"`.
 std::string calibration_remark(const TraceDevice& device) {
   const auto file = parse_calibration(device.calibration, "");
   const std::string name = file ? printable(file->name) : "";
@@ -37,7 +37,7 @@ std::string calibration_remark(const TraceDevice& device) {
                      name.empty() ? "without a name" : name);
 }
 
-// While a stick moved, since the pad was plugged in.
+// Rates while a stick moved, since the pad was plugged in.
 ordered_json movement_json(const NewValueCount& new_values) {
   const auto rate = new_values.rate();
   if (!rate) return nullptr;
@@ -76,7 +76,7 @@ ordered_json pad_json(std::uint16_t index, const MonitoredPad& pad, const PadStr
           {"battery", battery_json(pad.battery)}};
 }
 
-// What a pad shows: one line, or three where the terminal is too narrow for it.
+// The text for a pad: one line, or three if the terminal is too narrow.
 struct PadLine {
   std::string sticks, times, who;
 };
@@ -97,7 +97,7 @@ std::string frame_text(const ReportWindow& window, std::size_t percent) {
   return fmt::format("{:.1f}", percentile(window.frame_us, percent) / 1e3);
 }
 
-// New positions a second while a stick moved, and the share of reports that repeat one.
+// New positions per second while a stick moved, and the share of repeated reports.
 std::string movement_text(const NewValueCount& new_values) {
   const auto rate = new_values.rate();
   if (!rate) return fmt::format("{:>5} {:>5}", "-", "-");
@@ -159,7 +159,7 @@ class Display {
     note_shown(pads);
   }
 
-  // Prints the last second, which is shorter.
+  // Prints the last, incomplete second.
   void finish(MonitoredPads& pads, const PadStream& stream) {
     const auto is_news = [](const auto& entry) { return entry.second.running.reports > 0; };
     const std::int64_t time_ns = now_ns();
@@ -223,7 +223,7 @@ int run(const MonitorArguments& arguments) {
                     &display.line());
     }
     display.show(pads, **stream);
-    if (std::fflush(stdout) != 0) break;  // main says so
+    if (std::fflush(stdout) != 0) break;  // main reports it
   }
   display.finish(pads, **stream);
   missing.finish((*stream)->counts().plugged, display.line());

@@ -1,4 +1,4 @@
-// gaitpad motion: what a motion file holds.
+// gaitpad motion: prints the contents of a motion file.
 #include "gaitpad/motion.h"
 
 #include <fmt/format.h>
@@ -29,7 +29,7 @@ struct MotionArguments {
   LoadOptions load;
 };
 
-// Joints as an export has them: End Sites only if they serve as toes.
+// Joint names as in an export: End Sites only if they serve as toes.
 std::vector<std::string> joint_names(const Motion& motion) {
   std::vector<std::string> names;
   const auto& joints = motion.skeleton.joints;
@@ -63,7 +63,7 @@ ordered_json paper_json(const std::optional<Swing>& swing) {
   return {{"lift_frame", swing->lift}, {"peak_frame", swing->peak}, {"land_frame", swing->land}};
 }
 
-// The stride that is walked.
+// The stride that the walk uses.
 ordered_json gait_json(const Result<GaitCycle>& cycle) {
   if (!cycle) return nullptr;
   const auto stick = own_stick(*cycle);
@@ -83,7 +83,7 @@ ordered_json motion_json(const Motion& motion, const Result<GaitCycle>& cycle) {
   out["frame_rate_hz"] = 1.0 / motion.frame_time_s;
   out["frames"] = motion.frames.size();
   out["joints"] = joint_names(motion);
-  // Feet that go nowhere do not fly.
+  // In a motion on the spot the feet have no flight.
   const bool stays = !cycle && cycle.error().message.find("walks on the spot") != std::string::npos;
   for (const Side side : {kLeftSide, kRightSide}) {
     const char* name = kSideNames[side];
@@ -96,7 +96,7 @@ ordered_json motion_json(const Motion& motion, const Result<GaitCycle>& cycle) {
   return out;
 }
 
-// A frame of the file. In a loop a swing may go on in the next round.
+// A frame of the file. In a loop a swing may continue in the next round.
 std::string frame_text(int frame, std::size_t frames) {
   const int last = static_cast<int>(frames) - 1;
   return frame <= last ? fmt::format("{}", frame)
@@ -109,8 +109,7 @@ std::string flight_text(const std::optional<Swing>& swing, std::size_t frames) {
                      frame_text(swing->peak, frames), frame_text(swing->land, frames));
 }
 
-// The swing that begins in the stride that is walked; the most typical one where there is no
-// stride.
+// The swing that begins in the walk's stride; without a stride the most typical swing.
 std::optional<Swing> walked_flight(const Motion& motion, Side side,
                                    const Result<GaitCycle>& cycle) {
   if (!cycle) return robust_flight(motion, side);
@@ -129,7 +128,7 @@ std::string stick_text(const GaitCycle& cycle) {
 
 std::string gait_text(const Result<GaitCycle>& cycle) {
   if (!cycle) return "none, " + cycle.error().message;
-  // A turn that rounds to 0 has no sign.
+  // + 0.0: a turn that rounds to 0 has no sign.
   const double turn_deg = std::round(10.0 * cycle->turn_rad / kDegree) / 10.0 + 0.0;
   return fmt::format(
       "{:.1f} frames from frame {:.1f} on: {:.2f} s, steps {:.2f} m left and {:.2f} m right, "

@@ -17,7 +17,7 @@ namespace {
 constexpr double kLeastSeconds = 0.001, kMostSeconds = 1e6;
 constexpr std::int64_t kPatienceNs = 2'500'000'000;  // opening a pad may take two seconds
 
-// Drivers without a library are left out: a recording is named by PAD.
+// Leaves out drivers without a library: a recording is chosen by PAD.
 std::vector<std::string> driver_names() {
   std::vector<std::string> names;
   for (const DriverEntry& entry : drivers()) {
@@ -26,7 +26,7 @@ std::vector<std::string> driver_names() {
   return names;
 }
 
-// Asks the system: the drivers are in use by another thread.
+// Asks the system, because another thread uses the drivers.
 std::vector<std::string> pads_of_system() {
   std::vector<std::string> pads;
   for (const SystemNode& node : system_nodes("input")) {
@@ -126,7 +126,7 @@ void add_session_options(CLI::App& command, SessionSpec& spec, const std::string
                      "motion, FILE|NAME (.bvh, .amc, .toml); without it the built-in walk");
   add_pace_option(command, walk.pace);
   command.add_option("--character", walk.characters, "a build, FILE|NAME; once for each character")
-      ->allow_extra_args(false)  // the word after the next may be PAD
+      ->allow_extra_args(false)  // the next word but one may be PAD
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command
       .add_option("--style", walk.styles,

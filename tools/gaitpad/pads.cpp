@@ -1,4 +1,4 @@
-// gaitpad pads: every device that every driver sees, and which of them play would take.
+// gaitpad pads: lists every device that a driver sees, and which of them play would take.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -52,7 +52,7 @@ std::string bus_name(BusType bus) {
   return fmt::format("{:04x}", static_cast<unsigned>(bus));
 }
 
-// Of the application collections: `0001:0005`. Empty if the descriptor is not known yet.
+// Usages of the application collections: `0001:0005`. Empty if the descriptor is not known yet.
 std::vector<std::string> usages_of(const DeviceInfo& info) {
   std::vector<std::string> usages;
   const auto descriptor = parse_descriptor(info.descriptor);
@@ -103,7 +103,7 @@ ordered_json row_json(const PadRow& row) {
   return object;
 }
 
-// Drivers that this program was built without, each with its problem.
+// Drivers that this build lacks, each with its problem.
 std::vector<std::pair<std::string, std::string>> missing_drivers(const PadWish& wish) {
   std::vector<std::pair<std::string, std::string>> missing;
   for (const DriverEntry& entry : drivers()) {

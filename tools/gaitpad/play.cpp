@@ -26,7 +26,7 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr const char* kPlayCommand = "play";
-constexpr std::chrono::milliseconds kLook{50};  // between looks at a session without a window
+constexpr std::chrono::milliseconds kLook{50};  // between two looks at a session without a window
 
 struct PlayArguments {
   SessionSpec spec;
@@ -47,7 +47,7 @@ std::string status_text(const LiveStatus& status, const SessionFrame& frame, int
       status.wait_us_median, status.overruns);
 }
 
-// A row for each input report: when it came, and when the tick began that used it.
+// Writes a row for each input report: its arrival, and the begin of the tick that used it.
 class ReportTimes {
  public:
   explicit ReportTimes(const std::string& path)
@@ -68,7 +68,7 @@ class ReportTimes {
   std::unique_ptr<std::FILE, Close> file_;
 };
 
-// Until the recording ends, or the user ends it.
+// Runs until the recording or the user ends it.
 void walk_without_window(const PlayArguments& arguments, RunEnd& end, LiveSession& session,
                          ReportTimes& times) {
   StatusLine line(2);
@@ -127,7 +127,7 @@ void add_status(const LiveStatus& status, ordered_json& summary) {
   summary["streamed"] = status.streamed;
 }
 
-// Failed if the pad that was asked for never came, or a command was none.
+// 1 if the requested pad never came or a command was invalid.
 int status_of(const PlayArguments& arguments, const LiveStatus& status, const RunSummary& run) {
   const bool is_alone = is_choosy(arguments.spec.pad.wish) && status.pads.plugged == 0;
   const std::int64_t wrong = run.bad_commands + status.pads.commands_left_out;
@@ -166,7 +166,7 @@ int run_without_window(const PlayArguments& arguments) {
   return status_of(arguments, status, *run);
 }
 
-// Pictures of a recording show its exact course, not how it would be played by the clock.
+// Pictures of a recording show its exact walk, independent of the clock.
 bool is_playback(const PlayArguments& arguments) {
   return makes_pictures(arguments.window) && is_recording(arguments.spec.pad.wish.pad);
 }
@@ -192,10 +192,10 @@ WindowOptions options_of_window(const PlayArguments& arguments, InputLines& inpu
   return options;
 }
 
-// Before main(), once the libraries are loaded: where the time to the first frame begins.
+// Initialised before main(), after the libraries are loaded: start of the time to the first frame.
 const std::int64_t kStarted_ns = now_ns();
 
-// Of a playback in the window only these keys are known.
+// The keys that are known for a playback in the window.
 ordered_json playback_json(const RunSummary& run, std::size_t walker) {
   return {{"ticks", run.ticks},
           {"rate_hz", run.rate_hz},

@@ -1,5 +1,4 @@
-// What commands print: sentences for people on standard error, JSON and texts of devices on
-// standard output.
+// Output of commands: sentences on standard error, JSON and texts of devices on standard output.
 #pragma once
 #include <fmt/format.h>
 
@@ -20,32 +19,32 @@
 
 namespace gaitpad {
 
-// Prints text for people. On a terminal its lines are broken to the width (fitted()); in a pipe and
-// in a file they stay whole. Throws std::system_error if the file cannot be written.
+// Prints text for people. On a terminal its lines are broken to the width (fitted()); in a pipe or
+// a file they stay whole. Throws std::system_error if the file cannot be written.
 void say(std::FILE* file, std::string_view text);
 template <class... T>
 void say(fmt::format_string<T...> format, T&&... values) {
   say(stdout, fmt::format(format, std::forward<T>(values)...));
 }
 
-// Columns as wide as their widest text, two blanks apart; the rows have equally many.
+// Columns as wide as their widest text, two blanks apart; all rows have the same number of columns.
 using TableRow = std::vector<std::string>;
 void print_table(const std::vector<TableRow>& table);
 
-// Prints a text on standard error; one that nobody can read is no failure.
+// Prints a text on standard error; ignores write errors.
 void warn(std::string_view text);
 // Prints `gaitpad COMMAND: SENTENCE` on standard error and returns the exit status 1.
 int fail(std::string_view command, const std::string& sentence);
-// The same for each remark, and no exit status. Each sentence is made printable(): it may quote
-// names of devices and files. A status line that is being shown is cleared first.
+// The same for each remark, without an exit status. Each sentence is made printable(), because it
+// may quote names of devices and files. Clears `line` first.
 void print_remarks(std::string_view command, const std::vector<std::string>& remarks,
                    StatusLine* line = nullptr);
 
-// JSON on one line, and indented. Texts of devices may hold any bytes: what is not UTF-8 is
-// replaced, and what is not ASCII is escaped, so that no text commands a terminal.
+// Prints JSON on one line, or indented. Texts of devices may hold any bytes: invalid UTF-8 is
+// replaced and non-ASCII is escaped, so that no text can control the terminal.
 void print_json_line(const nlohmann::ordered_json& object);
 void print_json(const nlohmann::ordered_json& value);
-// One object for one character, else a list.
+// Prints one object for one character, else a list.
 void print_summaries_json(const std::vector<nlohmann::ordered_json>& summaries);
 
 std::vector<std::string> button_names(const PadState& state);
@@ -53,11 +52,11 @@ nlohmann::ordered_json axes_json(const PadState& state);
 
 // `SOURCE: 120 reports, 480 ticks ...`
 void print_session(const std::string& source, const RunSummary& run);
-// What one character did. The way that it walked is printed for replays alone.
+// Results of one character. The style in which it walked is printed only for replays.
 enum class Way { shown, left_out };
 void print_character(const RunSummary& run, std::size_t walker, Way way);
 
-// Null if the pad tells nothing of its battery.
+// Null if the pad does not report its battery.
 nlohmann::ordered_json battery_json(const std::optional<Battery>& battery);
 
 }  // namespace gaitpad

@@ -1,4 +1,5 @@
-// gaitpad record [PAD] --out FILE.hid: one device's reports, and its unplugging, as a trace.
+// gaitpad record [PAD] --out FILE.hid: records one device's reports and its unplugging into a
+// trace.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -23,7 +24,7 @@ struct RecordArguments {
   bool as_json = false;
 };
 
-// What was recorded. The device is the first that came.
+// Result of the recording. The device is the first that came.
 struct Recorded {
   std::uint16_t device = kNoDevice;
   std::int64_t reports = 0, unplugged = 0;
@@ -95,7 +96,7 @@ int run(const RecordArguments& arguments) {
   RunEnd end;
   auto files = pad_files(arguments.map, arguments.calibration);
   if (!files) return fail("record", files.error().message);
-  // The stream outlives the recording, which asks it for its devices.
+  // The stream outlives the recording, which asks the stream for its devices.
   PadStreamOptions options{std::move(*files), arguments.wish};
   options.is_raw = true;
   auto stream = PadStream::start(std::move(options));

@@ -1,5 +1,5 @@
-// gaitpad replay TRACE: a recorded stick walks characters; files and a summary come out, or a
-// window shows it on a time line.
+// gaitpad replay TRACE: a recorded stick walks characters; writes files and a summary, or shows the
+// walk on a time line in a window.
 #include "gaitpad/replay.h"
 
 #include <fmt/format.h>
@@ -19,8 +19,8 @@
 namespace gaitpad {
 namespace {
 
-constexpr int kMaxCrowdFiles = 256;  // each takes three open files
-constexpr double kLong_s = 5.0;      // a longer replay says how fast it was
+constexpr int kMaxCrowdFiles = 256;  // each opens three files
+constexpr double kLong_s = 5.0;      // a longer replay prints its speed
 
 struct ReplayArguments {
   SessionSpec spec;
@@ -40,7 +40,7 @@ void print_text(const SessionSpec::Replay& wanted, const RunSummary& run) {
   }
 }
 
-// The files and the summary.
+// Writes the files and the summary.
 int run_through(const ReplayArguments& arguments) {
   RunEnd end;
   Progress progress(kReplayCommand);

@@ -24,9 +24,9 @@ namespace gaitpad {
 namespace {
 
 constexpr std::int64_t kBinding_ns = 5'000'000'000;  // longest wait for the kernel's driver
-constexpr std::int64_t kNear_ns = 2'000'000;         // this close it sleeps exactly
+constexpr std::int64_t kNear_ns = 2'000'000;         // it sleeps exactly within this time
 
-// Each device as it was recorded.
+// Virtual devices with the recorded descriptors and ids.
 class UhidDevices {
  public:
   explicit UhidDevices(const std::vector<TraceDevice>& recorded)
@@ -69,7 +69,7 @@ class UhidDevices {
   std::vector<std::optional<UhidDevice>> devices_;
 };
 
-// False: the user has ended it before that time.
+// False: the user ended it earlier.
 bool wait_until(std::int64_t time_ns, RunEnd& end, UhidDevices* devices = nullptr) {
   while (!end.is_reached()) {
     const std::int64_t left_ns = time_ns - now_ns();
@@ -88,8 +88,8 @@ bool wait_until(std::int64_t time_ns, RunEnd& end, UhidDevices* devices = nullpt
 
 std::int64_t nanoseconds(double seconds) { return static_cast<std::int64_t>(seconds * 1e9); }
 
-// Returns how many reports were played. At the end what reads the device sees the last ones before
-// it is gone.
+// Returns the number of played reports. Waits at the end, so that readers of the device see the
+// last reports before it is removed.
 Result<std::int64_t> play_to_uhid(const Trace& trace, double delay_s, RunEnd& end) {
   UhidDevices devices(trace.devices);
   for (std::size_t i = 0; i < trace.devices.size(); ++i) {
@@ -114,7 +114,7 @@ Result<std::int64_t> play_to_uhid(const Trace& trace, double delay_s, RunEnd& en
   return reports;
 }
 
-// Tick by tick, as `play --forward` does it.
+// Plays tick by tick, as `play --forward` does.
 Result<std::int64_t> play_to_uinput(const SessionSpec& spec, Trace trace, double delay_s,
                                     RunEnd& end) {
   const int rate_hz = replay_rate_hz(trace, spec.rate_hz);

@@ -1,4 +1,4 @@
-// gaitpad replay TRACE --to uinput|uhid|FILE.evemu: a recording for other programs.
+// gaitpad replay TRACE --to uinput|uhid|FILE.evemu: plays a recording to other programs.
 #pragma once
 #include <string>
 
@@ -10,9 +10,9 @@ inline constexpr const char* kReplayCommand = "replay";
 
 struct ReplayTo {
   std::string target;    // `uinput`, `uhid`, or a path that ends with .evemu; empty: none
-  double delay_s = 1.0;  // from when the device is there to its first report
+  double delay_s = 1.0;  // from the creation of the device to its first report
 };
-// Why `target` is none; empty: it is one.
+// Explains why `target` is invalid; empty if it is valid.
 std::string target_problem(const std::string& target);
 // Plays spec.replay.trace in real time into the kernel, or writes it as a file. The exit status.
 int replay_to(const SessionSpec& spec, const ReplayTo& to);

@@ -1,5 +1,5 @@
-// gaitpad selftest [PAD]: leads a person with a real pad through everything that can be proved with
-// it, and writes the folder that says so.
+// gaitpad selftest [PAD]: guides a user with a real pad through all tests of it, and writes a
+// folder with the results.
 #include <fmt/format.h>
 
 #include <algorithm>
@@ -26,8 +26,8 @@ struct SelfTestArguments {
   bool as_json = false;
 };
 
-// Shows prompts on standard error, in place on a terminal, else one below the other; reads keys
-// from standard input.
+// Shows prompts on standard error, in place on a terminal, else line by line; reads keys from
+// standard input.
 class TerminalPerson final : public SelfTestPerson {
  public:
   explicit TerminalPerson(RunEnd& end) : end_(end) {}

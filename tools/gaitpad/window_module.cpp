@@ -21,7 +21,7 @@ Result<const WindowModule*> loaded() {
   const fs::path folder = fs::read_symlink("/proc/self/exe", error).parent_path();
   fs::path file = folder / kModuleFile;
   if (!fs::exists(file, error)) file = folder / GAITPAD_MODULE_FOLDER / kModuleFile;
-  // Never unloaded: threads of its libraries may still run at the end.
+  // Never unloaded: threads of its libraries may still run at exit.
   void* module = ::dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
   if (module == nullptr) {
     const char* cause = ::dlerror();

@@ -1,7 +1,7 @@
-// What of the program draws: the window, pictures of sticks, plots and the paper's figures. It is
-// in a module of its own, gaitpad-window.so beside the program or in lib/gaitpad, because loading
-// it with SDL, OpenGL and cairo takes longer than to replay a recording. The program and its module
-// are built and installed together.
+// The drawing parts of the program: the window, pictures of sticks, plots and the paper's figures.
+// They are in a module, gaitpad-window.so beside the program or in lib/gaitpad, because loading it
+// with SDL, OpenGL and cairo takes longer than replaying a recording. Program and module are built
+// and installed together.
 #pragma once
 #ifdef GAITPAD_HAS_WINDOW
 #include <optional>
@@ -38,7 +38,7 @@ struct WindowModule {
                                               std::span<const StickPicture> sticks) = nullptr;
   std::optional<Error> (*write_comparison)(const std::string& path, const std::string& heading,
                                            std::span<const ComparedStick> sticks) = nullptr;
-  // Both courses of a joint that `check` found to differ.
+  // Both curves of a joint in which `check` found a difference.
   std::optional<Error> (*draw_curves)(const JointCurves& curves, const std::string& title,
                                       const std::string& path) = nullptr;
   std::optional<Error> (*draw_crowd)(const std::vector<CrowdCurve>& curves,

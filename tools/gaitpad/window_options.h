@@ -1,5 +1,5 @@
-// The options of the window, which play and replay --view share. A program that was built without
-// its window has them, too: using one is an error that says how to build it.
+// The window's options, shared by play and replay --view. A program built without its window has
+// them as well; using one is an error that says how to build the window.
 #pragma once
 #include <CLI/CLI.hpp>
 #include <string>
@@ -24,13 +24,12 @@ std::vector<CLI::Option*> add_window_options(CLI::App& command, WindowArguments&
 bool makes_pictures(const WindowArguments& arguments);
 
 #ifdef GAITPAD_HAS_WINDOW
-// Runs the window until its own end or the user's, who sees on a terminal how far pictures are, and
-// prints what it remarks. Returns the exit status; `result` is the window's if there was one.
+// Runs the window until it or the user ends it, shows the progress of pictures on a terminal, and
+// prints the window's remarks. Returns the exit status; `result` is set if there was a window.
 int show_window(std::string_view command, WindowOptions options, RunEnd& end, WindowResult& result);
 
-// `has_end`: the window closes by itself, so nobody needs to see it while it makes pictures.
-// Pictures are the same for everybody: what the window remembers from its last start does not count
-// for them.
+// `has_end`: the window closes by itself, so it stays hidden while it makes pictures. Pictures do
+// not depend on the window's stored layout, so that they are the same for every user.
 WindowOptions window_options(const WindowArguments& arguments, bool has_end);
 #endif
 

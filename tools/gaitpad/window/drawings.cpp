@@ -109,7 +109,7 @@ std::optional<Error> draw_crowd(const std::vector<CrowdCurve>& curves, const std
 
 }  // namespace gaitpad
 
-// The program finds this by its name.
+// The program loads this symbol by its name.
 extern "C" const gaitpad::WindowModule gaitpad_window_module;
 const gaitpad::WindowModule gaitpad_window_module = {
     .version = GAITPAD_VERSION,

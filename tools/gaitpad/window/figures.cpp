@@ -15,7 +15,7 @@
 namespace gaitpad {
 namespace {
 
-// "pass 8", "FAIL 1 of 8"; "-" where the mode has none that this motion can test.
+// "pass 8", "FAIL 1 of 8"; "-" if this motion can test no claim in the mode.
 std::string verdict(std::span<const Claim> claims, IkMode mode) {
   int tested = 0, broken = 0;
   for (const Claim& c : claims) {
@@ -27,8 +27,8 @@ std::string verdict(std::span<const Claim> claims, IkMode mode) {
                      : fmt::format("FAIL {} of {}", broken, tested);
 }
 
-// One line for each of the paper's thirty claims, with how many of its numbers hold; then the
-// numbers that do not, with the reason.
+// Prints a line for each of the paper's thirty claims, with the number of its values that hold;
+// then the failed values, with the reason.
 void print_claims(std::span<const Claim> claims) {
   std::vector<TableRow> table = {{"claim", "section", "paper mode", "robust mode"}};
   const auto number = [](const Claim& c) { return c.name.substr(0, c.name.find(' ')); };
@@ -75,7 +75,7 @@ int run_figures(const FiguresArguments& arguments) {
   auto study = Study::of(std::move(*source));
   if (!study) return fail("figures", study.error().message);
   Progress progress("figures");
-  // The figures themselves are quick beside the claims.
+  // Drawing the figures is fast compared with the claims.
   const std::vector<Claim> claims =
       all_claims(*study, [&progress](double share) { progress.show(0.95 * share); });
   const std::string json = claims_json(study->source().motion, claims);

@@ -151,7 +151,7 @@ double speed_of(const GaitParams& params) noexcept {
   return params.backward ? 0.0 - speed_m_s : speed_m_s;
 }
 
-// What a `gait` command may override, in the order of GaitKey.
+// A value that a `gait` command may override. Rows are in the order of GaitKey.
 struct GaitField {
   GaitKeyInfo info;
   double (*value)(const GaitParams& params) noexcept;

@@ -88,8 +88,8 @@ TEST(Steam, ItsMouseAndKeyboardAreLeftAlone) {
   EXPECT_EQ(make_steam_model(mouse), nullptr);
 }
 
-// hid-steam.c: a message of 64 bytes is 1, 0, its type, its length; type 3 tells that the pad
-// behind the receiver went (1) or came (2).
+// hid-steam.c: a message of 64 bytes is 1, 0, its type, its length; type 3: the pad behind the
+// receiver left (1) or arrived (2).
 Packet steam_message(std::uint8_t type, std::uint8_t first) {
   Packet message(64);
   message[0] = 1;
@@ -180,7 +180,7 @@ TEST(SteamBluetooth, AMessageOfSeveralReportsIsReadOnlyWhole) {
   EXPECT_TRUE(handed_on(*pad, segment(0x80, first)).empty());
   EXPECT_TRUE(handed_on(*pad, segment(0xc2, {1, 1, 1, 1})).empty());
   EXPECT_EQ(handed_on(*pad, segment(0xc0, {0x24, 0, 0, 0})).size(), 18u);
-  // A message that goes on for ever, and one that ends within a part.
+  // A message without an end, and one that ends within a part.
   for (int i = 0; i < 20; ++i)
     EXPECT_TRUE(handed_on(*pad, segment(static_cast<std::uint8_t>(0x80 | (i & 7)), {})).empty());
   EXPECT_TRUE(handed_on(*pad, segment(0xc0, {0xf4, 3})).empty());

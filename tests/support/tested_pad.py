@@ -12,7 +12,7 @@ def shows(row, name):
 
 
 def problems(run, folder):
-    """One sentence for each control that was seen and is not shown any more."""
+    """One sentence for each control that the person saw and the recording no longer shows."""
     report = json.loads((folder / "report.json").read_text())
     lines = run("decode", folder / "controls.hid", "--json").stdout.splitlines()
     rows = [row for row in map(json.loads, lines) if "axes" in row]

@@ -1,4 +1,4 @@
-"""gaitpad replay as a user meets it: what it writes, when an event counts, and what it refuses."""
+"""gaitpad replay for users: its files, the tick of an event, and its errors."""
 import csv
 import json
 import os

@@ -22,7 +22,7 @@ GENERIC = "1209:0001"
 RATE_HZ, SECONDS = 250, 0.8
 BLOCKS = 10 if LONG else 3
 ATTEMPTS = 3
-LOST_BY_SDL = 0.02  # it keeps the newest state alone: a guest that its host holds back may miss some
+LOST_BY_SDL = 0.02  # it keeps only the newest state: on a busy host the guest may miss some
 WARM_UP = 10  # reports of a block that are not counted: the first is written before any reader polls
 # driver: (the bare read beside it, by how much its first quartile may exceed that one's, in us). A reader that looks
 # once in a millisecond would exceed it by 250, one of SDL's looks in two by 500.

@@ -152,7 +152,7 @@ def check_report(report, asked):
     assert {c["control"]: c["result"] for c in report["controls"] if c["result"] != "seen"} == {"misc1": "absent"}
     names = {c["control"] for c in report["controls"]}
     assert {"left_x+", "left_x-", "left_y+", "left_y-", "right_x+", "right_y-", "left_trigger", "a", "guide", "dpup",
-            "touchpad", "misc1"} <= names and "paddle1" not in names, names  # paddles: the Edge alone has them
+            "touchpad", "misc1"} <= names and "paddle1" not in names, names  # only the Edge has paddles
     opened = {driver["driver"] for driver in report["drivers"] if driver["opened"]}
     assert opened == {"hidraw", "evdev", "sdl", "usb"}, report["drivers"]
     hidraw = next(driver for driver in report["drivers"] if driver["driver"] == "hidraw")

@@ -28,7 +28,7 @@ judge_packages() {
   appstreamcli validate --no-net "$work"/program/usr/share/metainfo/*.xml
 }
 
-# What stands in the chroot, without what apt and dpkg note of any installation.
+# The files of the chroot, without the records of apt and dpkg.
 files() {
   (cd "$debian" && find . -xdev \( -path ./proc -o -path ./packages -o -path ./tmp -o -path ./var/lib/dpkg \
     -o -path ./var/lib/apt -o -path ./var/cache -o -path ./var/log \) -prune -o -print | sort)

@@ -158,7 +158,7 @@ TEST(SteamBluetooth, AStateIsPutTogetherFromWhatChanged) {
     // Buttons, triggers and stick: bits 10, 20 and 80 of the first byte, whose lower half is 4.
     EXPECT_EQ(handed_on(*pad, segment(0xc0, {0xb4, 0, 0x80, 0, 0x40, 7, 9, 0xff, 0x7f, 0, 0x80})),
               (Packet{3, 0x80, 0, 0x40, 7, 9, 0xff, 0x7f, 0, 0x80, 0, 0, 0, 0, 0, 0, 0, 0}));
-    // The right pad alone, bit 200: the rest stays.
+    // Only the right pad, bit 200: the other values stay.
     EXPECT_EQ(handed_on(*pad, segment(0xc0, {0x04, 2, 1, 2, 3, 4})),
               (Packet{3, 0x80, 0, 0x40, 7, 9, 0xff, 0x7f, 0, 0x80, 1, 2, 3, 4, 0, 0, 0, 0}));
     EXPECT_TRUE(handed_on(*pad, segment(0xc0, {0x05, 0, 90})).empty()) << "battery";
@@ -175,7 +175,7 @@ TEST(SteamBluetooth, AMessageOfSeveralReportsIsReadOnlyWhole) {
   EXPECT_TRUE(handed_on(*pad, segment(0x80, first)).empty());
   EXPECT_EQ(handed_on(*pad, segment(0xc1, {17, 18, 19, 20})),
             (Packet{3, 1, 2, 3, 4, 5, 9, 10, 11, 12, 17, 18, 19, 20, 13, 14, 15, 16}));
-  // A lost report makes the message void, and the next one begins anew.
+  // A lost report voids the message, and the next one starts a new one.
   EXPECT_TRUE(handed_on(*pad, segment(0xc1, {1, 1, 1, 1})).empty());
   EXPECT_TRUE(handed_on(*pad, segment(0x80, first)).empty());
   EXPECT_TRUE(handed_on(*pad, segment(0xc2, {1, 1, 1, 1})).empty());

@@ -114,7 +114,7 @@ TEST_F(StyleFile, TextIsAsPeopleWouldWriteIt) {
             "\n[left_hand]\nrail = 1\n");
 }
 
-// The reader of files accepts every key with the same bounds.
+// The file reader accepts every key with the same bounds.
 TEST_F(StyleFile, KeysOfValuesAreThoseOfFiles) {
   bool is_below = false;
   for (const StyleKey& key : style_keys()) {

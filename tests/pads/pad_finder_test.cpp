@@ -11,7 +11,7 @@
 namespace gaitpad {
 namespace {
 
-// --- which pad a wish means, and which driver serves it
+// --- which pad a request selects, and which driver serves it
 
 class PadChoice : public testing::Test {
  protected:

@@ -340,8 +340,8 @@ TEST_F(RecordedSticks, OutlineOfARealDualSense) {
   }
 }
 
-// The zones are Sony's, and come from the recording in which the stick is turned, alone and
-// together with the one in which it rests.
+// Three sets of zones: Sony's, from the recording in which the stick is turned, and from both
+// recordings.
 TEST_F(RecordedSticks, RestNeverWalksWithTheZonesOfTheRecordingsThatTurn) {
   constexpr const char* kLeft = "dualsense_usb_left_stick.hid";
   constexpr const char* kRight = "dualsense_usb_right_stick.hid";

@@ -2,9 +2,8 @@
 // verdicts of each kind, the calibrated stick's output untouched and at full deflection, and the
 // errors of the numbers.
 //   stick_verdicts [STICKS OF EACH KIND] [KIND]    default: 40, all; with KIND a line a stick
-// Every fourth stick is on any pad: 8 to 16 bits, 25 to 8,000 Hz as far as the fault can be seen
-// there, jitter, losses, changes only.
-// Exit status 1: a stick was not judged as it must be.
+// Every fourth stick is on a random pad: 8 to 16 bits, 25 to 8,000 Hz if the fault is visible at
+// that rate, jitter, losses, changes only. Exit status 1: a stick got a wrong verdict.
 #include <cstdio>
 #include <cstdlib>
 #include <iterator>

@@ -1,4 +1,4 @@
-"""A folder of `gaitpad selftest`, judged anew: its recording must still show each control that the person saw."""
+"""A folder of `gaitpad selftest`, checked again: its recording must still show each control that the person saw."""
 import json
 
 SHOWN = 0.6  # of an axis, all the way is 1

@@ -237,7 +237,7 @@ def test_wrong_usage_is_2(refuse, arguments):
     refuse(*arguments.split(), status=2, env=environment())
 
 
-MOST_MIB = 250e6 / 2**20  # of a program that makes pictures, however many frames are behind them
+MOST_MIB = 250e6 / 2**20  # of a program that makes pictures of any number of frames
 
 
 def peak_mib(program, *arguments):

@@ -1,10 +1,9 @@
 #!/usr/bin/python3
 """Takes a folder of `gaitpad selftest` into the project: add_tested_pad.py FOLDER
 
-Writes a row of docs/tested-pads.md and a test recording, tests/data/tested/VENDOR_PRODUCT-N/. If a control was shown
-as another one, a draft for config/pads is written beside the report, for a person to finish. A folder that still
-identifies its pad (a serial number, a Bluetooth address, a port) is refused.
-"""
+Writes a row of docs/tested-pads.md and a test recording, tests/data/tested/VENDOR_PRODUCT-N/. If a control was decoded
+as another one, it writes a draft for config/pads beside the report, for a person to finish. A folder that still
+identifies its pad (a serial number, a Bluetooth address, a port) is refused. """
 import argparse
 import json
 import pathlib
@@ -120,7 +119,7 @@ def add_row(page, line):
 
 # ---- the draft ---------------------------------------------------------------------------------
 def changed_usages(rows, control):
-    """Of each usage, how many reports of the time of this control differ from what it was before, most first."""
+    """For each usage, the number of reports during this control that differ from its earlier value, greatest first."""
     during = [r for r in rows if control["from_s"] <= r["time_s"] <= control["to_s"]]
     before = {}
     for r in rows:
@@ -135,7 +134,7 @@ def changed_usages(rows, control):
 
 
 def source(control, rows):
-    """As config/pads writes it; None: nothing changed."""
+    """The usage in the form of config/pads; None: nothing changed."""
     for usage, values in changed_usages(rows, control):
         page, number = (int(part, 16) for part in usage.split(":"))
         is_axis = control["control"].startswith(("left_", "right_"))
@@ -151,7 +150,7 @@ def source(control, rows):
 
 
 def draft(report, rows):
-    """Text of a pad file for what was shown as something else; empty: nothing was."""
+    """Text of a pad file for controls that were decoded as others; empty: none were."""
     axes, buttons = {}, {}
     for control in report["controls"]:
         found = source(control, rows) if control["result"] == "wrong" else None

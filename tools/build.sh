@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# build.sh FOLDER TARGET [CMAKE OPTION...]: configures, builds into FOLDER; silent unless it fails. On a
-# terminal a line says how far it is, from two seconds on.
+# build.sh FOLDER TARGET [CMAKE OPTION...]: configures and builds into FOLDER; silent unless it fails. On a terminal, a
+# line shows the progress after two seconds.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 folder=$1 target=$2
@@ -9,10 +9,10 @@ mkdir -p "$folder"
 log=$folder/build.log
 
 options=(-G Ninja -DCMAKE_UNITY_BUILD=ON "$@")
-# A compiler cache, where there is one, serves every checkout of the repository.
+# If ccache is installed, its cache serves every checkout of the repository.
 command -v ccache >/dev/null && options+=(-DCMAKE_CXX_COMPILER_LAUNCHER=ccache)
 export CCACHE_BASEDIR=$root CCACHE_NOHASHDIR=1
-# CMake by itself only on the first time: ninja reruns it when a CMakeLists.txt or a folder changes.
+# Run CMake only the first time: ninja reruns it when a CMakeLists.txt or a folder changes.
 if [ ! -f "$folder/build.ninja" ]; then
   echo "Building into $folder (a few minutes the first time)" >&2
   if ! cmake -S "$root" -B "$folder" "${options[@]}" >"$log" 2>&1; then

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# check.sh [--all | --since COMMIT | --recent | --slice N | FILE.cpp ...]: checks the layout of every C++ file (clang-format
-# 14) and runs clang-tidy 14 with the checks of .clang-tidy over the sources that changed since COMMIT, default: since main.
-# --recent: since the newest commit that is a day older than the last one. --slice N: over every N-th source, too; the commit
-# decides where the count begins (slice.sh). --all, or GAITPAD_ALL=1: over all sources, half an hour of processor time.
-# --format: the layout alone.
+# check.sh [--all | --since COMMIT | --recent | --slice N | FILE.cpp ...]: checks the layout of every C++ file
+# (clang-format 14) and runs clang-tidy 14 with the checks of .clang-tidy over the sources that changed since COMMIT,
+# default: since main. --recent: since the newest commit that is a day older than the last one. --slice N: also over
+# every N-th source; the commit chooses the first one (slice.sh). --all, or GAITPAD_ALL=1: over all sources, half an
+# hour of processor time. --format: only the layout.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 cd "$root"
@@ -84,7 +84,7 @@ if [ ! -f "$build/compile_commands.json" ] ||
   }
   touch "$build/compile_commands.json"
 fi
-# What the configuration leaves out (a driver without its library) has no command and is not checked.
+# Sources outside the configuration (a driver without its library) have no compile command and are not checked.
 mapfile -t known < <(printf '%s\n' "${files[@]}" | while read -r name; do
   grep -qF "\"file\": \"$root/$name\"" "$build/compile_commands.json" && echo "$name"; done)
 [ ${#known[@]} -gt 0 ] || { echo "clang-tidy: none of these sources is built here"; exit 0; }

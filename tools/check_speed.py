@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""check_speed.py [COUNT...] [--program build/gaitpad] [--jobs 2]: how long `gaitpad check` takes for so many
-recordings of 20 s (default: 250, 500 and 1000), by the clock and of processor time, and that it grows linearly."""
+"""check_speed.py [COUNT...] [--program build/gaitpad] [--jobs 2]: measures the elapsed and processor time of `gaitpad
+check` for COUNT recordings of 20 s (default: 250, 500 and 1000), and that it grows linearly."""
 import argparse
 import pathlib
 import resource
@@ -18,7 +18,7 @@ REPORTS_HZ = 125
 
 
 def write_walk(path, number):
-    """A stick that is pushed, circles and lets go: 125 reports a second, as a pad sends them."""
+    """A stick that is pushed, circles and is released, at 125 reports a second."""
     turn = (number % 41 - 20) / 40
     timeline = [(0.0, 0.0, 0.0)]
     for i in range(1, (SECONDS - 3) * REPORTS_HZ):

@@ -62,7 +62,7 @@ def walk_strip(walk, title):
 
 
 def source_strip(path, walk, title):
-    """The clip itself: joints as in the walk made from it, floor at the lowest heel."""
+    """The clip itself, with the joints of the walk made from it and the floor at the lowest heel."""
     bvh = bvhs.read_bvh(path)
     scale = float(walk.summary["metres_per_unit"])
     position, rotation = bvhs.forward_kinematics(
@@ -126,7 +126,7 @@ def _below_leg(strip, joint):
 
 
 def frames_of(strip):
-    """Frames of two cycles; a clip with one whole cycle shows that one, with none all it has."""
+    """Frames of two cycles; of one cycle if the clip has only one, of the whole clip if it has none."""
     marks = strip.marks if len(strip.marks) > 1 else [0, len(strip.position) - 1]
     strip.marks = marks
     frames = [np.linspace(a, b, POSES_A_CYCLE, endpoint=False) for a, b in zip(marks[:-1], marks[1:])]

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # crowd_operations.sh [CHARACTERS]: counts the instructions of a character's tick in a crowd, with valgrind, and shows
-# the functions that take most of them. Valgrind knows no AVX-512: it counts registers of four numbers.
+# the functions that take most of them. Valgrind does not support AVX-512, so registers hold four numbers.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 characters=${1:-128}

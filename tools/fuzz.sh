@@ -1,9 +1,10 @@
 #!/usr/bin/env bash
-# fuzz.sh [SECONDS | --hours N] [TARGET...]: builds the fuzz targets with clang and runs each for that long (default 60), or
-# all in turn, a minute each, until N hours are over; always on one core. They begin with what tools/fuzz/corpus keeps
-# and go on with what build-fuzz/corpus found. The table at the end counts all that ran in build-fuzz so far;
-# `tools/measured.py fuzz` puts it into docs/measured.md. An input that breaks a target is kept in build-fuzz and named.
-# fuzz.sh --keep [TARGET...]: writes the fewest inputs that reach all edges found so far to tools/fuzz/corpus.
+# fuzz.sh [SECONDS | --hours N] [TARGET...]: builds the fuzz targets with clang and runs each for that long (default
+# 60), or all in turn, a minute each, until N hours are over; always on one core. They start from the inputs in
+# tools/fuzz/corpus and those found earlier in build-fuzz/corpus. The table at the end counts all executions in
+# build-fuzz so far; `tools/measured.py fuzz` puts it into docs/measured.md. An input that breaks a target is kept in
+# build-fuzz and named. fuzz.sh --keep [TARGET...]: writes the fewest inputs that reach all edges found so far to
+# tools/fuzz/corpus.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 build=$root/build-fuzz kept=$root/tools/fuzz/corpus executed=$root/build-fuzz/executed.tsv
@@ -27,7 +28,7 @@ targets=("$@")
 if [ ${#targets[@]} -eq 0 ]; then
   for source in "$root"/tools/fuzz/fuzz_*.cpp; do targets+=("$(basename "$source" .cpp)"); done
 fi
-# The largest input that a target gets: beyond, text only repeats itself.
+# Greatest size of a target's input, bytes: longer text only repeats itself.
 declare -A most=([fuzz_command]=1024 [fuzz_stream]=1024 [fuzz_session]=1024 [fuzz_mapping]=2048 [fuzz_expectation]=4096 [fuzz_pad_file]=4096)
 
 bash "$root/tools/install.sh" libclang-rt-14-dev xz-utils
@@ -36,7 +37,7 @@ for target in "${targets[@]}"; do
 done
 /usr/bin/python3 "$root/tools/fuzz/seeds.py" "$build/seeds"
 
-# run TARGET SECONDS: appends the executions and the edges to the table; false if an input broke it.
+# run TARGET SECONDS: appends the number of executions and edges to the table; false if an input broke it.
 run() {
   local target=$1 log=$build/$1.log status=0
   mkdir -p "$build/corpus/$target"
@@ -50,7 +51,7 @@ run() {
   return $status
 }
 
-# Every input of the folder that reaches an edge which those before it do not.
+# Keeps each input of the folder that reaches an edge which the earlier ones do not reach.
 keep() {
   local target=$1 few=$build/few/$1
   rm -rf "$few"

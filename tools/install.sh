@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# install.sh [--program] [PACKAGE...]: installs what gaitpad needs from Debian 12, and those packages:
-# nothing where all is there, apt else (sudo if not root). --program: leaves out what only tests need.
+# install.sh [--program] [PACKAGE...]: installs gaitpad's dependencies and those packages from Debian 12 with apt (by
+# sudo if not root), if any are missing. --program: without packages that only tests need.
 set -euo pipefail
 
 packages=(g++ cmake ninja-build libglm-dev libeigen3-dev libtbb-dev libtomlplusplus-dev libcli11-dev libfmt-dev
@@ -40,7 +40,7 @@ apt() {
 }
 echo "Installing ${missing[*]}" >&2
 apt update
-# How much it is, in apt's own words: "Need to get ...", "After this operation ...".
+# Size of the download, in apt's words: "Need to get ...", "After this operation ...".
 LC_ALL=C apt-get install --no-install-recommends --assume-no "${missing[@]}" 2>/dev/null |
   grep -E '^(Need to get|After this operation)' | sed 's/^/  /' >&2 || true
 apt install -y --no-install-recommends "${missing[@]}"

@@ -1,8 +1,7 @@
 #!/usr/bin/python3
 """Repeats the reports of a trace until it lasts long enough: long_trace.py IN.hid OUT.hid SECONDS.
 
-Commands, ticks and the end are left out: it is to be played as a pad.
-"""
+Commands, ticks and the end are left out, because the result is played as a pad. """
 import pathlib
 import sys
 

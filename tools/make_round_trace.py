@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Writes config/traces/round.hid: a made-up pad's stick over twenty seconds, as hid-recorder would.
+"""Writes config/traces/round.hid: the stick of a synthetic pad over twenty seconds, in the format of hid-recorder.
 
 Stand, walk on, a curve to the left and one to the right, limp for a while (a command), stop. The pad
 sends a report when something has changed, at most every 8 ms. Usage: make_round_trace.py > round.hid

@@ -36,7 +36,7 @@ PYTHON = "/usr/bin/python3"
 
 
 class Missing(Exception):
-    """What a section needs is not on this machine."""
+    """An input of a section is not on this machine."""
 
 
 # ---- rows ------------------------------------------------------------------------------------
@@ -55,7 +55,7 @@ def row(name, worst, allowed="", unit="", runs=None, failed=0, where=""):
 
 
 def distance(value, bound):
-    """Grows as the value gets nearer to its bound or further beyond it."""
+    """Grows with the value relative to its bound."""
     low_high = re.match(r"(-?[\d.e-]+)\.\.(-?[\d.e-]+)$", bound)
     if low_high:
         return abs(value - 0.5 * (float(low_high[1]) + float(low_high[2])))
@@ -353,7 +353,7 @@ def measure_sticks(options, text=None):
 
 
 def measure_by(script):
-    """What measures by a script of tests/ that prints rows with --json."""
+    """A measurement by a script of tests/ that prints rows with --json."""
     def measure(options, text=None):
         return {"rows": read_rows(text or output_of(PYTHON, script, needed(options.build / "gaitpad"), "--json", may_fail=True))}
     return measure
@@ -663,7 +663,7 @@ def table(name, rows):
 
 
 def page_of(results):
-    """results: section -> (rows, what is said of its measurement)."""
+    """results: section -> (rows, text about its measurement)."""
     lines = HEAD.splitlines()
     for name, (_, _, title, _, before, after) in SECTIONS.items():
         lines += ["", f"## {title}", "", *wrapped(before), ""]
@@ -679,7 +679,7 @@ def page_of(results):
 
 
 def results_of(page):
-    """What page_of() wrote. A row whose cells are not as many as the columns is left out."""
+    """Reads a page of page_of() back. Skips rows whose number of cells differs from the number of columns."""
     results = {}
     for name, (_, _, title, *_) in SECTIONS.items():
         text = re.search(rf"^## {re.escape(title)}\n(.*?)(?=^## |\Z)", page, re.S | re.M)
@@ -699,7 +699,7 @@ def new_result(name, options, text):
 
 
 def difference(page):
-    """Where the page is not as this script writes it, its numbers aside; None where it is."""
+    """An error about the first line that differs from this script's page, numbers aside; None if none does."""
     for ours, theirs in itertools.zip_longest(page_of(results_of(page)).splitlines(), page.splitlines()):
         if ours != theirs:
             return f"docs/measured.md: {theirs!r} stands where this script writes {ours!r}"

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
 # package_test.sh [FOLDER]: makes the Debian packages in FOLDER (default: build-package) and tries them: lintian,
-# desktop-file-validate and appstreamcli find no fault; in a clean Debian 12 (mmdebstrap) they install with what they
-# depend on, `gaitpad replay` walks as the build does, the manual and the completions are there, a project builds
-# against libgaitpad-dev, and removing them leaves nothing. Needs root and a Debian mirror; a few minutes.
-# The last lines are each part's seconds.
+# desktop-file-validate and appstreamcli find no fault; in a clean Debian 12 (mmdebstrap) they install with their
+# dependencies, `gaitpad replay` gives the build's poses, the manual and the completions are present, a project builds
+# against libgaitpad-dev, and removing them leaves nothing. Needs root and a Debian mirror; a few minutes. The last
+# lines are the seconds of each part.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 cd "$root"
@@ -28,7 +28,7 @@ judge_packages() {
   appstreamcli validate --no-net "$work"/program/usr/share/metainfo/*.xml
 }
 
-# What stands in the chroot, without what apt and dpkg note of any installation.
+# The files of the chroot, without the records of apt and dpkg.
 files() {
   (cd "$debian" && find . -xdev \( -path ./proc -o -path ./packages -o -path ./tmp -o -path ./var/lib/dpkg \
     -o -path ./var/lib/apt -o -path ./var/cache -o -path ./var/log \) -prune -o -print | sort)

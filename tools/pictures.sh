@@ -1,6 +1,7 @@
 #!/usr/bin/env bash
-# pictures.sh [FOLDER]: draws the documentation's pictures from the bundled recordings, without a display and the same
-# each time. FOLDER is docs by default. One of them needs captured motions, which are no part of this repository.
+# pictures.sh [FOLDER]: draws the documentation's pictures from the bundled recordings, without a display and
+# identically each time. FOLDER is docs by default. One picture needs captured motions, which are not in this
+# repository.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 bash "$root/tools/install.sh" ffmpeg
@@ -28,7 +29,7 @@ ffmpeg -loglevel error -y -ss 3.6 -t 4 -i "$films/window.mp4" -vf \
 "$gaitpad" replay "$root/config/traces/round.hid" --view --frames 330 --theme light --panels none \
   --style even --style limp_left --screenshot "$folder/limp.png"
 
-# Up the stairs, from where the camera sees the risers.
+# Up the stairs, with the risers in view.
 "$gaitpad" replay "$root/config/traces/walk.hid" --view --frames 330 --theme light --clean \
   --terrain stairs --style even --screenshot "$folder/stairs.png"
 
@@ -51,7 +52,7 @@ figures=$films/figures
 Image.open(sys.argv[1]).convert("RGB").quantize(64).save(sys.argv[2], optimize=True)' \
   "$figures/figure5a.png" "$folder/figure5a.png"
 
-# Three captured walks and what is made of them. Status 1: a bound is broken, and the picture is there.
+# Three captured walks and gaitpad's walks from them. With status 1 a bound is broken, but the picture exists.
 clips=$root/../shared/data/mocap
 if [ -d "$clips" ]; then
   /usr/bin/python3 "$root/tests/session/fidelity.py" "$gaitpad" "$clips/cmu_m21_walk.bvh" \

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Judges what tools/realtime.sh measured: realtime_judge.py SUMMARY.json CONTROL.json --steal N --seconds N.
+"""Judges the measurement of tools/realtime.sh: realtime_judge.py SUMMARY.json CONTROL.json --steal N --seconds N.
 
 Exit status 1 if it failed, 0 if it passed or cannot be judged.
 """
@@ -17,7 +17,7 @@ def per_mille(count, ticks):
 def broken_promises(s, seconds):
     """One sentence per failure that neither a slow host nor an ordinary priority excuses."""
     ticks, rate_hz, time_s = s["ticks"], s["rate_hz"], s["time_s"]
-    # Tick 0 is due at time 0. At the end late ones may be on their way.
+    # Tick 0 is due at time 0. At the end, late ticks may be missing.
     due = int((time_s - s["skipped_s"]) * rate_hz) + 1
     under_way = 1 + int(s["late_us_max"] * 1e-6 * rate_hz)
     if not due - under_way <= ticks <= due + 1:

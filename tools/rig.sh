@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# rig.sh [--long] [--kernel 6.12] [--only NAME] [--without NAME]: builds, boots a Debian kernel in QEMU and proves there, with
-# virtual pads, what needs hardware: tools/rig/test_*.py. Logs and tables in build/rig/results-KERNEL.
-# Of the tables of pads and drivers it does the part that GAITPAD_SLICE chooses; all of them with GAITPAD_ALL=1 or --long.
-# --long: the long floods and counts too, on 6.1 and 6.12. Without QEMU or a kernel to be had it tests
-# nothing, says so and ends with 0. RIG_BUILD names another build folder than build (one with sanitizers).
+# rig.sh [--long] [--kernel 6.12] [--only NAME] [--without NAME]: builds, boots a Debian kernel in QEMU and runs the
+# tests that need hardware (tools/rig/test_*.py) with virtual pads. Logs and tables are in build/rig/results-KERNEL.
+# GAITPAD_SLICE chooses a part of the tables of pads and drivers; GAITPAD_ALL=1 or --long runs all of them. --long: also
+# the long floods and counts, on 6.1 and 6.12. Without QEMU or an available kernel it tests nothing, says so and exits
+# with 0. RIG_BUILD names another build folder than build (one with sanitizers).
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 build=$(realpath -m "${RIG_BUILD:-$root/build}")
@@ -37,7 +37,7 @@ bash "$root/tools/rig/install.sh" || skip "QEMU or what it needs cannot be insta
 
 # shellcheck source=tools/slice.sh
 . "$root/tools/slice.sh"
-# What needs no kernel is done out here. The guest sees it: its root is the host's.
+# Work without a kernel is done on the host. The guest sees the results, because its root is the host's.
 export XDG_CACHE_HOME=$build/rig/cache
 "$build/gaitpad" replay "$root/config/traces/round.hid" --json >/dev/null                 # solves the strides
 /usr/bin/python3 -m pytest --collect-only -q -p no:cacheprovider "$root/tools/rig" >/dev/null  # compiles the tests

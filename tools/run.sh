@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# Installs what is missing, builds, walks a character along the recorded stick of the bundled trace into
-# out/; then, at a terminal with a display, opens the window. Options go to both: tools/run.sh --style tired
-# GAITPAD_BUILD names another folder to build in; a repository that cannot be written is built in the cache.
+# Installs what is missing, builds, walks a character along the recorded stick of the bundled trace into out/; then, at
+# a terminal with a display, opens the window. Options apply to both: tools/run.sh --style tired GAITPAD_BUILD names
+# another folder to build in; a repository that cannot be written is built in the cache.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 source "$root/tools/folders.sh"

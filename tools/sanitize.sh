@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# The same tests under AddressSanitizer and UndefinedBehaviorSanitizer; long ones shorten themselves. All that reads foreign
-# bytes always runs: pads, reports, recordings, files, calibrations. Of the rest a third, which the commit chooses (slice.sh).
-# Those that compile the sources themselves would run without sanitizers: left out by their label.
-# By clang++: so both of Debian's compilers build all of it, and every test passes with either.
+# The same tests under AddressSanitizer and UndefinedBehaviorSanitizer; long ones shorten themselves. Tests of code that
+# reads foreign bytes (pads, reports, recordings, files, calibrations) always run; of the others a third, which the
+# commit chooses (slice.sh). Tests that compile the sources themselves are left out by their label, because they would
+# run without sanitizers. The compiler is clang++, so that both of Debian's compilers build everything and every test
+# passes with either.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 source "$root/tools/slice.sh"

@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
 # soak.sh [--hours N | SECONDS]: runs the window for that long (default: ten minutes) while a pad is plugged in and out,
-# and styles, panels and themes change. The session is recorded, and replays to the same hash at the end; its memory stays
-# flat, and the machine causes every late tick. Beside it, another window loads motions again and again, for a tenth of
-# that time also under the sanitizers and ThreadSanitizer. `tools/measured.py soak` puts the table into docs/measured.md.
+# and styles, panels and themes change. At the end, the recorded session must replay to the same hash, its memory must
+# not have grown, and every late tick must be the machine's fault. In parallel, another window loads motions repeatedly,
+# for a tenth of that time also under the sanitizers and ThreadSanitizer. `tools/measured.py soak` puts the table into
+# docs/measured.md.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 seconds=${1:-600}
@@ -36,6 +37,6 @@ echo "under AddressSanitizer and UndefinedBehaviorSanitizer:"
 bash "$root/tools/build.sh" "$root/build-tsan" soak -DGAITPAD_TSAN=ON -DCMAKE_BUILD_TYPE=Debug \
   -DCMAKE_CXX_FLAGS_DEBUG="-O1 -g1"
 echo "under ThreadSanitizer:"
-# Mesa's and LLVM's own threads are not built for ThreadSanitizer: it does not report what happens in them.
+# Mesa's and LLVM's threads are not built for ThreadSanitizer, so it must not report them.
 TSAN_OPTIONS="suppressions=$root/tools/soak/tsan.supp exitcode=66 ${TSAN_OPTIONS:-}" \
   "$root/build-tsan/tools/soak/soak" $short "${motions[@]}"

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
-# test.sh [--all]: installs what is missing, builds, and runs what a clone can prove in a few minutes: every room and the
-# program, with a part of the long sweeps. --all: the whole sweeps, and the tests that compile the sources themselves
-# (other compilers, without the drivers' libraries, as an installed library). Where it builds: as run.sh.
+# test.sh [--all]: installs what is missing, builds, and runs the tests of every room and the program, with a part of
+# the long sweeps, in a few minutes. --all: the whole sweeps, and the tests that compile the sources themselves (other
+# compilers, without the drivers' libraries, as an installed library). Builds in the folder of run.sh.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 chosen=(-LE own_build)
@@ -16,7 +16,7 @@ esac
 [ "${GAITPAD_ALL:-}" != 1 ] || chosen=()
 source "$root/tools/folders.sh"
 bash "$root/tools/install.sh" xvfb ffmpeg # a display and an encoder for the window's tests
-# For the variants that only a whole run tries: other processors, valgrind, locales with decimal commas.
+# Packages for tests that only a whole run includes: other processors, valgrind, locales with decimal commas.
 [ "${GAITPAD_ALL:-}" != 1 ] ||
   bash "$root/tools/install.sh" g++-aarch64-linux-gnu g++-i686-linux-gnu qemu-user-static valgrind locales
 if command -v npm >/dev/null && ! bash "$root/tools/gltf/install.sh"; then

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# What threads share (rings, the newest frame, pads plugged in and out, the loop, the recorder) under
-# ThreadSanitizer. A report of it is a failure.
+# Tests data that threads share (rings, the newest frame, pads plugged in and out, the loop, the recorder) under
+# ThreadSanitizer. Any report is a failure.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 bash "$root/tools/install.sh"

@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
-# tutorial_test.sh: follows docs/tutorial.md from its first line to its last in a clean Debian 12 without a display, from a
-# clone of this repository's last commit. Windows draw a few frames without a display and end; nobody walks there, so the
-# bundled recording takes the place of an own one, as the page says. Needs root and a Debian mirror; the last lines are
-# each part's seconds.
+# tutorial_test.sh: follows docs/tutorial.md from its first line to its last in a clean Debian 12 without a display,
+# from a clone of this repository's last commit. Windows draw a few frames without a display and end; there is no
+# player, so the bundled recording replaces the user's, as the page allows. Needs root and a Debian mirror; the last
+# lines are each part's seconds.
 set -euo pipefail
 cd "$(dirname "$0")/.."
 bash tools/install.sh mmdebstrap git
@@ -15,7 +15,7 @@ clone() {
 in_clone() {
   inside env SDL_VIDEODRIVER=offscreen bash -c "cd /root/gaitpad && $1"
 }
-# Each command of the page as tests/docs_test.py runs it, and the statuses that it may end with.
+# Each command of the page as tests/docs_test.py runs it, with its allowed exit statuses.
 list_commands() {
   /usr/bin/python3 - <<'PYTHON'
 import pathlib, sys

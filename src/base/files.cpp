@@ -26,9 +26,10 @@ namespace gaitpad {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr int kMaxLinks = 40;  // as the kernel follows
+constexpr int kMaxLinks = 40;  // the kernel's limit
 
-// Where a write to `path` ends up: the files of dotfile managers are symbolic links, and stay.
+// The file that a write to `path` replaces: the target of its symbolic links, which dotfile
+// managers use.
 Result<std::string> target_of_links(const std::string& path) {
   fs::path place = path;
   std::error_code error;
@@ -79,7 +80,7 @@ int rename_file(const std::string& from, const std::string& to) {
   return std::rename(from.c_str(), to.c_str()) == 0 ? 0 : errno;
 }
 
-// Keeps what stands at `place` as PLACE.old, too, which is whole at any moment; 0 or errno.
+// Keeps the previous version as PLACE.old; the swap is atomic. Returns 0 or errno.
 int keep_old(const std::string& place) {
   const std::string temporary = temporary_beside(place);
   if (::link(place.c_str(), temporary.c_str()) != 0) {
@@ -88,14 +89,14 @@ int keep_old(const std::string& place) {
     if (!fs::copy_file(place, temporary, error)) return error ? error.value() : EIO;
   }
   const int problem = rename_file(temporary, place + ".old");
-  // Where a save was killed between its two renames, both names are one file already: then rename()
-  // does nothing and the temporary name is still there.
+  // If an earlier save was killed between its two renames, both names are the same file: rename()
+  // then does nothing and leaves the temporary name.
   ::unlink(temporary.c_str());
   return problem;
 }
 
-// The file is whole before and after a rename; this makes the rename itself survive a power cut.
-// Not every file system can, and nothing is lost where it cannot.
+// Makes a rename survive a power cut. Errors are ignored: some file systems cannot sync a folder,
+// and the file is complete with or without the rename.
 void sync_folder(const fs::path& folder) {
   const int opened =
       ::open(folder.empty() ? "." : folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -139,7 +140,7 @@ Result<std::string> file_text(const std::string& path, std::size_t max_bytes) {
     text.append(block.data(), static_cast<std::size_t>(stream.gcount()));
   }
   if (stream.bad()) return failure(": reading failed");
-  if (text.size() > max_bytes) return failure(too_large);  // it has grown
+  if (text.size() > max_bytes) return failure(too_large);  // grew while it was read
   return text;
 }
 
@@ -215,7 +216,7 @@ std::string beside(const std::string& path, const std::string& name) {
   const fs::path folder = fs::path(path).parent_path();
   const InputFiles* holder = InputFiles::holder_of(path);
   if (holder == nullptr) return (folder / name).string();
-  // No name leads out of what is held.
+  // Clamp `..` at the folder's root: no name leads outside.
   const std::string inside = normal(folder.string() + "/").substr(holder->folder_.size());
   return holder->folder_ +
          (fs::path("/") / inside / name).lexically_normal().relative_path().string();
@@ -225,8 +226,8 @@ namespace {
 
 constexpr std::size_t kNumberDigits = 16;
 
-// Of a name `.NAME.PID.NUMBER` what follows `.NAME.`; also `PID` and `PID.old` of earlier versions.
-// None: it is another kind of name.
+// The process id in the end of a temporary name, after `.NAME.`: `PID.NUMBER`, or `PID` and
+// `PID.old` of earlier versions. Empty for other names.
 std::optional<pid_t> process_of(std::string_view end) {
   const std::string_view process = end.substr(0, end.find('.'));
   end.remove_prefix(process.size());
@@ -240,7 +241,7 @@ std::optional<pid_t> process_of(std::string_view end) {
 
 std::string temporary_beside(const std::string& path) {
   std::uint64_t number = 0;
-  // It never waits: soon after a boot the kernel has little to be random with, and O_EXCL holds.
+  // Do not wait for randomness soon after a boot: O_EXCL prevents collisions anyway.
   constexpr unsigned kWithoutWaiting = 4;  // GRND_INSECURE, from Linux 5.6 on
   if (::getrandom(&number, sizeof number, kWithoutWaiting) != sizeof number)
     number = std::uint64_t(std::chrono::steady_clock::now().time_since_epoch().count());
@@ -273,7 +274,7 @@ Result<NewFile> NewFile::create(const std::string& path) {
   remove_leftovers(path);
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) return write_error(path, EISDIR);
-  // Without a name nothing is left of it if the process is killed. Not every file system can.
+  // An unnamed file leaves nothing behind if the process is killed. Not every file system has them.
   const fs::path folder = fs::path(path).has_parent_path() ? fs::path(path).parent_path() : ".";
   const int unnamed = ::open(folder.c_str(), O_RDWR | O_TMPFILE | O_CLOEXEC, 0666);
   if (unnamed >= 0) return NewFile(path, "", unnamed);

@@ -6,7 +6,7 @@
 namespace gaitpad {
 namespace {
 
-std::atomic<int> g_lanes = 0;  // 0: not asked yet
+std::atomic<int> g_lanes = 0;  // 0: not determined yet
 
 }  // namespace
 

@@ -1,6 +1,5 @@
-// Several numbers side by side, one a lane, as a processor's vector register holds them. Every lane
-// is computed as a double alone is: the same bits for any width. What happens in some lanes only is
-// chosen by masks.
+// Vector registers of doubles, one number per lane. Every lane gives the same bits as a single
+// double, for any width. Masks select lanes instead of branches.
 #pragma once
 #include <algorithm>
 #include <array>
@@ -20,17 +19,17 @@ struct LanesOf {
 };
 template <int kWidth>
 using Lanes = typename LanesOf<kWidth>::Type;
-// What a comparison gives: of doubles a bool.
+// The type of a comparison; bool for double.
 template <class V>
 using MaskOf = decltype(V{} < V{});
 template <class V>
 inline constexpr int kWidthOf = sizeof(V) / sizeof(double);
 
-// How many numbers this processor's registers hold: 8 with AVX-512, 4 with AVX2, else 2. What is
-// compiled for wider ones may not be called.
+// Lanes of this processor's registers: 8 with AVX-512, 4 with AVX2, otherwise 2. Code that is
+// compiled for wider ones must not be called.
 int widest_lanes() noexcept;
-// How many are used: as many as there are, or as use_lanes() says (1, 2, 4, 8), for tests and
-// measurements. The results are the same. With 1 the walks of a crowd are computed one by one.
+// Lanes in use: widest_lanes(), unless tests and measurements set fewer by use_lanes() (1, 2, 4,
+// 8). Results have the same bits. With 1, the walks of a crowd are computed one by one.
 int lanes_in_use() noexcept;
 void use_lanes(int lanes) noexcept;
 
@@ -80,7 +79,7 @@ template <class M>
 inline bool is_set(const M& mask, int lane) noexcept {
   return mask[lane] != 0;
 }
-// The operators & and | make ints of bools.
+// For bool masks: the operators & and | return int.
 inline bool not_of(bool mask) noexcept { return !mask; }
 inline bool not_of(int mask) noexcept { return mask == 0; }
 template <class M>
@@ -91,7 +90,7 @@ inline bool any(bool mask) noexcept { return mask; }
 inline bool any(int mask) noexcept { return mask != 0; }
 template <class M>
 inline bool any(const M& mask) noexcept {
-  if constexpr (kWidthOf < M >> 2) {  // half of it and half of it
+  if constexpr (kWidthOf < M >> 2) {  // combine both halves
     typename LanesOf<kWidthOf<M> / 2>::Mask low, high;
     std::memcpy(&low, &mask, sizeof low);
     std::memcpy(&high, reinterpret_cast<const char*>(&mask) + sizeof low, sizeof high);
@@ -115,7 +114,7 @@ inline V swapped_half(const V& a, const V& b, std::index_sequence<kLane...>) noe
                                    static_cast<int>(kLane & kStep ? kLane - kStep + n : kLane)...);
   }
 }
-// Of eight lanes and four rows, both halves are squares of their own.
+// With eight lanes and four rows, each half is transposed on its own.
 template <int kStep = 1, class V, std::size_t kRows>
 inline void transpose(std::array<V, kRows>& v) noexcept {
   if constexpr (kStep < kRows) {
@@ -129,7 +128,7 @@ inline void transpose(std::array<V, kRows>& v) noexcept {
   }
 }
 
-// `count` numbers of each lane, from where each lane has its own to one register for each number.
+// Loads `count` numbers of each lane from its own array: number j of all lanes goes to to[j].
 template <class V>
 inline void load_lanes(const std::array<const double*, kWidthOf<V>>& from, int count,
                        V* to) noexcept {
@@ -144,7 +143,7 @@ inline void load_lanes(const std::array<const double*, kWidthOf<V>>& from, int c
           for (int lane = 0; lane < n; ++lane) to[j][lane] = from[lane][j];
         return;
       }
-      // The last square begins earlier.
+      // The last square overlaps the one before.
       const int at = k + n <= count ? k : count - n;
       std::array<V, n> square;
       for (int lane = 0; lane < n; ++lane) std::memcpy(&square[lane], from[lane] + at, sizeof(V));
@@ -153,7 +152,7 @@ inline void load_lanes(const std::array<const double*, kWidthOf<V>>& from, int c
     }
   }
 }
-// Back, for the first `lanes` of them.
+// The inverse, for the first `lanes` lanes.
 template <class V>
 inline void store_lanes(const V* from, int count, int lanes,
                         const std::array<double*, kWidthOf<V>>& to) noexcept {
@@ -186,7 +185,7 @@ inline void sin_cos_of(const V& angle_rad, V& sine, V& cosine) noexcept {
   V quarters{};
   if (turned) {
     constexpr double kRound = 6755399441055744.0;  // 1.5 * 2^52: adding it rounds to a whole number
-    // To the nearest, halves away from 0, as sin_cos() does.
+    // Round to nearest, halves away from 0, like sin_cos().
     const V scaled = angle_rad * kTwoOverPi, above = abs_of(scaled) + 0.5;
     const V near = (above + kRound) - kRound, whole = near > above ? near - 1.0 : near;
     quarters = scaled < V{} ? -whole : whole;
@@ -207,7 +206,7 @@ inline void sin_cos_of(const V& angle_rad, V& sine, V& cosine) noexcept {
   cosine = cos_kernel(x);
 }
 
-// The greatest whole number that is not greater, of numbers below 2^51.
+// std::floor() for numbers below 2^51.
 inline double floor_of(double x) noexcept { return std::floor(x); }
 template <class V>
 inline V floor_of(const V& x) noexcept {
@@ -249,8 +248,8 @@ inline V asin_of(const V& x) noexcept {
   return kPi / 2.0 - acos_of(x);
 }
 
-// Vectors in space and rotations, one in each lane. The operations are those of glm, in its order;
-// of one lane they are glm's own.
+// Vectors and rotations, one per lane. Operations have glm's order, so the bits are equal; a single
+// lane uses glm itself.
 template <class V>
 inline Vec3Of<V> operator+(const Vec3Of<V>& a, const Vec3Of<V>& b) noexcept {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
@@ -360,7 +359,7 @@ inline V chosen(const MaskOf<V>& mask, const V& a, const V& b) noexcept {
 inline vec3 chosen(bool mask, const vec3& a, const vec3& b) noexcept { return mask ? a : b; }
 inline quat chosen(bool mask, const quat& a, const quat& b) noexcept { return mask ? a : b; }
 
-// A rotation of each lane to where its walk has it.
+// Stores each lane's rotation to its walk.
 template <class V>
 inline void store_quats(const QuatOf<V>& q, const std::array<quat*, kWidthOf<V>>& to) noexcept {
   constexpr int n = kWidthOf<V>;
@@ -373,7 +372,7 @@ inline void store_quats(const QuatOf<V>& q, const std::array<quat*, kWidthOf<V>>
       std::memcpy(reinterpret_cast<double*>(to[lane]) + 2, &zw[lane], sizeof(V));
     }
   } else {
-    // Rows of four numbers: lanes 0 .. 3, and of eight lanes 4 .. 7, too.
+    // Rows of four numbers: lanes 0 .. 3, and with eight lanes also 4 .. 7.
     std::array<V, 4> square = {q.x, q.y, q.z, q.w};
     transpose(square);
     for (int lane = 0; lane < n; ++lane) {

@@ -1,6 +1,6 @@
 // Passes the latest value from one writing to one reading thread: three buffers, wait-free on both
-// sides. The reader never sees a half-written value, nor one older than it has seen. Values that
-// use the heap are written without it once each of the three has its size: see each().
+// sides. The reader never sees a half-written value or one older than the last. To avoid heap use
+// while writing, size all three values beforehand with each().
 #pragma once
 #include <array>
 #include <atomic>

@@ -7,7 +7,7 @@
 
 namespace gaitpad {
 SinCos sin_cos(double angle_rad) noexcept {
-  // Below pi/4 nothing is to be reduced: the result has the same bits without the work.
+  // Below pi/4 no reduction is needed; skipping it gives the same bits.
   if (std::abs(angle_rad) < 0.785) return {sin_kernel(angle_rad), cos_kernel(angle_rad)};
   if (!(std::abs(angle_rad) < 1e6)) return {0.0, 1.0};  // keeps NaN and huge angles bounded
   const double scaled = angle_rad * kTwoOverPi;
@@ -35,7 +35,7 @@ double acos(double x) noexcept {
 }
 
 double wrapped(double angle_rad) noexcept {
-  if (std::abs(angle_rad) < 3.0) return angle_rad;  // no turn: the same bits without the work
+  if (std::abs(angle_rad) < 3.0) return angle_rad;  // shortcut with the same bits
   const double turns = std::floor((angle_rad + kPi) / (2.0 * kPi));
   return angle_rad - turns * 2.0 * kPi;
 }

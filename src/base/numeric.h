@@ -1,4 +1,4 @@
-// Statistics of a few numbers. These allocate: not for a tick.
+// Statistics of a few numbers. They allocate, so a tick must not call them.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -6,7 +6,7 @@
 
 namespace gaitpad {
 
-// The value that `percent` % of the values do not exceed; 0 of none.
+// The value that `percent` % of the values do not exceed; 0 if there are none.
 inline double percentile(std::vector<double> values, std::size_t percent) {
   if (values.empty()) return 0.0;
   const auto at = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) * percent / 100);
@@ -14,7 +14,7 @@ inline double percentile(std::vector<double> values, std::size_t percent) {
   return *at;
 }
 
-// The middle value; of an even count the upper one of the two; 0 of none.
+// The middle value; the upper of two for an even count; 0 if there are none.
 inline double median(std::vector<double> values) {
   if (values.empty()) return 0.0;
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);

@@ -8,10 +8,10 @@
 
 namespace gaitpad {
 
-// As printf's %.6g writes it in the C locale.
+// The number as printf's %.6g writes it in the C locale.
 std::string short_number(double value);
 
-// Nothing where the value is within [least, most]; NaN is not.
+// The error for a value outside [least, most] or NaN.
 inline std::optional<Error> range_problem(const std::string& what, double value, double least,
                                           double most) {
   if (value >= least && value <= most) return std::nullopt;

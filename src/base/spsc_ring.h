@@ -1,5 +1,5 @@
 // A bounded queue from exactly one writing to one reading thread: wait-free on both sides, no heap
-// after construction. Nothing is overwritten: a full ring refuses what is pushed.
+// after construction. A full ring refuses new items instead of overwriting old ones.
 #pragma once
 #include <atomic>
 #include <cstddef>

@@ -1,4 +1,4 @@
-// What somebody may have meant who mistyped a word: a key, a command, an option.
+// Suggestions for a mistyped key, command or option.
 #pragma once
 #include <span>
 #include <string>
@@ -6,8 +6,8 @@
 
 namespace gaitpad {
 
-// `; did you mean "replay"?` for a word that nobody knows; empty where no known one differs from it
-// by at most two letters.
+// `; did you mean "replay"?` for an unknown word; empty if no known word is within an edit distance
+// of two letters.
 std::string suggestion(std::string_view unknown, std::span<const std::string> known);
 
 }  // namespace gaitpad

@@ -85,7 +85,7 @@ std::size_t utf8_bytes(std::string_view text) noexcept {
 
 namespace {
 
-// Of a whole UTF-8 character.
+// The code point of a whole UTF-8 character.
 std::uint32_t code_point(std::string_view character) noexcept {
   const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(character[i]); };
   if (character.size() == 1) return byte(0);
@@ -94,7 +94,7 @@ std::uint32_t code_point(std::string_view character) noexcept {
   return code;
 }
 
-// Characters that command a terminal, or that change the order in which text is shown.
+// False for characters that control a terminal or change the display order of text.
 bool is_shown(std::uint32_t code) noexcept {
   const auto is_within = [code](std::uint32_t first, std::uint32_t last) {
     return code >= first && code <= last;
@@ -143,7 +143,7 @@ std::string printable_lines(std::string_view text) {
 std::string in_quotes(std::string_view text) {
   const bool is_cut = text.size() > kMaxQuotedBytes;
   std::size_t size = std::min(text.size(), kMaxQuotedBytes);
-  // Not within a character.
+  // Do not cut inside a character.
   while (is_cut && size > kMaxQuotedBytes - 3 &&
          (static_cast<unsigned char>(text[size]) & 0xc0) == 0x80)
     --size;
@@ -166,9 +166,9 @@ constexpr auto kDigitPairs = [] {
   return pairs;
 }();
 
-// |value| times 10^decimals, rounded to the nearest integer, a tie to the even one. The product of
-// the 53-bit significand and the power of ten has at most 83 bits: two words of which the lower one
-// has 32, so that nothing is lost before the rounding.
+// |value| times 10^decimals, rounded to the nearest integer, ties to even. The product of the
+// 53-bit significand and the power of ten has at most 83 bits; it is held exactly in two words, the
+// lower one of 32 bits, until it is rounded.
 std::uint64_t scaled_exactly(double value, int decimals) noexcept {
   constexpr int kSignificand = 52, kBias = 1023 + kSignificand;
   constexpr std::uint64_t kLower = 0xffffffff;
@@ -184,12 +184,13 @@ std::uint64_t scaled_exactly(double value, int decimals) noexcept {
   const std::uint64_t halves =
       shift > 32 ? upper >> (shift - 33) : upper << (33 - shift) | (lower & kLower) >> (shift - 1);
   const std::uint64_t whole = halves >> 1;
-  // 10^decimals ends in as many zero bits as decimals.
+  // 10^decimals has `decimals` trailing zero bits.
   const bool is_beyond_half = std::countr_zero(significand) + decimals < shift - 1;
   return whole + ((halves & 1) == 1 && (is_beyond_half || whole % 2 == 1));
 }
 
-// The same. A product below 2^40 is off by at most 2^-14, which matters only near a tie.
+// The same by doubles where that is exact: a product below 2^40 is off by at most 2^-14, which
+// matters only near a tie.
 std::uint64_t scaled(double value, int decimals) noexcept {
   constexpr double kMostProduct = 1099511627776.0, kNearTie = 1.0 / 4096.0;
   const double product = std::abs(value) * static_cast<double>(kPowersOfTen[decimals]);
@@ -215,7 +216,7 @@ void append_fixed(std::string& out, double value, int decimals) {
     out.append(digits.data(), static_cast<std::size_t>(written.ptr - digits.data()));
     return;
   }
-  std::array<char, 24> digits;  // sign, 10 digits, point, 9 digits; from the last on
+  std::array<char, 24> digits;  // sign, 10 digits, point, 9 digits; filled from the end
   char* const end = digits.data() + digits.size();
   char* begin = end;
   std::uint64_t rest = scaled(value, decimals);

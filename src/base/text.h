@@ -1,5 +1,5 @@
-// Text from files, devices and users: its words, its numbers, and how a sentence shows it.
-// Standard library alone, and nothing depends on the locale.
+// Text from files, devices and users: splits it, parses numbers and makes it printable. Uses the
+// standard library only and does not depend on the locale.
 #pragma once
 #include <charconv>
 #include <cstddef>
@@ -24,13 +24,14 @@ std::string_view without_byte_order_mark(std::string_view text) noexcept;
 
 // Cuts the first word off `rest`, with the blanks before it. Empty at the end.
 std::string_view take_word(std::string_view& rest, std::string_view blanks = kBlanks) noexcept;
-// Cuts off what stands before the first `divider`, and the divider. All of it where there is none.
+// Cuts the text before the first `divider` off `rest`, with the divider; all of it if there is
+// none.
 std::string_view take_part(std::string_view& rest, char divider) noexcept;
 // Cuts off the first line, and its '\n'.
 inline std::string_view take_line(std::string_view& rest) noexcept { return take_part(rest, '\n'); }
 
-// Cuts the number off that `rest` begins with, written as std::from_chars reads it: no blank or '+'
-// before it, no 0x. Nothing, and `rest` unchanged, where there is none or T cannot hold it.
+// Cuts a number off the beginning of `rest`, in the format of std::from_chars: no leading blank or
+// '+', no 0x. Returns nothing and keeps `rest` if there is none or T cannot hold it.
 template <class T>
 std::optional<T> take_number(std::string_view& rest, int base = 10) noexcept {
   T value{};
@@ -45,36 +46,35 @@ std::optional<T> take_number(std::string_view& rest, int base = 10) noexcept {
   rest.remove_prefix(static_cast<std::size_t>(read.ptr - rest.data()));
   return value;
 }
-// The whole text as a number, else nothing.
+// The whole text as a number, otherwise nothing.
 template <class T>
 std::optional<T> parse_number(std::string_view text, int base = 10) noexcept {
   const std::optional<T> value = take_number<T>(text, base);
   return text.empty() ? value : std::nullopt;
 }
-// The whole text as a number within +-1e7, so that all later arithmetic is finite. A '+' may stand
-// before it; one too small for a double is 0. Nothing for `nan`, `inf` and larger numbers.
+// The whole text as a number within +-1e7, so that all later arithmetic is finite. It may begin
+// with '+'; a number too small for a double is 0. Nothing for `nan`, `inf` and larger numbers.
 std::optional<double> parse_bounded(std::string_view text) noexcept;
 
-// Bytes of the UTF-8 character that the text begins with; 0 where it begins with none. Overlong
-// forms, surrogates and what lies beyond U+10FFFF are none.
+// Length in bytes of the UTF-8 character at the beginning of the text, 0 if there is no valid one.
+// Overlong forms, surrogates and code points beyond U+10FFFF are invalid.
 std::size_t character_bytes(std::string_view text) noexcept;
-// How many bytes at the beginning of the text are whole UTF-8 characters.
+// Length in bytes of the text's longest valid UTF-8 prefix.
 std::size_t utf8_bytes(std::string_view text) noexcept;
 inline bool is_utf8(std::string_view text) noexcept { return utf8_bytes(text) == text.size(); }
 
-// The text for one line of output. Foreign text (names of devices and files, what files and users
-// say) reaches a terminal through this alone: control characters, C1 ones included, characters that
-// change the direction of text, and bytes that are no UTF-8 are written as \x1b or \u202e.
+// The text for one line of output. All foreign text (names of devices and files, contents of files,
+// user input) passes through this before a terminal: control characters including C1, characters
+// that change the direction of text, and invalid UTF-8 are escaped as \x1b or \u202e.
 std::string printable(std::string_view text);
-// The same for several lines: '\n' stays.
+// The same for several lines: keeps '\n'.
 std::string printable_lines(std::string_view text);
 // The text in double quotes for an error sentence: printable, of at most 60 bytes, then "...".
 inline constexpr std::size_t kMaxQuotedBytes = 60;
 std::string in_quotes(std::string_view text);
-// The value with so many digits behind the point, as printf's %.*f writes it in the C locale.
+// The value with `decimals` digits after the point, as printf's %.*f writes it in the C locale.
 std::string fixed(double value, int decimals);
-// Appends the same bytes. With at most 9 digits, and for values below 1e9, it takes a few
-// nanoseconds.
+// Appends the same bytes; takes a few nanoseconds for at most 9 decimals and values below 1e9.
 void append_fixed(std::string& out, double value, int decimals);
 
 }  // namespace gaitpad

@@ -16,21 +16,21 @@ double finite_or_zero(double x) noexcept {
   return std::isfinite(x) ? std::clamp(x, -1.0, 1.0) : 0.0;
 }
 
-// On the spot a turn is quicker than in a walk.
+// Turning in place is quicker than while walking.
 double greatest_turn_rad_s(double forward, const GaitLimits& limits) noexcept {
   return limits.max_turn_rate_rad_s *
          mix(kQuickerInPlace, 1.0, smoothstep(0.0, kNotInPlace, forward));
 }
 
-// The longest step time in a turn at this share of the greatest rate.
+// Longest step time of a turn at this share of the greatest rate.
 double turning_step_time_s(double share, const GaitLimits& limits) noexcept {
   constexpr double kStraight = 1e-3;  // below it any step is short enough
   return limits.max_turning_step_time_s / std::max(share, kStraight);
 }
 
-// The longest step time. Steps of a straight walk may be slow; those of a turn in place and the
-// closing step of a stop are brisk. In between the share of the turn decides, so that it is
-// continuous over the whole stick but for neutral, which does not walk.
+// Longest step time. Steps of a straight walk may be slow; those of a turn in place and the last
+// step before a stop are brisk. It is interpolated by the share of the turn, so it is continuous
+// over the whole stick except at neutral, which does not walk.
 double step_time_cap_s(double forward, double sideways, const GaitLimits& limits) noexcept {
   const double turn = std::fabs(sideways);
   if (forward == 0.0) return limits.turn_step_time_s;
@@ -39,8 +39,8 @@ double step_time_cap_s(double forward, double sideways, const GaitLimits& limits
                   turning_step_time_s(turn, limits));
 }
 
-// The step before any stylization but fatigue. Speed is proportional to the forward deflection,
-// step length to the root of the speed, so that step length over cadence is constant.
+// The step before stylization, fatigue excepted. Speed is proportional to the forward deflection
+// and step length to the root of the speed, so step length over cadence is constant.
 BaseStep base_step(double forward, double sideways, double fatigue,
                    const GaitLimits& limits) noexcept {
   const double share = vigour(fatigue);
@@ -51,15 +51,15 @@ BaseStep base_step(double forward, double sideways, double fatigue,
   return {length_m, length_m / speed_m_s};
 }
 
-// Overrides, as factors on what the stick gives at most: the longest stride that the legs reach at
-// every speed and in every turn, the shortest and the longest step time.
+// Bounds of overrides, as factors on the stick's greatest values: the longest stride that the legs
+// reach at every speed and in every turn, the shortest and the longest step time.
 constexpr double kLongestStride = 1.3;
 constexpr double kQuickest = 0.5, kSlowest = 2.0;
 
 constexpr std::array<GaitKey, 2> kStrides = {GaitKey::stride_left_m, GaitKey::stride_right_m};
 constexpr std::array<GaitKey, 2> kFlights = {GaitKey::flight_left, GaitKey::flight_right};
 
-// The override of this key, bounded; nothing where it is not set or not a number.
+// The bounded override of this key; nothing if it is not set or not finite.
 std::optional<double> given(const GaitOverrides& overrides, GaitKey key,
                             const GaitLimits& limits) noexcept {
   const auto k = static_cast<std::size_t>(key);
@@ -68,7 +68,7 @@ std::optional<double> given(const GaitOverrides& overrides, GaitKey key,
   return std::clamp(overrides.value[k], range.min, range.max);
 }
 
-// The forward deflection that gives this speed with that sideways one, or comes nearest to it.
+// The forward deflection whose speed at this sideways deflection is closest to `speed_m_s`.
 double deflection_of(double speed_m_s, double sideways, double fatigue,
                      const GaitLimits& limits) noexcept {
   const double share = speed_m_s / (limits.max_speed_m_s * vigour(fatigue));
@@ -76,13 +76,13 @@ double deflection_of(double speed_m_s, double sideways, double fatigue,
   return std::max(-1.0, share / kBackwardShare - kBackwardSector * std::fabs(sideways));
 }
 
-// The longest step time that a speed may stretch a step to.
+// Longest step time that a given speed may stretch a step to.
 double slowest_step_s(double turn_rate_rad_s, const GaitLimits& limits) noexcept {
   const double share = std::min(std::fabs(turn_rate_rad_s) / limits.max_turn_rate_rad_s, 1.0);
   return std::min(kSlowest * limits.max_step_time_s, turning_step_time_s(share, limits));
 }
 
-// Stretches both step times until the walk has this speed, within the bounds of a step.
+// Scales both step times so that the walk has this speed, within the bounds of a step.
 void meet_speed(double speed_m_s, const GaitLimits& limits, GaitParams& params) noexcept {
   std::array<StrideParams, 2>& stride = params.stride;
   const double cycle_s = (stride[0].length_m + stride[1].length_m) / speed_m_s;
@@ -136,7 +136,7 @@ GaitParams gait_params(const Stick& stick, const StyleValues& style,
   GaitParams params;
   params.walking = along > 0.0 || sideways != 0.0;
   params.backward = back > 0.0;
-  // 0 - x and not -x: neutral must be +0, since a hash tells +0 and -0 apart.
+  // 0 - x instead of -x: neutral must be +0, because a hash differs between +0 and -0.
   params.turn_rate_rad_s = 0.0 - sideways * greatest_turn_rad_s(std::max(ahead, back), limits);
   for (const Side side : {kLeftSide, kRightSide}) {
     const StrideFactors& factors = style.stride[side];
@@ -153,7 +153,7 @@ GaitParams gait_params(const Stick& stick, const StyleValues& style,
 
 Stick pointed_stick(const Stick& stick, double heading_rad, double camera_rad,
                     const GaitLimits& limits) noexcept {
-  constexpr double kTurns_per_s = 3.0;  // rate for the angle that is left
+  constexpr double kTurns_per_s = 3.0;  // turn rate per radian of remaining angle
   Stick steers = stick;
   const double right = finite_or_zero(stick.left.x), ahead = finite_or_zero(stick.left.y);
   const double pushed = std::min(std::sqrt(right * right + ahead * ahead), 1.0);
@@ -189,7 +189,7 @@ GaitParams gait_params(const Stick& stick, const StyleValues& style, const GaitO
                        const GaitLimits& limits) noexcept {
   const auto speed_m_s = given(overrides, GaitKey::speed_m_s, limits);
   const auto turn_rate_rad_s = given(overrides, GaitKey::turn_rate_rad_s, limits);
-  Stick in_force = stick;  // the stick that would give what is overridden
+  Stick in_force = stick;  // the stick that would give the overrides
   if (turn_rate_rad_s) {
     const double forward = speed_m_s ? deflection_of(*speed_m_s, 0.0, style.fatigue, limits)
                                      : finite_or_zero(stick.left.y);

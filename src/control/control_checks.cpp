@@ -1,4 +1,4 @@
-// Whether styles, parameters and limits that a program has filled in can be walked with.
+// Checks styles, parameters and limits that a caller has filled in.
 #include "base/ranges.h"
 #include "control/fields.h"
 #include "control/params_range.h"
@@ -7,12 +7,12 @@
 namespace gaitpad {
 namespace {
 
-// A step of a tick: its length goes up to a giant's. Of a shorter time the legs would be a blur.
+// Bounds of a step: a giant's length; a shorter time would blur the legs.
 constexpr double kMostStep_m = 20.0, kLeastStep_s = 0.05, kMostStep_s = 20.0;
 constexpr double kMostTurn_rad_s = 4.0;
-constexpr double kFarthestLook_m = 1e6;  // a place in a large world, which no style's file needs
+constexpr double kFarthestLook_m = 1e6;  // a place in a large world, farther than a style's
 
-// A style with the numbers that parameters share with it.
+// A style from the numbers that parameters have in common with it.
 StyleValues style_of(const GaitParams& params) {
   StyleValues style;
   for (const int side : {0, 1})

@@ -14,7 +14,7 @@ namespace {
 constexpr double kMostFactor = 3.0;  // on hip sway, hip bounce and the flight's height
 constexpr double kMostStride_m = 20.0, kMostSpeed_m_s = 20.0;  // a giant's; its limits bound them
 
-// Accessors: where a number of a style stands.
+// Accessors to the numbers of a style.
 template <double StyleValues::*number>
 std::span<double> of_whole(StyleValues& style, int) {
   return {&(style.*number), 1};
@@ -151,7 +151,7 @@ double speed_of(const GaitParams& params) noexcept {
   return params.backward ? 0.0 - speed_m_s : speed_m_s;
 }
 
-// What a `gait` command may override, in the order of GaitKey.
+// A value that a `gait` command may override. Rows are in the order of GaitKey.
 struct GaitField {
   GaitKeyInfo info;
   double (*value)(const GaitParams& params) noexcept;
@@ -230,7 +230,7 @@ bool set_value(StyleValues& style, std::string_view key, double value) noexcept 
   const auto found = field_of(key);
   if (!found || !(value >= found->field->min && value <= found->field->max)) return false;
   StyleValues changed = style;
-  // A file holds -0 as 0: adding 0 makes them equal here, too.
+  // Adding 0 turns -0 into 0, as in a file.
   set_field(*found->section, *found->field, value + 0.0, changed);
   if (is_locked(*found->section, changed)) return false;
   style = changed;
@@ -251,7 +251,7 @@ StyleValues mixed(const StyleValues& from, const StyleValues& to, double share) 
     for (std::size_t i = 0; i < own.size(); ++i) own[i] = mix(own[i], goals[i], share);
   };
   for (const StyleSection& section : kSections) {
-    if (section.is_of_both()) continue;  // the sections of the left and the right side hold all
+    if (section.is_of_both()) continue;  // the left and right sections contain all values
     const int side = section.first_side;
     for (const StyleField& field : section.fields) {
       if (!field.is_weight()) mix_each(field.values(values, side), field.values(goal, side));

@@ -1,4 +1,4 @@
-// The range of each number of GaitParams: what a tick takes.
+// The range of each number of GaitParams that a tick accepts.
 #pragma once
 #include <cstddef>
 #include <span>
@@ -12,7 +12,7 @@ struct ParamsRange {
 };
 const ParamsRange& params_range() noexcept;
 
-// All numbers of GaitParams, in the order of its fields: they stand behind one another.
+// Count of the numbers of GaitParams, which are contiguous in the order of its fields.
 inline constexpr std::size_t kParamsNumbers =
     (sizeof(GaitParams) - offsetof(GaitParams, stride)) / sizeof(double);
 inline std::span<const double, kParamsNumbers> numbers_of(const GaitParams& params) noexcept {

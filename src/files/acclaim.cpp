@@ -28,10 +28,10 @@ class LineReader {
     }
     return {};
   }
-  int line() const { return line_; }  // of the last one
+  int line() const { return line_; }  // of the last line returned
 
  private:
-  // A comment begins at the line's beginning or behind a blank.
+  // A comment begins at the line's beginning or after a blank.
   static std::string_view without_comment(std::string_view line) {
     for (std::size_t i = 0; i < line.size(); ++i) {
       if (line[i] == '#' && (i == 0 || is_blank(line[i - 1]))) return line.substr(0, i);
@@ -43,7 +43,7 @@ class LineReader {
   int line_ = 0;
 };
 
-// A bone as it is read. Its angles may stand before the unit that they are in.
+// A bone as read. Angles may precede their unit in the file.
 struct RawBone {
   AsfBone bone;
   EulerOrder order = {0, 1, 2};
@@ -240,7 +240,7 @@ class AsfParser {
     }
     if (key == "axis") return vector(key, rest, raw.angles) && order_of(rest, raw);
     if (key == "dof") return channels(raw.bone, rest);
-    return true;  // id, limits and their further lines, masses
+    return true;  // skips id, limits with their further lines, masses
   }
 
   bool add(RawBone raw) {
@@ -294,7 +294,7 @@ class AsfParser {
     return std::nullopt;
   }
 
-  // Orders the bones from the root down. Bones that are not reached hang on nothing or in a ring.
+  // Orders the bones from the root down. Bones that are not reached have no parent or form a ring.
   bool in_depth_first_order() {
     if (bones_.size() < 2) return fail("no bones: not a skeleton (.asf)");
     if (children_.size() != bones_.size()) return fail("no :hierarchy behind :bonedata");
@@ -452,7 +452,7 @@ class AmcParser {
                             in_quotes(bone.name), count, bone.channels));
   }
 
-  // Which bones move is said by the first frame.
+  // The first frame defines which bones move.
   bool is_complete() {
     if (amc_.frames == 1) {
       first_ = seen_;

@@ -1,5 +1,5 @@
-// Acclaim files: the bones of a skeleton (ASF) and the numbers of each frame of a motion (AMC), as
-// they stand in the files. Counts, names and numbers are checked, so that any text may be read.
+// Parsers of Acclaim files: the bones of a skeleton (ASF) and the numbers of each frame of a motion
+// (AMC), unconverted. Counts, names and numbers are checked, so any text is safe to parse.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -26,11 +26,11 @@ struct AsfBone {
   quat axes = kIdentity;  // turns the bone's axes to the world's
   std::array<AsfChannel, 6> channel{};
   int channels = 0;
-  int first_value = 0;  // of its channels in a frame
+  int first_value = 0;  // index in a frame of its first channel
   vec3 end() const { return length * direction; }
 };
 
-// Bones stand in depth-first order, parents before children; bones[0] is the root.
+// Bones are in depth-first order, parents before children; bones[0] is the root.
 struct Asf {
   std::vector<AsfBone> bones;
   vec3 root_position{0.0};      // file units; the root's translation is added to it
@@ -41,20 +41,20 @@ struct Asf {
 
 // Parses a skeleton: any order of sections and channels, any case of keywords, CRLF, comments.
 // Limits, masses and unknown sections are skipped. Rotations are applied in the order in which they
-// are written. Bones that stretch (dof `l`) are errors. Errors read `NAME:LINE: cause`.
+// are written. Stretching bones (dof `l`) are errors. Errors read `NAME:LINE: cause`.
 Result<Asf> parse_asf(std::string_view text, const std::string& name);
 
 struct Amc {
   int frames = 0;
-  double angle_unit = kDegree;  // rad; :DEGREES or :RADIANS, else the skeleton's
+  double angle_unit = kDegree;  // rad; :DEGREES or :RADIANS, otherwise the skeleton's
   double frame_rate_hz = 0.0;   // 0: not stated, which is usual
   std::vector<double> values;   // frames x asf.channels; file units
 };
 
-// Parses a motion of the skeleton `asf`. Frames are numbered, counted up by one from any number. A
-// bone that the first frame leaves out rests. One that a later frame leaves out keeps its last
-// values, or is an error if the file says :FULLY-SPECIFIED. `asf_name` stands in the error about a
-// bone that the skeleton does not have. Errors read `NAME:LINE: cause`.
+// Parses a motion of the skeleton `asf`. Frame numbers start anywhere and grow by one. A bone
+// missing from the first frame rests. A bone missing from a later frame keeps its last values, or
+// is an error if the file says :FULLY-SPECIFIED. `asf_name` is named in the error about a bone that
+// the skeleton does not have. Errors read `NAME:LINE: cause`.
 Result<Amc> parse_amc(std::string_view text, const std::string& name, const Asf& asf,
                       const std::string& asf_name);
 

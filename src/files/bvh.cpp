@@ -38,7 +38,7 @@ class Reader {
     }
     return take(n);
   }
-  // The rest of this line up to a brace, trimmed: names may hold blanks.
+  // The rest of this line up to a brace, trimmed: names may contain blanks.
   std::string_view name() {
     std::size_t n = 0;
     while (n < rest_.size() && rest_[n] != '\n' && !is_brace(rest_[n])) ++n;
@@ -220,14 +220,13 @@ class Parser {
     return plausible(static_cast<long long>(*frames));
   }
 
-  // What follows this key on the next line; empty if another key stands there.
+  // The text after this key on the next line; empty if the line has another key.
   std::string_view behind(std::string_view key) {
     const std::string_view line = in_.full_line();
     return line.starts_with(key) ? trimmed(line.substr(key.size())) : std::string_view();
   }
 
-  // A number and the blank behind it take two bytes, so the length of the text bounds the counts
-  // that it may declare.
+  // A number and a blank take two bytes, so the length of the text limits the number of frames.
   bool plausible(long long frames) {
     if (bvh_.channels == 0) return fail("no joint has channels");
     if (frames * bvh_.channels > static_cast<long long>(in_.bytes_left() / 2 + 1)) {
@@ -413,7 +412,7 @@ void BvhWriter::write(const Pose& pose) {
 
 namespace {
 
-// 0 and -0 are written differently.
+// Compares bits, because 0 and -0 are written differently.
 template <class T>
 bool has_same_bits(const T& a, const T& b) noexcept {
   using Bits = std::array<std::uint64_t, sizeof(T) / sizeof(double)>;
@@ -422,8 +421,8 @@ bool has_same_bits(const T& a, const T& b) noexcept {
 
 }  // namespace
 
-// The angles depend on the rotation and the angles before alone: where neither has changed, as in
-// joints that do not move, they stay.
+// Angles depend only on the rotation and the previous angles: skip joints in which neither has
+// changed.
 void BvhWriter::Written::turn_to(const BvhOrder& order, const quat& turned) {
   if (is_settled && has_same_bits(turned, rotation)) return;
   const EulerAngles next_rad = nearest_euler(order, turned, angles_rad);

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kMaxNameBytes = 48;
-constexpr std::size_t kMaxSummaryFileBytes = 64 << 20;  // a motion's description may hold poses
+constexpr std::size_t kMaxSummaryFileBytes = 64 << 20;  // a motion's file may contain poses
 
 bool is_plain(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
@@ -110,7 +110,7 @@ std::string config_summary(const std::string& path) {
     if (!comment.empty()) comment += ' ';
     comment += line;
   }
-  // References stand in brackets; a point in one ends no sentence.
+  // Drop references in brackets, because their points do not end the sentence.
   for (auto open = comment.find(" ("); open != std::string::npos; open = comment.find(" (")) {
     const auto close = comment.find(')', open);
     comment.erase(open, close == std::string::npos ? close : close + 1 - open);

@@ -72,7 +72,7 @@ FolderList list_folder(const std::string& folder, FileFilter filter) {
 RecentFiles::RecentFiles(std::string file) : file_(std::move(file)) {
   if (file_.empty()) return;
   const auto text = file_text(file_, kMostRecentBytes);
-  if (!text) return;  // no file was opened so far
+  if (!text) return;  // no file was opened yet
   for (std::size_t begin = 0; begin < text->size() && paths_.size() < kMost;) {
     const std::size_t end = std::min(text->find('\n', begin), text->size());
     std::string path = text->substr(begin, end - begin);
@@ -94,7 +94,7 @@ void RecentFiles::add(const std::string& path) {
   if (file_.empty()) return;
   std::string text;
   for (const std::string& known : paths_) text += known + "\n";
-  // Not reported: the list is a convenience.
+  // An error is not reported: the list is only a convenience.
   static_cast<void>(save_text(file_, text));
 }
 

@@ -1,4 +1,4 @@
-// What stands in a folder of the files that gaitpad reads, and the files that were opened last.
+// Lists the files in a folder that gaitpad can open, and the files that were opened last.
 #pragma once
 #include <cstdint>
 #include <string>
@@ -7,29 +7,29 @@
 
 namespace gaitpad {
 
-// Which files are listed, of those that the window can open.
+// The kinds of files that the window can open.
 enum class FileFilter : std::uint8_t { all, motions, recordings, settings };
 
 struct FolderEntry {
-  std::string name;  // the file system's bytes, perhaps not UTF-8
+  std::string name;  // bytes of the file system, possibly not UTF-8
   bool is_folder = false;
-  std::string date;  // of a file: when it was written last, "2024-02-29 23:59"; empty: unknown
+  std::string date;  // of a file's last change, "2024-02-29 23:59"; empty: unknown
 };
 struct FolderList {
   static constexpr std::size_t kMostEntries = 4000;
   std::vector<FolderEntry> entries;  // folders first, then files; by name, ignoring case
-  std::string problem;               // why it cannot be read or is shown in part
+  std::string problem;               // why the folder cannot be read or is incomplete
 };
 
-// Leaves out hidden files and those that the filter excludes.
+// Lists a folder without hidden files and files that the filter excludes.
 FolderList list_folder(const std::string& folder, FileFilter filter);
 
-// The last files that were opened, newest first, kept in a file from one start to the next. Paths
-// that appear twice, no longer exist or have a line break are left out.
+// The files opened last, newest first, stored in a file between runs. Duplicates, missing files and
+// paths with a line break are left out.
 class RecentFiles {
  public:
   static constexpr std::size_t kMost = 8;
-  // `file`: where they are kept; empty: nowhere.
+  // `file`: path of the stored list; empty: it is not stored.
   explicit RecentFiles(std::string file);
   void add(const std::string& path);
   const std::vector<std::string>& paths() const noexcept { return paths_; }
@@ -39,7 +39,7 @@ class RecentFiles {
   std::vector<std::string> paths_;
 };
 
-// When a file was written last, in local time, "2024-02-29 23:59"; empty: unknown.
+// Local time of a file's last change, "2024-02-29 23:59"; empty: unknown.
 std::string written_on(const std::string& path);
 
 }  // namespace gaitpad

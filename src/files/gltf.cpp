@@ -17,15 +17,15 @@
 namespace gaitpad {
 namespace {
 
-// The body that the file shows: a rod for each bone, thickest near its upper joint and bound to
-// that joint alone. Triangles share no vertices, for flat shading.
+// The visible body: a rod for each bone, thickest near its upper joint and skinned to that joint
+// only. Triangles share no vertices, for flat shading.
 struct GltfBody {
   std::vector<vec3> place_m, normal;  // world, in the rest pose
   std::vector<std::uint16_t> joint;   // index in the skeleton
 };
 
 constexpr double kShortestBone_m = 1e-3;
-constexpr double kWaist = 0.15;  // how far down the rod it is thickest
+constexpr double kWaist = 0.15;  // share of the rod's length at which it is thickest
 constexpr double kThickness = 0.09, kThinnest_m = 0.004, kThickest_m = 0.032;
 
 void add_triangle(const vec3& a, const vec3& b, const vec3& c, int joint, GltfBody& body) {
@@ -68,7 +68,7 @@ GltfBody gltf_body(const Skeleton& skeleton, const JointFrames& world) {
 using nlohmann::ordered_json;
 
 constexpr int kFloat = 5126, kUnsignedShort = 5123, kUnsignedByte = 5121, kArrayBuffer = 34962;
-// Up to this many frames, times in seconds differ as 32-bit floats at any rate.
+// Up to this number of frames, times in seconds stay distinct as 32-bit floats at any rate.
 constexpr std::size_t kMostFrames = std::size_t{1} << 23;
 constexpr std::uint64_t kMostBytes = std::numeric_limits<std::uint32_t>::max();
 
@@ -88,14 +88,14 @@ ordered_json json_of(const quat& q) {
   return {rounded(q.x), rounded(q.y), rounded(q.z), rounded(q.w)};
 }
 
-// The JSON document, and the length of the binary part that it describes so far.
+// The JSON document and the current length of its binary part.
 class Document {
  public:
   ordered_json json;
   std::uint64_t bytes = 0;
 
-  // Adds a buffer view behind the last one and an accessor of it; returns the accessor's index.
-  // `view_target` 0: none.
+  // Appends a buffer view and an accessor of it; returns the accessor's index. `view_target` 0:
+  // none.
   int add(std::uint64_t byte_length, int component, const char* type, std::size_t count,
           int view_target) {
     ordered_json view = {{"buffer", 0}, {"byteOffset", bytes}, {"byteLength", byte_length}};
@@ -136,7 +136,7 @@ void add_nodes(const Skeleton& skeleton, const GltfLayout& layout, ordered_json&
   }
 }
 
-// Matrices from the world to each joint in the rest pose, by columns.
+// World-to-joint matrices of the rest pose, column-major.
 void append_inverse_bind(const JointFrames& world, std::size_t joints, std::string& bytes) {
   for (std::size_t j = 0; j < joints; ++j) {
     const quat back = glm::conjugate(world.rotation[j]);
@@ -176,7 +176,7 @@ std::string add_body(const Skeleton& skeleton, const GltfLayout& layout, Documen
   std::string bytes;
   ordered_json& json = doc.json;
   json["scenes"] = {{{"nodes", {0}}}};
-  if (n == 0) return bytes;  // all joints at one place: no bone to show
+  if (n == 0) return bytes;  // no bone has a length
   append_inverse_bind(rest->world, joints, bytes);
   const int bind = doc.add(64 * joints, kFloat, "MAT4", joints, 0);
   append_vectors(body.place_m, bytes);
@@ -213,7 +213,7 @@ ordered_json channel(std::size_t sampler, int node, const char* path) {
   return {{"sampler", sampler}, {"target", {{"node", node}, {"path", path}}}};
 }
 
-// The bytes of its accessors: times, the root's places, then each joint's rotations.
+// Accessors of the animation: times, positions of the root, rotations of each turning joint.
 void add_animation(const std::vector<int>& turning, std::size_t frames, double fps, Document& doc) {
   if (frames == 0) return;
   const int times = doc.add(4 * frames, kFloat, "SCALAR", frames, 0);
@@ -232,10 +232,10 @@ void add_animation(const std::vector<int>& turning, std::size_t frames, double f
   json["animations"] = {{{"name", "walk"}, {"samplers", samplers}, {"channels", channels}}};
 }
 
-// The file up to the binary part, which has the length `bytes_behind`.
+// The file up to its binary part of `bytes_behind` bytes.
 std::string head(ordered_json& json, std::uint64_t bytes_behind) {
   json["buffers"] = {{{"byteLength", bytes_behind}}};
-  // Joint names may hold any bytes: what is not UTF-8 is replaced.
+  // Joint names may contain any bytes; invalid UTF-8 is replaced.
   std::string text = json.dump(-1, ' ', false, ordered_json::error_handler_t::replace);
   text.append((4 - text.size() % 4) % 4, ' ');
   std::string out = "glTF";
@@ -268,7 +268,7 @@ void GltfWriter::write(const Pose& pose) {
   for (std::size_t t = 0; t < turning(); ++t) {
     const auto joint = static_cast<std::size_t>(turning_[t]);
     quat q = glm::normalize(pose.local[joint]);
-    if (glm::dot(q, before_[joint]) < 0.0) q = -q;  // interpolate the short way
+    if (glm::dot(q, before_[joint]) < 0.0) q = -q;  // keep neighbours in one hemisphere
     before_[joint] = q;
     for (const double v : {q.x, q.y, q.z, q.w}) chunk_[t].push_back(static_cast<float>(v));
   }
@@ -278,7 +278,7 @@ void GltfWriter::write(const Pose& pose) {
   if (++frames_ % kChunkFrames == 0) write_chunk();
 }
 
-// Every track has a fixed place in a chunk, also in the last one, which is not full.
+// Every track has a fixed place in a chunk, even in the partly filled last one.
 void GltfWriter::write_chunk() {
   const std::size_t chunk = (frames_ - 1) / kChunkFrames;
   for (std::size_t t = 0; t < chunk_.size(); ++t) {

@@ -60,7 +60,7 @@ bool begin(PngReader& reader) noexcept {
   return true;
 }
 
-// Reads all rows into `to`, one or two bytes a sample, `row_bytes` a row.
+// Reads all rows into `to`, one or two bytes per sample, `row_bytes` per row.
 bool read_rows(PngReader& reader, png_bytep to, std::size_t row_bytes, std::size_t rows) noexcept {
   if (setjmp(png_jmpbuf(reader.png)) != 0) return false;
   const int passes = png_set_interlace_handling(reader.png);

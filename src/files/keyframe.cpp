@@ -16,9 +16,9 @@ constexpr std::size_t kMostPoses = 64;
 constexpr int kStrides = 4;
 constexpr double kLeastGap = 0.005;  // between two keys of one channel, share of the stride
 
-// The channels that a pose can key. The values of a side belong to its own stride: in a symmetric
-// walk the left leg has those of the right one half a stride later. The trunk's values then repeat
-// every half stride, those about a sideways motion with the opposite sign.
+// The channels that a pose can key. Each side's phases count from its own strike: in a symmetric
+// walk the left leg has the right leg's values half a stride later. The trunk's values then repeat
+// every half stride; those of sideways motion change their sign.
 enum Channel { kHip, kKnee, kAnkle, kToe, kShoulder, kElbow, kSideChannels };
 enum TrunkChannel {
   kTurn,
@@ -62,7 +62,8 @@ struct KeyedStride {
   double duration_s = 1.1, track_m = 0.05, shoulder_out_rad = 0.0;
 };
 
-// Collects the keys of all poses, and of a symmetric walk their mirror images half a stride later.
+// Collects the keys of all poses and, for a symmetric walk, their mirror images half a stride
+// later.
 class KeyframeReader {
  public:
   explicit KeyframeReader(bool is_symmetric) : is_symmetric_(is_symmetric) {}
@@ -186,9 +187,9 @@ void stand_on_lower_foot(GaitCycle& cycle) {
   for (int i = 0; i < kCycleSamples; ++i) cycle.samples[i].pelvis_m.y = height[i];
 }
 
-// The length of a stride: between two samples the lowest point (heel, ball, tip) of those that move
-// backwards is taken to stand, and the pelvis travels as far as it moves back. A swinging toe may
-// be lower, but moves forward.
+// The length of a stride. Between two samples, the lowest point (heel, ball, tip) of those that
+// move backwards is assumed to stand, and the pelvis travels by its movement. A swinging toe may be
+// lower but moves forward.
 double travel_m(const GaitCycle& cycle) {
   double sum_m = 0.0;
   for (int i = 0; i < kCycleSamples; ++i) {
@@ -288,7 +289,7 @@ double PeriodicKeys::at(double phase) const {
   if (n == 0) return 0.0;
   if (n == 1) return keys_[0].value;
   const double p = fraction(phase);
-  std::size_t k = n - 1;  // the key before p; if p is before all, the last key of the cycle before
+  std::size_t k = n - 1;  // the key before p; before the first key, the previous cycle's last
   while (k > 0 && keys_[k].phase > p) --k;
   if (keys_[k].phase > p) k = n - 1;
   const std::size_t next = (k + 1) % n;

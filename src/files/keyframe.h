@@ -28,12 +28,12 @@ class PeriodicKeys {
   std::vector<double> slope_;  // at each key, per cycle
 };
 
-// Whether a motion's .toml file holds poses, and does not name a motion file.
+// True if a motion's .toml file contains poses instead of naming a motion file.
 bool is_keyframe_file(TomlFile& file);
 
 // Four strides of the walk that the file describes (config/README.md, Motions), 128 frames each.
-// The pelvis is as high as the foot that reaches lower needs it, and travels as far as the standing
-// foot moves backwards below it. Errors read `FILE:LINE: cause`.
+// The pelvis' height puts the lower foot on the floor, and its travel keeps the standing foot in
+// place. Errors read `FILE:LINE: cause`.
 Result<Motion> keyframe_motion(TomlFile& file);
 
 }  // namespace gaitpad

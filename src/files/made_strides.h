@@ -6,8 +6,7 @@
 
 namespace gaitpad {
 
-// The bits of doubles: what solver_input() gives for procedural_gait(), then each number of its
-// family.
+// Bits of doubles: solver_input() of procedural_gait(), then each number of its family.
 std::span<const std::uint64_t> made_strides() noexcept;
 
 }  // namespace gaitpad

@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double kMinLegUnits = 1e-3, kMaxLegUnits = 1e6;
-constexpr double kAcclaimRate_hz = 120.0;  // of a file that says nothing, as CMU's
+constexpr double kAcclaimRate_hz = 120.0;  // for files without a rate, such as CMU's
 constexpr double kInch_m = 0.0254;
 
 // The index of the axis that points up.
@@ -81,7 +81,7 @@ Result<UpAxis> find_body(Motion& motion, const std::string& path, const LoadOpti
 }
 
 // Converts to metres and y up. `stated_unit_m` is the unit that the file states, 0: none; a unit in
-// the options goes before it.
+// the options overrides it.
 Result<Motion> finish_motion(Motion motion, UpAxis up, double stated_unit_m,
                              const std::string& path, const LoadOptions& options) {
   const double leg_units = leg_length_m(motion);
@@ -125,7 +125,7 @@ AcclaimJoints joints_of(const Asf& asf) {
 
 struct BonePose {
   quat rotation;
-  vec3 translation;  // from where it stands at rest, in its parent's frame
+  vec3 translation;  // from its rest position, in its parent's frame
 };
 
 BonePose pose_of(const AsfBone& bone, const double* values, double angle_unit) {
@@ -150,7 +150,7 @@ bool has_translation(const AsfBone& bone) {
   return false;
 }
 
-// Rotations and places as the file has them, still in its units.
+// Converts to a Motion with rotations and positions still in file units.
 Motion in_file_units(const Asf& asf, const Amc& amc) {
   AcclaimJoints body = joints_of(asf);
   Motion motion;
@@ -178,7 +178,7 @@ Motion in_file_units(const Asf& asf, const Amc& amc) {
   return motion;
 }
 
-// One frame in which every bone rests.
+// One frame of the rest pose.
 Amc rest_of(const Asf& asf) {
   Amc amc;
   amc.frames = 1;
@@ -186,7 +186,8 @@ Amc rest_of(const Asf& asf) {
   return amc;
 }
 
-// NAME_01.amc: NAME_01.asf, else NAME.asf, else the only .asf file of the folder.
+// The skeleton of NAME_01.amc: NAME_01.asf, otherwise NAME.asf, otherwise the folder's only .asf
+// file.
 Result<std::string> skeleton_beside(const std::string& path) {
   const fs::path file(path);
   const std::string stem = file.stem().string();
@@ -238,7 +239,7 @@ bool has_position(const BvhJoint& joint) {
   return false;
 }
 
-// What a joint's position channels count from: its parent, or its OFFSET.
+// The origin of a joint's position channels: its parent (place) or its OFFSET (shift).
 enum class PositionMeans { place, shift };
 
 PositionMeans position_means(const Bvh& bvh, const BvhJoint& joint) {
@@ -251,7 +252,8 @@ PositionMeans position_means(const Bvh& bvh, const BvhJoint& joint) {
   return near_offset ? PositionMeans::place : PositionMeans::shift;
 }
 
-// The same for BVH. The root stands where its channels say; axes without a channel take the OFFSET.
+// The same for BVH. The root's position comes from its channels; axes without a channel take the
+// OFFSET.
 Motion in_file_units(const Bvh& bvh) {
   Motion motion;
   motion.frame_time_s = bvh.frame_time_s;
@@ -303,7 +305,7 @@ double floor_height(const Motion& motion, UpAxis up) {
   return median(std::move(lowest));
 }
 
-// Adds the root's OFFSET to its positions if that puts the feet nearer to the floor.
+// Adds the root's OFFSET to its positions if that puts the feet closer to the floor.
 void settle_root(const Bvh& bvh, UpAxis up, Motion& motion) {
   const BvhJoint& root = bvh.joints[0];
   const JointValues channels = values_of(root, bvh.values.data());
@@ -332,7 +334,7 @@ bool ends_in(const std::string& path, std::string_view ending) {
   return lower_case(fs::path(path).extension().string()) == ending;
 }
 
-// Reads the names of a leg's joints; a name that is given already stays.
+// Reads the names of a leg's joints; names that are already given stay.
 void read_leg(TomlTable& root, const char* key, LegNames& names) {
   auto leg = root.table(key);
   if (!leg) return;

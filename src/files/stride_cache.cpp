@@ -23,7 +23,7 @@ namespace fs = std::filesystem;
 #ifdef GAITPAD_STRIDES_VERSION
 constexpr std::uint64_t kVersion = GAITPAD_STRIDES_VERSION;
 #else
-constexpr std::uint64_t kVersion = 0;  // nothing is kept
+constexpr std::uint64_t kVersion = 0;  // files are neither read nor written
 #endif
 constexpr std::size_t kMostFiles = 64;
 constexpr const char* kEnding = ".strides";
@@ -35,7 +35,7 @@ std::uint64_t hash_of(const std::vector<double>& numbers) {
   return hash.value();
 }
 
-// A file: the version, what was solved, its answer, a hash of all that. Numbers are as in memory.
+// A file: version, input, solution, and a hash of all three. Numbers have their memory format.
 std::vector<double> file_numbers(const std::vector<double>& input, const StrideFamily& family) {
   std::vector<double> numbers = {std::bit_cast<double>(kVersion)};
   numbers.insert(numbers.end(), input.begin(), input.end());
@@ -59,7 +59,7 @@ StrideFamily empty_family() {
   return family;
 }
 
-// Those of the built-in walk, if that is what is to be solved.
+// The built-in walk's strides, if `input` is the built-in walk.
 std::optional<StrideFamily> made_family([[maybe_unused]] const std::vector<double>& input) {
 #ifdef GAITPAD_HAS_MADE_STRIDES
   const std::span<const std::uint64_t> made = made_strides();
@@ -99,7 +99,7 @@ void delete_oldest(const std::string& folder) {
   fs::directory_iterator entry(folder, error);
   for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
     if (entry->path().extension() != kEnding) continue;
-    std::error_code gone;  // another process may delete it now
+    std::error_code gone;  // another process may have deleted it
     const auto time = entry->last_write_time(gone);
     if (!gone) files.emplace_back(time, entry->path());
   }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr std::string_view kWeightTable = "weight";
 
-// Of a name with a point, what stands before the point is a table inside `table`.
+// In a name with a point, the part before the point is a table inside `table`.
 std::optional<double> read_number(TomlTable& table, const StyleField& field) {
   const std::size_t point = field.name.find('.');
   if (point == std::string_view::npos) return table.number(field.name, field.min, field.max);
@@ -31,8 +31,8 @@ void read_section(const StyleSection& section, TomlTable& table, StyleValues& st
                fmt::format("all weights of the {} are 0: it could not move", section.limb));
 }
 
-// The weights that are not 1, as an inline table: one value for a joint whose DOFs have the same,
-// else one for each DOF.
+// The weights that are not 1, as an inline table: one value for a joint with equal DOFs, otherwise
+// one for each DOF.
 std::string weights_text(const StyleSection& section, StyleValues& style) {
   const int side = section.first_side;
   std::string text;
@@ -40,7 +40,7 @@ std::string weights_text(const StyleSection& section, StyleValues& style) {
     const std::string_view name = field.name.substr(kWeightTable.size() + 1);
     if (weight != 1.0) text += fmt::format("{}{} = {}", text.empty() ? "" : ", ", name, weight);
   };
-  const double* written = nullptr;  // behind the last joint; single DOFs of those follow
+  const double* written = nullptr;  // end of the written weights: their DOFs' keys are skipped
   for (const StyleField& joint : section.fields) {
     if (!joint.is_weight()) continue;
     const std::span<double> own = joint.values(style, side);
@@ -73,7 +73,7 @@ std::string section_text(const StyleSection& section, StyleValues& style) {
   return fmt::format("\n[{}]\n{}", section.name, text);
 }
 
-// Whether both sides of a section have the same values.
+// True if both sides of a section have equal values.
 bool is_even(const StyleSection& both, StyleValues& style) {
   return std::ranges::all_of(both.fields, [&](const StyleField& field) {
     return std::ranges::equal(field.values(style, kLeftSide), field.values(style, kRightSide));
@@ -104,7 +104,7 @@ std::string style_text(const Style& style) {
   std::string text = "# A style: how a character walks. What is left out is plain.\n";
   if (!style.name.empty()) text += fmt::format("name = {}\n", toml_string(style.name));
   StyleValues values = style;
-  bool are_sides_even = false;  // of the limb whose sections follow
+  bool are_sides_even = false;  // of the current limb
   for (const StyleSection& section : style_sections()) {
     if (section.is_of_both()) are_sides_even = is_even(section, values);
     const bool is_one_of_two =

@@ -13,8 +13,7 @@ namespace gaitpad {
 namespace {
 
 constexpr double kMost_m = 1000.0;
-constexpr double kUsualBend_1_m =
-    0.25;  // bend of a rounding that the file leaves out: 2 mm under a sole
+constexpr double kUsualBend_1_m = 0.25;  // default curvature of a rounding: 2 mm under a sole
 
 double length_of(TomlTable& section) {
   section.require("length_m");
@@ -62,8 +61,8 @@ SectionShape rough_of(TomlTable& section) {
                        static_cast<std::uint32_t>(seed));
 }
 
-// Seen from above, the way leads up the picture: its lowest row is the first one of the field, its
-// left column is at the walker's left.
+// Forward is up in the picture, seen from above: its bottom row is the field's first row, its left
+// column is at the walker's left.
 std::shared_ptr<const HeightField> field_of(const HeightPicture& picture, double low_m,
                                             double high_m) {
   auto field = std::make_shared<HeightField>();

@@ -15,7 +15,7 @@ namespace gaitpad {
 
 namespace {
 
-// The place behind the string that begins at `begin` (a quote), or the end of the text.
+// Index after the string that begins at `begin` (a quote), or the end of the text.
 std::size_t end_of_string(std::string_view text, std::size_t begin) {
   const char quote = text[begin];
   const char three[] = {quote, quote, quote};
@@ -41,7 +41,8 @@ int line_at(std::string_view text, std::size_t place) {
   return 1 + static_cast<int>(std::count(text.begin(), text.begin() + place, '\n'));
 }
 
-// The line of the first byte outside strings and comments that `is_wanted`; 0 if there is none.
+// The line of the first byte outside strings and comments that `is_wanted` accepts; 0 if there is
+// none.
 template <class Wanted>
 int first_line(std::string_view text, Wanted is_wanted) {
   for (std::size_t i = 0; i < text.size();) {
@@ -156,13 +157,13 @@ std::string toml_string(std::string_view text) {
     const std::string_view character = text.substr(0, std::max<std::size_t>(bytes, 1));
     const auto byte = static_cast<unsigned char>(text[0]);
     if (bytes == 0) {
-      quoted += '?';  // TOML holds no broken UTF-8
+      quoted += '?';  // TOML allows only valid UTF-8
     } else if (byte == '"' || byte == '\\') {
       quoted += fmt::format("\\{}", character);
     } else if (byte < 0x20 || byte == 0x7f) {
       quoted += fmt::format("\\u{:04x}", static_cast<unsigned>(byte));
     } else {
-      quoted += printable(character);  // its \u202e is TOML's escape too
+      quoted += printable(character);  // its \u202e is also TOML's escape
     }
     text.remove_prefix(character.size());
   }

@@ -1,6 +1,6 @@
 // A strict reader of TOML files. A syntax error, a wrong type, a value out of range and a key that
-// the caller did not ask for all become one sentence: `FILE:LINE: unknown key "inner_zome"; did
-// you mean ...?`. Size and depth are bounded, and nothing is thrown, so that any file may be read.
+// the caller did not ask for all become one sentence: `FILE:LINE: unknown key "inner_zome"; did you
+// mean ...?`. Size and depth are bounded and nothing is thrown, so any file is safe to read.
 //
 // Ask every table for every key that it may hold, then look at problem() once:
 //   auto file = TomlFile::load(path);
@@ -29,11 +29,11 @@ std::string toml_string(std::string_view text);
 struct TomlDocument;  // hides toml++
 
 // One table of a file: a small handle, valid as long as its TomlFile. A getter returns nothing if
-// the key is absent or its value is wrong; of wrong values the file keeps the first one as its
-// problem(). Asking for a key makes it a known key.
+// the key is absent or its value is wrong; the file keeps the first wrong value as its problem().
+// Asking for a key makes it known.
 class TomlTable {
  public:
-  // A finite number within [min, max]; integers are numbers, too.
+  // A finite number within [min, max]; integers are also numbers.
   std::optional<double> number(std::string_view key, double min, double max);
   std::optional<std::int64_t> integer(std::string_view key, std::int64_t min, std::int64_t max);
   std::optional<bool> boolean(std::string_view key);
@@ -47,15 +47,15 @@ class TomlTable {
   std::vector<TomlTable> tables(std::string_view key, std::size_t max_count);
 
   bool has(std::string_view key);
-  // Makes it a problem if the key is absent.
+  // Reports a problem if the key is absent.
   void require(std::string_view key);
-  // Makes `FILE:LINE: cause` a problem, with the line of that key's value.
+  // Reports the problem `FILE:LINE: cause` with the line of that key's value.
   void reject(std::string_view key, const std::string& cause);
 
   // All keys in the order of the file, for tables whose keys are data. They do not become known.
   std::vector<std::string> keys() const;
-  int line() const;                      // where the table begins
-  int line(std::string_view key) const;  // of the key's value; the table's where it is absent
+  int line() const;                      // first line of the table
+  int line(std::string_view key) const;  // of the key's value; the table's if it is absent
 
  private:
   friend class TomlFile;
@@ -67,12 +67,14 @@ class TomlTable {
 class TomlFile {
  public:
   static Result<TomlFile> load(const std::string& path);
-  // `name` and `first_line` stand in errors: a trace, for example, holds a calibration.
+  // Errors name `name` and count lines from `first_line`: a trace, for example, contains a
+  // calibration.
   static Result<TomlFile> parse(std::string_view text, const std::string& name, int first_line = 1);
 
   TomlTable root();
   const std::string& name() const;
-  // The first wrong value, else the first key that was never asked for, else a missing key.
+  // The first wrong value, otherwise the first key that was never asked for, otherwise a missing
+  // key.
   std::optional<Error> problem() const;
 
   TomlFile(TomlFile&&) noexcept;
@@ -86,20 +88,20 @@ class TomlFile {
   std::unique_ptr<TomlDocument> document_;
 };
 
-// Checks before toml++ parses a text, for what would make it crash or name the wrong line. Each
-// returns a line, from 1, or 0 if there is nothing wrong.
+// Checks for texts on which toml++ would crash or name the wrong line. Each returns a line from 1,
+// or 0 if nothing is wrong.
 
 // Each dot of a key nests a table, and toml++ frees nested tables by recursion.
 inline constexpr int kMaxKeyParts = 16;
 
-// The first key with more parts. Strings and comments are skipped as TOML defines them, as far as
-// the text is valid; toml++ itself stops where it is not.
+// The first key with more parts. Skips strings and comments; correct up to the first syntax error,
+// where toml++ stops.
 int line_of_overlong_key(std::string_view text);
-// The first character beyond ASCII outside of strings and comments, where TOML 1.0 allows none but
-// a byte order mark at the beginning. toml++ reads some of them as white space, with undefined
+// The first character beyond ASCII outside of strings and comments, where TOML 1.0 allows only a
+// byte order mark at the beginning. toml++ reads some of them as white space, with undefined
 // behaviour.
 int line_of_stray_character(std::string_view text);
-// The first byte that is not UTF-8. toml++ would name the line where it began to read ahead.
+// The first byte that is not UTF-8. toml++ would name the line at which it began to read ahead.
 int line_of_invalid_utf8(std::string_view text);
 
 }  // namespace gaitpad

@@ -45,12 +45,13 @@ constexpr std::string_view kHeadWords[] = {"head", "skull"};
 constexpr std::string_view kHelperWords[] = {
     "twist", "share", "roll", "rigmesh", "pole", "ik", "metatarsals", "end", "nub",
 };
-// Beyond the wrist, beside an arm or on a head. A foot may have such names: "MiddleToe".
+// Joints beyond the wrist, beside an arm or on a head. Leg joints may contain these words
+// ("MiddleToe").
 constexpr std::string_view kBesideArmWords[] = {
     "dum",    "thumb",   "index", "middle", "mid",        "ring",    "pinky",    "little",
     "finger", "fingers", "palm",  "carpal", "metacarpal", "carpals", "pectoral", "eye",
     "top",    "weapon",  "prop",  "leg",    "foot",       "hip"};
-// Beside the hip joint, under the thigh.
+// Joints beside the hip joint, under the thigh.
 constexpr std::string_view kBesideLegWords[] = {"buttock", "buttocks"};
 
 template <std::size_t n>
@@ -62,8 +63,7 @@ bool is_upper_case(char c) { return c >= 'A' && c <= 'Z'; }
 bool is_lower_case(char c) { return c >= 'a' && c <= 'z'; }
 
 // The words of a name in lower case: "CC_Base_L_ToeBase" gives cc base l toe base, "LHipJoint"
-// gives l hip joint. Digits and marks separate words. What stands before the last colon is left
-// out.
+// gives l hip joint. Digits and marks separate words. A prefix up to the last colon is dropped.
 std::vector<std::string> name_words(std::string_view name) {
   if (const auto colon = name.rfind(':'); colon != name.npos) name.remove_prefix(colon + 1);
   std::vector<std::string> words(1);
@@ -108,8 +108,8 @@ std::optional<NamedJoint> joined(std::string_view word) {
   return std::nullopt;
 }
 
-// "Neck", "upperneck", "Neck1". "NeckTwist01" is the only neck that its skeletons have, so helper
-// words do not matter; "HeadEnd" and "HeadTop" are not the head.
+// Neck or head, otherwise none: "Neck", "upperneck", "Neck1". A neck may contain a helper word,
+// because "NeckTwist01" is the only neck of some skeletons; a head may not ("HeadEnd", "HeadTop").
 NamedPart middle_part(const std::vector<std::string>& words) {
   for (const std::string& word : words) {
     if (is_among(kNeckWords, word)) return NamedPart::neck;
@@ -133,7 +133,7 @@ NamedJoint named_joint(std::string_view name) {
   for (const std::string& word : words) {
     if (is_among(kHelperWords, word)) return {};
     if (joint.side == NamedSide::none) joint.side = side_of(word);
-    // The outer word counts: "FootToes", "LeftFootBall" are toes.
+    // Toe words win over foot words: "FootToes" and "LeftFootBall" are toes.
     const NamedPart part = part_of(word);
     if (joint.part == NamedPart::none || part == NamedPart::toe) joint.part = part;
     is_upper |= word == "up" || word == "upper";
@@ -185,14 +185,14 @@ double length_of(const Figure& figure, const Limb& limb) {
   return figure.distance(limb.upper, limb.middle) + figure.distance(limb.middle, limb.lower);
 }
 
-// Thigh and shank, or upper arm and forearm, are of like length in all walkers on two legs.
+// Thigh and shank, and upper arm and forearm, have similar lengths: their ratio is below 2.5.
 bool is_limb(const Figure& figure, const Limb& limb) {
   const double upper = figure.distance(limb.upper, limb.middle);
   const double lower = figure.distance(limb.middle, limb.lower);
   return upper > 0.0 && lower > 0.0 && upper < 2.5 * lower && lower < 2.5 * upper;
 }
 
-// Neither hangs on the other, and they are of like length.
+// Two limbs of similar length (ratio below 1.5), neither of which is a descendant of the other.
 bool is_pair(const Figure& figure, const Limb& left, const Limb& right) {
   const double left_m = length_of(figure, left), right_m = length_of(figure, right);
   return left_m < 1.5 * right_m && right_m < 1.5 * left_m &&
@@ -204,7 +204,7 @@ int common_ancestor(const Skeleton& skeleton, int a, int b) {
   return a;
 }
 
-// The nearest joint above `joint` with that name, -1: none.
+// The nearest ancestor of `joint` with that side and part; -1 if there is none.
 int named_ancestor(const Skeleton& skeleton, int joint, NamedSide side, NamedPart part) {
   for (int j = skeleton.joints[joint].parent; j >= 0; j = skeleton.joints[j].parent) {
     const NamedJoint named = named_joint(skeleton.joints[j].name);
@@ -221,7 +221,7 @@ std::vector<int> children_of(const Skeleton& skeleton, int joint) {
   return out;
 }
 
-// From below `top` down to `joint`, both as given: empty where they are one joint.
+// The chain from the child of `top` down to `joint`, inclusive; empty if they are the same joint.
 std::vector<int> path_below(const Skeleton& skeleton, int top, int joint) {
   std::vector<int> path;
   for (int j = joint; j > top && j >= 0; j = skeleton.joints[j].parent) path.push_back(j);
@@ -233,8 +233,8 @@ std::vector<int> path_below(const Skeleton& skeleton, int top, int joint) {
 
 using Legs = std::array<LegJoints, 2>;
 
-// The toe joint's own End Site, else the last of its descendants in the file's order. Readers of an
-// exported pose follow the same rule.
+// The toe joint's own End Site, otherwise its last descendant in the file's order. Scripts that
+// read exported poses follow the same rule.
 int toe_end_of(const Skeleton& skeleton, int toe) {
   const auto& joints = skeleton.joints;
   for (const int child : children_of(skeleton, toe)) {
@@ -248,8 +248,8 @@ int toe_end_of(const Skeleton& skeleton, int toe) {
   return last;
 }
 
-// The toe joint of a foot: the first one named so, for it carries the others; else the farthest
-// child; else the farthest End Site. -1 where the foot has no length.
+// The toe joint of a foot: the first joint named as a toe, because it carries the others; otherwise
+// the farthest child joint; otherwise the farthest End Site. -1 if the foot has no length.
 int toe_of(const Figure& figure, int ankle) {
   int best = -1, best_rank = 0;
   double best_length = 0.0;
@@ -269,8 +269,8 @@ int toe_of(const Figure& figure, int ankle) {
   return best;
 }
 
-// The End Site of a foot without length, -1: none. Old Acclaim skeletons end in such feet; a walk
-// gives them the usual length.
+// The End Site of a foot without length; -1 if there is none. Old Acclaim skeletons have such feet;
+// build_toes() gives them the usual length.
 int foot_point_of(const Figure& figure, int ankle) {
   for (const int child : children_of(figure.skeleton, ankle)) {
     if (figure.joint(child).is_end_site) return child;
@@ -278,7 +278,7 @@ int foot_point_of(const Figure& figure, int ankle) {
   return -1;
 }
 
-// Finds the toe, if it is not given, and its end. False where the foot has no length.
+// Finds the toe, if it is not given, and its end. Returns false if the foot has no length.
 bool complete_foot(const Figure& figure, LegJoints& leg) {
   if (leg.toe < 0) leg.toe = toe_of(figure, leg.ankle);
   if (leg.toe < 0) return false;
@@ -298,15 +298,15 @@ std::optional<LegJoints> named_leg(const Figure& figure, NamedSide side) {
     if (leg.knee < 0) continue;
     leg.hip = named_ancestor(figure.skeleton, leg.knee, side, NamedPart::hip);
     if (leg.hip < 0 || !is_limb(figure, limb_of(leg))) continue;
-    // A name says that it is a foot even where it has no length.
+    // A foot that is named may have no length.
     if (toe_of(figure, j) < 0) leg.toe = foot_point_of(figure, j);
     if (complete_foot(figure, leg)) return leg;
   }
   return std::nullopt;
 }
 
-// The two longest neighbouring bones on the way from below `ancestor` to a leaf. The foot is what
-// follows them, so a leg cannot end in the leaf.
+// The two longest neighbouring bones between `ancestor` and a leaf. The foot follows them, so the
+// leaf itself is no ankle.
 std::optional<LegJoints> shaped_leg(const Figure& figure, int ancestor, int leaf) {
   std::vector<int> chain;  // from the leaf upwards, joints in one place only once
   for (int j = leaf; j != ancestor; j = figure.parent(j)) {
@@ -370,7 +370,7 @@ bool is_given(const LegNames& names) {
   return !names.hip.empty() || !names.knee.empty() || !names.ankle.empty() || !names.toe.empty();
 }
 
-// Puts the joints given by hand over those that were found, if any.
+// Replaces found joints by those that the user named.
 std::optional<Error> take_given_joints(const Figure& figure, const LegNames& names,
                                        const std::string& side, LegJoints& leg) {
   const std::array<std::pair<const std::string*, int*>, 4> parts = {{{&names.hip, &leg.hip},
@@ -458,8 +458,8 @@ bool is_in_leg(const Figure& figure, const Legs& legs, int j) {
   return figure.carries(legs[0].hip, j) || figure.carries(legs[1].hip, j);
 }
 
-// Of the joints below the elbow the lowest one named a wrist or a hand: above it such a joint turns
-// the forearm (CMU's lwrist). Without one the farthest child.
+// The lowest joint below the elbow that is named a wrist or a hand; a higher one turns the forearm
+// (CMU's lwrist). Without such a name: the farthest child.
 int wrist_below(const Figure& figure, int elbow, NamedSide side) {
   int farthest = -1, lowest_named = -1;
   for (int j = elbow + 1; j < figure.count(); ++j) {
@@ -495,7 +495,7 @@ ArmChain named_arm(const Figure& figure, const Legs& legs, NamedSide side) {
   return {};
 }
 
-// The two longest neighbouring bones of like length on the way from below `top` to a leaf.
+// The two longest neighbouring bones of similar length between `top` and a leaf.
 ArmChain shaped_arm(const Figure& figure, int top, int leaf) {
   std::vector<int> chain;  // from the top, joints in one place only once
   for (const int j : path_below(figure.skeleton, top, leaf)) {
@@ -515,7 +515,7 @@ ArmChain shaped_arm(const Figure& figure, int top, int leaf) {
   return best;
 }
 
-// On each side of the trunk the longest arm that leaves it. Left is where the left hip is.
+// The longest arm on each side of the trunk. The left hip tells which side is left.
 std::array<ArmChain, 2> shaped_arms(const Figure& figure, const Legs& legs, int top) {
   std::array<ArmChain, 2> arms;
   const vec3 left = figure.at[legs[0].hip] - figure.at[legs[1].hip];
@@ -538,7 +538,8 @@ std::array<ArmChain, 2> shaped_arms(const Figure& figure, const Legs& legs, int 
   return arms;
 }
 
-// The farthest joint of the hand along its bones. A thumb is no end, and a mesh is no bone.
+// The joint of the hand that is farthest from the wrist along the bones. Thumbs and joints of
+// meshes are skipped.
 int hand_end_of(const Figure& figure, int wrist) {
   int farthest = -1;
   double longest = 0.0;
@@ -557,7 +558,7 @@ int hand_end_of(const Figure& figure, int wrist) {
   return farthest;
 }
 
-// The joint that ends the trunk: of all that is not in a leg the highest.
+// The top of the trunk: the highest joint that is not in a leg.
 int highest_joint(const Figure& figure, const Legs& legs) {
   int top = -1;
   for (int j = 0; j < figure.count(); ++j) {
@@ -567,7 +568,7 @@ int highest_joint(const Figure& figure, const Legs& legs) {
   return top;
 }
 
-// By name, else the joint whose end is the highest of all.
+// The joint named a head, otherwise the joint that ends highest.
 int head_of(const Figure& figure, const Legs& legs, int top) {
   for (int j = 0; j < figure.count(); ++j) {
     const Joint& joint = figure.joint(j);
@@ -586,7 +587,7 @@ int head_top_of(const Figure& figure, int head) {
   return top;
 }
 
-// What carries the arms; with one arm, what carries it and the head.
+// The common ancestor of both arms; with one arm, of that arm and the head.
 int chest_of(const Figure& figure, const UpperBodyJoints& found) {
   const auto& [left, right] = found.arm;
   if (left.is_found() && right.is_found())

@@ -42,11 +42,11 @@ Spline spline(std::vector<double> value) {
   return {std::move(value), std::move(curvature)};
 }
 
-// The frames used: the window and what lies around it.
+// The frames that are read: the window and a margin for fading the seam.
 struct Stretch {
   int first = 0, count = 0;
   double start = 0.0, period = 0.0;  // frames from `first`
-  double before = 0.0, after = 0.0;  // room for fading, share of the period
+  double before = 0.0, after = 0.0;  // margins for fading, share of the period
   double place(double phase) const { return start + phase * period; }
 };
 
@@ -63,9 +63,9 @@ Stretch stretch_of(const StrideWindow& w) {
   return s;
 }
 
-// Makes x(phase), 0 .. 1, periodic. Where the motion goes on beyond the seam, its two sides are
-// faded into each other. Elsewhere the gaps in value and in slope are spread around the seam. Both
-// leave the rest of the stride as it was captured.
+// Makes x(phase), 0 .. 1, periodic. If the motion continues beyond the seam, both of its sides are
+// cross-faded. Otherwise the gaps in value and slope are spread around the seam. Samples away from
+// the seam do not change.
 class Closer {
  public:
   explicit Closer(const Stretch& stretch)
@@ -119,8 +119,8 @@ struct Waves {
   const SinCos& at(int k, int i) const { return table[(k * i) % kPoints]; }
 };
 
-// Harmonics that the source's frames can carry, the highest ones fading out (no ringing at
-// contacts).
+// Harmonics below the Nyquist frequency of the source's frames. The highest ones fade out, so that
+// contacts do not ring.
 Fourier harmonics(const std::array<double, kPoints>& y, const Waves& waves, double period_frames) {
   Fourier f;
   for (const double v : y) f.mean += v / kPoints;
@@ -146,8 +146,8 @@ double value_at(const Fourier& f, const std::array<SinCos, kHarmonics>& wave) {
   return sum;
 }
 
-// The pelvis' path with the turning undone step by step, x and z then turned so that the stride
-// goes along +z. Returns the heading that was taken out at each frame.
+// The pelvis' path with its turning removed frame by frame, then rotated about y so that the stride
+// goes along +z. Returns the heading that was removed at each frame.
 std::vector<double> straighten(const Motion& motion, const Stretch& s, double turn_rad,
                                std::array<std::vector<double>, 3>& path_m) {
   const auto world = std::make_unique<JointFrames>();
@@ -177,7 +177,7 @@ std::vector<double> straighten(const Motion& motion, const Stretch& s, double tu
   return heading;
 }
 
-// A joint's rotation in the stretch, joint 0 without the heading.
+// A joint's local rotation, for joint 0 without the heading.
 quat local_at(const Motion& motion, const Stretch& s, int frame, int joint,
               const std::vector<double>& heading) {
   const quat& q = motion.frames[s.first + frame].local[joint];
@@ -248,7 +248,7 @@ namespace {
 
 // --- Sampled poses -------------------------------------------------------------------------------
 
-// Joint offsets. Frames of some files bring their own: then the mean over the motion.
+// Joint offsets; their mean over the motion if the frames have their own.
 std::vector<vec3> mean_offsets(const Motion& motion) {
   std::vector<vec3> offset;
   for (const Joint& joint : motion.skeleton.joints) offset.push_back(joint.offset_m);
@@ -261,8 +261,8 @@ std::vector<vec3> mean_offsets(const Motion& motion) {
   return offset;
 }
 
-// Moves the root to the pelvis. What else hangs on the joints between them keeps its place beside
-// the pelvis.
+// Moves the root to the pelvis. Other children of the joints in between keep their places relative
+// to the pelvis.
 Skeleton rooted_at_pelvis(const Motion& motion) {
   Skeleton skeleton = motion.skeleton;
   const std::vector<vec3> offset = mean_offsets(motion);
@@ -317,7 +317,7 @@ void add_sample(const PeriodicPose& at, JointFrames& world, CapturedCycle& cycle
     add_leg(cycle.skeleton, world, cycle.legs[side], cycle.leg[side]);
 }
 
-// About the vertical, then about the direction of view: the hips stand level.
+// Turns the line of the hips to +x: about the vertical, then about z, so that the hips are level.
 quat turned_to_left(const vec3& hips) {
   return rotation_z(-gaitpad::atan2(hips.y, horizontal_length(hips))) *
          rotation_y(-heading_of(glm::cross(hips, kUp)));
@@ -361,7 +361,7 @@ std::vector<double> ground_speed(const CapturedCycle& cycle, const std::vector<v
 }
 
 FlatFoot flat_foot(const CapturedCycle& cycle, int side) {
-  constexpr double kRatePerS = 14.0;  // so much height above the lowest counts as so much speed
+  constexpr double kRatePerS = 14.0;  // score: 1 m of height counts as 14 m/s of speed
   const CapturedLeg& leg = cycle.leg[side];
   const std::vector<double> ankle = ground_speed(cycle, leg.ankle_m);
   const std::vector<double> toe = ground_speed(cycle, leg.toe_m);
@@ -404,15 +404,15 @@ namespace {
 
 // --- The standing pose ---------------------------------------------------------------------------
 
-constexpr double kHeelShare = 0.3;       // heel behind the ankle, of ankle to toe
-constexpr double kOwnToe_legs = 0.155;   // where the skeleton has no toe: ball before the ankle
+constexpr double kHeelShare = 0.3;       // heel behind the ankle, share of ankle to toe
+constexpr double kOwnToe_legs = 0.155;   // if the skeleton has no toe: ball before the ankle
 constexpr double kOwnAnkle_legs = 0.08;  // and ankle above the floor
 constexpr double kShortestFoot_legs = 0.04;
 constexpr double kLowestToe_legs = 0.16;  // a foot point deeper under the ankle is no sole
 constexpr double kLeastAnkle_legs = 0.02;
-constexpr double kMostToe = 70.0 * kDegree;  // what toes bend; some clips turn them all round
+constexpr double kMostToe = 70.0 * kDegree;  // toes bend no further; some clips turn them all round
 
-// Joints below `from` down to and without `to`, topmost first.
+// Joints strictly between `from` and `to`, topmost first.
 std::vector<int> joints_between(const Skeleton& skeleton, int from, int to) {
   std::vector<int> chain;
   for (int j = skeleton.joints[to].parent; j >= 0 && j != from; j = skeleton.joints[j].parent) {
@@ -439,8 +439,8 @@ std::vector<quat> mean_locals(const CapturedCycle& c) {
   return mean;
 }
 
-// The knee's hinge in the thigh's and the shank's joint frame: across the plane of hip, knee and
-// ankle, where the knee is bent, positive for flexion.
+// The knee's hinge axis in the thigh's and in the shank's joint frame: the normal of the plane of
+// hip, knee and ankle while the knee is bent, positive for flexion.
 struct Hinge {
   vec3 thigh, shank;
 };
@@ -485,8 +485,8 @@ FlatPose flat_pose(const CapturedCycle& c, int side) {
           mean_around(leg.toe, flat.middle, FlatFoot::reach)};
 }
 
-// Toe and toe end from the ankle and the toe, standing. An End Site may be anything: one of no
-// length becomes a toe of usual length, one far under the foot does not count.
+// Offsets ankle to toe and toe to its end when standing. An End Site without length becomes a toe
+// of the usual length; one far under the foot is ignored.
 void build_toes(const FlatPose& flat, const std::vector<quat>& local, GaitCycle& out,
                 LegModel& leg) {
   std::vector<Joint>& joints = out.skeleton.joints;
@@ -580,8 +580,8 @@ Result<double> build_standing(const CapturedCycle& c, GaitCycle& out) {
     const double lowest = std::min(
         {leg->toe_m.y, leg->toe_m.y + leg->toe_end_m.y, -kLeastAnkle_legs * leg->length_m()});
     const double under_m = flat[side].ankle_m.y + lowest;
-    // Each foot stands on its own lowest point: captured floors are uneven by a centimetre or two,
-    // and a character with one foot in the air would stand crooked.
+    // Each foot stands on its own lowest point: captured floors are uneven by 1 to 2 cm, and with
+    // one common floor the character would stand on one foot.
     floor_m += 0.5 * under_m;
     build_sole(-lowest, *leg);
     out.leg[side] = *leg;
@@ -594,8 +594,8 @@ namespace {
 
 // --- The legs' angles ----------------------------------------------------------------------------
 
-// Flexion that carries the ankle to `reach_m` from the hip. A nearly straight knee keeps the
-// captured angle: there the distance hardly depends on the angle.
+// Knee flexion that puts the ankle at distance `reach_m` from the hip. A nearly straight knee keeps
+// the captured angle, because there the distance hardly depends on it.
 double knee_angle(const LegModel& leg, double captured_rad, double reach_m) {
   const double cosine =
       (reach_m * reach_m - leg.thigh_m * leg.thigh_m - leg.shank_m * leg.shank_m) /
@@ -603,12 +603,12 @@ double knee_angle(const LegModel& leg, double captured_rad, double reach_m) {
   const double by_reach = gaitpad::acos(cosine);
   const double share = smoothstep(4.0 * kDegree, 12.0 * kDegree, captured_rad);
   const double knee = mix(captured_rad, by_reach, share);
-  // A knee straightens at 300 degrees/s, so it is stopped over some degrees and not at once.
+  // A knee straightens at 300 degrees/s, so it is slowed over kWidth instead of stopped at once.
   constexpr double kLeast = 1.5 * kDegree, kWidth = 5.0 * kDegree;
   return kLeast + soft_positive(knee - kLeast, kWidth);
 }
 
-// The knee's hinge in the frame of the joint above the knee (a twist joint where there is one).
+// The knee's hinge in the frame of the joint above the knee (the thigh or its twist joint).
 vec3 hinge_above_knee(const GaitCycle& cycle, int side) {
   const LegModel& leg = cycle.leg[side];
   vec3 hinge = glm::conjugate(leg.standing[0]) * kLeft;
@@ -618,8 +618,8 @@ vec3 hinge_above_knee(const GaitCycle& cycle, int side) {
   return hinge;
 }
 
-// Leg angles that put the ankle and the foot where they were captured, the knee's hinge as near to
-// its captured direction as the leg's line allows.
+// Leg angles that put the ankle and the foot at their captured places, with the knee's hinge as
+// close to its captured direction as possible.
 LegSample leg_sample(const CapturedLeg& from, int i, const LegModel& model,
                      const vec3& hinge_above_knee, const vec3& hip_m, const quat& pelvis) {
   const vec3 hinge = from.above_knee[i] * hinge_above_knee;
@@ -650,8 +650,7 @@ LegSample leg_sample(const CapturedLeg& from, int i, const LegModel& model,
   return leg;
 }
 
-// Angles continue from the sample before without jumps by whole turns; quaternions stay in its
-// hemisphere.
+// Removes jumps by whole turns between neighbouring samples; quaternions stay in one hemisphere.
 void make_continuous(GaitCycle& out) {
   for (int i = 1; i < kCycleSamples; ++i) {
     for (int side = 0; side < 2; ++side) {

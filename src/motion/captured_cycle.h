@@ -53,7 +53,7 @@ struct CapturedCycle {
 // `shift` is the phase of `periodic` at which sample 0 stands.
 CapturedCycle captured_cycle(const Motion& motion, const PeriodicMotion& periodic, double shift);
 
-// One frame of a motion as a cycle in which nothing moves, turned until the hips' line is +x.
+// A cycle without movement from one frame of a motion, turned so that the line of the hips is +x.
 CapturedCycle captured_pose(const Motion& motion, const MotionFrame& frame);
 
 // Speed over the ground of a point that is periodic in the travel frame, m/s, at each sample.
@@ -72,14 +72,14 @@ quat mean_around(const std::vector<quat>& q, int middle, int reach);
 vec3 mean_around(const std::vector<vec3>& p, int middle, int reach);
 inline int wrapped_index(int i) { return (i % kCycleSamples + kCycleSamples) % kCycleSamples; }
 
-// Builds the standing pose from how the skeleton walks: fills skeleton, pelvis_standing, leg models
-// and standing_local of `out`. Joints between pelvis and hip, hip and knee, knee and ankle, ankle
-// and toe are held at their mean rotation from here on. Returns the floor's height in `captured`.
-// The error does not name the file.
+// Measures the standing pose on the walk: fills skeleton, pelvis_standing, leg models and
+// standing_local of `out`. From here on, joints between pelvis and hip, hip and knee, knee and
+// ankle, ankle and toe keep their mean rotation. Returns the floor's height in `captured`. The
+// error does not name the file.
 Result<double> build_standing(const CapturedCycle& captured, GaitCycle& out);
 
-// Fills samples and local of `out`: angles that put the model's ankles and feet where the captured
-// ones are.
+// Fills `samples` and `local` of `out` with the angles that put the model's ankles and feet at the
+// captured places.
 void build_samples(const CapturedCycle& captured, double floor_m, GaitCycle& out);
 
 }  // namespace gaitpad

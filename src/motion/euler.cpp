@@ -3,7 +3,7 @@
 namespace gaitpad {
 namespace {
 
-// +1 where first, second, third run x y z x ..., else -1.
+// +1 for cyclic orders (xyz, yzx, zxy), otherwise -1.
 double handedness(const EulerOrder& order) noexcept {
   return (order[1] - order[0] + 3) % 3 == 1 ? 1.0 : -1.0;
 }
@@ -56,7 +56,7 @@ EulerAngles nearest_euler(const EulerOrder& order, const quat& rotation,
   if (second.cosine < 1e-7) {
     const double pole = second.sine > 0.0 ? 1.0 : -1.0;
     EulerAngles angles = {previous_rad[0], nearest_turn(pole * 0.5 * kPi, previous_rad[1]), 0.0};
-    // Half of the remaining turn to each outer angle keeps both as near as can be.
+    // Each outer angle takes half of the remaining turn: the closest solution.
     const double sign = h * pole;
     const double sum = gaitpad::atan2(pole * r[j][k], r[j][j]);  // of third + sign * first
     const double before = previous_rad[2] + sign * previous_rad[0];

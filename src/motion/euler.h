@@ -18,9 +18,9 @@ using EulerAngles = std::array<double, 3>;  // radians, in the order's order
 quat rotation_about_axis(int axis, double angle_rad) noexcept;
 quat from_euler(const EulerOrder& order, const EulerAngles& angles_rad) noexcept;
 
-// Of all triples that give this rotation the one nearest to `previous_rad`, whole turns included.
-// At the pole (second angle +-90 degrees), where only the sum or the difference of the outer angles
-// is defined, the free one stays as near to `previous_rad` as it can.
+// The triple nearest to `previous_rad` that gives this rotation; angles may differ by whole turns.
+// At the pole (second angle +-90 degrees) only the sum or the difference of the outer angles is
+// defined; both then stay as close to `previous_rad` as possible.
 EulerAngles nearest_euler(const EulerOrder& order, const quat& rotation,
                           const EulerAngles& previous_rad) noexcept;
 

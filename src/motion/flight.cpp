@@ -15,9 +15,9 @@ constexpr double kHeelOff_s = 0.6;  // how long before the lift the heel may ris
 
 int nearest(double frame) { return static_cast<int>(frame + 0.5); }
 
-// The frame in which the heel begins to rise: backwards from the lift, but not beyond `stop`, the
-// ankle's first low within the band; where there is none, its lowest frame. Heights are not
-// smoothed: a standing ankle's lows are a fraction of a millimetre deep.
+// The frame in which the heel begins to rise: searched backwards from the lift to `stop`, the
+// ankle's first minimum within the band; if there is none, its lowest frame. Heights are not
+// smoothed, because a standing ankle's minima are less than a millimetre deep.
 int heel_off_frame(const std::vector<vec3>& ankle, int lift, int stop, double reach) {
   const auto [low, high] = std::ranges::minmax(ankle, {}, &vec3::y);
   const double limit_m = low.y + kBand * (high.y - low.y);
@@ -31,7 +31,7 @@ int heel_off_frame(const std::vector<vec3>& ankle, int lift, int stop, double re
   return lowest;
 }
 
-// The swings of a foot whose toe-off and strike are both there.
+// The swings of a foot that have both a toe-off and a strike.
 std::vector<Swing> whole_swings(const FeetTracks& feet, Side side) {
   const std::vector<vec3>& ankle = feet.foot[side].ankle_m;
   std::vector<Swing> found;
@@ -58,8 +58,8 @@ std::vector<Swing> whole_swings(const FeetTracks& feet, Side side) {
   return found;
 }
 
-// With the tracks in which the swings stand: the clip twice where it is a loop and one pass holds
-// no whole swing.
+// Swings and the tracks that they index. If the clip is a loop that holds no whole swing, the
+// tracks hold it twice.
 struct Found {
   FeetTracks feet;
   std::vector<Swing> swings;

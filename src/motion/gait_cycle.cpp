@@ -63,10 +63,10 @@ namespace {
 
 // --- Building a cycle from a motion --------------------------------------------------------------
 
-constexpr double kBackwards = 0.5;     // cosine between hips' front and travel
-constexpr double kLongestFlat = 0.35;  // of the stride after a strike: the toe is down by then
-constexpr double kMostFlight = 0.02;   // of the stride with both feet in the air: else it is a run
-constexpr double kMostSlide_legs = 0.25;  // of a standing foot; dragging gaits have half of it
+constexpr double kBackwards = 0.5;        // cosine between hips' front and travel
+constexpr double kLongestFlat = 0.35;     // of the stride after a strike: by then the toe is down
+constexpr double kMostFlight = 0.02;      // of the stride with both feet in the air; more is a run
+constexpr double kMostSlide_legs = 0.25;  // of a standing foot; dragging gaits reach half of it
 constexpr double kStill_legs_s = 0.6;     // 0.5 m/s of an adult's leg
 constexpr double kInAir_legs = 0.024;  // 20 mm of an adult's leg: captured floors are that uneven
 
@@ -81,7 +81,7 @@ std::vector<vec3> foot_track(const GaitCycle& cycle, int side, const vec3 LegPos
   return track;
 }
 
-// The feet over the ground.
+// Tracks of both feet over the ground.
 FeetTracks feet_tracks(const GaitCycle& cycle) {
   FeetTracks tracks;
   tracks.sample_s = cycle.duration_s / kCycleSamples;
@@ -100,7 +100,7 @@ FeetTracks feet_tracks(const GaitCycle& cycle) {
   return tracks;
 }
 
-// Steps and tracks follow from where the heels are while the feet stand flat.
+// Measures step lengths and tracks from the heels' places while the feet stand flat.
 void measure_steps(const CapturedCycle& captured, GaitCycle& cycle) {
   std::array<double, 2> place_m;
   for (int side = 0; side < 2; ++side) {
@@ -117,8 +117,8 @@ void measure_steps(const CapturedCycle& captured, GaitCycle& cycle) {
 }
 
 // In the data a toe often leaves before the other foot is flat; in Table I it leaves when the other
-// toe is down. So it waits until it has moved as far, in the data, as the other toe still has to
-// sink: both feet are then changed equally.
+// toe is down. So toe-off is delayed until the toe has moved, in the data, a third of the height
+// that the other toe still has to sink: both feet share the change.
 void wait_for_other_toe(GaitCycle& cycle) {
   constexpr double kLeavingCosts = 3.0, kLongestWait = 0.08,
                    kStep = 1.0 / (2 * kCycleSamples);  // of the stride
@@ -144,8 +144,8 @@ void wait_for_other_toe(GaitCycle& cycle) {
   }
 }
 
-// How much of the stride both feet are in the air: all of the foot higher than where it stands, and
-// no point of it still (captured feet may stand on an uneven floor).
+// Share of the stride in which both feet are in the air: every point of the foot is higher than in
+// stance and moves (a floor may be uneven, so height alone is not enough).
 double flight_share(const CapturedCycle& captured, const GaitCycle& cycle) {
   const double air_m = kInAir_legs * mean_leg_m(cycle),
                still_m_s = kStill_legs_s * mean_leg_m(cycle);
@@ -167,7 +167,7 @@ double flight_share(const CapturedCycle& captured, const GaitCycle& cycle) {
   return double(std::ranges::count(in_air, 2)) / kCycleSamples;
 }
 
-// How far the toe goes from where its foot stands flat until it is off.
+// Distance that the toe slides between foot flat and toe-off.
 double slide_m(const CapturedCycle& captured, const GaitCycle& cycle, Side side) {
   const std::vector<vec3> toe = foot_track(cycle, side, &LegPose::toe_m);
   const int flat = flat_foot(captured, side).middle;
@@ -181,10 +181,10 @@ double walk_ratio_m_min(const GaitCycle& cycle) {
   return 0.5 * cycle.stride_m * cycle.duration_s / 120.0;
 }
 
-// What its pace says of a wrong frame time, as the end of an error sentence; empty if a walk can
-// have it. Nobody walks faster than 3 m/s or 200 steps a minute (race walkers do not). The walk
-// ratio, step length over cadence, is 0.6 cm per step/min in adults at all speeds, and up to 1 in
-// captures of slow long steps. All of an adult's leg: speeds go with its root.
+// The end of an error sentence if no person walks at this pace, which hints at a wrong frame time;
+// otherwise empty. Limits for an adult's leg, which scale with the leg's length and its root: 3
+// m/s, 200 steps a minute, and a walk ratio (step length over cadence) of 1.5 cm per step/min.
+// Adults have 0.6 at all speeds, captures of slow long steps up to 1.
 std::string why_no_pace(const GaitCycle& cycle) {
   constexpr double kFastest_m_s = 3.0, kMostSteps_min = 200.0, kMostRatio_m_min = 0.015,
                    kRunsFrom_min = 140.0;
@@ -202,9 +202,9 @@ std::string why_no_pace(const GaitCycle& cycle) {
          " frames a second are wrong, give frame_rate_hz";
 }
 
-// In a step-to limp one foot is only brought up to the other. The walk scales steps and has to
-// divide by them, so the shorter one gets a tenth of the stride, by which both feet are moved
-// equally. With less a backward turn drives joints at 2000 degrees/s, with a tenth at 500.
+// In a step-to limp one foot only comes up to the other. The walk divides by step lengths, so the
+// shorter step becomes at least a tenth of the stride; both feet move equally for that. With less,
+// joints reach 2000 degrees/s in a backward turn; with a tenth, 500.
 constexpr double kLeastStep = 0.1, kMostBehind = 0.1;  // of the stride
 void lengthen_short_step(GaitCycle& cycle) {
   for (const Side side : {kLeftSide, kRightSide}) {
@@ -215,7 +215,7 @@ void lengthen_short_step(GaitCycle& cycle) {
   }
 }
 
-// The end of an error sentence; empty if it is a walk.
+// The end of an error sentence; empty if the cycle is a walk.
 std::string why_no_walk(const CapturedCycle& captured, const GaitCycle& cycle) {
   for (const Side side : {kLeftSide, kRightSide}) {
     const double slides_m = slide_m(captured, cycle, side);
@@ -234,7 +234,7 @@ std::string why_no_walk(const CapturedCycle& captured, const GaitCycle& cycle) {
   return why_no_pace(cycle);
 }
 
-// The cycle from phase `shift` of the periodic stride on, without its events and steps.
+// The cycle that begins at phase `shift` of the periodic stride, without events and steps.
 struct Build {
   CapturedCycle captured;
   GaitCycle cycle;
@@ -257,8 +257,8 @@ Result<Build> built(const Motion& motion, const StrideWindow& window,
   return b;
 }
 
-// Builds the cycle twice: the first one tells when the right heel strikes, and the second one
-// begins there, so that the strike is phase 0.
+// Builds the cycle twice: the first pass finds the right heel's strike, and the second begins
+// there, so that the strike is at phase 0.
 Result<GaitCycle> cycle_of(const Motion& motion, const StrideWindow& window) {
   const PeriodicMotion periodic = periodic_motion(motion, window);
   const Result<Build> first = built(motion, window, periodic, 0.0);
@@ -285,7 +285,7 @@ Result<GaitCycle> cycle_of(const Motion& motion, const StrideWindow& window) {
   return std::move(cycle);
 }
 
-// Of the best windows the first one that is a walk; else what is wrong with the very best.
+// The first of the best windows that is a walk; otherwise the error of the very best one.
 Result<GaitCycle> cycle_of(const Motion& motion) {
   constexpr std::size_t kMostTries = 12;
   const Result<std::vector<StrideWindow>> windows = best_strides(motion);
@@ -297,7 +297,7 @@ Result<GaitCycle> cycle_of(const Motion& motion) {
   return first;
 }
 
-// Of the motion, else of the motion twice in a row if it is one loop.
+// The cycle of the motion; if that fails and the motion is a loop, of the motion twice in a row.
 Result<GaitCycle> looped_cycle_of(const Motion& motion) {
   Result<GaitCycle> cycle = cycle_of(motion);
   if (cycle) return cycle;
@@ -305,15 +305,15 @@ Result<GaitCycle> looped_cycle_of(const Motion& motion) {
   if (twice.frames.empty()) return cycle;
   Result<GaitCycle> again = cycle_of(twice);
   if (!again) return cycle;
-  // Frames of the motion itself: in a loop any stride is like the one a round earlier.
+  // Convert to frames of the single motion: in a loop, strides one round apart are equal.
   const auto round = static_cast<double>(motion.frames.size() - 1);
   if (again->first_frame >= round) again->first_frame -= round;
   again->first_frame = std::max(0.0, std::min(again->first_frame, round - again->frames));
   return again;
 }
 
-// The frame rate at which a motion without a stride holds a walk, the most usual one: files say 30
-// for 120 and the like. 0: at none.
+// The frame rate at which a motion without a stride would hold the most usual walk, 0 if there is
+// none. Some files state 30 frames a second instead of 120, for example.
 double walking_rate_hz(const Motion& motion) {
   constexpr double kUsualRatio_m_min = 0.0058;
   if (best_strides(motion)) return 0.0;

@@ -12,12 +12,12 @@ namespace {
 
 // --- Tracks of a motion's feet -------------------------------------------------------------------
 
-constexpr double kFastest_legs_s = 14.0;  // no sprinter's foot is faster: the data jump
-constexpr double kFlatRate_per_s = 14.0;  // so much height above the lowest counts as so much speed
-constexpr std::size_t kFlatPercent = 10;  // of all frames: in these a walker's foot surely is flat
-constexpr double kHeelShare = 0.3;        // heel behind the ankle, of ankle to toe
+constexpr double kFastest_legs_s = 14.0;  // faster than any sprinter's foot: a jump in the data
+constexpr double kFlatRate_per_s = 14.0;  // score: 1 m of height counts as 14 m/s of speed
+constexpr std::size_t kFlatPercent = 10;  // of all frames: in these a walker's foot is flat
+constexpr double kHeelShare = 0.3;        // heel behind the ankle, share of ankle to toe
 constexpr double kShortestFoot_legs = 0.04;
-constexpr double kOwnToe_legs = 0.155;     // where the skeleton has no toe: ball before the ankle
+constexpr double kOwnToe_legs = 0.155;     // if the skeleton has no toe: ball before the ankle
 constexpr double kLeastAnkle_legs = 0.02;  // ankle above the sole
 
 bool is_jump(const vec3& a, const vec3& b, double most_m) {
@@ -48,15 +48,15 @@ double median_of(std::vector<vec3>& v, int axis) {
   return median(std::move(values));
 }
 
-// One foot as its joints have it.
+// Tracks of one foot's joints.
 struct FootJoints {
   std::vector<vec3> ankle_m, toe_m, toe_end_m;
   std::vector<quat> ankle;
-  std::vector<vec3> ahead;  // where the hips face
+  std::vector<vec3> ahead;  // direction that the hips face
 };
 
 // Heel and toe in the ankle's frame: the median over the frames in which ankle and toe are slowest
-// and lowest. A median, for a clip may begin with a pose that has nothing to do with its motion.
+// and lowest. A mean would include the unrelated pose with which some clips begin.
 struct Sole {
   vec3 heel_m, toe_m;
 };
@@ -102,14 +102,14 @@ constexpr double kShortestRest_s = 0.06;
 constexpr double kShortestSwing_s = 0.15, kLongestSwing_s = 1.8;
 constexpr double kShortestSwing_legs = 0.15, kLongestSwing_legs = 2.6;
 
-constexpr double kMostSamples = 200.0;  // in a window: files may state absurd frame times
+constexpr double kMostSamples = 200.0;  // in a window: bounds the work for absurd frame times
 
-// Samples in a window of that time, at least one.
+// Number of samples in a window of that time, at least 1.
 int count_of(double time_s, double sample_s) {
   return std::max(1, static_cast<int>(std::min(time_s / sample_s, kMostSamples) + 0.5));
 }
 
-// Running mean over a raised cosine, cut off at the range's ends.
+// Running mean weighted by a raised cosine, shortened at the range's ends.
 std::vector<vec3> smoothed(const std::vector<vec3>& p, const SampleRange& range,
                            double half_samples) {
   const int reach = static_cast<int>(half_samples);
@@ -145,16 +145,16 @@ std::vector<double> ankle_speeds(const FeetTracks& tracks, Side side, const Samp
   return speed;
 }
 
-// A stretch of samples in which a foot moves.
+// Consecutive samples in which a foot moves.
 struct Run {
   Side side;
   int range;
   int first, last;
-  int rest_first, rest_last;  // of the samples before and after it in which the foot rests
-  double from, to;            // where the speed passes the limit
+  int rest_first, rest_last;  // the rest before it begins, the rest after it ends
+  double from, to;            // fractional samples where the speed crosses the limit
 };
 
-// Where the speed passes the limit between two neighbouring indices.
+// Fractional index between two neighbours at which the speed crosses the limit.
 double crossing(const std::vector<double>& speed, int a, int b, double limit) {
   const double rise = speed[b] - speed[a];
   return rise == 0.0 ? a : a + (b - a) * std::clamp((limit - speed[a]) / rise, 0.0, 1.0);
@@ -234,16 +234,16 @@ std::vector<Run> swing_runs(const FeetTracks& tracks, double moving_share, doubl
 // --- The two events of a swing, exactly ----------------------------------------------------------
 
 constexpr double kDown_m = 0.005, kStill_m_s = 0.3, kLeaving_m_s = 0.2;  // an adult's
-constexpr double kSpeed_s = 0.012;    // half the time over which a speed is taken
-constexpr double kFlat_s = 0.025;     // and half the time over which a foot has to be flat
-constexpr double kRest_s = 0.05;      // so long a heel that has struck stays still
-constexpr double kMostSink_m = 0.06;  // of a heel that stands: higher up it pauses in the air
-constexpr double kPush_s = 0.15;  // before it leaves, the toe stands that long while the heel rises
-// Least double support that is aimed at. With 0.02, 0.04, 0.06, 0.08 and 0.10 s the heels of 23
-// captured walks move 0.36, 0.42, 0.44, 0.57 and 0.72 m/s at their strikes (median). People have
-// 0.1 s in a free walk and 0.04 s in the fastest.
+constexpr double kSpeed_s = 0.012;    // half the time over which a speed is averaged
+constexpr double kFlat_s = 0.025;     // half the time over which flatness is averaged
+constexpr double kRest_s = 0.05;      // a heel that has struck stays still for this time
+constexpr double kMostSink_m = 0.06;  // above its standing height; a higher heel only pauses
+constexpr double kPush_s = 0.15;      // time for which a toe stands while the heel rises
+// Least double support, s. With 0.02, 0.04, 0.06, 0.08 and 0.10 s the heels of 23 captured walks
+// move 0.36, 0.42, 0.44, 0.57 and 0.72 m/s at their strikes (median). People have 0.1 s in a free
+// walk and 0.04 s in the fastest.
 constexpr double kLeastRoll_s = 0.06;
-constexpr double kSlideStep = 0.05;  // of the limits, by which they grow
+constexpr double kSlideStep = 0.05;  // relative growth of the limits per attempt
 
 // Reads one foot's tracks within a range.
 struct Reader {
@@ -263,7 +263,7 @@ struct Reader {
     for (int k = a; k <= b; ++k) sum += p[k];
     return sum / double(b - a + 1);
   }
-  // Slow and low on average around the sample.
+  // Score of speed and height, averaged around the sample; small when the foot is flat.
   double flatness(int i) const {
     const int n = half(kFlat_s);
     const int a = std::max(i - n, range.first), b = std::min(i + n, range.last);
@@ -298,12 +298,12 @@ Reader reader(const FeetTracks& tracks, const Run& run) {
   return {tracks.foot[run.side], tracks.ranges[run.range], tracks.sample_s};
 }
 
-// Where a value that is above the limit at one sample and not above it at the next one passes it.
+// Share of the way to the next sample at which a falling value crosses the limit; 0 if it does not.
 double share_above(double above, double next, double limit) {
   return above > limit && above > next ? std::min((above - limit) / (above - next), 1.0) : 0.0;
 }
 
-// A swing with what its two events need, so that they can be read for several limits.
+// A swing and the inputs of its two events, which may be evaluated for several limits.
 struct Swing {
   Run run;
   double scale = 1.0;          // of the leg, 1: an adult's
@@ -311,7 +311,7 @@ struct Swing {
   int flat = 0;                // and ends here
   double standing_heel_m = 0;  // height at `flat`
   int fastest_toe = 0;         // the search for the toe-off begins here, backwards
-  int pushing = 0;             // and ends where the toe is slowest while the heel rises
+  int pushing = 0;             // and ends here: the toe is slowest while the heel rises
 };
 
 Swing swing_of(const FeetTracks& tracks, const Run& run, double limit_m_s) {
@@ -347,7 +347,7 @@ std::optional<double> strike_of(const FeetTracks& tracks, const Swing& s, double
   };
   int rest = s.fastest_heel + 1;
   while (rest < s.flat && !rests(rest)) ++rest;
-  // Down: as low as it will be in this rest. Some feet sink into the floor later on.
+  // The heel is down at the lowest height of this rest. Some feet sink into the floor later.
   double low_m = heel[rest].y;
   for (int k = rest; k <= std::min(rest + r.half(kRest_s), s.flat); ++k) {
     low_m = std::min(low_m, heel[k].y);
@@ -368,7 +368,7 @@ std::optional<double> toe_off_of(const FeetTracks& tracks, const Swing& s, doubl
   return i + 1 - share_above(r.speed(r.foot.toe_m, i + 1), r.speed(r.foot.toe_m, i), most_m_s);
 }
 
-// The next swing of the other foot in the same range, -1: none.
+// The next swing in the same range if it is the other foot's, otherwise -1.
 int rival_after(const std::vector<Swing>& swings, std::size_t i) {
   for (std::size_t k = i + 1; k < swings.size(); ++k) {
     if (swings[k].run.range != swings[i].run.range) continue;
@@ -430,7 +430,7 @@ std::vector<FootSwing> foot_swings(const FeetTracks& tracks, double moving_share
     if (s.run.last < range.last) swing.moves_to = s.run.to;
     found.push_back(swing);
   }
-  // A heel strikes before the other toe leaves. Feet that slide get wider limits.
+  // A heel must strike before the other toe leaves. Widen the limits for feet that slide.
   for (std::size_t i = 0; i < all.size(); ++i) {
     const int rival = rival_after(all, i);
     if (rival < 0 || !found[i].strike || !found[rival].toe_off) continue;
@@ -448,7 +448,7 @@ namespace {
 // --- A closed stride -----------------------------------------------------------------------------
 
 constexpr int kCopies = 3;  // in a row, so that the middle one is not cut
-// Both feet in the air, twice a stride: shorter or slower than people run it is an error of events.
+// A run has both feet in the air at this speed; a shorter or slower flight is an error of events.
 constexpr double kLeastFlight_s = 0.03, kSlowestRun_legs_s = 2.1;
 
 FeetTracks in_a_row(const FeetTracks& stride, const vec3& travel_m) {
@@ -465,7 +465,7 @@ FeetTracks in_a_row(const FeetTracks& stride, const vec3& travel_m) {
   return row;
 }
 
-// A foot's swing that ends in the middle copy; the longest one if there are several.
+// The longest swing of a foot that ends in the middle copy.
 const FootSwing* middle_swing(const std::vector<FootSwing>& swings, Side side, double samples) {
   const FootSwing* best = nullptr;
   for (const FootSwing& s : swings) {
@@ -496,7 +496,7 @@ Result<StrideEvents> stride_events(const FeetTracks& stride, const vec3& travel_
       events.strike[side] = fraction(*swing->strike / samples);
     }
     if (!problem.empty()) continue;
-    std::array<double, 2> roll_s;  // from a strike to the other toe's leaving
+    std::array<double, 2> roll_s;  // from a strike to the other foot's toe-off
     for (const Side side : {kLeftSide, kRightSide}) {
       const double roll = events.toe_off[other(side)] - events.strike[side];
       roll_s[side] = (fraction(roll + 0.5) - 0.5) * samples * stride.sample_s;

@@ -3,11 +3,10 @@
 //
 // A foot *strikes* when its heel is down and still: at 0.3 m/s or less and at most 5 mm above where
 // it then rests. Its *toe is off* when it begins to leave: when it last was at 0.2 m/s before it
-// swings. (A toe that pushes creeps, by 10 to 30 mm in most captures, so its way from its place
-// tells nothing.) Both are found between samples. Lengths and speeds are those of an adult; they
-// scale with the leg. Where the feet of a capture slide so much that a toe would leave before the
-// other heel has struck for a moment, the limits of these two events grow together, at most to
-// kMostSlide times.
+// swings. (A toe that pushes creeps by 10 to 30 mm in most captures, so its distance is no
+// criterion.) Both are found between samples. Lengths and speeds are an adult's; they scale with
+// the leg. If the feet of a capture slide so far that a toe would leave before the other heel has
+// struck, the limits of these two events grow together, at most to kMostSlide times.
 #pragma once
 #include <array>
 #include <optional>
@@ -33,27 +32,27 @@ struct FeetTracks {
   double sample_s = 0.0, leg_m = 0.0;
 };
 
-// One way of a foot through the air.
+// One swing of a foot from its toe-off to its strike.
 struct FootSwing {
   Side side = kLeftSide;
   int range = 0;  // index into FeetTracks::ranges
-  // Samples, between them where need be; none where the range cuts the swing there.
+  // In samples, with fractions; none if the range cuts the swing there.
   std::optional<double> toe_off, strike;
-  // Where the ankle's speed rises and falls through the limit of moving. Two strides agree best in
-  // these, whatever their feet do on the ground.
+  // The samples where the ankle's speed rises and falls through the limit of moving. These agree
+  // best between strides, because they do not depend on how the foot touches the ground.
   std::optional<double> moves_from, moves_to;
 };
 
-// The tracks of a motion's feet. Heels are where the frames in which the feet stand flat put them:
-// behind the ankle, as low as the sole.
+// The tracks of a motion's feet. Heels are measured in frames with flat feet: behind the ankle, at
+// the height of the sole.
 FeetTracks feet_tracks(const Motion& motion);
 
 // A foot swings while its ankle moves along the ground faster than this share of the usual fast
-// speed (the 95th percentile of both ankles'). The second share is for slow steps in a motion that
-// has quick ones, too: try it where the first finds nothing.
+// speed (the 95th percentile of both ankles'). The second share finds slow steps in a motion that
+// also has quick ones: try it if the first finds nothing.
 inline constexpr std::array<double, 2> kMovingShares = {0.30, 0.18};
 
-// All swings in order of time. A swing that its range does not cut takes 0.15 to 1.8 s and goes
+// All swings in order of time. A swing that is not cut by its range lasts 0.15 to 1.8 s and covers
 // 0.15 to 2.6 leg lengths.
 std::vector<FootSwing> foot_swings(const FeetTracks& tracks, double moving_share);
 
@@ -61,9 +60,9 @@ std::vector<FootSwing> foot_swings(const FeetTracks& tracks, double moving_share
 struct StrideEvents {
   std::array<double, 2> strike{}, toe_off{};  // by Side
 };
-// `stride` holds one stride in which the feet go `travel_m`; its end joins its start. Error (it
-// does not name the file) if a foot has no swing, or if the events are not in the order of a walk:
-// right strike, left toe-off, left strike, right toe-off.
+// `stride` holds one periodic stride in which the feet travel by `travel_m`. Error (it does not
+// name the file) if a foot has no swing, or if the events are not in the order of a walk: right
+// strike, left toe-off, left strike, right toe-off.
 Result<StrideEvents> stride_events(const FeetTracks& stride, const vec3& travel_m);
 
 }  // namespace gaitpad

@@ -1,5 +1,4 @@
-// One leg of a gait cycle: its forward kinematics, its angles, and the way back into joint
-// rotations.
+// One leg of a gait cycle: forward kinematics from its angles, and joint rotations from the result.
 #pragma once
 #include <array>
 #include <vector>
@@ -23,18 +22,18 @@ struct AnglesXzy {
 quat rotation_xzy(const AnglesXzy& a) noexcept;
 AnglesXzy angles_xzy(const quat& q) noexcept;
 
-// Level and along a standing foot, unit; kUp x this is across it.
+// Horizontal unit vector along a standing foot; kUp x it points across the foot.
 vec3 foot_forward(const LegModel& leg) noexcept;
-inline constexpr double kHalfFoot = 0.054;  // of the leg: half a foot's breadth, 9 cm of an adult's
+inline constexpr double kHalfFoot = 0.054;  // in legs: half a foot's breadth, 4.5 cm for an adult
 
-// From hip to ankle, with a knee that is bent so far.
+// Distance from hip to ankle at that knee flexion.
 double span_m(const LegModel& leg, double knee_rad) noexcept;
 
-// Both legs standing upright with flat feet. Where one is longer, the pelvis rolls as a person's
-// does; what that leaves bends the longer leg.
+// Both legs standing upright with flat feet. If one is longer, the pelvis rolls, by 10 degrees at
+// most, as a person's does; the longer leg bends by the rest.
 struct Stand {
   double pelvis_m = 0.0;  // its height over the floor
-  double roll_rad = 0.0;  // of the pelvis about the way ahead, left side up positive
+  double roll_rad = 0.0;  // of the pelvis about +z, left side up positive
   std::array<LegAngles, 2> angles{};
 };
 // No knee is straighter than `knee_rad`.
@@ -46,8 +45,8 @@ inline quat mirrored(const quat& q) noexcept { return quat(q.w, q.x, -q.y, -q.z)
 
 // World rotation of every joint for the local rotations given.
 std::vector<quat> world_rotations(const Skeleton& skeleton, std::span<const quat> local);
-// Overwrites the locals of hip, knee, ankle and toe so that the joints stand as the segment
-// rotations of `pose` say; all other joints keep their locals.
+// Overwrites the locals of hip, knee, ankle and toe so that their world rotations match the
+// segments of `pose`; all other joints keep their locals.
 void set_leg_locals(const Skeleton& skeleton, const LegModel& model, const LegPose& pose,
                     quat* local);
 

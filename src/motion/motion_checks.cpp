@@ -1,4 +1,4 @@
-// Whether motions and gait cycles that a program has filled in can be read.
+// Checks motions and gait cycles that a caller has filled in.
 #include <cmath>
 #include <span>
 
@@ -33,7 +33,7 @@ Problem skeleton_problem(const std::string& name, const Skeleton& skeleton) {
   return std::nullopt;
 }
 
-// `least`: -1 where it may be unset.
+// `least`: -1 if the joint may be unset.
 Problem joint_problem(const std::string& what, int joint, int least, std::size_t joints) {
   return range_problem(what, joint, least, double(joints) - 1.0);
 }

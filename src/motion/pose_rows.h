@@ -1,5 +1,5 @@
-// The joints of a cycle's poses as rows of numbers, for registers of any width: what sample_local()
-// gives of these joints, bit for bit.
+// The joints of a cycle's poses as rows of numbers for vector registers of any width. Results are
+// bit-identical to sample_local().
 #pragma once
 #include <span>
 #include <vector>
@@ -8,8 +8,8 @@
 
 namespace gaitpad {
 
-// Which joints a table is to hold: all that move, but for those that `is_left_out`. What does not
-// move is the identity.
+// Rows of all joints that move, except those with `is_left_out`. Joints that stay at the identity
+// are listed in `still`.
 PoseRows pose_rows(const GaitCycle& cycle, std::span<const bool> is_left_out);
 
 }  // namespace gaitpad

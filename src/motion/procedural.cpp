@@ -92,7 +92,7 @@ LegSample right_leg_in_plane(const LegModel& model, const CycleSample& body,
   const double drop =
       model.thigh_m * sin_cos(plane.thigh).cos + model.shank_m * sin_cos(plane.shank).cos;
   const double aside = -track_m - (body.pelvis_m + body.pelvis * model.hip_m).x;
-  // A leg shorter than its sideways shift cannot reach down at all: it lies level.
+  // A leg shorter than its sideways shift points sideways: it cannot reach down.
   const double down = std::sqrt(std::max(0.0, drop * drop - aside * aside));
   const quat tilt = rotation_z(gaitpad::atan2(aside, down));
   const quat thigh = tilt * rotation_x(plane.thigh), shank = tilt * rotation_x(plane.shank);
@@ -138,7 +138,7 @@ namespace {
 // images. Pelvis sway, shoulders, elbows: Boulic, Magnenat-Thalmann & Thalmann 1990, their knots
 // replaced by the nearest few harmonics.
 
-constexpr double kSpeed = 1.25;  // m/s, wanted; the stride's time is rounded to whole frames
+constexpr double kSpeed = 1.25;  // m/s, approximately: the stride's time is rounded to whole frames
 constexpr double kFrameRate = 120.0;
 constexpr double kTrack = 0.05;  // each foot from the middle line: step width .10 m
 constexpr int kHalf = kCycleSamples / 2;
@@ -175,9 +175,9 @@ double knee_flexion(double phase) {
   return (1.5 + soft_positive(kKnee.at(phase) - 1.5, 2.0)) * kDegree;
 }
 
-// The set's foot stands 5 degrees toe-up at mid-stance and its toe grazes the floor in late swing:
-// its foot markers are not this sole. One cosine lays the standing foot flat and lifts the toe of
-// the swinging one.
+// In the data set the foot is 5 degrees toe-up at mid-stance and its toe grazes the floor in late
+// swing, because its markers are not on the sole. One cosine lays the standing foot flat and lifts
+// the swinging toe.
 double foot_correction(double phase) {
   return 3.5 * kDegree * sin_cos(2.0 * kPi * (phase - 0.33)).cos;
 }
@@ -221,16 +221,17 @@ void fill_angles(GaitCycle& cycle) {
   }
 }
 
-// The pelvis is as high as the lower foot asks. Fore and aft it swings by 70 % of what would let
-// the standing foot slide least (least squares over heel and ball), so it is slowest over that
-// foot. (Boulic's fore-aft curve, as ported, runs the other way and makes the foot slide.)
+// The pelvis' height puts the lower foot on the floor. Fore and aft it swings by 70 % of the
+// amplitude at which the standing foot slides least (least squares over heel and ball), so it is
+// slowest over that foot. (Boulic's fore-aft curve, as ported, runs the other way and makes the
+// foot slide.)
 void fill_pelvis_path(GaitCycle& cycle) {
   std::array<double, kHalf> height;
   for (int i = 0; i < kHalf; ++i) {
     const CycleSample& at = cycle.samples[i];
     height[i] = -std::min(foot_clearance(cycle, 0, at), foot_clearance(cycle, 1, at));
   }
-  height = smoothed(height, 3);  // the even ones up to 6: it repeats every half cycle
+  height = smoothed(height, 3);  // even harmonics up to 6: it repeats every half cycle
   for (int i = 0; i < kHalf; ++i) {
     const SinCos s = sin_cos(2.0 * kPi * i / kHalf);
     for (const int at : {i, i + kHalf}) {
@@ -329,9 +330,9 @@ GaitCycle procedural_gait() {
   fill_locals(cycle);
   cycle.stride_m = stride_length(cycle);
   cycle.duration_s = std::floor(cycle.stride_m / kSpeed * kFrameRate + 0.5) / kFrameRate;
-  cycle.frames = cycle.duration_s * kFrameRate;  // of procedural_motion(), from its frame 0 on
+  cycle.frames = cycle.duration_s * kFrameRate;  // of procedural_motion(), from its frame 0
   cycle.step_m = {0.5 * cycle.stride_m, 0.5 * cycle.stride_m};
-  const double heel_m = cycle.leg[kLeftSide].heel_m.x;  // toes out: the heel stands further in
+  const double heel_m = cycle.leg[kLeftSide].heel_m.x;  // toes point out, so heels are closer
   cycle.track_m = {kTrack + heel_m, -kTrack - heel_m};
   cycle.strike = {0.5, 0.0};
   cycle.toe_off = {kToeOff - 0.5, kToeOff};

@@ -1,5 +1,5 @@
-// The embedded adult, and legs given as angles in the plane of travel: what the procedural and the
-// key-framed walks are made of.
+// The built-in adult, and legs given as angles in the plane of travel. The procedural and the
+// key-framed walks are built from both.
 #pragma once
 #include "gaitpad/curve.h"
 #include "gaitpad/gait_cycle.h"
@@ -27,7 +27,7 @@ LegSample mirrored(const LegSample& leg);              // angles and toe
 CycleSample mirrored_pelvis(const CycleSample& body);  // pelvis alone, legs untouched
 
 LegPose pose_of(const GaitCycle& cycle, int side, const CycleSample& at);
-// How far the foot's lowest point is above its height at rest.
+// Height of the foot's lowest point above its height at rest.
 double foot_clearance(const GaitCycle& cycle, int side, const CycleSample& at);
 
 // The mean and the lowest harmonics of a periodic curve.

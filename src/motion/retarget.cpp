@@ -1,11 +1,11 @@
 // A walk on another skeleton with two legs. Meredith & Maddock 2005, section 3.2: motions are
 // retargeted by the ratio of the leg lengths.
 //
-// The legs of all walks have the same degrees of freedom, so their angles are taken over as they
-// are and only lengths grow. Above the legs, skeletons differ: spines and necks have other numbers
-// of joints, arms have twist joints, standing poses are T poses. So each joint of the character is
-// given its counterpart in the source, the character is made to stand as the source stands, and
-// from there each joint turns in the world as its counterpart does.
+// Legs have the same degrees of freedom in all walks, so their angles are copied and only lengths
+// scale. Above the legs skeletons differ: spines and necks have other numbers of joints, arms have
+// twist joints, standing poses are T poses. So each joint of the character gets a counterpart in
+// the source, the character takes the source's standing pose, and from there each joint turns in
+// the world like its counterpart.
 #include <algorithm>
 #include <memory>
 #include <optional>
@@ -31,15 +31,15 @@ struct Counterpart {
   double share = 0.0;          // of the way from lower to upper
 };
 
-// Where a joint's bone is to point when the character stands: to a joint, or one of these.
+// The joint that a bone points to in the standing pose, or one of these.
 constexpr int kNoAim = -1;
 constexpr int kChildren = -2;   // to the mean of its children
-constexpr int kAsItStood = -3;  // wherever it did: the joint keeps its standing rotation
+constexpr int kAsItStood = -3;  // unchanged: the joint keeps its standing rotation
 
 struct UpperBodyMatch {  // one of each a joint of the character
   std::vector<Counterpart> from;
   std::vector<int> aim;
-  std::vector<vec3> direction;  // of the bone, as the source stands; where there is an aim
+  std::vector<vec3> direction;  // of the bone in the source's standing pose; unused without an aim
 };
 
 std::vector<vec3> standing_places(const GaitCycle& cycle) {
@@ -49,7 +49,7 @@ std::vector<vec3> standing_places(const GaitCycle& cycle) {
   return {at.begin(), at.begin() + static_cast<std::ptrdiff_t>(cycle.skeleton.joints.size())};
 }
 
-// One skeleton: what its joints are, and where they are when it stands.
+// One skeleton: its anatomy, and its joints' places in the standing pose.
 struct Walker {
   const GaitCycle& cycle;
   std::vector<vec3> at;
@@ -71,7 +71,7 @@ struct Walker {
   bool is_upper(int joint) const {
     return !is_in_leg(joint) && !is_ancestor(cycle.skeleton, joint, cycle.pelvis);
   }
-  // Mean place of its children; its own where it has none away from it.
+  // Mean place of a joint's children; its own place if it has none.
   vec3 below(int joint) const {
     vec3 sum(0.0);
     int count = 0;
@@ -84,7 +84,7 @@ struct Walker {
   }
 };
 
-// The child a joint's bone may point to: the only one, else -1.
+// The only child of a joint; -1 if there are none or several.
 int only_child(const Walker& part, int joint) {
   int child = -1;
   for (std::size_t j = 1; j < part.at.size(); ++j) {
@@ -149,8 +149,8 @@ class Matcher {
     match_.direction[to] = from_.at[from_end] - from_.at[from];
   }
 
-  // Aims a chain as a whole from its first joint, or bone by bone where both chains have the same
-  // names. `from_end`, `to_end`: the joint after the chain, -1 none.
+  // Aims a chain as a whole from its first joint, or bone by bone if both chains have equal names.
+  // `from_end`, `to_end`: the joint after the chain, or -1.
   void aim_chain(const std::vector<int>& from, const std::vector<int>& to, int from_end,
                  int to_end) {
     if (from.empty() || to.empty()) return;
@@ -164,7 +164,7 @@ class Matcher {
       if (from_end < 0) aim_at_only_child(from.back(), to.back());
       return;
     }
-    // The head keeps looking ahead however the neck is bent.
+    // The head keeps its standing rotation, so it looks ahead with any bend of the neck.
     if (from_end < 0) match_.aim[to.back()] = kAsItStood;
     const int last_from = from_end >= 0 ? from_end : from.back();
     const int last_to = to_end >= 0 ? to_end : to.back();
@@ -210,7 +210,7 @@ class Matcher {
 
 // --- Standing as the source stands ---------------------------------------------------------------
 
-// From joint to where its bone ends, in its own frame, standing.
+// Vector from a joint to the end of its bone in the standing pose, in the joint's frame.
 vec3 bone_of(const GaitCycle& cycle, int joint, int end) {
   if (end == kChildren) {
     vec3 sum(0.0);
@@ -226,10 +226,10 @@ vec3 bone_of(const GaitCycle& cycle, int joint, int end) {
   return v;
 }
 
-// Turns the character's bones to point as they do in the source's standing pose: a T pose hangs its
-// arms. Arms and hands do so bone by bone. Backs are curved in different ways, so spine and neck do
-// so as wholes and the head keeps its rotation; only chains of equal names are turned bone by bone,
-// and so are collar bones of equal names.
+// Turns the character's bones to the directions of the source's standing pose: the arms of a T pose
+// come down. Arms and hands turn bone by bone. Backs are curved in different ways, so spine and
+// neck turn as a whole and the head keeps its rotation. Spines, necks and collar bones with equal
+// names turn bone by bone.
 void stand_alike(const UpperBodyMatch& match, GaitCycle& character) {
   constexpr double kLeastBone_m = 1e-4;
   const auto& joints = character.skeleton.joints;
@@ -253,8 +253,8 @@ void stand_alike(const UpperBodyMatch& match, GaitCycle& character) {
 
 // --- Turning as the source turns -----------------------------------------------------------------
 
-// World rotations of the joints that have counterparts: away from the character's standing pose as
-// the source turns away from its own. The character already stands as the source does.
+// World rotations of the joints that have counterparts: each turns away from the character's
+// standing pose as its counterpart turns away from the source's. Both standing poses already match.
 class UpperBodyTurn {
  public:
   UpperBodyTurn(const GaitCycle& source, const UpperBodyMatch& match, const GaitCycle& character)
@@ -309,7 +309,7 @@ double foot_height_m(const Places& at, const LegJoints& leg) {
   return at[leg.ankle].y + at[leg.toe].y;
 }
 
-// Both feet low and both legs long.
+// The frame in which both feet are lowest and both legs longest.
 const MotionFrame& standing_frame(const Motion& motion) {
   return best_frame(motion, [&](const Places& at) {
     double score = 0.0;
@@ -320,8 +320,8 @@ const MotionFrame& standing_frame(const Motion& motion) {
   });
 }
 
-// Takes the standing rotation of a foot from the frame in which it is lowest: there it lies flat. A
-// foot that points too far aside there is turned forward.
+// Takes the standing rotation of a foot from the frame in which it is lowest, hence flat. If it
+// then points more than kMostToeOut aside, it is turned forward.
 void take_over_foot(const Motion& motion, Side side, CapturedLeg& leg) {
   const LegJoints& j = motion.legs[side];
   const auto& frame = best_frame(motion, [&j](const Places& at) { return foot_height_m(at, j); });
@@ -332,8 +332,8 @@ void take_over_foot(const Motion& motion, Side side, CapturedLeg& leg) {
   leg.toe.assign(kCycleSamples, turn * flat.toe.front());
 }
 
-// Measured on the character's own walk where it has one, else on the frame in which it stands
-// straightest.
+// Measures the body on the character's own walk if it has one, otherwise on the frame in which it
+// stands straightest.
 Result<GaitCycle> body_of(const Motion& character) {
   if (Result<GaitCycle> own_walk = gait_cycle(character)) return own_walk;
   CapturedCycle pose = captured_pose(character, standing_frame(character));
@@ -352,11 +352,11 @@ double mean_ankle_height_m(const GaitCycle& cycle) {
   return -0.5 * (cycle.leg[0].heel_m.y + cycle.leg[1].heel_m.y);
 }
 
-// Gives a build the times and lengths of the source's walk.
+// Gives the character the source's times and lengths, scaled by the ratio of leg lengths.
 void take_over_events(const GaitCycle& source, double ratio, GaitCycle& out) {
   out.name = source.name;
   out.metres_per_unit = source.metres_per_unit;
-  out.duration_s = source.duration_s * std::sqrt(std::sqrt(ratio));  // as all step times scale
+  out.duration_s = source.duration_s * std::sqrt(std::sqrt(ratio));  // as all step times
   out.pace = source.pace;
   out.stride_m = source.stride_m * ratio;
   out.first_frame = source.first_frame;
@@ -371,8 +371,8 @@ void take_over_events(const GaitCycle& source, double ratio, GaitCycle& out) {
   }
 }
 
-// Hips and heels follow the source's paths, `ratio` times as large. Feet stand as far beside the
-// hips as in the source.
+// Hips and heels follow the source's paths scaled by `ratio`. Feet keep the source's scaled
+// distance beside the hips.
 void take_over_samples(const GaitCycle& source, double ratio, GaitCycle& out) {
   const vec3 from_hips = mean_hip_m(source), to_hips = mean_hip_m(out);
   // The hips stand no higher than the shorter leg reaches.
@@ -398,7 +398,7 @@ void take_over_samples(const GaitCycle& source, double ratio, GaitCycle& out) {
   }
 }
 
-// Local rotations at the turn's sample i.
+// Fills the local rotations of sample i, to which `turn` is set.
 void pose_sample(const UpperBodyTurn& turn, int i, GaitCycle& out) {
   const std::size_t joints = out.skeleton.joints.size();
   const CycleSample& at = out.samples[i];

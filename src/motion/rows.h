@@ -1,12 +1,12 @@
-// Rows of numbers blended and summed, several numbers side by side. The bodies are compiled once
-// for each set of instructions (rows_lanes.h) and never where they are called: the linker keeps one
-// copy of each, and it must be the one that was compiled for its width.
+// Blends and sums rows of numbers in vector registers. The bodies are compiled once for each
+// instruction set (rows_lanes.h) and never in a caller: the linker keeps one copy of each, which
+// must be the one compiled for its width.
 #pragma once
 
 namespace gaitpad {
 
-// Four samples of a cycle, their weights, the standing pose and how much of the blend shows beside
-// it, and the place for the blend: w, x, y and z of every joint in turn, `stride` numbers each.
+// Four samples of a cycle and their weights, the standing pose and the blend's share beside it, and
+// the output. A row holds w of all joints, then x, y and z, `stride` numbers each.
 struct BlendedRows {
   const double* sample[4];
   double weight[4];
@@ -23,7 +23,7 @@ template <int kWidth>
 void fade_rows(const BlendedRows& rows) noexcept;
 void fade_rows(const BlendedRows& rows) noexcept;  // as wide as lanes_in_use()
 
-// Rows of `numbers` each, at least kWidth, times their weights, added up in their order.
+// Sum of weight[i] * row[i], added in the order of i. Rows have `numbers` numbers, at least kWidth.
 struct SummedRows {
   const double* const* row;
   const double* weight;

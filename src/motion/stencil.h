@@ -1,4 +1,4 @@
-// How a cycle's samples are read between them.
+// Interpolation between a cycle's samples.
 #pragma once
 #include <algorithm>
 #include <array>

@@ -13,9 +13,8 @@
 namespace gaitpad {
 namespace {
 
-// A stride is the stretch from one event of a foot (it begins or ends to move) to the next equal
-// one, with every other event once in between. Among all strides of a motion the best one is most
-// like its own continuation.
+// A stride lasts from one event of a foot (it begins or stops moving) to the next equal one, with
+// every other event once in between. The best stride of a motion is most like its continuation.
 
 // --- Where pelvis and legs are in every frame ----------------------------------------------------
 
@@ -24,12 +23,12 @@ struct LegTrack {
 };
 struct WalkTrack {
   std::vector<vec3> pelvis_m;
-  std::vector<double> heading_rad;  // where the hips face, unwrapped
+  std::vector<double> heading_rad;  // direction that the hips face, unwrapped
   std::array<LegTrack, 2> leg;
   double leg_m = 0.0;  // thigh + shank, mean of both sides
 };
 
-// Across the hips from right to left, turned to the front.
+// Heading of the hips: perpendicular to the line from the right to the left hip.
 double hips_heading(const vec3& left_hip, const vec3& right_hip) {
   return heading_of(glm::cross(left_hip - right_hip, kUp));
 }
@@ -108,8 +107,8 @@ double pose_distance(const WalkTrack& track, double a, double b) {
   return sum / (7.0 * track.leg_m);
 }
 
-// How badly a stride closes: the distance of its first pose to its last one. The poses a twentieth
-// of the stride before and after count too, so that velocities have to agree as well.
+// Distance between a stride's first and last pose. It includes the poses 5 % of the stride before
+// and after, so that velocities have to agree as well.
 double seam(const WalkTrack& track, const SampleRange& range, double start, double period) {
   double sum = 0.0, weight = 0.0;
   for (const double off : {-0.05 * period, 0.0, 0.05 * period}) {
@@ -140,7 +139,7 @@ bool is_stride(const std::vector<FootEvent>& events, std::size_t from, std::size
   return std::ranges::all_of(count, [](int n) { return n == 1; });
 }
 
-// The period within 4 % of the events' that makes the seam smallest.
+// The period within 4 % of the events' period that has the smallest seam.
 double best_period(const WalkTrack& track, const SampleRange& range, double start, double period) {
   double best = period, least = seam(track, range, start, period);
   for (int k = -16; k <= 16; ++k) {
@@ -172,7 +171,7 @@ std::optional<Candidate> candidate(const WalkTrack& track, const SampleRange& ra
   return is_walk ? std::optional<Candidate>(c) : std::nullopt;
 }
 
-// From each event to the next equal one.
+// Adds the strides from each event to the next equal one.
 void add_between_events(const WalkTrack& track, const SampleRange& range,
                         const std::vector<FootEvent>& events, double frame_s,
                         std::vector<Candidate>& found) {
@@ -188,8 +187,8 @@ void add_between_events(const WalkTrack& track, const SampleRange& range,
   }
 }
 
-// A clip of hardly more than one stride may hold no event twice: from each frame to the one most
-// like it, so that each event lies between them once.
+// For clips of little more than one stride, which may contain no event twice: adds the strides from
+// each frame to the most similar later one with each event once in between.
 void add_by_pose(const WalkTrack& track, const SampleRange& range,
                  const std::vector<FootEvent>& events, double frame_s,
                  std::vector<Candidate>& found) {
@@ -230,7 +229,7 @@ std::vector<Candidate> candidates(const FeetTracks& feet, const WalkTrack& track
   return found;
 }
 
-// How often the other foot comes to the front, or is the higher one, in that range.
+// Number of times that the leading foot, or the higher foot, changes in the range.
 int steps_in_place(const WalkTrack& track, const SampleRange& range) {
   constexpr double kAhead_legs = 0.1, kAbove_legs = 0.03;  // less is a shift of the weight
   int ahead = 0, above = 0, steps_ahead = 0, steps_above = 0;
@@ -249,10 +248,10 @@ int steps_in_place(const WalkTrack& track, const SampleRange& range) {
   return std::max(steps_ahead, steps_above);
 }
 
-// The error sentence. Its numbers tell a motion too short for a stride from other motions.
+// The error sentence. Its numbers show whether the motion is too short for a stride.
 std::string why_no_stride(const FeetTracks& feet, const WalkTrack& track) {
   constexpr double kFastestWalk_legs_s = 3.6;  // 3 m/s
-  double moved_m = -1.0, time_s = 0.0;         // of the range in which the hips go farthest
+  double moved_m = -1.0, time_s = 0.0;         // of the range in which the hips move farthest
   int steps = 0;
   for (const SampleRange& range : feet.ranges) {
     double here_m = 0.0;
@@ -273,7 +272,7 @@ std::string why_no_stride(const FeetTracks& feet, const WalkTrack& track) {
   return "holds no full walking stride of both feet: " + numbers + (runs ? ", it is a run" : "");
 }
 
-// How much farther one half of the stride goes than the other, as a share of the stride.
+// Difference between the travel of the stride's halves, as a share of the stride.
 double unsteadiness(const WalkTrack& track, const StrideWindow& w) {
   const vec3 start = point_at(track.pelvis_m, w.start);
   const vec3 middle = point_at(track.pelvis_m, w.start + 0.5 * w.period);
@@ -283,7 +282,7 @@ double unsteadiness(const WalkTrack& track, const StrideWindow& w) {
 }
 
 // Prefers a small seam, a straight and steady stride at the motion's usual speed, and frames beyond
-// it to fade the seam with.
+// it for fading the seam.
 void sort_best_first(const WalkTrack& track, std::vector<Candidate>& all) {
   std::vector<double> speed;
   for (const Candidate& c : all) speed.push_back(c.speed_legs_s);
@@ -303,8 +302,8 @@ void sort_best_first(const WalkTrack& track, std::vector<Candidate>& all) {
 
 constexpr double kLoop_legs = 0.12;  // mean distance of first and last pose in a looping clip
 
-// Spreads the difference of the last and the first pose over the clip, so that its last frame is
-// its first one moved on.
+// Spreads the difference of the last and the first pose over the clip, so that they differ only in
+// travel.
 void close_loop(Motion& motion, double turn_rad) {
   const int last = static_cast<int>(motion.frames.size()) - 1;
   const std::vector<quat> from = motion.frames.front().local, to = motion.frames.back().local;

@@ -1,4 +1,4 @@
-// Finds the stride of a motion that repeats best: the one whose end is most like its start.
+// Finds the stride of a motion that repeats best: its last pose is most like its first.
 #pragma once
 #include <vector>
 
@@ -8,18 +8,18 @@
 namespace gaitpad {
 
 struct StrideWindow {
-  double start = 0.0;       // frame, between frames where need be
+  double start = 0.0;       // frame, with fractions
   double period = 0.0;      // frames
   double turn_rad = 0.0;    // change of heading in it
   int first = 0, last = 0;  // frames around it that belong to the same unbroken movement
 };
 
-// All strides of a motion, the best one first. In each of them every event (either foot's lift or
-// landing) happens once; it may begin with any of them. The error does not name the file.
+// All strides of a motion, the best first. Each contains every event (lift and landing of either
+// foot) once and may begin with any of them. The error does not name the file.
 Result<std::vector<StrideWindow>> best_strides(const Motion& motion);
 
-// The motion twice in a row, if its last pose is its first one again but for the travel. The little
-// that they differ by is spread over the clip. No frames where the motion is no loop.
+// The motion twice in a row, if its last pose equals its first one apart from the travel. A small
+// difference is spread over the clip. No frames if the motion is not a loop.
 Motion looped_twice(const Motion& motion);
 
 }  // namespace gaitpad

@@ -8,13 +8,13 @@ namespace {
 
 // Double support takes about a quarter of an adult's cycle at an easy pace, a third at a stroll and
 // a fifth at a brisk one.
-constexpr double kLongerRoll = 0.9;   // a roll's share grows by this for a stride of length 0,
-constexpr double kShorterRoll = 2.4;  // and falls so steeply for longer ones
+constexpr double kLongerRoll = 0.9;   // relative growth of a roll's share at stride length 0
+constexpr double kShorterRoll = 2.4;  // steepness of its fall for longer strides
 constexpr double kLeastRoll = 0.04, kMostRoll = 0.22;
 
 static_assert(sizeof(StrideCell) == 33 * sizeof(double));
 
-// Cells are numbers alone.
+// Adds weight * cell. A StrideCell consists of doubles only.
 void add(StrideCell& sum, const StrideCell& cell, double weight) noexcept {
   double* to = &sum.pelvis_m.x;
   const double* from = &cell.pelvis_m.x;
@@ -31,8 +31,8 @@ StrideCell mixed(const StrideCell& a, const StrideCell& b, double share_a,
   return sum;
 }
 
-// The inverse of [1 4 1] / 6: the samples, filtered forwards and back by the filter's pole (Unser
-// 1993). Its response is cut off where it is below the rounding of a double.
+// The inverse of the filter [1 4 1] / 6: a recursive filter with its pole, forwards and backwards
+// (Unser 1993). Its response is cut off below the rounding of a double.
 std::array<StrideCell, kCycleSamples> knots_through(
     const std::array<StrideCell, kCycleSamples>& samples) noexcept {
   constexpr double kPole = -0.26794919243112270;  // sqrt(3) - 2

@@ -1,5 +1,5 @@
-// How the tables of clean strides are read, by one walk or by several side by side (V as in
-// gaitpad/math.h). Every walk has its own phase and ratio.
+// Reads the tables of clean strides, for one walk or for several in the lanes of a register (V as
+// in gaitpad/math.h). Every walk has its own phase and ratio.
 #pragma once
 #include "base/lanes.h"
 #include "gaitpad/stride_family.h"
@@ -10,7 +10,8 @@ namespace gaitpad {
 
 namespace {
 
-// What the walks read of tables, each its own rows by its own weights, added up in their order.
+// Weighted sums of table rows. Each walk adds its own rows and weights; they are summed in that
+// order.
 template <class V, template <class> class Numbers, int kMost>
 class RowsOf {
  public:
@@ -50,7 +51,7 @@ using TablesOf = std::array<const std::vector<StrideTable>*, kWidthOf<V>>;
 template <class V>
 struct RatiosOf {
   TablesOf<V> tables;
-  std::array<int, kWidthOf<V>> first;  // may be -1: then its weight is 0
+  std::array<int, kWidthOf<V>> first;  // may be -1 with weight 0
   std::array<V, 4> weight;
 };
 template <class V>
@@ -63,7 +64,7 @@ RatiosOf<V> ratios_at(const TablesOf<V>& tables, const V& ratio) noexcept {
   RatiosOf<V> at;
   at.tables = tables;
   at.weight = cubic_weights(V(y - r));
-  // Beyond the ends the tables go on straight.
+  // Beyond the ends the tables are extrapolated linearly.
   auto& weight = at.weight;
   const auto low = r == V{}, high = r == last - 1.0;
   weight[1] += low ? 2.0 * weight[0] : V{};
@@ -115,8 +116,8 @@ KnotsOf<V> knots_at(const V& phase) noexcept {
   return knots;
 }
 
-// A cubic spline in phase, smooth to the second derivative, and cubic in ratio; the ratio is
-// clamped to the tables'. Between two ratios: `change` is 0 at the first, 1 at the second.
+// A cubic spline in phase, smooth to the second derivative, and cubic in ratio, which is clamped to
+// the tables. Blends two ratios: `change` is 0 at `a` and 1 at `b`.
 template <class V>
 void stride_between(const RatiosOf<V>& a, const RatiosOf<V>& b, const V& change,
                     const KnotsOf<V>& knots, StrideCellOf<V>& cell) noexcept {
@@ -127,7 +128,7 @@ void stride_between(const RatiosOf<V>& a, const RatiosOf<V>& b, const V& change,
     weight_b[n] = b.weight[n] * change;
   }
   for (int lane = 0; lane < kWidthOf<V>; ++lane) {
-    // By table, from the one before the first on: that one's weight is 0.
+    // Weights by table index + 1; index -1 has weight 0.
     std::array<double, kStrideRatios + 2> by_table{};
     for (int n = 0; n < 4; ++n) {
       by_table[a.first[lane] + 1 + n] += lane_of(weight_a[n], lane);
@@ -146,7 +147,7 @@ void stride_between(const RatiosOf<V>& a, const RatiosOf<V>& b, const V& change,
   rows.total(cell);
 }
 
-// Where the heel of a foot is in the strides of one ratio.
+// A foot's heel and the five numbers that follow it in a StrideCell.
 template <class V>
 struct HeelOf {
   Vec<V> heel_m{};
@@ -162,7 +163,7 @@ Vec<V> heel_at(const RatiosOf<V>& at, const KnotsOf<V>& knots, const MaskOf<V>& 
       if (weight == 0.0) continue;
       const StrideTable& table = (*at.tables[lane])[at.first[lane] + n];
       for (int m = 0; m < 4; ++m) {
-        // The numbers that follow the heel's place are read, too.
+        // Also reads the numbers that follow the heel, to fill a register.
         const auto& heel = table.knot[knots.of(lane, m)].foot[side].heel_m;
         rows.add(lane, reinterpret_cast<const HeelOf<double>&>(heel),
                  weight * lane_of(knots.weight[m], lane));
@@ -191,14 +192,15 @@ Vec<V> scaled_heel(const StrideScale& to, const Vec<V>& heel_m, int side) noexce
   return heel_m * to.length + all_of<V>(to.apart_m[side]);
 }
 
-// A pelvis' hips, turned as the pelvis is.
+// A place relative to the pelvis, turned with the pelvis.
 template <class V>
 Vec<V> pelvis_turned(const vec3& place_m, const V& yaw_rad, const Vec<V>& tilt) noexcept {
   return rotation_about_y(yaw_rad) * (rotation_by_vector<V>(tilt) * all_of<V>(place_m));
 }
 
-// The character's strides (StrideScale), from the motion's. So that the legs keep their angles, the
-// pelvis turns and rolls by as much less as it is wider, and is where the hips' middle has to be.
+// Scales the motion's stride to the character (StrideScale). The legs keep their angles: a wider
+// pelvis turns and rolls less, by `length / pelvis`, and the middle of the hips follows its scaled
+// path.
 template <class V>
 void scale_stride(const StrideScale& to, StrideCellOf<V>& cell) noexcept {
   if (to.length == 1.0 && to.pelvis == 1.0) return;

@@ -15,25 +15,26 @@ namespace gaitpad {
 namespace {
 
 constexpr int kOwn = 5;  // the table of the data's own stride
-// Iterations. After so many, angles are within 2e-2 rad of where they end in most clips, mostly
-// where a knee is nearly straight; more iterations make no walk smoother or nearer to its data.
+// Iterations. In most clips angles then are within 2e-2 rad of the converged solution (the rest is
+// mostly at nearly straight knees); more iterations make no walk smoother or closer to its data.
 constexpr int kFirstSolve = 7, kNextSolve = 3;
-constexpr int kLongSolve = 6;  // of strides longer than the data's: they stretch the legs
-constexpr int kNextBack = 5;   // the change is larger
-// How much of the growth of the change from one stride to the next goes on to the one after: all of
-// it overshoots where steps get short.
+constexpr int kLongSolve = 6;  // for strides longer than the data's, which stretch the legs
+constexpr int kNextBack = 5;   // for backward strides, which change more from one to the next
+// Extrapolation factor of the next start: its change of the data grows by half as much as in the
+// previous table. The full growth overshoots for short steps.
 constexpr double kGoesOn = 0.5;
 constexpr double kLeastKneeBack = 8.0 * kDegree, kSmootherBack = 10.0, kHipBack = 0.3,
                  kAnkleBack = 0.17;
 constexpr double kLeastStandingKnee = 5.0 * kDegree;
-// What shows of the data's angles in steps of length 0: a foot still has to leave the floor.
+// Share of the data's knee and ankle angles in steps of length 0: the foot still has to leave the
+// floor.
 constexpr double kLeastLift = 0.3;
-constexpr double kFlat = 0.2;  // own phase: how long a foot stands flat after its roll
-// What no walker has. A leg opens by less than half a turn, so a step is shorter than two legs.
+constexpr double kFlat = 0.2;  // phase for which a foot stands flat after its roll
+// Limits of valid input. A step is shorter than two legs, so a stride is shorter than four.
 constexpr double kLeastBone_m = 0.01, kMostLegs = 4.0, kMostAngle = 2.0 * kPi;
 
-// The cycle run back: what it lifts lands. Its phases count from where the data lift the right
-// foot, and its stages have the shares of the cycle's.
+// The cycle run backwards in time: a lift becomes a strike. Phase 0 is the right foot's lift in the
+// data; the stages keep the cycle's shares.
 GaitCycle run_back(const GaitCycle& cycle) {
   GaitCycle back;
   back.name = cycle.name;
@@ -77,7 +78,7 @@ struct Builder {
     }
   }
 
-  // Where the heels stand while the feet are flat.
+  // Mean places of the heels while the feet are flat.
   void measure_footprints() {
     for (int side : {0, 1}) {
       const double roll = fraction(cycle.toe_off[1 - side] - cycle.strike[side]);
@@ -96,7 +97,7 @@ struct Builder {
     }
   }
 
-  // The cycle's own steps, between these places.
+  // Moves both footprints equally so that their distance is the cycle's left step.
   void keep_steps() {
     const double step_m = own_footprint_m[kLeftSide].z - own_footprint_m[kRightSide].z;
     const double apart_m = 0.5 * (cycle.step_m[kLeftSide] - step_m);
@@ -104,7 +105,7 @@ struct Builder {
     own_footprint_m[kRightSide].z -= apart_m;
   }
 
-  // The standing knee is as straight as the data's in stance.
+  // The standing knee is as straight as the straightest knee of the data's stance.
   void measure_standing() {
     double knee = kPi;
     for (int i = 0; i < kCycleSamples; ++i) {
@@ -121,13 +122,13 @@ struct Builder {
     for (const LegModel& leg : cycle.leg) family.lead_m += 0.5 * (-leg.heel_m.z - leg.hip_m.z);
   }
 
-  // The rest of the pelvis' rotation in a stride of another length: from the standing one's.
+  // The pelvis' rotation without its yaw in a stride of another length, relative to standing.
   vec3 tilt_at(int i, double ratio) const {
     const vec3 stand(0.0, 0.0, family.stand_roll_rad);
     return (mean_tilt - stand) * std::min(1.0, 2.0 * ratio) + (tilt[i] - mean_tilt) * ratio;
   }
 
-  // The data as they would look in a stride of another length.
+  // The data scaled to a stride of another length.
   StrideSample scaled(int i, double ratio) const {
     const CycleSample& data = cycle.samples[i];
     const double lift = mix(kLeastLift, 1.0, ratio), square = ratio * ratio;
@@ -171,8 +172,8 @@ struct Builder {
     StrideProblem p;
     p.leg = cycle.leg;
     p.stride_m = ratio * cycle.stride_m;
-    // Backwards people land on their toes and leave on their heels, and Table I has it the other
-    // way round. So the data count less there, above all the ankles', and the change is smoother.
+    // People who walk backwards land on their toes and leave on their heels; Table I has the
+    // opposite. So the data weigh less there, the ankles' above all, and the change is smoother.
     if (cycle.stride_m < 0.0) {
       p.least_knee_rad = kLeastKneeBack;
       p.soft_toe *= kSmootherBack;
@@ -231,8 +232,7 @@ struct Builder {
     const auto rest_of = [&](double pitch) {
       return rotation_vector(glm::conjugate(rotation_about(across, pitch)) * rotation);
     };
-    // What the rest turns about the transverse axis belongs to the pitch. Each pass leaves a
-    // hundredth of it.
+    // The rest's turn about the transverse axis belongs to the pitch. Each pass leaves 1 % of it.
     for (int n = 0; n < 4; ++n) foot.pitch_rad += glm::dot(rest_of(foot.pitch_rad), across);
     const vec3 rest = rest_of(foot.pitch_rad);
     foot.twist_rad = rest.y;
@@ -246,8 +246,8 @@ struct Builder {
     std::vector<StrideSample> stride;
   };
 
-  // What the data of `p` would become if they changed as those of another stride did: the start of
-  // its solve. With a second stride beyond that one, the change goes on as it grew between the two.
+  // The start of the solve of `p`: its data plus the change that the neighbour's solution made.
+  // With a second stride `far`, the change is extrapolated: near + kGoesOn (near - far).
   static std::vector<StrideSample> start_of(const StrideProblem& p, const Solved& near,
                                             const Solved* far) {
     std::vector<StrideSample> start = p.wanted;
@@ -266,13 +266,13 @@ struct Builder {
     return start;
   }
 
-  // False where there is no solution.
+  // Solves all tables. False if one has no solution.
   bool solve() {
     StrideSolver solver;
     const bool forwards = cycle.stride_m > 0.0;
     const int tables = forwards ? kStrideRatios : kBackRatios, first = std::min(kOwn, tables - 1);
     std::vector<Solved> all(tables);
-    // Keeps a table's answer. False where there is none.
+    // Keeps a table's solution. False if there is none.
     const auto keep = [&](int k, StrideProblem p, std::vector<StrideSample> stride) {
       if (stride.empty()) return false;
       family.table[k] = table_of(p, stride, k * kRatioStep);
@@ -302,7 +302,7 @@ struct Builder {
   }
 };
 
-// What forbids to solve for this cycle, so that the solver meets nothing but walks.
+// The reason why a cycle is not a walk that the solver accepts, if any.
 std::optional<std::string> fault_of(const GaitCycle& cycle) {
   if (cycle.samples.size() != kCycleSamples) return "has no samples of a whole cycle";
   for (const double number : solver_input(cycle)) {

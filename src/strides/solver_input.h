@@ -1,4 +1,4 @@
-// The numbers that a family of strides is made from, and those that it is made of.
+// The numbers that a family of strides depends on, and the numbers that it consists of.
 #pragma once
 #include <vector>
 
@@ -6,11 +6,11 @@
 
 namespace gaitpad {
 
-// Of two cycles with the same numbers the families are the same.
+// Cycles with equal numbers have equal families.
 std::vector<double> solver_input(const GaitCycle& cycle);
 
-// Calls `each` with every number of a family, const or not, in an order that never changes. The
-// family has all its tables.
+// Calls `each` with every number of a family, const or not, in a fixed order. The family has all of
+// its tables.
 template <class Family, class Each>
 void for_each_number(Family& family, Each each) {
   each(family.stand_m);

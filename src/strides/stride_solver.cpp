@@ -1,4 +1,4 @@
-// The same numbers on every machine: Eigen computes one by one, in the order that is written.
+// Same numbers on every machine: Eigen must not vectorise, because that changes the order of sums.
 #define EIGEN_DONT_VECTORIZE
 #define EIGEN_DONT_PARALLELIZE
 #include "strides/stride_solver.h"
@@ -15,32 +15,33 @@ namespace {
 
 constexpr int kPelvis = 3, kUnknowns = kPelvis + 2 * kLegDofs;  // of one sample
 
-// Weights of squared residuals; an angle of the data (radians) has 1.
+// Weights of squared residuals, relative to a change of 1 rad of a knee.
 constexpr double kDegreeCosts_m = 0.04;  // a pelvis this far off costs as much as one degree
 constexpr double kPelvisWeight = (kDegree / kDegreeCosts_m) * (kDegree / kDegreeCosts_m);
 constexpr double kHip = 1.8, kAnkle = 1.8;
-constexpr double kSmooth = 20.0;  // of second differences between samples,
-constexpr double kPelvisSmooth = 5000.0, kPelvisSmoothUp = 4000.0;  // times this for the pelvis
+constexpr double kSmooth = 20.0;  // of second differences between samples
+constexpr double kPelvisSmooth = 5000.0, kPelvisSmoothUp = 4000.0;  // factors on it for the pelvis
 constexpr double kPlanted = 3e5, kFloor = 3e6, kKnee = 1e4;         // per square metre, radian
-constexpr double kLevel = 5e2;  // the sole is level and points ahead, per square metre
-// A heel comes to rest and a toe begins to move smoothly: of second differences, per square metre.
+constexpr double kLevel = 5e2;  // for a sole that is level and points ahead, per square metre
+// For heels that come to rest and toes that begin to move smoothly: of second differences, per
+// square metre.
 constexpr double kSoftStrike = 3e4, kSoftToeDown = 1.3e4;
-constexpr int kLanding = 3;  // samples over which this fades
-// People's hips speed up and slow down by 2 to 4 m/s^2 along their way. Beyond that, per square
-// metre of a second difference.
+constexpr int kLanding = 3;  // samples over which these weights fade
+// People's hips accelerate by 2 to 4 m/s^2 along the path. Excess costs kSurge per square metre of
+// a second difference.
 constexpr double kMostSurge_m_s2 = 2.8, kSoftSurge_m_s2 = 0.8, kSurge = 1e6;
-constexpr double kSoftHeave_m_s2 = 2.0;  // up and down
-constexpr double kSide_m = 0.1;          // lever of that
-// How far the edge of a heel may be in the floor.
+constexpr double kSoftHeave_m_s2 = 2.0;  // vertical
+constexpr double kSide_m = 0.1;          // lever of kLevel across the foot
+// Depth to which the edge of a heel may sink into the floor.
 constexpr double kMostSink_m = 0.002, kSoftEdge_m = 0.0015;
 constexpr double kSoftFloor_m = 0.004, kSoftHeel_m = 0.001;
 constexpr double kSoftKnee = 2.0 * kDegree;
 constexpr double kToeClearance_m = 0.01;  // in the middle of the flight
-constexpr double kMostStep = 0.25;        // radians or metres an iteration
+constexpr double kMostStep = 0.25;        // radians or metres per iteration
 
 int leg_unknown(int side) { return kPelvis + side * kLegDofs; }
 
-// The unknown that stands for another one in the walker's mirror image, and the factor to it.
+// The unknown that mirrors another one across the walker's middle plane, and its sign.
 struct Mirrored {
   int unknown;
   double factor;
@@ -58,10 +59,10 @@ double weight_of(int k) {
   return j < kKneeX ? kHip : j == kKneeX ? 1.0 : kAnkle;
 }
 
-// How one point of a foot moves with the unknowns of its sample.
+// Place of a foot's point and its derivatives by the unknowns of its sample.
 struct PointRows {
   vec3 place_m;
-  std::array<vec3, kLegDofs> by_angle;  // by the pelvis it is the identity
+  std::array<vec3, kLegDofs> by_angle;  // by the pelvis' place: the identity
 };
 
 struct LegFrames {
@@ -94,17 +95,17 @@ PointRows point_rows(const LegFrames& f, const vec3& in_foot) {
 
 struct StrideSolver::System {
   using Matrix = Eigen::SparseMatrix<double>;
-  static constexpr int kReach = 3;  // a row sees at most so many samples in a row
+  static constexpr int kReach = 3;  // samples that a row involves at most
   static constexpr int kBlock = kUnknowns * kUnknowns;
 
   int samples;  // of the stride
-  int solved;   // samples that are unknown: half of them where the other half mirrors them
-  // Normal equations as blocks: of sample i and sample i + d, unknown by unknown. An entry that was
-  // ever written is one of the sparse matrix.
+  int solved;   // unknown samples: half of them if the stride is symmetric
+  // Normal equations as dense blocks of samples i and i + d. The sparse matrix holds every entry
+  // that was ever written.
   std::vector<double> block;
   std::vector<char> is_entry;
   bool has_new_entries = true;
-  std::vector<int> entry_at;  // in `block`, of each number of the sparse matrix
+  std::vector<int> entry_at;  // index in `block` of each number of the sparse matrix
   Matrix normal;              // lower triangle
   Eigen::VectorXd gradient;
   Eigen::SimplicialLDLT<Matrix, Eigen::Lower> factor;
@@ -116,7 +117,7 @@ struct StrideSolver::System {
         is_entry(block.size()),
         normal(solved * kUnknowns, solved * kUnknowns),
         gradient(solved * kUnknowns) {
-    // Which rows there are within a sample changes from step to step, so these are always entries.
+    // Rows within a sample come and go between iterations, so their entries always exist.
     for (int i = 0; i < n && i < solved; ++i) {
       for (int side : {0, 1}) {
         for (int k = 0; k < kUnknowns; ++k) {
@@ -128,7 +129,7 @@ struct StrideSolver::System {
     }
   }
 
-  // A row within a sample sees the pelvis and one leg.
+  // A row within a sample involves the pelvis and one leg.
   bool is_seen(int k, int side) const {
     return k < kPelvis || (k >= leg_unknown(side) && k < leg_unknown(side) + kLegDofs);
   }
@@ -151,7 +152,7 @@ struct StrideSolver::System {
     return block[at];
   }
 
-  // Column by column, as the sparse matrix keeps its numbers.
+  // Lists the entries by column, the order of the sparse matrix.
   void find_entries() {
     struct Entry {
       int row, column, at;
@@ -176,14 +177,14 @@ struct StrideSolver::System {
     has_new_entries = false;
   }
 
-  // Fails, in factor.info(), with numbers that are none.
+  // factor.info() reports a failure if a number is not finite.
   void factorise() {
     if (has_new_entries) find_entries();
     for (std::size_t e = 0; e < entry_at.size(); ++e) normal.valuePtr()[e] = block[entry_at[e]];
     factor.factorize(normal);
   }
 
-  // Where unknown k of sample i stands, -1 <= i <= samples, and the factor to it.
+  // Index of unknown k of sample i, -1 <= i <= samples, and its sign if it is mirrored.
   Mirrored place_of(int i, int k) const {
     i = (i + samples) % samples;
     if (i < solved) return {i * kUnknowns + k, 1.0};
@@ -250,8 +251,8 @@ struct StrideSolver::System {
     }
   }
 
-  // Keeps the pelvis' acceleration along an axis below a bound, rounded; in metres per sample, as
-  // if the samples were evenly spaced in time.
+  // Softly limits the pelvis' acceleration along an axis; in metres per sample^2, for samples that
+  // are evenly spaced in time.
   void add_surge(int sample, int axis, const std::vector<StrideSample>& x,
                  const std::vector<double>& time, double stride_m, double most_m, double soft_m) {
     std::array<double, 3> when, place;
@@ -279,7 +280,7 @@ struct StrideSolver::System {
     }
   }
 
-  // Keeps a point above a height; rounded, so that the row does not flip from step to step.
+  // Softly keeps a point above a height; a hard limit would flip on and off between iterations.
   void add_floor(int sample, int side, const PointRows& point, double least_m, double soft_m) {
     const double low = least_m - point.place_m.y;
     if (low <= -soft_m) return;
@@ -340,7 +341,7 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
   System& s = *system_;
   const int n = s.samples, solved = s.solved;
   s.clear();
-  // Close to the data, and smoothly so.
+  // A small and smooth change of the data.
   for (int i = 0; i < solved; ++i) {
     for (int k = 0; k < kUnknowns; ++k) {
       const int at = i * kUnknowns + k;
@@ -385,7 +386,7 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
     const LegModel& leg = problem.leg[side];
     std::vector<PointRows>&heels = all_heels[side], &toes = all_toes[side];
     all_frames[side].resize(n), heels.resize(n), toes.resize(n);
-    // Of the samples that are solved and their neighbours.
+    // Solved samples and their neighbours.
     for (int at = -1; at <= solved; ++at) {
       const int i = (at + n) % n;
       const LegFrames& frames = all_frames[side][i] = leg_frames(leg, x[i], side);
@@ -419,7 +420,7 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
       const double support = fraction(problem.toe_off[side] - problem.strike[side]);
       const PointRows &heel = all_heels[side][i], &toe = all_toes[side][i];
       vec3 heel_goal = problem.heel_m[side];
-      // A foot in stance at the cycle's end stands on where it came from.
+      // At the cycle's end a foot in stance stands on the footprint of its last strike.
       const double turns = std::floor(problem.strike[side] + own - phase + 0.5);
       heel_goal.z -= problem.stride_m * (problem.time[i] + turns);
       const vec3 across_foot = glm::cross(kUp, foot_forward(leg));
@@ -430,7 +431,7 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
         s.add_place(i, side, heel, heel_goal, kPlanted);
       } else {
         s.add_floor(i, side, heel, 0.0, kSoftHeel_m);
-        // A foot that twists and rolls may not push an edge of its heel into the floor.
+        // Keep the edges of a twisted or rolled heel out of the floor.
         for (double half : {-kHalfFoot, kHalfFoot}) {
           const vec3 edge_m = leg.heel_m + across_foot * (half * leg.length_m());
           s.add_floor(i, side, point_rows(frames, edge_m), -kMostSink_m, kSoftEdge_m);
@@ -445,7 +446,7 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
         s.add_floor(i, side, toe, least, kSoftFloor_m);
       }
       if (rolls || supports) {
-        // Level across, pointing ahead.
+        // The foot is level across and points ahead.
         const PointRows beside = point_rows(frames, leg.heel_m + across_foot * kSide_m);
         PointRows across = beside, along = toe;
         across.place_m -= heel.place_m;
@@ -479,7 +480,7 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
   }
 }
 
-// Moves the stride by the system's step. False where it has none.
+// Applies one solver step. False if the system has no solution.
 bool StrideSolver::move(std::vector<StrideSample>& x) {
   const System& s = *system_;
   if (s.factor.info() != Eigen::Success) return false;

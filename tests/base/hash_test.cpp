@@ -13,7 +13,7 @@ std::uint64_t hash_of(std::initializer_list<double> values) {
   return hash.value();
 }
 
-// The words come from a computation in Python's whole numbers.
+// The expected values were computed with Python's integers.
 TEST(WordHash, GivesTheValuesOfItsDefinition) {
   EXPECT_EQ(hash_of({}), 0xcbf29ce484222325ull);
   EXPECT_EQ(hash_of({1.0}), 0xc293bd4c44920a93ull);

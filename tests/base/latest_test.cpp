@@ -55,7 +55,7 @@ struct Value {
 };
 
 TEST(Latest, IsNeverTornAndNeverOlderBetweenTwoThreads) {
-  // Values that the reader is to meet; on a busy machine as many as there are in two seconds.
+  // Number of values that the reader must see; on a busy machine the number within two seconds.
   constexpr int kSeen = 50'000, kLeast = 100;
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(2);
   Latest<Value> latest;

@@ -25,7 +25,7 @@ struct Chance {
   double in(double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(engine);
   }
-  // Of either sign, every order of magnitude between the exponents as often.
+  // A number of either sign, log-uniform between the exponents.
   double wide(double low_exponent, double high_exponent) {
     const double size = std::pow(10.0, in(low_exponent, high_exponent));
     return in(0.0, 1.0) < 0.5 ? -size : size;
@@ -52,7 +52,7 @@ TEST(SinCos, AreWithinTwoUlpOfTheStandardOnes) {
   }
 }
 
-// Where an angle is a multiple of half a quarter turn, or next to one, both neighbours are as near.
+// Near odd multiples of pi/4 both neighbouring quarter turns are equally near.
 TEST(SinCos, HaveTheSameBitsInLanes) {
   Chance chance;
   std::vector<double> angles;
@@ -105,7 +105,7 @@ TEST(Atan2, KnowsTheAxes) {
   EXPECT_EQ(gaitpad::atan2(-3.0, 0.0), -kPi / 2.0);
 }
 
-// (1 - x)(1 + x) keeps the digits that 1 - x^2 would lose near the ends.
+// (1 - x)(1 + x) keeps digits that 1 - x^2 would lose near +-1.
 TEST(Acos, IsWithinThreeUlpOfTheStandardOne) {
   Chance chance;
   for (int i = 0; i < kTries; ++i) {
@@ -178,7 +178,7 @@ TEST(Rotations, NlerpGoesTheShorterWayBetweenItsEnds) {
   EXPECT_NEAR(glm::length(nlerp(from, to, 0.3)), 1.0, 1e-15);
 }
 
-// Half turns about the axes and between them take each of the four branches.
+// Half turns about and between the axes take each of the four branches.
 TEST(Rotations, AxesGoBackAndForth) {
   Chance chance;
   for (int i = 0; i < 20000; ++i) {

@@ -52,7 +52,7 @@ TEST(SpscRing, RunsAroundManyTimes) {
   EXPECT_EQ(read, written);
 }
 
-// Larger than a word, so that a reader that came too early would see a torn one.
+// Larger than a word, so that a reader that is too early sees a torn item.
 struct Item {
   std::uint64_t number = 0;
   std::array<std::uint64_t, 15> copies{};
@@ -65,7 +65,7 @@ Item numbered(std::uint64_t number) {
   return item;
 }
 
-// A ring of 16 is full and empty all the time while the items pass; of 4096 seldom.
+// A ring of 16 is often full or empty while the items pass, one of 4096 rarely.
 void pass_items(std::size_t capacity, std::uint64_t items) {
   SpscRing<Item> ring(capacity);
   std::uint64_t found_full = 0, found_empty = 0;

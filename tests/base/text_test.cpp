@@ -81,7 +81,7 @@ TEST(Text, NothingThatCommandsATerminalIsPrintable) {
   EXPECT_EQ(in_quotes("x" + quoted), "\"x" + quoted.substr(0, 57) + "...\"");
 }
 
-// Of random bytes nothing is left that is no character, a control character, C1 or a direction.
+// The result contains valid UTF-8 only, without control characters, C1 or direction marks.
 TEST(Text, RandomBytesArePrintable) {
   std::mt19937 random(5);
   for (int i = 0; i < 2000; ++i) {
@@ -115,7 +115,7 @@ TEST(Text, FixedDigitsAreThoseOfPrintf) {
        {0.0, -0.0, 0.5, 2.5, -0.0005, 1e300, -1.7976931348623157e308, 1e-10, -1e-10, 5e-324,
         4.9999999999e-10, 9.9999999995, 999999999.9999999, 1e9, 1e-30})
     expect_same(value);
-  // Ties have few binary digits behind the point.
+  // Ties have few binary digits after the point.
   for (int i = 0; i < 2000; ++i)
     expect_same(std::ldexp(static_cast<double>(random() % 100'000) - 50'000.0, -(i % 30)));
   for (int i = 0; i < 1000; ++i)  // a decimal's neighbours

@@ -1,6 +1,5 @@
-"""What is compiled for wider registers must not be taken for everybody: of a function that several objects
-hold, the linker keeps any one, and an old processor would stop at its first wide instruction.
-"""
+"""Objects for wider registers must not define functions that other objects also define: the linker keeps one of them,
+and an old processor would crash at its first wide instruction. """
 import shutil
 import subprocess
 
@@ -23,7 +22,7 @@ def test_wide_objects_hold_their_own_functions_alone(program):
         path = program.parent / f"CMakeFiles/gaitpad_core.dir/{source.relative_to(ROOT)}.o"
         lines = subprocess.run(["nm", "-C", "--defined-only", path], capture_output=True, text=True, check=True).stdout
         functions = [line.split(" ", 2)[2] for line in lines.splitlines() if line[17] in "TW"]
-        # What is computed with such a register carries it in its name.
+        # Functions on wide registers have the register type in their name.
         own = [name for name in functions if "double __vector(" in name or any(body in name for body in BODIES)]
         assert own, f"{path.name} holds none of {BODIES}"
         assert functions == own, f"{path.name} holds {set(functions) - set(own)}"

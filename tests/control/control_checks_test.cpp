@@ -1,4 +1,4 @@
-// What check() says of styles, parameters and limits: the field, its value, its range.
+// Messages of check() for styles, parameters and limits: the field, its value, its range.
 #include <gtest/gtest.h>
 
 #include <limits>
@@ -46,7 +46,7 @@ TEST(Check, ASentenceNamesFieldValueAndRange) {
   EXPECT_EQ(said_of(limits), "GaitLimits: max_step_time_s is -1, outside [0.05, 50]");
 }
 
-// Their order is that of the fields: a number that is set through a field is found there.
+// Numbers are in the order of the fields: a number set through a field appears at its index.
 TEST(Check, TheNumbersOfParametersAreAllOfThem) {
   GaitParams params;
   EXPECT_EQ(numbers_of(params).size(), 67u);

@@ -30,7 +30,7 @@ TEST(GaitParams, FullStickIsTheMaximumStrideAndSpeed) {
   EXPECT_EQ(p.turn_rate_rad_s, 0.0);
 }
 
-// At 1.6 m/s 0.746 m and 128.7 steps a minute: 0.58 cm per step/min.
+// At 1.6 m/s steps have 0.746 m and 128.7 per minute: 0.58 cm per step/min.
 TEST(GaitParams, AdultNumbersFollowFromTheWalkRatio) {
   GaitLimits limits = kAdult;
   limits.max_speed_m_s = 1.6;
@@ -143,8 +143,8 @@ TEST(GaitLimits, ScaleWithTheLegs) {
 constexpr OwnGait kSlowLimp = {.stick = 0.8, .step_m = {0.31, 0.47}, .step_time_s = 1.05};
 const GaitLimits kOwn = gait_limits(0.9, kSlowLimp);
 
-// Its stick gives exactly the walk's steps and time, a full one is a quarter faster. Step length
-// over cadence stays the walk's own: 0.39 m at 60 / 1.05 steps a minute.
+// At the own pace's deflection, steps and times are exactly the walk's; a full deflection is a
+// quarter faster. Step length over cadence stays the walk's: 0.39 m at 60 / 1.05 steps a minute.
 TEST(OwnPace, SpeedGoesWithTheStickAndTheStepWithItsRoot) {
   EXPECT_NEAR(kOwn.max_speed_m_s, 1.25 * 0.78 / 2.1, 1e-15);
   EXPECT_NEAR(at(0.0, 0.8, {}, kOwn).stride[kLeftSide].time_s, 1.05, 1e-14);
@@ -160,7 +160,7 @@ TEST(OwnPace, SpeedGoesWithTheStickAndTheStepWithItsRoot) {
   }
 }
 
-// At the stick at which the adult's steps would grow longer than their limit, so would these.
+// Steps reach their limit at the same deflection as an adult's.
 TEST(OwnPace, TheLongestStepIsAsMuchLongerAsTheOwnOne) {
   const GaitLimits adult = gait_limits(0.9);
   const double adult_s = at(0.0, 0.8, {}, adult).stride[kLeftSide].time_s;
@@ -197,7 +197,7 @@ TEST(OwnPace, BackwardsFatigueAndStylesAreSharesOfIt) {
   EXPECT_NEAR(left.time_s, 1.05 / 1.25, 1e-14);
 }
 
-// What the adult's pace was before walks had their own: these numbers are of that program.
+// The numbers are from the version before walks had their own pace.
 TEST(OwnPace, TheAdultsIsUnchanged) {
   for (const Side side : {kLeftSide, kRightSide}) EXPECT_EQ(kAdult.step_share[side], 1.0);
   EXPECT_EQ(kAdult.max_turning_step_time_s, kMaxStepTime_s);
@@ -318,7 +318,7 @@ TEST(GaitOverrides, ASpeedWalksWithoutTheStickAtTheWalkRatio) {
     for (const StrideParams& step : p.stride)
       EXPECT_NEAR(step.length_m, std::sqrt(0.348 * speed_m_s), 1e-12);
     EXPECT_EQ(p.turn_rate_rad_s, 0.0);
-    // It takes the place of the forward deflection alone.
+    // It replaces only the forward deflection.
     const GaitParams turning = with(pushed(-0.5, 0.9), {{GaitKey::speed_m_s, speed_m_s}});
     EXPECT_NEAR(value_of(GaitKey::speed_m_s, turning), speed_m_s, 1e-12);
     EXPECT_EQ(turning.turn_rate_rad_s, 0.5);

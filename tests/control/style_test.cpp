@@ -73,7 +73,7 @@ TEST(StyleValue, NoLimbIsLockedAsAWhole) {
   EXPECT_TRUE(set_value(style, "left_leg.weight.ankle_y", 0.0));
 }
 
-// All values as far as they go, the even ones' opposite.
+// Every value at the end of its range, far from the even style's.
 StyleValues extreme() {
   StyleValues style;
   for (const StyleKey& key : style_keys()) EXPECT_TRUE(set_value(style, key.name, key.max));
@@ -85,7 +85,7 @@ StyleValues extreme() {
   return style;
 }
 
-// No key is left out, those that a style may gain later neither.
+// Every key is covered, including keys added later.
 TEST(StyleBlend, EveryValueIsHalfWayAtHalfTheShare) {
   const StyleValues from, to = extreme();
   const StyleValues half = mixed(from, to, 0.5);
@@ -109,7 +109,7 @@ TEST(StyleBlend, GoesSmoothlyAndEndsExactly) {
   StyleValues from, to;
   from.blend_s = 0.5;
   to.fatigue = 0.8, to.blend_s = 0.25;
-  StyleBlend blend = begun_blend(from, from, to);  // the longer one counts
+  StyleBlend blend = begun_blend(from, from, to);  // the longer time wins
   double before = 0.0, step = 0.0, largest = 0.0;
   for (int tick = 0; tick < 120; ++tick) {
     const double now = advance(blend, to, 1.0 / 240.0).fatigue;

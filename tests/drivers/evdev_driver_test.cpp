@@ -5,7 +5,7 @@
 namespace gaitpad {
 namespace {
 
-// Real nodes are in the rig (tools/rig); the stated descriptor is tested in hid/evdev_layout_test.
+// The rig (tools/rig) tests real nodes; hid/evdev_layout_test tests the stated descriptor.
 class EvdevDriver : public testing::Test {
  protected:
   void SetUp() override {

@@ -1,7 +1,7 @@
 #ifdef GAITPAD_HAS_HIDRAW
 // The hidraw driver over a stand-in for hidapi: the functions here replace the library in this
-// program. A pseudo-terminal is the node, so that descriptors, poll() and hanging up are real; what
-// a read returns can be scripted. The real hidraw is tested in the rig.
+// program. The node is a pseudo-terminal, so that descriptors, poll() and hanging up are real;
+// results of reads can be scripted. The real hidraw is tested in the rig.
 #include <fcntl.h>
 #include <gtest/gtest.h>
 #include <hidapi/hidapi.h>
@@ -40,9 +40,9 @@ using Packet = std::vector<std::uint8_t>;
 
 struct ScriptedRead {
   Packet bytes;
-  int error = -1;  // -1: none, the bytes are read; else -1 is returned with this errno
+  int error = -1;  // -1: return the bytes; otherwise fail with this errno
 };
-std::deque<ScriptedRead> script;  // empty: the node itself is read
+std::deque<ScriptedRead> script;  // empty: read the node itself
 std::vector<int> timeouts;        // of the reads
 ScriptedRead failure(int error) { return {.bytes = {}, .error = error}; }
 std::atomic<int> openings{0}, opening_now{0}, openings_at_once{0};
@@ -52,7 +52,7 @@ std::optional<Packet> firmware;  // feature report 0x20
 // Input report by request, beginning with the id.
 std::optional<Packet> present;
 std::vector<int> asked;  // ids
-std::mutex noting;       // of what two threads write that open at once
+std::mutex noting;       // guards notes of two threads that open at once
 void note(std::vector<int>& numbers, int number) {
   const std::lock_guard lock(noting);
   numbers.push_back(number);
@@ -85,7 +85,7 @@ void hid_close(hid_device* device) {
   for (const int fd : device->fds) ::close(fd);
   delete device;
 }
-// As hidapi 0.13.1: errno is only set if a call failed.
+// Like hidapi 0.13.1: errno is only set if a call failed.
 int hid_read_timeout(hid_device* device, unsigned char* data, size_t length, int milliseconds) {
   note(timeouts, milliseconds);
   if (!script.empty()) {
@@ -183,7 +183,7 @@ class HidrawDriver : public testing::Test {
   void send(const Packet& report) {
     ASSERT_EQ(::write(pad_, report.data(), report.size()), static_cast<ssize_t>(report.size()));
   }
-  // All that the driver has written, once there is that much.
+  // Everything that the driver has written, once it is `size` bytes.
   Packet written(std::size_t size) {
     Packet bytes(4096);
     std::size_t count = 0;
@@ -380,7 +380,7 @@ TEST_F(HidrawDriver, WhereReportsHaveNoIdTheKernelGetsAZeroInFront) {
   EXPECT_EQ(Packet(on.begin(), on.begin() + 3), (Packet{0x00, 0x05, 0x01}));
 }
 
-// Reading and motors share it.
+// Reading and motors share one open device.
 TEST_F(HidrawDriver, APadIsOpenedOnce) {
   use(0x054c, 0x0ce6);
   const auto device = opened();
@@ -389,7 +389,7 @@ TEST_F(HidrawDriver, APadIsOpenedOnce) {
   EXPECT_EQ(openings, 1);
 }
 
-// Of two streams: the library's own text of the last error is not made for that.
+// Two streams would share the library's text of the last error, which is not thread-safe.
 TEST_F(HidrawDriver, TwoThreadsDoNotOpenAtOnce) {
   openings_at_once = 0;
   opening_time = 20ms;
@@ -499,7 +499,7 @@ TEST_F(HidrawDriver, APadThatReportsWhenItIsOpenedIsNotAsked) {
   EXPECT_TRUE(asked.empty());
 }
 
-// Zeros, too short, another report.
+// Answers: zeros, too short, another report.
 TEST_F(HidrawDriver, AnAnswerThatIsNoStateIsDropped) {
   listing_.info.descriptor = kNumbered;
   for (const Packet& answer : {Packet{1, 0, 0}, Packet{1, 0x70}, Packet{2, 0x70, 0x80}}) {

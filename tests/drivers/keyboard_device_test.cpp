@@ -30,7 +30,7 @@ class KeyboardDeviceTest : public testing::Test {
     device_ = value_of(open_keyboard(stick_));
     layout_ = value_of(pad_layout(device_->info(), {}));
   }
-  // As the I/O thread: reads whenever there is something, for that long or until it is there.
+  // Reads like the I/O thread, for `ms` or until the stick is at `until`.
   std::vector<Seen> seen_for(int ms, std::optional<vec2> until = std::nullopt) {
     std::vector<Seen> all;
     const std::int64_t end_ns = now_ns() + ms * kMillisecond_ns;
@@ -48,7 +48,7 @@ class KeyboardDeviceTest : public testing::Test {
     } while (now_ns() < end_ns);
     return all;
   }
-  // Until it has arrived there; then it is silent.
+  // Reports until the stick has arrived; then it is silent.
   std::vector<Seen> steered(const vec2& wanted, const vec2& place) {
     stick_->steer(wanted);
     auto seen = seen_for(60'000, place);
@@ -81,8 +81,8 @@ TEST_F(KeyboardDeviceTest, TellsItsRestOnceAndIsSilentThen) {
   EXPECT_EQ(wakes_, 0);
 }
 
-// By the stamps of its reports, whoever was late: a step is as long as the time since the last one
-// allows, and no longer than that of 16 ms.
+// Measured by time stamps, so that a late thread does not matter: a step covers the time since the
+// last one, at most 16 ms.
 TEST_F(KeyboardDeviceTest, ForwardIsReachedIn150MillisecondsAndTheExactMiddleIn100) {
   seen_for(20);
   for (const auto& [wanted, whole_s] : {std::pair(vec2(0.0, 1.0), 0.15), {vec2(0.0), 0.10}}) {
@@ -128,7 +128,7 @@ TEST_F(KeyboardDeviceTest, WhatIsNoPlaceIsTheMiddle) {
   EXPECT_LE(glm::length(stick_->wanted()), 1.0);
 }
 
-// After any sequence of requests it ends where the last one asked.
+// After any sequence of requests the stick ends at the last one.
 TEST_F(KeyboardDeviceTest, NoChangeIsMissedWhileItFallsAsleep) {
   std::atomic<bool> is_over{false};
   std::thread source([&] {

@@ -23,7 +23,7 @@ DeviceInfo switch_pad(std::uint16_t product, BusType bus) {
 std::unique_ptr<PadModel> model(BusType bus = BusType::usb) {
   return make_switch_model(switch_pad(0x2009, bus));
 }
-// A Pro Controller that the kernel drives: only asked for its memory.
+// A Pro Controller under a kernel driver: only its memory is read.
 std::unique_ptr<PadModel> asked(ScriptedPort& port) {
   auto pad = model();
   pad->start(port, StartedBy::kernel);
@@ -43,7 +43,7 @@ Packet joined(const Packet& a, const Packet& b) {
   return both;
 }
 
-// Six numbers of 12 bits as the flash holds them.
+// Six numbers of 12 bits in the flash's format.
 Packet packed(const std::array<int, 6>& n) {
   Packet bytes;
   for (std::size_t i = 0; i < n.size(); i += 2) {
@@ -54,9 +54,8 @@ Packet packed(const std::array<int, 6>& n) {
   return bytes;
 }
 
-// A pad with this flash memory that answers as the real one: 81 to 80, 21 to 01, full reports in
-// between.
-// `kind` is what it says of itself: 1 left Joy-Con, 2 right, 3 Pro, 9 NES.
+// A pad with this flash memory that answers like a real one: 81 to 80, 21 to 01, full reports in
+// between. It calls itself `kind`: 1 left Joy-Con, 2 right, 3 Pro, 9 NES.
 ScriptedPort pad_with(std::map<std::uint32_t, Packet> flash, std::uint8_t kind = 3) {
   ScriptedPort port;
   port.answer = [flash, kind](const Packet& packet, std::deque<Packet>& waiting) {
@@ -107,7 +106,7 @@ TEST(SwitchPro, TheSticksOfASingleJoyConAreTurnedAsItIsHeld) {
   ScriptedPort port = pad_with({{0x603d, joined(kUneven, uneven_right)}}, 1);
   const auto left = started(0x2006, port);
   ASSERT_TRUE(left->factory_sticks());
-  // Turned to the left: what was up is left, what was right is up.
+  // Turned to the left: up becomes left, right becomes up.
   FactoryAxis x = left->factory_sticks()->left_x;
   expect_axis({-x.max, -x.centre, -x.min}, 0x100, 0x7f0, 0xe00);
   expect_axis(left->factory_sticks()->left_y, 0x200, 0x800, 0xd00);

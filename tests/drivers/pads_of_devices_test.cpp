@@ -70,7 +70,7 @@ TEST(SeveralPads, OnePadStaysOne) {
   EXPECT_FALSE(is_one_of_several(one));
   EXPECT_TRUE(split_pads(listed(0x1209, 1, {})).empty());
   EXPECT_TRUE(split_pads(listed(0x1209, 1, {0xa1, 0x01})).empty());
-  // Twins in one report cannot be told apart by its id.
+  // Two pads in one report cannot be separated by its id.
   Packet shared = both;
   shared[40 + 7] = 0x07;
   EXPECT_TRUE(split_pads(listed(0x1209, 1, shared)).empty());
@@ -147,7 +147,7 @@ TEST(SeveralPads, OnePacketSetsTheMotorsOfAllPlugs) {
 
 // ---- Joy-Cons: report 0x30 of dekuNukem's Nintendo_Switch_Reverse_Engineering
 
-// One Joy-Con; it gives the reports that the test queues.
+// One Joy-Con that returns the reports that the test queues.
 class OneSide final : public Device {
  public:
   OneSide(std::uint16_t product, FactorySticks sticks) : sticks_(sticks) {
@@ -186,7 +186,7 @@ class OneSide final : public Device {
 class JoyCons : public testing::Test {
  protected:
   JoyCons() {
-    // As a single one tells them: turned.
+    // Turned, as a single Joy-Con reports them.
     FactorySticks left_sticks, right_sticks;
     left_sticks.left_x = {-0.7, 0.01, 0.6};
     left_sticks.left_y = {-0.5, 0.02, 0.4};
@@ -212,7 +212,7 @@ TEST_F(JoyCons, EachReportHasTheNewestOfBothSides) {
   EXPECT_EQ(pair_->info().product, 0x2008);
   EXPECT_EQ(pair_->info().unique_id, "aa+bb");
   EXPECT_EQ(pair_->poll_fds().size(), 2u);
-  // The left one presses minus and its D-pad; what it sends for the right half does not count.
+  // The left one presses minus and its D-pad; its values for the right half are ignored.
   left_->reports.push_back({0x30, 1, 0x8e, 0xff, 0xff, 0x02, 0x11, 0x22, 0x33, 0xff, 0xff, 0xff});
   const std::vector<std::uint8_t> first = {0x30, 1,    0x8e, 0x00, 0x29, 0x02,
                                            0x11, 0x22, 0x33, 0x00, 0x08, 0x80};

@@ -48,7 +48,7 @@ Packet bytes_of(const Trace& trace, std::size_t event) {
   return {first, first + e.size};
 }
 
-// Type 4 tells the battery (hid-steam.c), type 1 is a state.
+// Type 4 is the battery (hid-steam.c), type 1 a state.
 TEST(RecordedPackets, ABatteryMessageIsNoStateOfTheStick) {
   const Trace trace =
       accepted(kSteam + report_line(0, {1, 0, 1, 0x3c, 7}, 64) +
@@ -58,7 +58,7 @@ TEST(RecordedPackets, ABatteryMessageIsNoStateOfTheStick) {
   EXPECT_EQ(trace.events[1].time_us, 8000);
 }
 
-// As SteamBluetooth.AStateIsPutTogetherFromWhatChanged says.
+// See SteamBluetooth.AStateIsPutTogetherFromWhatChanged.
 const Packet kStickSegment = {3, 0xc0, 0xb4, 0, 0x80, 0, 0x40, 7, 9, 0xff, 0x7f, 0, 0x80},
              kPadSegment = {3, 0xc0, 0x04, 2, 1, 2, 3, 4};
 
@@ -68,7 +68,7 @@ TEST(RecordedPackets, SegmentsBecomeTheStateThatTheyMake) {
   ASSERT_EQ(trace.events.size(), 2u);
   const Packet state = {3, 0x80, 0, 0x40, 7, 9, 0xff, 0x7f, 0, 0x80, 1, 2, 3, 4, 0, 0, 0, 0};
   EXPECT_EQ(bytes_of(trace, 1), state);
-  // Recordings from before hold such states.
+  // Older recordings contain such states.
   EXPECT_EQ(bytes_of(accepted(kBluetooth + report_line(0, state, 18)), 0), state);
 }
 

@@ -1,4 +1,4 @@
-// A pad for the tests of pad models: answers by rules, never waits, keeps what was written.
+// A pad for tests of pad models: answers by rules, never waits, stores written packets.
 #pragma once
 #include <algorithm>
 #include <deque>
@@ -51,7 +51,7 @@ class ScriptedPort final : public PadPort {
   std::deque<Packet> waiting;  // input packets to come
   std::map<std::uint8_t, Packet> features;
   bool is_gone = false;
-  bool is_endless = false;  // the front one comes again and again
+  bool is_endless = false;  // the front one repeats without end
   std::vector<Packet> written;
   std::vector<std::uint8_t> features_asked;
   int reads = 0;

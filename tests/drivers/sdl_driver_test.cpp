@@ -76,7 +76,7 @@ std::unique_ptr<Device> opened(const std::string& name) {
   return value_of(open_sdl_device(listing_of(name).value(), Detach::never));
 }
 
-// As the I/O thread does it.
+// Reads like the I/O thread.
 std::vector<Report> reports_of(Device& device) {
   pollfd fd = device.poll_fds()[0];
   EXPECT_EQ(::poll(&fd, 1, 60000), 1);
@@ -122,7 +122,8 @@ TEST(SdlDriver, TheFirstReportIsTheStateAtTheOpening) {
   EXPECT_EQ(device->read(none), Device::Status::nothing);
 }
 
-// SDL's own mapping for such a joystick: a:b0 .. and the axes in the order of its game controllers.
+// SDL's default mapping of a virtual joystick: a:b0 .. and the axes in the order of its game
+// controllers.
 TEST(SdlDriver, AxesButtonsAndHatsAreDecodedByItsMapping) {
   VirtualPad pad("Moved Pad");
   const auto device = opened("Moved Pad");
@@ -213,7 +214,7 @@ TEST(SdlDriver, OtherEventsStayOnSdlsQueue) {
   EXPECT_EQ(events[0].type, Uint32{SDL_KEYDOWN});
 }
 
-// The joystick of the program that the driver is a guest of.
+// The joystick of the host program.
 TEST(SdlDriver, EventsOfAJoystickThatIsNotOursStayOnSdlsQueue) {
   VirtualPad pad("Our Pad"), theirs("Their Pad");
   const auto device = opened("Our Pad");
@@ -311,10 +312,10 @@ TEST(SdlDriver, TheDataBaseIsAskedByBusIdsAndVersion) {
   EXPECT_EQ(sdl_mapping_of(device_with(BusType::bluetooth, 0x046d, 0xc216, 0x0110)), "");
 }
 
-// A DualSense's own first button is the square, the kernel's first code the cross. What hidraw
-// reads is the pad's own, whatever driver made the input node whose version it is.
-// SDL adds a guess for each pad that it does not know, with a checksum of its name; its two lines
-// for all pads (`*`) have no GUID in the library.
+// A DualSense's own first button is the square; the kernel's first code is the cross. hidraw reads
+// the pad's own order, whichever kernel driver set the input node's version. SDL adds a guess for
+// each unknown pad, with a checksum of its name; its two mappings for all pads (`*`) have no GUID
+// in the library.
 TEST(SdlDriver, TheLibrarysTextHasTheLinesThatSdlHas) {
   find_sdl_devices();  // starts SDL
   std::vector<std::string> all = sdl_library_lines();
@@ -372,8 +373,8 @@ TEST(SdlDriver, EveryLineOfTheDataBaseIsUnderstood) {
   }
 }
 
-// SDL itself reads the line that is written for a pad whose left stick lies on its side, and moves
-// its game controller as the pad's axes move in that frame.
+// SDL reads the mapping that is written for a pad with a turned left stick, and its game controller
+// moves like the pad in that frame.
 TEST(SdlDriver, SdlReadsTheLineThatIsWritten) {
   VirtualPad pad("Written Pad");
   const auto device = opened("Written Pad");
@@ -395,7 +396,7 @@ TEST(SdlDriver, SdlReadsTheLineThatIsWritten) {
   EXPECT_EQ(checksum, 0);
   ASSERT_EQ(SDL_GameControllerAddMapping(line->c_str()), 1) << SDL_GetError();
 
-  // The GUID of a virtual joystick has a mark that an event node's does not have.
+  // The GUID of a virtual joystick has a mark that an event node's lacks.
   char own_guid[33] = {};
   SDL_JoystickGetGUIDString(SDL_JoystickGetGUID(pad.joystick), own_guid, sizeof own_guid);
   line->replace(0, 32, own_guid);
@@ -408,10 +409,10 @@ TEST(SdlDriver, SdlReadsTheLineThatIsWritten) {
   SDL_GameController* controller = SDL_GameControllerOpen(index);
   ASSERT_NE(controller, nullptr) << SDL_GetError();
   SDL_JoystickSetVirtualAxis(pad.joystick, 0, 20000);  // right
-  SDL_JoystickSetVirtualAxis(pad.joystick, 1, 10000);  // towards the thumb's owner
+  SDL_JoystickSetVirtualAxis(pad.joystick, 1, 10000);  // towards the player
   SDL_JoystickSetVirtualButton(pad.joystick, 0, 1);
   SDL_JoystickUpdate();
-  // Right is where the layout says forward, forward where it says left: right is now backwards.
+  // Right is the layout's forward and forward is its left, so right is now backwards.
   EXPECT_NEAR(SDL_GameControllerGetAxis(controller, SDL_CONTROLLER_AXIS_LEFTX), -10000, 1);
   EXPECT_NEAR(SDL_GameControllerGetAxis(controller, SDL_CONTROLLER_AXIS_LEFTY), 20000, 1);
   EXPECT_EQ(SDL_GameControllerGetButton(controller, SDL_CONTROLLER_BUTTON_A), 1);

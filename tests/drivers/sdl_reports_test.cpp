@@ -87,8 +87,8 @@ TEST(SdlReports, AHatHasEightDirectionsAndOppositeOnesAreNone) {
   }
 }
 
-// Of `cat /sys/class/input/event*/device/capabilities/{abs,key}`: xpad's ABS_X .. RZ and HAT0, keys
-// A B X Y TL TR SELECT START MODE THUMBL THUMBR.
+// Output of `cat /sys/class/input/event*/device/capabilities/{abs,key}`: xpad's ABS_X .. RZ and
+// HAT0, keys A B X Y TL TR SELECT START MODE THUMBL THUMBR.
 TEST(SdlReports, NumbersAreTheCodesThatTheNodeHas) {
   JoystickState counted = resting(6, 11, 1);
   const auto codes = node_codes("3003f\n", "7cdb000000000000 0 0 0 0\n", counted);
@@ -97,11 +97,11 @@ TEST(SdlReports, NumbersAreTheCodesThatTheNodeHas) {
   EXPECT_EQ(codes->hats, (std::vector<std::uint16_t>{0x10}));
   EXPECT_EQ(codes->buttons, (std::vector<std::uint16_t>{0x130, 0x131, 0x133, 0x134, 0x136, 0x137,
                                                         0x13a, 0x13b, 0x13c, 0x13d, 0x13e}));
-  // Bit 0 of the fifth word is 0x100: SDL counts what lies below 0x120 last.
+  // Bit 0 of the fifth word is 0x100: SDL numbers keys below 0x120 last.
   const auto low = node_codes("3", "1000000000001 0 0 0 0", resting(2, 2, 0));
   ASSERT_TRUE(low);
   EXPECT_EQ(low->buttons, (std::vector<std::uint16_t>{0x130, 0x100}));
-  // Hats that SDL takes for axes.
+  // Hats that SDL treats as axes.
   const auto analog = node_codes("30003", "0", resting(4, 0, 0));
   ASSERT_TRUE(analog);
   EXPECT_EQ(analog->axes, (std::vector<std::uint16_t>{0, 1, 0x10, 0x11}));
@@ -114,7 +114,7 @@ TEST(SdlReports, ANodeThatSdlCountsOtherwiseIsNotTrusted) {
   EXPECT_FALSE(node_codes("no hexadecimal", std::string(5000, 'f'), resting(2, 0, 0)));
 }
 
-// X Y Z Rz Gas Brake: by its codes the right stick is the third and the fourth axis.
+// X Y Z Rz Gas Brake: by these codes the right stick is the third and fourth axis.
 TEST(SdlReports, AxesAreNamedByTheCodesOfTheNode) {
   JoystickState state = resting(6, 0, 0);
   state.axes = {0, 0, 32767, -32768, 32767, -32768};

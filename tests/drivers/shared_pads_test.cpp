@@ -65,7 +65,7 @@ class SharedPads : public testing::Test {
     packet[1 + 3] = packet[1 + 9 + 3] = x;
     adapter_.packets.push_back(packet);
   }
-  // Whether the pad's own descriptor says that there is something to read.
+  // True if the pad's own descriptor is readable.
   static bool is_rung(const Device& pad) {
     pollfd bell = pad.poll_fds().back();
     return ::poll(&bell, 1, 0) == 1;

@@ -1,4 +1,4 @@
-// Numbers: Linux's hid-playstation.c (6.1) and what it was seen to send to a virtual pad.
+// Numbers: Linux's hid-playstation.c (6.1) and its packets to a virtual pad.
 #include <gtest/gtest.h>
 
 #include <string_view>
@@ -70,7 +70,7 @@ TEST(DualShock3, IsStartedByReadingTwoFeaturesOnUsbWithoutTheKernel) {
             std::vector<std::string>{"Pad: does not answer the start over USB"});
 }
 
-// By SDL's SDL_hidapi_ps4.c; the descriptor as pads of other makers state it.
+// By SDL's SDL_hidapi_ps4.c; the descriptor is that of other makers' pads.
 TEST(DualShock4OfOthers, RunsItsMotorsIfItTellsThatItHasAny) {
   DeviceInfo device;
   device.bus = BusType::usb;
@@ -102,7 +102,7 @@ TEST(DualShock4OfOthers, RunsItsMotorsIfItTellsThatItHasAny) {
   OutPacket packet;
   pad->rumble(kRumble, packet);
   EXPECT_EQ(packet.size, 0u);
-  device.descriptor[39] = 0x2e;  // the feature is a byte shorter: nothing is known of this pad
+  device.descriptor[39] = 0x2e;  // the feature is a byte shorter: an unknown pad
   EXPECT_EQ(make_sony_model(device), nullptr);
 }
 
@@ -188,7 +188,7 @@ TEST(DualSense, RumblesOverUsbByItsFirmware) {
   EXPECT_EQ(rumble_of(*pad, kRumble), expected) << "not started: the old way";
 
   ScriptedPort port;
-  port.features[0x20] = firmware_of(0x0224);  // 2.36, from 2.21 on the new way
+  port.features[0x20] = firmware_of(0x0224);  // 2.36; the new way starts at 2.21
   pad->start(port, StartedBy::kernel);
   expected[1] = 0x02;
   expected[39] = 0x04;
@@ -196,7 +196,7 @@ TEST(DualSense, RumblesOverUsbByItsFirmware) {
   EXPECT_TRUE(port.written.empty());
 }
 
-// An Edge has the new motors whatever it answers.
+// An Edge has the new motors with any answer.
 TEST(DualSense, TakesTheOldWayUntilFirmware2_20) {
   for (const auto& [product, version, flags] :
        {std::tuple(kDualSense, 0x0214, 0x03), {kDualSense, 0x0215, 0x02}, {kEdge, 0, 0x02}}) {

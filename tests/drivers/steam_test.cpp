@@ -88,8 +88,8 @@ TEST(Steam, ItsMouseAndKeyboardAreLeftAlone) {
   EXPECT_EQ(make_steam_model(mouse), nullptr);
 }
 
-// hid-steam.c: a message of 64 bytes is 1, 0, its type, its length; type 3 tells that the pad
-// behind the receiver went (1) or came (2).
+// hid-steam.c: a message of 64 bytes is 1, 0, its type, its length; type 3: the pad behind the
+// receiver left (1) or arrived (2).
 Packet steam_message(std::uint8_t type, std::uint8_t first) {
   Packet message(64);
   message[0] = 1;
@@ -158,7 +158,7 @@ TEST(SteamBluetooth, AStateIsPutTogetherFromWhatChanged) {
     // Buttons, triggers and stick: bits 10, 20 and 80 of the first byte, whose lower half is 4.
     EXPECT_EQ(handed_on(*pad, segment(0xc0, {0xb4, 0, 0x80, 0, 0x40, 7, 9, 0xff, 0x7f, 0, 0x80})),
               (Packet{3, 0x80, 0, 0x40, 7, 9, 0xff, 0x7f, 0, 0x80, 0, 0, 0, 0, 0, 0, 0, 0}));
-    // The right pad alone, bit 200: the rest stays.
+    // Only the right pad, bit 200: the other values stay.
     EXPECT_EQ(handed_on(*pad, segment(0xc0, {0x04, 2, 1, 2, 3, 4})),
               (Packet{3, 0x80, 0, 0x40, 7, 9, 0xff, 0x7f, 0, 0x80, 1, 2, 3, 4, 0, 0, 0, 0}));
     EXPECT_TRUE(handed_on(*pad, segment(0xc0, {0x05, 0, 90})).empty()) << "battery";
@@ -175,12 +175,12 @@ TEST(SteamBluetooth, AMessageOfSeveralReportsIsReadOnlyWhole) {
   EXPECT_TRUE(handed_on(*pad, segment(0x80, first)).empty());
   EXPECT_EQ(handed_on(*pad, segment(0xc1, {17, 18, 19, 20})),
             (Packet{3, 1, 2, 3, 4, 5, 9, 10, 11, 12, 17, 18, 19, 20, 13, 14, 15, 16}));
-  // A lost report makes the message void, and the next one begins anew.
+  // A lost report voids the message, and the next one starts a new one.
   EXPECT_TRUE(handed_on(*pad, segment(0xc1, {1, 1, 1, 1})).empty());
   EXPECT_TRUE(handed_on(*pad, segment(0x80, first)).empty());
   EXPECT_TRUE(handed_on(*pad, segment(0xc2, {1, 1, 1, 1})).empty());
   EXPECT_EQ(handed_on(*pad, segment(0xc0, {0x24, 0, 0, 0})).size(), 18u);
-  // A message that goes on for ever, and one that ends within a part.
+  // A message without an end, and one that ends within a part.
   for (int i = 0; i < 20; ++i)
     EXPECT_TRUE(handed_on(*pad, segment(static_cast<std::uint8_t>(0x80 | (i & 7)), {})).empty());
   EXPECT_TRUE(handed_on(*pad, segment(0xc0, {0xf4, 3})).empty());

@@ -11,7 +11,7 @@
 namespace gaitpad {
 namespace {
 
-// What real hardware shows is proved in the rig (tools/rig); here what holds on every machine.
+// The rig (tools/rig) tests real hardware; this test holds on every machine.
 
 TEST(SystemNodes, EveryNodeIsADeviceFileWithASysfsFolder) {
   for (const char* subsystem : {"hidraw", "input", "usb"}) {
@@ -29,8 +29,8 @@ TEST(SystemNodes, AnInterfaceThatIsNotThereHasNoPath) {
   EXPECT_EQ(usb_interface_path("99-9:1.0"), "");
 }
 
-// Linux's power supplies (Documentation/ABI/testing/sysfs-class-power): hid-playstation tells
-// percent, hid-nintendo a level; both stand below the HID device.
+// Linux's power supplies (Documentation/ABI/testing/sysfs-class-power): hid-playstation reports
+// percent, hid-nintendo a level; both are below the HID device.
 TEST(Battery, IsWhatTheKernelHasOfThePad) {
   OwnFolder folder;
   const std::string supply = "/0003:054C:0CE6.0001/power_supply/it/";

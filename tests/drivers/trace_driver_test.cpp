@@ -16,7 +16,7 @@ std::int64_t now_ns() {
   return std::chrono::nanoseconds(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-// A file that is gone after the test. One byte a report, descriptors of no meaning.
+// A file that is removed after the test, with one byte per report and meaningless descriptors.
 class TraceDriver : public testing::Test {
  protected:
   void write(const std::string& text) { own_.write("trace.hid", text); }
@@ -28,7 +28,7 @@ class TraceDriver : public testing::Test {
     return opened ? std::move(*opened) : nullptr;
   }
 
-  // Every report until `gone`, by poll() and read() as the I/O thread does it.
+  // Every report until `gone`, by poll() and read() like the I/O thread.
   static std::vector<Report> all_reports(Device& device) {
     std::vector<Report> reports;
     while (true) {
@@ -65,7 +65,7 @@ TEST_F(TraceDriver, HandsOnEventsAtTheirOwnTimesAndNeverTooEarly) {
   EXPECT_EQ(reports[0].bytes[0], 1);
   EXPECT_EQ(reports[1].bytes[0], 2);
   EXPECT_GE(reports[0].time_ns, before_ns);
-  // Stamps are the moments that the file tells, whoever was late.
+  // Time stamps are the file's, even if a read is late.
   EXPECT_EQ(reports[1].time_ns - reports[0].time_ns, 30 * kNsInMs);
   EXPECT_GE(now_ns() - reports[0].time_ns, 50 * kNsInMs);
   Report report;

@@ -1,5 +1,5 @@
-// What can be told without hardware: sysfs folders made by hand. Packets, plugging and taking pads
-// from the kernel are proved in the rig (tools/rig).
+// Tests without hardware, by fake sysfs folders. The rig (tools/rig) tests packets, plugging and
+// taking pads from the kernel.
 #include <errno.h>
 #include <fcntl.h>
 #include <gtest/gtest.h>
@@ -213,11 +213,11 @@ TEST_F(UsbFolders, APadThatIsGoneOrHeldByAProgramIsNotOpened) {
             "/dev/bus/usb/999/999:1: another program has the pad");
 }
 
-// The driver is a guest: the program may use libusb, too.
+// The driver is a guest: its host program may also use libusb.
 TEST_F(UsbFolders, NoOptionOfAllContextsIsSet) {
   const fs::path folder = add_interface("0", "ff 5d 01");
   add_endpoint(folder);
-  own_.write("node", "");  // no USB device, so that nothing more than opening it is tried
+  own_.write("node", "");  // not a USB device, so it is only opened
   DeviceListing listing;
   listing.node = own_.at("node");
   listing.pad_path = folder.string();

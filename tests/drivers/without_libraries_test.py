@@ -1,4 +1,4 @@
-"""Without any driver the program still builds and replays, and says what is missing. SDL2 is never linked: its driver
+"""Without any driver the program still builds, replays and names what is missing. SDL2 is never linked: its driver
 loads it.
 
 The repository is configured without the drivers' libraries, in `without_libraries` beside the program. One source alone knows

@@ -15,7 +15,7 @@ Packet changed(Packet packet, const Changes& changes) {
   for (const auto& [byte, value] : changes) packet[byte] = value;
   return packet;
 }
-// Nothing pressed, but for these bytes.
+// A packet with nothing pressed except for these bytes.
 Packet of_360(const Changes& changes = {}) {
   return changed(changed(Packet(20), {{1, 0x14}}), changes);
 }
@@ -45,7 +45,7 @@ class XboxPad : public testing::Test {
   }
   void use_360() { use(false, kMicrosoft, kXbox360); }
   void use_gip() { use(true, kMicrosoft, kOneS); }
-  // As the driver hands it on.
+  // Decodes a packet like the driver.
   bool decodes(const Packet& packet) {
     OutPacket reply;
     if (!model_->accept(packet, reply)) return false;

@@ -1,5 +1,5 @@
-// An Acclaim body of two legs, a trunk and arms in a T pose, with places to change; one motion for
-// it.
+// An Acclaim skeleton with two legs, a trunk and arms in a T pose, which tests may modify, and a
+// motion for it.
 #pragma once
 #include <string>
 

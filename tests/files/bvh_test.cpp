@@ -116,7 +116,7 @@ TEST(Bvh, TooManyJointsAndTooDeepASkeletonAreRefused) {
 
 TEST(Bvh, EveryTruncationIsRefused) {
   const std::string text = WalkerText().text();
-  // Without its last characters the last number may still be one; from there on all is missing.
+  // Cutting one or two characters may leave a valid last number; every shorter text is an error.
   for (std::size_t n = 0; n + 2 < text.size(); ++n) {
     EXPECT_NE(error_of(text.substr(0, n)), "") << "first " << n << " bytes";
   }
@@ -179,7 +179,7 @@ std::string exported(const Motion& m) {
   return out.str();
 }
 
-// Forward kinematics of the file's numbers, apart from the loader: matrices, libm.
+// Forward kinematics of the file's numbers, independent of the loader: matrices and libm.
 std::vector<vec3> places(const Bvh& bvh, int frame) {
   std::vector<vec3> at(bvh.joints.size());
   std::vector<mat3> turn(bvh.joints.size());
@@ -259,7 +259,7 @@ TEST(BvhWriter, AnEndSiteThatIsAToeBecomesAJoint) {
   EXPECT_EQ(out.str().find("JOINT RightToeBase_End\n"), std::string::npos);
 }
 
-// Of a rotation channel, from frame to frame.
+// Largest change of a rotation channel between two frames.
 double largest_step_deg(const Bvh& bvh) {
   double largest = 0.0;
   for (int f = 1; f < bvh.frames; ++f) {

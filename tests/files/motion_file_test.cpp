@@ -101,8 +101,8 @@ TEST(Load, MixedOrdersStandBesideEachOther) {
   expect_near(m.frames[0].local[6] * kForward, vec3(0, -1, 0), 1e-12);  // Ry Rx z = Ry (-y) = -y
 }
 
-// An offset that the positions contain is not added twice, one that they lack is added; a root
-// without positions stands at its offset.
+// The root's offset is added only if its positions do not contain it; a root without positions
+// stands at its offset.
 TEST(Load, TheRootsOffsetCountsOnce) {
   struct Row {
     const char *channels, *values;

@@ -1,4 +1,4 @@
-// Strides that are kept in files: the same bits as solved ones, whatever happens to the files.
+// Cached strides have the same bits as solved ones, even if files are damaged.
 #include "files/stride_cache.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ std::vector<double> numbers_of(const GaitCycle& cycle) {
   return numbers;
 }
 
-// A motion that is not built in.
+// A walk that differs from the built-in one.
 GaitCycle loaded_cycle() {
   GaitCycle cycle = procedural_gait();
   cycle.samples[7].leg[1].angles[kKneeX] += 1e-12;
@@ -59,7 +59,7 @@ TEST_F(StrideCache, GivesTheSameBitsAsSolvingAndKeepsEachCycleApart) {
   other.samples[5].leg[0].angles[kKneeX] += 1e-12;
   const auto second = loaded(other);
   EXPECT_EQ(entries_in(cache()), 2);
-  other.name = "renamed";  // a name is not solved for
+  other.name = "renamed";  // the name is not part of the key
   EXPECT_EQ(loaded(other), second);
   EXPECT_EQ(entries_in(cache()), 2);
 }
@@ -75,7 +75,7 @@ TEST_F(StrideCache, SolvesAgainAndMendsWhereAFileIsDamaged) {
   };
   const std::string damaged[] = {whole.substr(0, whole.size() / 2), whole + "x",
                                  flipped(0),  // another version
-                                 flipped(8),  // another question
+                                 flipped(8),  // another input
                                  flipped(whole.size() / 2)};
   for (const std::string& bytes : damaged) {
     std::ofstream(file, std::ios::binary) << bytes;
@@ -103,7 +103,7 @@ TEST_F(StrideCache, DeletesTheOldestOfManyFilesAndNothingElse) {
   EXPECT_TRUE(fs::exists(folder_.at("cache/notes.txt")));
 }
 
-// Bit by bit: they were solved while gaitpad was built.
+// Compares bits: the built-in strides were solved while gaitpad was built.
 TEST_F(StrideCache, BuiltInStridesAreThoseThatSolvingGivesAndAreNotKeptAgain) {
   const GaitCycle cycle = procedural_gait();
   std::vector<double> made;

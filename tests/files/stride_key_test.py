@@ -1,4 +1,4 @@
-"""The key of kept strides (CMakeLists.txt) is made from every file of this project that the compiler read for them."""
+"""The key of cached strides (CMakeLists.txt) covers every file of this project that was compiled for them."""
 import pathlib
 import shutil
 import subprocess
@@ -7,7 +7,7 @@ import pytest
 
 from support.program import ROOT
 
-SOLVER = ("src/strides/", "src/motion/", "src/base/")  # objects that solve strides or that these call
+SOLVER = ("src/strides/", "src/motion/", "src/base/")  # objects that solve strides and objects that they call
 
 
 def test_what_the_compiler_read_for_the_strides_is_in_their_key(program):

@@ -13,7 +13,7 @@
 namespace gaitpad {
 namespace {
 
-// A file of a test's own, and why reading it failed: what follows its path.
+// A temporary file, and the error of reading it without its path.
 class OwnFile : public testing::Test {
  protected:
   std::string written(const std::string& text) const { return own_.write("mine.toml", text); }
@@ -76,7 +76,7 @@ TEST_F(StyleFile, UnknownKeysAndWrongValuesAreRefused) {
   EXPECT_EQ(refusal("name = \n").substr(0, 4), ":1: ");
 }
 
-// As many random changes as there are keys: equal and unequal legs, joints and single DOFs.
+// Random changes of equal and unequal legs, joints and single DOFs, one for each key.
 TEST_F(StyleFile, TextReadsBackToTheSameValues) {
   std::mt19937 random(7);
   for (int round = 0; round < 60; ++round) {
@@ -114,7 +114,7 @@ TEST_F(StyleFile, TextIsAsPeopleWouldWriteIt) {
             "\n[left_hand]\nrail = 1\n");
 }
 
-// Every key is what the file's reader takes, with the same bounds.
+// The file reader accepts every key with the same bounds.
 TEST_F(StyleFile, KeysOfValuesAreThoseOfFiles) {
   bool is_below = false;
   for (const StyleKey& key : style_keys()) {

@@ -33,7 +33,7 @@ TEST(TerrainFile, SectionsStandInTheOrderOfTheFile) {
               "[[section]]\nkind = \"rough\"\nlength_m = 8\namplitude_m = 0.03\n");
   ASSERT_EQ(t.sections.size(), 4u);
   const double grade = std::tan(10.0 * kDegree);
-  const double rounding_m = grade / 0.25;  // as nobody chose one
+  const double rounding_m = grade / 0.25;  // the default bend
   const double top_m = grade * (4.0 - rounding_m);
   EXPECT_NEAR(ground_at(t, 0.0, 6.0).height_m, top_m, 1e-9);
   EXPECT_NEAR(ground_at(t, 0.0, 6.3).height_m, top_m - 0.15, 1e-9);

@@ -41,7 +41,7 @@ TEST(TomlFile, TypedValuesArriveAsWritten) {
   EXPECT_EQ(problem(file), "none");
 }
 
-// The same bits as from_chars, whatever toml++ uses inside: a replay depends on it.
+// Numbers have the same bits as from from_chars, because a replay depends on them.
 TEST(TomlFile, NumbersAreTheNearestDoubles) {
   std::uint64_t seed = 1;
   for (int i = 0; i < 2'000; ++i) {
@@ -180,7 +180,7 @@ TEST(TomlFile, FilesThatCannotBeReadAreNamed) {
   EXPECT_EQ(TomlFile::load(big).error().message, big + ": larger than 1048576 bytes");
 }
 
-// Any bytes give a table or a sentence, never a crash.
+// Any bytes give a table or an error, never a crash.
 TEST(TomlFile, DamagedFilesNeverThrow) {
   const std::string sound =
       "a = 1.5\n[b.c]\nd = ['x', \"y\\n\"]\n[[e]]\nf = {g = 1, h = 2020-01-01}\n";

@@ -9,7 +9,7 @@ from support.program import DATA, ROOT, ROUND
 
 PADS = sorted((ROOT / "tests/data/pads").glob("*.hid"))
 SHARED = sorted((DATA / "hid").glob("*.hid"))
-ARRAYS = ("legion_go_shortcuts", "rog_ally", "elite2")  # of these only the fields are compared
+ARRAYS = ("legion_go_shortcuts", "rog_ally", "elite2")  # only their fields are compared
 
 
 def signed(value, size):

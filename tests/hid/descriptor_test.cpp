@@ -90,20 +90,20 @@ TEST(ReportDescriptor, UsagesTakeTheirPages) {
   };
   using Usages = std::vector<std::uint32_t>;
   const Bytes two = {0x25, 0x7f, 0x75, 0x08, 0x95, 0x02, 0x81, 0x02};
-  // The usage maximum may stand before the minimum.
+  // The usage maximum may precede the minimum.
   EXPECT_EQ(usages(game_pad(Bytes{0x05, 0x09, 0x29, 0x02, 0x19, 0x01} + two)),
             (Usages{0x00090001, 0x00090002}));
-  // The Asus pad: X, then page 2 with Brake: X takes the page in force where it stands.
+  // The Asus pad: X, then page 2 with Brake: X takes the page in force at its place.
   EXPECT_EQ(usages(game_pad(Bytes{0x09, 0x30, 0x05, 0x02, 0x09, 0xc5} + two)),
             (Usages{usage::kX, usage::kBrake}));
-  // A page behind the last usage reaches back,
+  // A page after the last usage applies to the usages before it,
   EXPECT_EQ(usages(game_pad(Bytes{0x05, 0x0c, 0x09, 0x30, 0x09, 0x31, 0x05, 0x01} + two)),
             (Usages{usage::kX, usage::kY}));
   // but stops at a usage that is already on it: page 2: c5; page 1: 30; page 0c: 40; then page 1.
   EXPECT_EQ(usages(game_pad({0x05, 0x02, 0x09, 0xc5, 0x05, 0x01, 0x09, 0x30, 0x05, 0x0c, 0x09,
                              0x40, 0x05, 0x01, 0x25, 0x7f, 0x75, 0x08, 0x95, 0x03, 0x81, 0x02})),
             (Usages{usage::kBrake, usage::kX, 0x00010040}));
-  // A usage of four bytes holds its page.
+  // A usage of four bytes contains its page.
   const Bytes four = {0x05, 0x0c, 0x0b, 0x04, 0x00, 0x01, 0x00, 0xa1, 0x01, 0x0b, 0x30, 0x00,
                       0x01, 0x00, 0x25, 0x7f, 0x75, 0x08, 0x95, 0x01, 0x81, 0x02, 0xc0};
   EXPECT_EQ(parsed(four).applications[0], usage::kJoystick);

@@ -33,7 +33,7 @@ std::vector<std::uint8_t> pad_with(std::uint8_t application, std::vector<std::ui
   return bytes;
 }
 
-// Code by usage, -1 for none; X and Y left out. A usage that occurs again gets `.2` behind it.
+// Code by usage, -1 for none; without X and Y. A repeated usage gets the suffix `.2`.
 std::map<std::string, int> codes_of(std::uint8_t application,
                                     const std::vector<std::uint8_t>& items) {
   const ReportDescriptor d = parsed(pad_with(application, items));
@@ -55,8 +55,8 @@ constexpr std::uint8_t kJoystick = 0x04, kGamePad = 0x05, kMultiAxis = 0x08;
 const std::vector<std::uint8_t> kEighteenButtons = {0x05, 0x09, 0x19, 0x01, 0x29, 0x12, 0x25,
                                                     0x01, 0x75, 0x01, 0x95, 0x12, 0x81, 0x02};
 
-// From BTN_GAMEPAD, BTN_JOYSTICK and BTN_MISC on; the 17th and later ones of a pad or joystick are
-// BTN_TRIGGER_HAPPY.
+// Buttons start at BTN_GAMEPAD, BTN_JOYSTICK or BTN_MISC; from the 17th on, those of a pad or
+// joystick are BTN_TRIGGER_HAPPY.
 TEST(EvdevCodes, ButtonsBeginWhereTheirApplicationSays) {
   const auto codes = [](std::uint8_t application) {
     const Map all = codes_of(application, kEighteenButtons);
@@ -92,7 +92,7 @@ TEST(EvdevCodes, ACodeThatIsTakenIsGivenToNoOther) {
   EXPECT_EQ(codes_of(kJoystick, {0x09, 0x36, 0x09, 0x36, 0x95, 0x02, 0x81, 0x02, 0x05, 0x02, 0x09,
                                  0xbb, 0x95, 0x01, 0x81, 0x02}),
             (Map{{"1:36", 6}, {"1:36.2", -1}, {"2:bb", -1}}));
-  // of Z Z Rz, as DragonRise's pads state them, the Z beside Rz has it
+  // in Z Z Rz, stated by DragonRise's pads, the Z next to Rz gets ABS_Z
   EXPECT_EQ(codes_of(kJoystick, {0x09, 0x32, 0x09, 0x32, 0x09, 0x35, 0x95, 0x03, 0x81, 0x02}),
             (Map{{"1:32", -1}, {"1:32.2", 2}, {"1:35", 5}}));
 }
@@ -120,7 +120,8 @@ TEST(EvdevCodes, SystemAndConsumerKeys) {
 }
 
 TEST(EvdevCodes, VendorPagesAreLeftOutOrMiscellaneous) {
-  // ff00 is Microsoft's and ignored; ff02 nobody knows: BTN_MISC where it is one bit, else ABS_MISC
+  // ff00 is Microsoft's and ignored; ff02 is unknown: BTN_MISC if it has one bit, otherwise
+  // ABS_MISC
   EXPECT_EQ(codes_of(kGamePad, {0x06, 0x00, 0xff, 0x09, 0x20, 0x95, 0x01, 0x81, 0x02, 0x06, 0x02,
                                 0xff, 0x09, 0x21, 0x81, 0x02, 0x09, 0x22, 0x75, 0x01, 0x81, 0x02}),
             (Map{{"ff00:20", -1}, {"ff02:21", 0x28}, {"ff02:22", 0x100}}));
@@ -167,7 +168,7 @@ TEST(UsageOfCode, NamesTheUsagesThatDefaultPadsAreReadBy) {
   EXPECT_EQ(usage_of_code(axis(0x18), usage::kGamePad), 0xffe53018u);  // ABS_PRESSURE
 }
 
-// Every code of a node, one field each, stated and read again.
+// States a field for every code of a node and reads it back.
 TEST(UsageOfCode, GivesEveryCodeBack) {
   for (const std::uint32_t application : {usage::kGamePad, usage::kJoystick, usage::kMultiAxis}) {
     ReportDescriptor d;
@@ -190,7 +191,7 @@ TEST(UsageOfCode, GivesEveryCodeBack) {
 
 // ---- Event nodes as HID devices
 
-// A node as a kernel driver makes it, read through layout and decoder.
+// An event node read through layout and decoder.
 class Node {
  public:
   Node(EvdevAbilities abilities, std::uint16_t vendor, std::uint16_t product, std::uint16_t version,
@@ -216,7 +217,7 @@ class Node {
     EXPECT_TRUE(decode(layout_, report, pad_));
     return pad_;
   }
-  // The buttons that one key presses.
+  // Buttons pressed by one key.
   std::uint32_t buttons_of(std::uint16_t code) {
     set_key(code, true);
     const std::uint32_t buttons = state().buttons;
@@ -290,8 +291,8 @@ EvdevAbilities with_keys(EvdevAbilities node, std::uint16_t first, std::uint16_t
   return node;
 }
 
-// BTN_NORTH is 0x133, BTN_WEST 0x134: on top and on the left but with xpad, which names them X and
-// Y. Paddles of an Elite pad are counted as SDL does.
+// BTN_NORTH is 0x133, BTN_WEST 0x134: top and left, except for xpad, which uses them for X and Y.
+// Paddles of an Elite pad are numbered as in SDL.
 TEST(EvdevLayout, PadsOnTheirKernelDriversAreNamedByPosition) {
   const Buttons xbox = {{0x133, kButtonX}, {0x134, kButtonY}};
   const Buttons sony = {{0x133, kButtonY}, {0x134, kButtonX}};
@@ -420,7 +421,7 @@ TEST(EvdevLayout, EveryCodeStandsWhereTheDescriptorSaysSo) {
   }
 }
 
-// What hid-input makes of a HID pad's reports without a special driver.
+// Emulates hid-input: the event node of a HID pad without a special driver.
 class HidInput {
  public:
   explicit HidInput(const std::vector<std::uint8_t>& descriptor)
@@ -486,7 +487,7 @@ class HidInput {
 constexpr std::uint32_t kPaddles =
     bit(kButtonPaddle1) | bit(kButtonPaddle2) | bit(kButtonPaddle3) | bit(kButtonPaddle4);
 
-// Reports of a wrong descriptor: the kernel would read something else.
+// True if the pad map replaces the report's descriptor: the kernel reads something else.
 bool is_replaced(const PadLayout& layout, const Report& report) {
   return std::any_of(layout.reports.begin(), layout.reports.end(), [&](const ReportLayout& r) {
     return std::find(r.exact_sizes.begin(), r.exact_sizes.end(), report.size) !=

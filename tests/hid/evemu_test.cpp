@@ -12,7 +12,7 @@
 namespace gaitpad {
 namespace {
 
-// As evemu-record writes it: X, Y of 0..255, a trigger, a hat, BTN_SOUTH and BTN_EAST.
+// Output of evemu-record: X, Y of 0..255, a trigger, a hat, BTN_SOUTH and BTN_EAST.
 const std::string kHeader =
     "# EVEMU 1.3\n"
     "# Kernel: 6.1.0-56-amd64\n"

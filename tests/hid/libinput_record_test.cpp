@@ -9,7 +9,7 @@
 namespace gaitpad {
 namespace {
 
-// As libinput 1.22 writes it; a DualShock 4 by hid-playstation, shortened.
+// Output of libinput 1.22 for a DualShock 4 under hid-playstation, shortened.
 const std::string kHead =
     "# libinput record\n"
     "version: 1\n"

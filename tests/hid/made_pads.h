@@ -1,5 +1,5 @@
 // Pads for tests: the shipped pad files, recordings, reports of given bytes, states in words, and
-// event nodes as Linux's drivers state them.
+// event nodes of Linux's drivers.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -42,7 +42,7 @@ inline RecordedPad recorded_pad(const std::string& path, const PadOverrides& ove
   return pad;
 }
 
-// Divided by blanks.
+// Names separated by blanks.
 inline std::string names_of(std::uint32_t buttons) {
   std::string names;
   for (std::size_t b = 0; b < kButtonNames.size(); ++b) {
@@ -51,8 +51,8 @@ inline std::string names_of(std::uint32_t buttons) {
   return names;
 }
 
-// A state in words: the axes that are not 0 (to 0.01), then `buttons` and the pressed ones, as in
-// tests/data/pads: "left_x 1 left_y -0.5 buttons a dpup".
+// A state in words, as in tests/data/pads: the axes that are not 0 (to 0.01), then `buttons` and
+// the pressed ones: "left_x 1 left_y -0.5 buttons a dpup".
 inline void expect_state(const PadState& state, const std::string& words) {
   std::array<float, kAxisCount> axis{};
   std::uint32_t buttons = 0;

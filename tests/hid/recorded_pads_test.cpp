@@ -85,7 +85,7 @@ std::uint32_t pressed_in(const std::string& file) {
   return seen;
 }
 
-// Each recording is named after what its maker's thumb did.
+// Each recording is named after its control.
 TEST(SharedData, RecordingsPressWhatTheirNamesSay) {
   GAITPAD_NEEDS(kPadRecordings);
   for (const auto& [file, button] : {std::pair("circle", kButtonB),

@@ -31,7 +31,8 @@ Usages buttons(std::uint16_t count) {
   return usages;
 }
 
-// A pad whose report is: a byte an axis (0..255), a byte a hat (0..7), a bit a button.
+// A pad whose report has one byte per axis (0..255), one byte per hat (0..7) and one bit per
+// button.
 class MadePad {
  public:
   MadePad(std::uint32_t application, Usages axes, int hats, Usages buttons)
@@ -66,7 +67,7 @@ class MadePad {
     EXPECT_TRUE(decode(value_of(pad_layout(device, overrides)), report_of(bytes_), state));
     return state;
   }
-  // The name of what is pressed when only this button is; "" for none.
+  // The control that this button presses; "" for none.
   std::string name_of_button(std::size_t i) {
     rest();
     press(i);
@@ -78,7 +79,7 @@ class MadePad {
     rest();
     return all;
   }
-  // Which of the pad's axes moves to its high end with this field; -1: none.
+  // The pad's axis that moves to its high end with this field; -1: none.
   int axis_of(std::size_t i) {
     rest();
     const PadState before = state();
@@ -113,7 +114,7 @@ class MadePad {
   std::vector<std::uint8_t> bytes_;
 };
 
-// As the evdev driver states a node; one hat.
+// A pad with the axes and keys of an event node and one hat.
 MadePad evdev_pad(const EvdevAbilities& node) {
   Usages axes, keys;
   for (const EvdevAxis& axis : node.axes) {
@@ -166,7 +167,7 @@ struct PadRow {
 
 TEST(SdlMapping, NumbersAreCountedByTheCodesThatANodeHasOrWouldHave) {
   PadRow kRows[] = {
-      // Wired otherwise: by its usages alone the right stick would be Rx, Ry and button 1 the left
+      // Different wiring: by usages alone the right stick would be Rx, Ry and button 1 the left
       // one. Codes X 0, Y 1, Z 2, Rx 3, Rz 5: a3 is Rx, which no control has, a4 is Rz.
       {MadePad(usage::kJoystick, {usage::kX, usage::kY, usage::kZ, usage::kRx, usage::kRz}, 1,
                buttons(12)),
@@ -223,8 +224,8 @@ TEST(SdlMapping, KeysBelowTheJoysticksOwnAreCountedLast) {
   EXPECT_EQ(pad.names(), (Names{"y", "a", "x"}));
 }
 
-// One interface with the same joystick twice, a report id each: the second one's stick must not
-// move the first one's.
+// One interface contains the same joystick twice with different report ids: the second stick must
+// not move the first.
 TEST(SdlMapping, AnAdapterForTwoPadsIsReadAsItsFirst) {
   DeviceInfo adapter;
   for (const std::uint8_t id : {std::uint8_t{1}, std::uint8_t{2}}) {
@@ -250,7 +251,7 @@ TEST(SdlMapping, AnAdapterForTwoPadsIsReadAsItsFirst) {
   EXPECT_FALSE(pressed(state, kButtonB));
 }
 
-// The second hat of a node is stated as two axes that know -1, 0, 1: h1 all the same.
+// The second hat of a node is stated as two axes of -1, 0, 1: it is still h1.
 TEST(SdlMapping, AHatMayBeTwoAxes) {
   MadePad pad = evdev_pad({kStick, {0x130}});
   pad.device.mapping = kAnyGuid + "a:b0,leftx:a0,lefty:a1,x:h0.8,dpup:h1.1,";
@@ -422,7 +423,7 @@ std::vector<KnownPad> known_pads() {
       const auto trace = read_trace(path);
       if (!trace || trace->devices.size() != 1) continue;
       auto layout = pad_layout(trace->devices[0].info, overrides);
-      // A pad that is vendor data to its own descriptor has no numbers.
+      // A pad whose descriptor has only vendor data has no numbers.
       if (!layout || !layout->is_pad || !pad_application(layout->descriptor)) continue;
       pads.push_back({path, trace->devices[0].info, std::move(*layout)});
     }
@@ -430,7 +431,7 @@ std::vector<KnownPad> known_pads() {
   return pads;
 }
 
-// Control to its sources.
+// Controls and their sources.
 using Controls = std::map<std::string, std::set<std::string>>;
 Controls controls_of(const std::string& line) {
   Controls controls;
@@ -476,7 +477,7 @@ void expect_same_reading(const KnownPad& pad, const std::string& line) {
   for (int i = 0; i < 300; ++i) {
     for (const ReportLayout& r : pad.layout.reports) {
       const Report report = random_report(r, random);
-      // A replaced report is not what the kernel reads.
+      // The kernel reads a replaced report differently.
       if (!layout_of(pad.layout, report)->exact_sizes.empty()) continue;
       ASSERT_TRUE(decode(pad.layout, report, own));
       ASSERT_TRUE(decode(*layout, report, read_back));
@@ -507,8 +508,8 @@ TEST(SdlMappingWrite, WhatIsWrittenReadsBackToTheSameControlsOfEveryKnownPad) {
   EXPECT_GE(pads, 12);
 }
 
-// Lines of the data base for the same bus and ids whose version has no kernel mark: these count the
-// pad's own controls, as the recordings here do.
+// Mappings of the data base for the same bus and ids without the kernel's mark in the version:
+// these number the pad's own controls, like the recordings here.
 std::vector<Controls> data_base_lines(const std::string& guid) {
   std::vector<Controls> lines;
   std::ifstream file(kPadRecordings + "gamecontrollerdb.txt");
@@ -543,7 +544,7 @@ TEST(SdlMappingWrite, AxesAndButtonsAreThoseOfSdlsDataBase) {
     const bool is_known =
         std::any_of(lines.begin(), lines.end(), [&](const Controls& c) { return agrees(mine, c); });
     if (is_known) agreed.insert(line->substr(8, 4) + line->substr(16, 4));
-    // Its only line leaves the sticks out, which the pad's own descriptor has.
+    // Its only mapping lacks the sticks, which the pad's descriptor has.
     const bool is_pokken = pad.device.vendor == 0x0f0d && pad.device.product == 0x0092;
     EXPECT_TRUE(is_known || is_pokken || lines.empty()) << pad.path << "\n" << *line;
   }
@@ -555,7 +556,7 @@ TEST(SdlMappingWrite, AxesAndButtonsAreThoseOfSdlsDataBase) {
   }
 }
 
-// As the evdev driver states the node of a DualSense under hid-playstation.
+// The event node of a DualSense under hid-playstation.
 KnownPad dualsense_node() {
   KnownPad pad;
   pad.device.bus = BusType::usb;
@@ -592,10 +593,9 @@ TEST(SdlMappingWrite, TurnedSticksAreWrittenAsTheyLie) {
   const Controls controls = controls_of(*line);
   EXPECT_EQ(controls.at("leftx"), std::set<std::string>{"a0~"});
   EXPECT_EQ(controls.at("lefty"), std::set<std::string>{"a1"});
-  // ABS_RY grows towards the thumb's owner, who holds "forward" as its low end: right falls with
-  // it.
+  // ABS_RY grows backwards, so "forward" is its low end, and right falls with it.
   EXPECT_EQ(controls.at("rightx"), std::set<std::string>{"a4~"});
-  // SDL's righty grows backwards, which is where x grows.
+  // SDL's righty grows backwards, like x here.
   EXPECT_EQ(controls.at("righty"), std::set<std::string>{"a3"});
 
   DeviceInfo mapped = pad.device;
@@ -615,7 +615,7 @@ TEST(SdlMappingWrite, TurnedSticksAreWrittenAsTheyLie) {
   }
 }
 
-// Written, read and written again: every form that a line can have.
+// Writes, reads and writes every form of a mapping again.
 TEST(SdlMappingWrite, HalvesSidesAndHatsComeBackAsTheyWere) {
   KnownPad pad = dualsense_node();
   const std::string line =
@@ -641,7 +641,7 @@ TEST(SdlMappingWrite, ANameCannotBreakTheLine) {
   EXPECT_EQ(controls_of(*line).size(), 21u);
 }
 
-// SDL 2.26: bus, checksum 0, then the name where there are no ids.
+// SDL 2.26: bus, checksum 0, then the name if there are no ids.
 TEST(SdlMappingWrite, APadWithoutIdsIsKnownByItsName) {
   KnownPad pad = dualsense_node();
   pad.device.vendor = pad.device.product = 0;

@@ -1,4 +1,4 @@
-// config/pads with made-up reports of pads that nobody here has recorded. Layouts: dekuNukem's
+// config/pads with synthetic reports of pads without recordings. Layouts: dekuNukem's
 // Nintendo_Switch_Reverse_Engineering, Linux's hid-nintendo.c.
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 namespace gaitpad {
 namespace {
 
-// A joystick of these axes, then buttons, in one report without an id, filled up to bytes.
+// A joystick with these axes, then buttons, in one report without an id, padded to bytes.
 struct MadeStick {
   struct Axis {
     std::uint32_t usage;
@@ -65,7 +65,7 @@ class ShippedPads : public testing::Test {
   PadState state_;
 };
 
-// The Pro Controller's, which the other pads of the Switch have too.
+// The Pro Controller's descriptor; the Switch's other pads have the same.
 std::vector<std::uint8_t> switch_descriptor() {
   const auto trace = value_of(read_trace(kGoldenPads + "/057e_2009.hid"));
   return trace.devices.at(0).info.descriptor;
@@ -90,9 +90,9 @@ struct SwitchReport {
   }
 };
 
-// Single Joy-Cons are held sideways: the left one's own right (x) is forward, its own up (y) is
-// left; the right one's own up is right, its own right is backwards. A NES controller has the left
-// one's id and a mark of this program's.
+// Single Joy-Cons are held sideways. Left one: its own right (x) is forward, its own up (y) is
+// left. Right one: its own up is right, its own right is backwards. A NES controller has the left
+// one's id and a mark of this program.
 constexpr std::uint16_t kLeft = 0x2006, kRight = 0x2007, kPair = 0x2008, kSnes = 0x2017,
                         kN64 = 0x2019, kNes = 0;
 const SwitchReport kSwitchReports[] = {
@@ -120,7 +120,7 @@ const SwitchReport kSwitchReports[] = {
     {kRight, {0x80, 0, 0}, {0, 0, kMid, kMid}, "buttons paddle3"},
     {kRight, {0, 0x16, 0}, {0, 0, kMid, kMid}, "buttons guide start leftstick"},
     {kPair, {8, 1, 2}, {kEnd, kMid, kMid, kEnd}, "left_x 1 right_y 1 buttons b back dpup"},
-    // The D-pad of a pad without a stick walks.
+    // The D-pad replaces the stick of a pad without one.
     {kSnes, {0, 0, 0x02}, {}, "left_y 1 buttons dpup"},
     {kSnes,
      {0x40, 0, 0x49},
@@ -128,7 +128,7 @@ const SwitchReport kSwitchReports[] = {
      "left_x -1 left_y -1 buttons leftshoulder rightshoulder dpdown dpleft"},
     {kSnes, {0, 0, 0}, {}, ""},
     {kNes, {0x0c, 0x03, 0x04}, {}, "left_x 1 buttons a b back start dpright"},
-    // The C buttons of a Nintendo 64 pad are its right stick; left and right at once are none.
+    // The C buttons of a Nintendo 64 pad are its right stick; left and right at once cancel out.
     {kN64, {0x01, 0, 0x80}, {kMid, kEnd, 0, 0}, "left_y 1 right_y 1 left_trigger 1"},
     {kN64, {0x0a, 0x01, 0}, {kMid, kMid, 0, 0}, "buttons a"},
 };
@@ -190,14 +190,15 @@ TEST_F(ShippedPads, TheSteamDeckIsReadFromItsVendorReports) {
   for (const auto& [bits, name] : others) {
     expect_read(deck_report(bits, {0, 0, 0, 0, 0, 0}), std::string("buttons ") + name);
   }
-  // Its mouse has the same ids.
+  // The Deck's mouse has the same ids.
   take(0x28de, 0x1205,
        {0x05, 0x01, 0x09, 0x02, 0xa1, 0x01, 0x09, 0x30, 0x09, 0x31, 0x75, 0x08, 0x95, 0x02, 0x81,
         0x06, 0xc0});
   EXPECT_FALSE(layout_.is_pad);
 }
 
-// What drivers/pads/steam.cpp hands on of a Steam Controller; an Ultimate 2 in its own mode.
+// Reports of a Steam Controller as drivers/pads/steam.cpp passes them on; an Ultimate 2 in its own
+// mode.
 TEST_F(ShippedPads, VendorReportsOverBluetoothAndRadio) {
   take(0x28de, 0x1106, made_pad_descriptor());
   EXPECT_TRUE(layout_.is_pad);

@@ -1,4 +1,4 @@
-"""Every pad that a person has tested is still decoded as that person saw it (docs/tested-pads.md)."""
+"""The recordings of tested pads still decode to the controls that the person saw (docs/tested-pads.md)."""
 import pytest
 
 from support.program import ROOT

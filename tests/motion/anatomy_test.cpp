@@ -79,7 +79,7 @@ TEST(Legs, OfUnknownNamesAreFoundByShapeAndSidesByTheToes) {
   const auto m = motion_from_bvh(walker.text(), "a");
   ASSERT_TRUE(m) << m.error().message;
   EXPECT_EQ(leg_text(*m, kLeftSide), "bone1a bone1b bone1c bone1d bone1d_End");
-  // The same body facing the other way has its other leg on the left.
+  // If the body faces the other way, its other leg is the left one.
   const auto turned =
       motion_from_bvh(replaced(walker.text(), "OFFSET 0 -8 12", "OFFSET 0 -8 -12"), "a");
   ASSERT_TRUE(turned) << turned.error().message;
@@ -100,7 +100,7 @@ TEST(Legs, WithoutToeJointsEndInTheEndSite) {
   EXPECT_EQ(leg_text(*m, kLeftSide), "LeftUpLeg LeftLeg LeftFoot LeftFoot_End LeftFoot_End");
 }
 
-// As older Acclaim files have them: the names of the bones, and feet without length.
+// Bone names and feet without length, as in older Acclaim files.
 TEST(Legs, OfAnOlderAcclaimSkeletonAreFoundThoughItsFeetHaveNoLength) {
   std::string bones, pairs = "root leftupleg rightupleg\n";
   for (const std::string side : {"left", "right"}) {
@@ -152,7 +152,7 @@ TEST(Legs, ASkeletonWithoutTwoLegsIsRefusedWithOneSentence) {
   ASSERT_FALSE(m);
   EXPECT_EQ(m.error().message,
             "a.bvh: no two legs (hip, knee, ankle and foot on two sides) in the skeleton");
-  // One leg a third of the other is no pair.
+  // Legs of very different length are not a pair.
   const auto odd = motion_from_bvh(
       replaced(WalkerText().text(), "RightLeg\n{\nOFFSET 0 -40 0", "RightLeg\n{\nOFFSET 0 -4 0"),
       "a.bvh");
@@ -195,7 +195,7 @@ TEST(Legs, OfSharedFilesAreTheOnesAPersonWouldName) {
   }
 }
 
-// Where names are taken away the shape finds the same joints.
+// Without names, the shape finds the same joints.
 TEST(Legs, OfSharedFilesAreFoundByShapeToo) {
   GAITPAD_NEEDS(kCapturedMotions);
   for (const char* file : {"bvhtoolbox_walk01.bvh", "cmu_12_01_walk.bvh", "cmu_m21_walk.bvh",
@@ -214,7 +214,7 @@ TEST(Legs, OfSharedFilesAreFoundByShapeToo) {
   }
 }
 
-// A skeleton given as name, parent, place in the world; the legs are the last six of it.
+// A skeleton given by name, parent and world place of each joint; the last six are the legs.
 struct Made {
   Skeleton skeleton;
   std::vector<vec3> at;
@@ -347,7 +347,7 @@ TEST(UpperBodyJoints, TwistJointsAndFingersAreNotTheArm) {
   EXPECT_TRUE(found.neck.empty());
 }
 
-// Every motion that there is: two arms with joints of the right order, a head above them.
+// Every shared motion has two arms with joints in order and a head above them.
 TEST(UpperBodyJoints, OfRealMotionsAreArmsSpineAndHead) {
   GAITPAD_NEEDS(kCapturedMotions);
   int count = 0;

@@ -10,8 +10,8 @@
 namespace gaitpad {
 namespace {
 
-// A walker at 100 Hz whose ankles go where the test says: each foot stands for 0.7 s and flies for
-// 0.4 s over 1.2 m, the left one 0.55 s behind the right one. Legs of 0.8 m.
+// A walker at 100 Hz with prescribed ankles: each foot stands for 0.7 s and flies for 0.4 s over
+// 1.2 m, the left one 0.55 s after the right one. Legs of 0.8 m.
 constexpr double kFrameS = 0.01, kCycleS = 1.1, kFlightS = 0.4, kStrideM = 1.2, kPeakM = 0.15;
 
 struct FootAt {
@@ -45,7 +45,7 @@ Motion walk(double start_s, int frames) {
       const FootAt foot = foot_at(time_s - (side == kLeftSide ? 0.5 * kCycleS : 0.0));
       const int hip = 1 + 4 * side;
       frame.translation_m[hip] = vec3(0.0);
-      // Knee where it may be; the ankle counts.
+      // The knee's place is arbitrary; only the ankle matters.
       frame.translation_m[hip + 2] =
           vec3(0.0, 0.1 + foot.height_m - 0.5, foot.z_m - frame.root_m.z);
     }
@@ -134,7 +134,7 @@ TEST(Flight, AStepTooShortToCarryAStrideIsNone) {
   EXPECT_TRUE(swings(m, kRightSide).empty());
 }
 
-// Figure 2: a stride of 40 frames, low at 4, peak at 15, low at 35, with a "blip" on the way down.
+// Figure 2: a stride of 40 frames, low at 4, peak at 15, low at 35, with a "blip" while falling.
 std::vector<double> figure_2(double blip) {
   std::vector<double> h;
   for (int f = 0; f <= 4; ++f) h.push_back(0.004 * (4 - f));
@@ -145,7 +145,7 @@ std::vector<double> figure_2(double blip) {
   return h;
 }
 
-// A blip on the way down is not the end: one downwards, a stationary point, real gradient changes.
+// A blip during the fall is not the end: one downwards, a stationary point, real gradient changes.
 TEST(PaperFlight, TargetsAreTheGradientChangesNearTheExtremes) {
   for (const double blip : {-0.011, 0.0, 0.003, 0.012}) {
     const auto s = paper_flight(figure_2(blip));
@@ -165,7 +165,7 @@ TEST(PaperFlight, TheFirstLowCountsEvenWhereTheFootStillStands) {
 
 TEST(PaperFlight, OneHighStepElsewhereBreaksIt) {
   std::vector<double> h = figure_2(-0.011);
-  h.insert(h.begin(), {1.0, 0.9});  // range 1 m: the peak of 0.22 m is no maximum any more
+  h.insert(h.begin(), {1.0, 0.9});  // range 1 m: the peak of 0.22 m is outside the band
   EXPECT_FALSE(paper_flight(h));
 }
 
@@ -189,8 +189,7 @@ TEST(Flight, SharedWalksGiveBothFeetByTheRobustRuleAndSevenByThePapers) {
   EXPECT_EQ(literal, 7);
 }
 
-// Speed of the raw ankle over 50 ms, its crossing of a fifth of the peak; the clip twice for a
-// loop.
+// Speed of the raw ankle over 50 ms and its crossings of a fifth of the peak; a loop is read twice.
 class Speed {
  public:
   Speed(const Motion& m, Side side) : frame_s_(m.frame_time_s) {
@@ -207,7 +206,7 @@ class Speed {
               b = std::min(static_cast<int>(at_.size()) - 1, frame + half);
     return std::hypot(at_[b].x - at_[a].x, at_[b].z - at_[a].z) / ((b - a) * frame_s_);
   }
-  // The crossing of a fifth of the swing's peak that is nearest to `frame`.
+  // Time from `frame` to the nearest crossing of a fifth of the swing's peak speed.
   double crossing_s(const Swing& s, int frame) const {
     double peak = 0.0;
     for (int f = s.lift; f <= s.land; ++f) peak = std::max(peak, (*this)(f));
@@ -245,7 +244,7 @@ TEST(Flight, SharedSwingsAgreeWithTheAnklesSpeedWithin120Ms) {
       }
     }
   }
-  EXPECT_GE(count, 67);  // as many as the research counted
+  EXPECT_GE(count, 67);  // the number of shared clips with swings
 }
 
 }  // namespace

@@ -1,5 +1,5 @@
-// The best stride of a motion as a periodic walk: on the procedural motion, disturbed in ways that
-// captured ones are, and on real clips where they are at hand.
+// The best stride of a motion as a periodic walk: from the procedural motion with typical faults of
+// captures, and from real clips if they are present.
 #include "gaitpad/gait_cycle.h"
 
 #include <gtest/gtest.h>
@@ -30,8 +30,8 @@ Motion cut(int first, int last) {
   return m;
 }
 
-// Difference of the leg's sagittal angles from the procedural walk, in degrees, the phases' offset
-// (another definition of the strike) taken out by the best fit.
+// Difference of the leg's sagittal angles from the procedural walk, in degrees, after the best fit
+// of a phase offset (the strike is defined differently).
 double angle_difference(const GaitCycle& cycle) {
   const GaitCycle own = procedural_gait();
   double best = 1e9;
@@ -49,7 +49,7 @@ double angle_difference(const GaitCycle& cycle) {
   return best;
 }
 
-// The same walk under a root that stands still: the hips carry the position, as some exports do.
+// The same walk with a still root: the hips carry the position, as in some exports.
 Motion under_still_root(const Motion& plain) {
   Motion m = plain;
   m.skeleton.joints.insert(m.skeleton.joints.begin(), {"Reference", -1, vec3(0.0), false});
@@ -210,7 +210,7 @@ TEST(GaitCycle, AFarPoseInFrontDoesNotMatter) {
 
 TEST(GaitCycle, ZeroLengthEndSitesBecomeToes) {
   Motion m = procedural_motion();
-  for (LegJoints& leg : m.legs) {  // as if the foot ended in an End Site of no length
+  for (LegJoints& leg : m.legs) {  // as if the foot ended in an End Site without length
     m.skeleton.joints[leg.toe].offset_m = vec3(0.0);
     m.skeleton.joints[leg.toe_end].offset_m = vec3(0.0);
   }
@@ -230,8 +230,8 @@ TEST(GaitCycle, ALowSlowShuffleIsAWalk) {
   EXPECT_NEAR(cycle->toe_off[kLeftSide], 0.72 - 0.5 + 0.043 / 1.4, 0.015);
 }
 
-// Its left foot is brought up to the right one, and no farther. The walk passes by a tenth of the
-// stride, each foot by half of that away from where it was captured.
+// In the data the left foot only comes up to the right one. In the walk it passes by a tenth of the
+// stride; each foot moves by half of that.
 TEST(GaitCycle, AStepToLimpIsAWalk) {
   for (const double past_m : {0.0, -0.05}) {
     const MadeWalk made{.stride_m = 0.7,
@@ -246,7 +246,7 @@ TEST(GaitCycle, AStepToLimpIsAWalk) {
     EXPECT_NEAR(cycle->step_m[kLeftSide], 0.07, 0.002);
     EXPECT_NEAR(cycle->step_m[kRightSide], 0.63, 0.01);
   }
-  // What passes farther by itself is as it was captured.
+  // A step that is longer by itself is not changed.
   const auto longer = gait_cycle(made_walk({.stride_m = 0.7,
                                             .stride_s = 1.6,
                                             .stance = 0.65,
@@ -307,17 +307,17 @@ TEST(GaitCycle, WhatIsNoWalkSaysWhyInOneSentence) {
       {cut(0, 60), "cut.bvh: "},  // half a stride
       {made_walk({.stride_s = 0.8, .stance = 0.28, .lift_m = 0.15}),
        "made.bvh: holds no walk: both feet leave the floor, it is a run"},
-      // As low as a shuffle, so that no height tells that both feet have left.
+      // Feet lifted as low as in a shuffle: heights do not show that both are in the air.
       {made_walk({.stride_s = 0.9, .stance = 0.35, .lift_m = 0.005}),
        "made.bvh: holds no walk whose events are in order: the "},
-      // Faster it is a run, for the same reason.
+      // At a higher speed it is reported as a run.
       {made_walk({.stride_m = 1.6, .stride_s = 0.65, .stance = 0.35, .lift_m = 0.005}),
        "made.bvh: holds no walk: both feet are in the air for 0."},
       {bent(cut(0, 60), [](Motion& m) { m.frame_time_s *= 0.25; }), " s, it is a run"},
-      // One foot is not even brought up to the other.
+      // One foot never comes up to the other.
       {made_walk({.stride_m = 0.7, .stride_s = 1.6, .left_behind_m = 0.35 + 0.12}),
        "made.bvh: holds no walk: one foot stays 0.12 m behind the other"},
-      // A wrong frame time names the key that mends it.
+      // The error about a wrong frame time names the key that corrects it.
       {bent(procedural_motion(), [](Motion& m) { m.frame_time_s *= 0.5; }), "frame_rate_hz"},
       {bent(procedural_motion(), [](Motion& m) { m.frame_time_s *= 3.0; }), "frame_rate_hz"},
   };

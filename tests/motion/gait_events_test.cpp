@@ -15,8 +15,9 @@ constexpr double kRate_hz = 240.0, kStride_s = 1.1, kStride_m = 1.4, kOff = 0.62
 
 double smooth(double u) { return u * u * (3.0 - 2.0 * u); }
 
-// One foot over one stride. It strikes at 0: its heel comes down 0.5 m/s fast and stops. Its toe is
-// off at kOff and goes to the next place with a steady acceleration that turns round half-way.
+// One foot over one stride. It strikes at 0: its heel comes down at 0.5 m/s and stops. Its toe
+// leaves at kOff and moves to the next place with constant acceleration, then constant
+// deceleration.
 struct Points {
   vec3 heel_m, toe_m;
 };
@@ -66,7 +67,7 @@ double apart_s(double a, double b) {
 TEST(GaitEvents, AHeelStrikesWhenItIsDownAndStillAndAToeIsOffWhenItBeginsToLeave) {
   const auto events = stride_events(stride(0.5), kForward * kStride_m);
   ASSERT_TRUE(events) << events.error().message;
-  // The toe reaches 0.2 m/s within 5 ms; a speed is seen over 24 ms.
+  // The toe reaches 0.2 m/s within 5 ms; speeds are averaged over 24 ms.
   for (const Side side : {kLeftSide, kRightSide}) {
     const double shift = side == kLeftSide ? 0.5 : 0.0;
     EXPECT_NEAR(apart_s(events->strike[side], shift), 0.0, 0.015);
@@ -113,7 +114,8 @@ TEST(GaitEvents, OfAFileAreWhereItsFeetStartAndStop) {
       const double strides = (walk.start_s + frame / walk.rate_hz) / walk.stride_s - shift - phase;
       return (strides - std::floor(strides + 0.5)) * walk.stride_s;
     };
-    // The swing's speed passes 0.2 and 0.3 m/s within 12 ms of its ends, seen over 24 ms.
+    // The swing's speed crosses 0.2 and 0.3 m/s within 12 ms of its ends; speeds are averaged over
+    // 24 ms.
     if (s.toe_off) {
       EXPECT_NEAR(off_s(*s.toe_off, walk.stance), 0.0, 0.015);
     }

@@ -1,4 +1,4 @@
-// Motions and walks as their tests look at them.
+// Helpers to check motions and walks.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -23,7 +23,7 @@ inline LegPose pose_at(const GaitCycle& cycle, int side, double phase) {
   return pose_of(cycle, sample_at(cycle, phase), side);
 }
 
-// The joints of the whole body are where the legs' model has them.
+// Expects the body's joints at the places that the legs' model gives.
 inline void expect_body_agrees_with_legs(const GaitCycle& cycle, double tolerance_m) {
   const auto pose = std::make_unique<Pose>();
   const auto world = std::make_unique<JointFrames>();
@@ -43,7 +43,8 @@ inline void expect_body_agrees_with_legs(const GaitCycle& cycle, double toleranc
   }
 }
 
-// Cuts everything above the hips off the built-in walk: pelvis and two legs of five joints stay.
+// Removes everything above the hips from the built-in walk; pelvis and two legs of five joints
+// remain.
 inline void keep_legs_alone(GaitCycle& cycle) {
   const std::size_t all = cycle.skeleton.joints.size(), kept = 11;
   std::vector<quat> local;

@@ -1,4 +1,4 @@
-// A walk made for tests: its feet are flat, stand still and swing at times that are known.
+// A synthetic walk: its feet are flat, stand still and swing at known times.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -7,7 +7,7 @@
 
 namespace gaitpad {
 
-// The walks among the captured motions, but for the one in place.
+// The captured motions that are walks, except the walk in place.
 constexpr const char* kCapturedWalks[] = {
     "bvhtoolbox_walk01", "cmu_006_01_iclone", "cmu_007_01_iclone", "cmu_007_04_iclone",
     "cmu_007_12_iclone", "cmu_12_01_walk",    "cmu_m21_depressed", "cmu_m21_female_walk",
@@ -18,16 +18,16 @@ struct MadeWalk {
   double stride_m = 1.2, stride_s = 1.2;
   double stance = 0.62;        // of the stride
   double left_at = 0.5;        // the left foot's strike; the right one's is at 0, 1, 2 strides
-  double left_behind_m = 0.0;  // the left foot's places, behind those that its strikes would have
+  double left_behind_m = 0.0;  // shift of the left footprints backwards from even steps
   double lift_m = 0.08;        // of the swinging foot
   double start_s = 0.0;        // of the first frame
   double end_s = 5.0;
   double rate_hz = 120.0;
   double slide_m_s = 0.0;  // of a standing foot
-  double hips_m = 0.74;    // height over the ankles: both legs reach the ground all the time
+  double hips_m = 0.74;    // height over the ankles; both legs always reach the ground
 };
 
-// A foot's height and way: still from its strike on, then through the air.
+// A foot's height and travel: still from its strike, then through the air.
 struct MadeFoot {
   double height_m, z_m;
 };

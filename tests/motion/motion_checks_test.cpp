@@ -1,4 +1,4 @@
-// Motions and gait cycles that a program has filled in wrongly are refused with one sentence.
+// Wrongly filled motions and gait cycles are refused with one sentence.
 #include <gtest/gtest.h>
 
 #include <functional>

@@ -14,7 +14,7 @@
 namespace gaitpad {
 namespace {
 
-// A body that stands still in its one frame.
+// A body with one frame, in which it stands still.
 Motion standing_body(const GaitCycle& cycle) {
   Motion m = procedural_motion();
   m.name = "still.bvh";
@@ -31,7 +31,7 @@ Motion grown(Motion m, double factor) {
   return m;
 }
 
-// Of a skeleton alone the lowest joint counts as the sole; the procedural toe has some flesh below.
+// A bare skeleton's lowest joint counts as the sole; the procedural toe end rests above the floor.
 vec3 flesh(const GaitCycle& source) { return source.leg[0].toe_end_rest_m * kUp; }
 
 // World rotations of all joints in a cycle's sample i.
@@ -98,7 +98,7 @@ vec3 bone(const GaitCycle& c, int i, const std::string& from, const std::string&
   return glm::normalize(v);
 }
 
-// How far a joint has turned away from the standing pose, in the world.
+// A joint's world rotation relative to the standing pose.
 quat turn_of(const GaitCycle& c, int i, const std::string& name) {
   const auto joint = static_cast<std::size_t>(c.skeleton.find(name));
   const auto now = sample_rotations(c, i);
@@ -113,7 +113,7 @@ GaitCycle on_skeleton(const GaitCycle& source, const Motion& body) {
   return value_of(cycle_on_skeleton(source, body));
 }
 
-using Names = std::vector<std::pair<std::string, std::string>>;  // the procedural one, another
+using Names = std::vector<std::pair<std::string, std::string>>;  // the procedural name, the other
 const Names kArmsAndLegs = {{"LeftUpLeg", "LeftLeg"},
                             {"LeftShoulder", "LeftArm"},
                             {"LeftArm", "LeftForeArm"},
@@ -122,7 +122,7 @@ const Names kArmsAndLegs = {{"LeftUpLeg", "LeftLeg"},
                             {"Spine", "Chest"},
                             {"Neck", "Head"}};
 
-// 0 arms hanging, 90 a T pose.
+// 0: hanging arms, 90: a T pose.
 Motion with_arms_raised(Motion body, double degrees) {
   auto& local = body.frames[0].local;
   local[body.skeleton.find("LeftArm")] = rotation_z(degrees * kDegree);
@@ -187,7 +187,7 @@ TEST(CycleOnSkeleton, ArmsOfOtherNamesTurnAsInTheSource) {
     };
     for (int i = 0; i < kCycleSamples; i += 9) {
       for (const auto& [from, to] : kArmsAndLegs) {
-        if (from == "LeftShoulder") continue;  // a raised collar bone of another body stays its own
+        if (from == "LeftShoulder") continue;  // another body's raised collar bone stays
         EXPECT_LT(glm::distance(bone(cycle, i, other(from), other(to)), bone(source, i, from, to)),
                   1e-9)
             << other(from);
@@ -198,7 +198,7 @@ TEST(CycleOnSkeleton, ArmsOfOtherNamesTurnAsInTheSource) {
   }
 }
 
-// A joint that stands at `share` of the way from `name`'s parent to it.
+// Inserts a joint at `share` of the way from the parent of `name` to it.
 Motion with_joint_before(Motion body, const std::string& name, const std::string& added,
                          double share) {
   auto& joints = body.skeleton.joints;
@@ -293,7 +293,7 @@ TEST(CycleOnSkeleton, AFootThatIsNowhereFlatStillPointsForward) {
   for (const LegModel& leg : cycle->leg) EXPECT_GT(leg.toe_m.z, 0.05);
 }
 
-// Walks and skeletons of six houses on each other.
+// Walks of six sources on each other's skeletons.
 TEST(CycleOnSkeleton, SharedBodiesTakeTheWalksOfOneAnother) {
   GAITPAD_NEEDS(kCapturedMotions);
   struct Body {

@@ -1,5 +1,5 @@
-// Every real motion beside the repository loads, and walks or says why not; and what stands there
-// in two formats is one motion.
+// Every shared motion loads, and walks or gives the known reason; a motion in two formats is the
+// same.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -21,7 +21,7 @@ class SharedMotions : public testing::Test {
   void SetUp() override { GAITPAD_NEEDS(kCapturedMotions); }
 };
 
-// Why a file is no walk: as the data's index says of it. All others walk.
+// The reason why a file is not a walk, by the data's index. All others walk.
 const std::map<std::string, std::string> kNoWalks = {
     // kicks, jumps and runs
     {"cmu_002_03_iclone.bvh", "both feet are in the air for 0.14 s before a strike, it is a run"},
@@ -84,8 +84,8 @@ std::array<int, 8> leg_joints(const Motion& m) {
   return {l.hip, l.knee, l.ankle, l.toe, r.hip, r.knee, r.ankle, r.toe};
 }
 
-// The same bones: what the AMC file calls frame k, from 1, is the BVH's frame k counted from 0,
-// before which that has a T pose.
+// Frame k of the AMC file, counted from 1, is frame k of the BVH counted from 0, whose frame 0 is a
+// T pose.
 TEST_F(SharedMotions, TheSameMotionInBothFormatsPutsTheLegsWithinAMillimetre) {
   const Pair pair = loaded("cmu_01_01.amc", "cmu_01_01.bvh");
   const auto from = leg_joints(pair.amc), to = leg_joints(pair.bvh);

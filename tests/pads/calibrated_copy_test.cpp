@@ -8,7 +8,7 @@ namespace {
 
 using Events = std::vector<VirtualPadEvent>;
 
-// As hid-playstation shows a DualShock 4: 8-bit sticks and triggers, a hat, buttons.
+// A DualShock 4's event node under hid-playstation: 8-bit sticks and triggers, a hat, buttons.
 EvdevAbilities sony_abilities() {
   EvdevAbilities abilities;
   for (const int code : {ABS_X, ABS_Y, ABS_Z, ABS_RX, ABS_RY, ABS_RZ})

@@ -28,7 +28,8 @@ std::string folder_with(const char* config, const char* home) {
 
 TEST(CalibrationFolder, IsTheXdgConfigFolderWhereItIsAbsolute) {
   EXPECT_EQ(folder_with("/c", "/home/u"), "/c/gaitpad/calibration");
-  // XDG base directory specification: a relative path is invalid and ignored; empty is as not set.
+  // XDG base directory specification: a relative path is invalid and ignored; an empty one counts
+  // as unset.
   for (const char* invalid : {"c", "./c", ""})
     EXPECT_EQ(folder_with(invalid, "/home/u"), "/home/u/.config/gaitpad/calibration");
   EXPECT_EQ(folder_with(nullptr, "/home/u"), "/home/u/.config/gaitpad/calibration");
@@ -153,7 +154,7 @@ class SaveCalibration : public testing::Test {
   static double inner_of(const std::string& path) {
     return value_of(load_calibration_file(path)).calibration.left.inner;
   }
-  // In a process of its own, since it changes what the whole process may do.
+  // Runs in a child process, because it changes the permissions of the whole process.
   template <typename Test>
   static bool holds_in_child(Test test) {
     ::fflush(nullptr);
@@ -195,8 +196,8 @@ TEST_F(SaveCalibration, TheFileBeforeIsKeptEvenADamagedOne) {
   EXPECT_EQ(own_.entries(), 2);
 }
 
-// rename() does nothing where both names are one file: as it is left when a save is killed between
-// its two renames.
+// A save that is killed between its two renames leaves two names of one file, for which rename()
+// does nothing.
 TEST_F(SaveCalibration, ASaveThatWasKilledBetweenItsStepsLeavesNothingOdd) {
   EXPECT_EQ(problem(path_, 0.1), "none");
   fs::create_hard_link(path_, path_ + ".old");
@@ -259,7 +260,7 @@ TEST_F(SaveCalibration, WhatCouldNotBeReadBackIsNotWritten) {
   EXPECT_EQ(inner_of(path_), 0.1);
 }
 
-// Whenever the process dies, the file is one of the two that were saved, and so is the old one.
+// At any moment of a kill, the file and its old version are each one of the two saved texts.
 TEST_F(SaveCalibration, AProcessKilledAtAnyMomentLeavesAWholeFile) {
   ASSERT_EQ(problem(path_, 0.1), "none");
   ASSERT_EQ(problem(path_, 0.2), "none");
@@ -296,7 +297,7 @@ CalibrationFile measured_file() {
 }
 TEST(ChangesSince, TheSameStickHasNone) {
   EXPECT_EQ(changes_since(measured_file(), measured_file()), std::vector<std::string>());
-  // Nor one measured a second time, within what two measurements differ by.
+  // A second measurement with usual differences gives no remark either.
   CalibrationFile again = measured_file();
   again.calibration.left.x = {-0.94, 0.014, 0.98};
   again.measured[0] = StickMeasured{0.0023, 0.013, 0.0, 8.5};
@@ -333,7 +334,7 @@ TEST(ChangesSince, EachChangeHasBothNumbersAndWhatItMeans) {
            {[](CalibrationFile& f) { f.measured[0]->circularity_error = 12.25; },
             "left stick: its circularity error is 12.2 %, 8.0 % in the file: the directions differ "
             "more in how far it reaches"},
-           // turned axes are told alone
+           // turned axes are the only remark
            {[](CalibrationFile& f) {
               f.calibration.left.frame = {RawDirection::plus_y, RawDirection::plus_x};
               f.calibration.left.x.centre = 0.5;
@@ -349,11 +350,11 @@ TEST(ChangesSince, EachChangeHasBothNumbersAndWhatItMeans) {
 }
 
 TEST(ChangesSince, WhatWasNotMeasuredTodayIsNotCompared) {
-  CalibrationFile now;  // every value another one
+  CalibrationFile now;  // every value differs
   EXPECT_EQ(changes_since(measured_file(), now), std::vector<std::string>());
   now.measured[0] = StickMeasured{};
   EXPECT_EQ(changes_since(measured_file(), now), std::vector<std::string>());
-  now.measured[0]->sigma = 0.002;  // it rested, but was not turned round
+  now.measured[0]->sigma = 0.002;  // it rested, but was not turned
   now.calibration.left.x.centre = 0.3;
   EXPECT_EQ(changes_since(measured_file(), now).size(), 1u);
 }

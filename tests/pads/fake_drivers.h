@@ -1,5 +1,5 @@
-// Made-up drivers below the real stream: pads that a test plugs in and out, each behind a socket
-// that keeps packets apart as hidraw does.
+// Fake drivers below the real stream: a test plugs pads in and out. Each pad is a socket that keeps
+// packets apart, like hidraw.
 #pragma once
 #include <sys/eventfd.h>
 #include <sys/socket.h>
@@ -23,20 +23,20 @@ namespace gaitpad {
 
 enum class FakeKind {
   sound,
-  always_ready,       // its descriptor is always ready, there is never anything to read
-  closed_descriptor,  // poll() says POLLNVAL
+  always_ready,       // its descriptor is always ready, but there is nothing to read
+  closed_descriptor,  // poll() reports POLLNVAL
 };
 
-// What the test holds of a pad that is plugged in; shared with the open device.
+// The test's end of a plugged pad; shared with the open device.
 struct FakePad {
   DeviceListing listing;
   FakeKind kind = FakeKind::sound;
   int failing_openings = 0;
   std::optional<FactorySticks> factory_sticks;
-  std::optional<std::int64_t> stamp_ns;  // of every report, else the clock's
+  std::optional<std::int64_t> stamp_ns;  // of every report; the clock's if unset
   std::atomic<int> openings{0}, closings{0};
-  std::atomic<bool> keeps_closing{false};  // its closing waits for the end of this
-  std::atomic<bool> keeps_opening{false};  // likewise
+  std::atomic<bool> keeps_closing{false};  // closing waits until this is false
+  std::atomic<bool> keeps_opening{false};  // opening waits until this is false
   std::atomic<std::int64_t> lost{0};
   std::atomic<bool> is_raw{false};
   std::mutex mutex;
@@ -49,7 +49,7 @@ struct FakePad {
       if (fd >= 0) ::close(fd);
     }
   }
-  // Waits while the reader is behind. False: unplugged.
+  // Blocks while the reader is too slow. Returns false if unplugged.
   bool send(const std::vector<std::uint8_t>& bytes) const {
     return ::send(sockets[0], bytes.data(), bytes.size(), MSG_NOSIGNAL) >= 0;
   }
@@ -107,7 +107,7 @@ class FakeDevice final : public Device {
 
 enum : int { kHidraw, kEvdev, kUsb };  // positions in FakeBus::table()
 
-// The sockets of the test's machine. Static, since a driver is two plain functions.
+// The fake machine's sockets. Static, because a driver consists of two plain functions.
 class FakeBus {
  public:
   using Pad = std::shared_ptr<FakePad>;
@@ -119,7 +119,7 @@ class FakeBus {
   }
   int changes_fd() const { return changes_; }
 
-  // Not seen before show().
+  // Drivers do not list the pad before show().
   Pad make(int driver, const std::string& unique_id, const std::string& port) const {
     auto pad = std::make_shared<FakePad>();
     pad->listing.info = made_pad();
@@ -142,7 +142,7 @@ class FakeBus {
     show(driver, pad);
     return pad;
   }
-  // As the kernel does once its driver has asked the pad.
+  // Sets the id late, like a kernel driver that asks the pad first.
   void name_id(const Pad& pad, const std::string& unique_id) {
     {
       const std::lock_guard lock(mutex_);

@@ -1,4 +1,4 @@
-// Streams in somebody else's process, which uses SDL, hidapi and libusb itself.
+// Streams in a host program that also uses SDL, hidapi and libusb.
 #if defined(GAITPAD_HAS_SDL) && defined(GAITPAD_HAS_HIDRAW) && defined(GAITPAD_HAS_USB)
 #include <SDL2/SDL.h>
 #include <gtest/gtest.h>
@@ -25,7 +25,8 @@ std::unique_ptr<PadStream> stream_of(FakeBus& bus) {
   return value_of(PadStream::start(std::move(options)));
 }
 
-// A pad that no file names, and a twin PlayStation 2 adapter that SDL's library alone names.
+// A pad without an entry in any file, and a twin PlayStation 2 adapter that only SDL's library
+// knows.
 TEST(Guest, SdlIsNotStartedForAPadsMapping) {
   DeviceInfo twin;
   twin.bus = BusType::usb;
@@ -59,7 +60,7 @@ TEST(Guest, AHostsOwnLibrariesRunBesideTwoStreams) {
     SDL_TLSCleanup();
   });
   const auto one = stream_of(bus);
-  const auto other = value_of(PadStream::start({}));  // of the machine
+  const auto other = value_of(PadStream::start({}));  // with the machine's drivers
   EXPECT_TRUE(comes_true([&] { return one->front() != nullptr && rounds > 3; }));
   stop = true;
   host.join();

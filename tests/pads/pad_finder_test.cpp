@@ -1,4 +1,4 @@
-// Which devices are pads, by which driver, under which index and with which calibration.
+// Tests which devices are pads, and their driver, index and calibration.
 #include <gtest/gtest.h>
 
 #include "gaitpad/pad_stream.h"
@@ -11,7 +11,7 @@
 namespace gaitpad {
 namespace {
 
-// --- which pad a wish means, and which driver serves it
+// --- which pad a request selects, and which driver serves it
 
 class PadChoice : public testing::Test {
  protected:
@@ -25,7 +25,7 @@ class PadChoice : public testing::Test {
   std::vector<PadSighting> sightings(const PadWish& wish = {}) {
     return value_of(pad_sightings({}, wish, Drivers::preferred, FakeBus::table()));
   }
-  // The nodes to open, with a blank behind each.
+  // The nodes to open, each followed by a blank.
   std::string chosen(const PadWish& wish = {}) {
     auto pads = chosen_pads(sightings(wish), wish);
     if (!pads) return pads.error().message;
@@ -45,7 +45,7 @@ TEST_F(PadChoice, OnePadIsServedByTheFirstUsableDriver) {
   EXPECT_EQ(chosen(), "/dev/evdev-p1 ");
   EXPECT_EQ(chosen({"", "hidraw"}), "");
   EXPECT_EQ(chosen({"", "evdev"}), "/dev/evdev-p1 ");
-  // The kernel has the pad, so it is not taken from it without being asked.
+  // A kernel driver has the pad, so it is not taken without the user's request.
   cooked->listing.problem = "/dev/evdev-p1: permission denied";
   EXPECT_EQ(chosen(), "");
   EXPECT_EQ(chosen({"", "usb"}), "/dev/usb-p1 ");
@@ -224,7 +224,7 @@ TEST_F(PadStreamTest, AnUnplugThatNobodyHadTimeToNoticeKeepsTheIndexToo) {
     bus_.unplug(pad);
     pad = bus_.plug(kHidraw, "A", i % 2 == 0 ? "port2" : "port1");
   }
-  // However many of them were noticed: the last one is open in the end, as device 0.
+  // Some replugs may go unnoticed, but the last one is open in the end, as device 0.
   EXPECT_TRUE(comes_true([&] { return pad->openings > 0; }));
   pad->send_axes(77, 0);
   Report report = next();
@@ -243,7 +243,7 @@ TEST_F(PadStreamTest, APadWhoseUniqueIdComesLateIsOpenedOnceAndWithIt) {
   const auto shown = std::chrono::steady_clock::now();
   bus_.show(kHidraw, pad);
   bus_.plug(kHidraw, "B", "port2");
-  expect(ReportKind::added, 0);  // the other one: both have been seen
+  expect(ReportKind::added, 0);  // the other one: both were seen
   EXPECT_EQ(stream_->device(0).info.unique_id, "B");
   bus_.name_id(pad, "A");
   const bool is_in_time = std::chrono::steady_clock::now() - shown < 900ms;
@@ -281,8 +281,8 @@ TEST_F(PadStreamTest, ANodeWhoseUniqueIdChangesWhileItIsOpenIsNotOpenedAgain) {
   EXPECT_EQ(stream_->counts().plugged, 2);
 }
 
-// By their unique ids, plugged in where the other one was; without ids by their ports. Clones share
-// their id and are still two.
+// Pads keep their index by unique id even at the other one's port; without ids by port. Clones
+// share their id and are still two pads.
 TEST_F(PadStreamTest, TwoEqualPadsAreKeptApartByTheirIdsElseByTheirPorts) {
   struct Row {
     const char *id_a, *id_b, *port_of_b_again;
@@ -344,7 +344,7 @@ TEST_F(PadStreamTest, APadIsOpenedThroughOneDriverAlone) {
   auto raw = bus_.make(kHidraw, "A", "port1");
   auto cooked = bus_.make(kEvdev, "A", "port1");
   start();
-  bus_.show(kEvdev, cooked);  // as on a real kernel: the preferred node comes a moment later
+  bus_.show(kEvdev, cooked);  // like on a real kernel, the preferred node appears later
   bus_.show(kHidraw, raw);
   expect(ReportKind::added, 0);
   for (int i = 0; i < 3; ++i) bus_.tell();
@@ -427,14 +427,14 @@ TEST_F(PadStreamTest, AKernelsDriverIsDetachedOnlyWhereUsbIsNamed) {
   EXPECT_EQ(detach_asked({"", "hidraw"}), Detach::never);
 }
 
-// Packets that are no reports do not make another driver take the pad.
+// Packets that are not reports do not make another driver take the pad.
 TEST_F(PadStreamTest, APadThatOpensSlowlyKeepsNoOtherWaiting) {
   const auto slow = bus_.make(kHidraw, "A", "port1");
   slow->keeps_opening = true;
   bus_.show(kHidraw, slow);
   start();
   const auto quick = plugged("B", "port2", 0);
-  take_away(quick, 0);  // and closing goes on, too
+  take_away(quick, 0);  // closing also continues
   slow->keeps_opening = false;
   expect(ReportKind::added, 1);
   EXPECT_EQ(slow->openings, 1) << "it was begun once";
@@ -500,7 +500,8 @@ TEST_F(RecordingAsPad, IsAddedReportsEndsAndIsNotOpenedAgain) {
   EXPECT_EQ(stream_->counts().plugged, 1);
 }
 
-// It plays as it replays, on every machine; without a calibration of its own by the user's file.
+// A recording plays like its replay on every machine; without an embedded calibration it uses the
+// user's file.
 TEST_F(RecordingAsPad, KeepsItsOwnCalibrationElseHasTheUsers) {
   Trace trace = made_trace();
   for (const char* own : {"", "[left]\ninner = 0.21\n"}) {
@@ -513,7 +514,7 @@ TEST_F(RecordingAsPad, KeepsItsOwnCalibrationElseHasTheUsers) {
     if (*own != 0) {
       EXPECT_EQ(stream_->device(0).calibration, own);
     }
-    stream_.reset();  // a file that is played is read once
+    stream_.reset();  // a played file is read once
   }
 }
 
@@ -563,7 +564,7 @@ TEST_F(PadStreamTest, ASinglePadMakesWayForThePairAndComesBackWithoutIt) {
   EXPECT_EQ(stream_->device(1).info.unique_id, "L+R");
   pads.pair->send_axes(9, 0);
   expect_x(1, 9);
-  // The right one goes, and with it the pair.
+  // The right one is unplugged, and the pair with it.
   bus_.unplug(pads.right);
   bus_.unplug(pads.pair);
   expect(ReportKind::removed, 1);
@@ -571,7 +572,7 @@ TEST_F(PadStreamTest, ASinglePadMakesWayForThePairAndComesBackWithoutIt) {
   expect(ReportKind::added, 0);
 }
 
-// Report 1 has the stick; what comes is vendor data with the id 30.
+// Report 1 has the stick, but the pad sends only vendor data with the id 30.
 FakeBus::Pad stickless(FakeBus& bus, int driver) {
   auto pad = bus.make(driver, "A", "port1");
   pad->listing.info.descriptor = {0x05, 0x01, 0x09, 0x05, 0xa1, 0x01, 0x85, 0x01, 0x15,

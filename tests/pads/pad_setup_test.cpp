@@ -34,13 +34,14 @@ class PadSetup : public testing::Test {
                        const std::optional<FactorySticks>& factory = std::nullopt) {
     return recorded_device(all, info, factory, remarks_).device;
   }
-  // As a live session uses the same device.
+  // The configuration of the device in a live session.
   Result<PadConfig> live_pad(const PadFiles& all, const DeviceInfo& info,
                              const std::optional<FactorySticks>& factory = std::nullopt) {
     const auto [device, calibration] = recorded_device(all, info, factory, remarks_);
     return pad_config(all, device.info, calibration, "live");
   }
-  // As a replay of the recording gets it: through text, with the same files but --calibration.
+  // The configuration in a replay of the recording: through text, with the same files except
+  // --calibration.
   PadConfig replayed_pad(const PadFiles& all, const TraceDevice& device) const {
     Trace trace;
     trace.devices = {device};
@@ -109,9 +110,9 @@ TEST_F(PadSetup, TheKeyboardIsAFallbackLiveAndInAReplay) {
   EXPECT_FALSE(replayed_pad(all, recorded(all, info)).is_fallback);
 }
 
-// They come before the model's file, whose zones they keep; they are not for axes that are turned,
-// which the pad tells as they are. A file for this one device or one given by hand comes before
-// them.
+// Factory sticks take precedence over the model's file, whose zones they keep, but not if axes are
+// turned, because the pad reports unturned ones. A file for this device or one given by hand takes
+// precedence over them.
 TEST_F(PadSetup, FactorySticksComeBeforeWhatIsNotForThisOneDevice) {
   DeviceInfo info = made_pad();
   info.unique_id = "A1";
@@ -140,7 +141,7 @@ TEST_F(PadSetup, TheUsersFileComesBeforeAnEquallyGoodOneOfConfig) {
   write("calibration/a.toml", "devices = ['1209:0001']\n[left]\ninner = 0.3\n");
   write("user/z.toml", "devices = ['1209:0001']\n[left]\ninner = 0.25\n");
   EXPECT_EQ(replayed(files(), recorded(files(), made_pad())).left.inner, 0.25);
-  // And by hand goes before both.
+  // A file given by hand takes precedence over both.
   const std::string by_hand = write("own.toml", "[left]\ninner = 0.4\n");
   EXPECT_EQ(replayed(files(), recorded(files("", by_hand), made_pad())).left.inner, 0.4);
 }
@@ -163,7 +164,7 @@ TEST_F(PadSetup, AFileForAnotherDriverIsNotTaken) {
   EXPECT_EQ(replayed(files(), recorded(files(), info)).left.inner, 0.3);
 }
 
-// It may be another pad's file, and nobody can tell.
+// It may belong to another pad, which cannot be known.
 TEST_F(PadSetup, ADamagedFileOfTheUsersIsARemarkAndThePadPlaysOn) {
   const std::string damaged = write("user/a.toml", "[left]\ninner = 7\n");
   write("user/b.toml", "devices = ['1209:0001']\n[left]\ninner = 0.25\n");
@@ -174,7 +175,7 @@ TEST_F(PadSetup, ADamagedFileOfTheUsersIsARemarkAndThePadPlaysOn) {
                              "calibration");
 }
 
-// What a recording holds beside steering would only tell strangers whose pad it was.
+// Other data of a calibration would only identify the pad's owner.
 TEST_F(PadSetup, ARecordingHoldsWhatSteersAndNothingElse) {
   write("user/a.toml",
         "name = 'mine'\nunique_id = 'A1'\nmeasured_on = '2026-11-21'\n[left.measured]\nsigma = "
@@ -220,13 +221,13 @@ TEST_F(PadSetup, AFilesMappingComesBeforeConfigPadsAndAReplayHasItToo) {
       EXPECT_EQ(decoded(pad).axis[kRightX], 1.0f);
       EXPECT_LT(std::abs(decoded(pad).axis[kLeftX]), 0.01f);
       EXPECT_FALSE(pressed(decoded(pad), kButtonA));  // it is the third button
-      // What else config/pads says still counts.
+      // The other keys of config/pads still apply.
       EXPECT_EQ(pad.streams, entry == own);
     }
   }
 }
 
-// SDL counts what the kernel shows, which a descriptor that is untrue does not tell.
+// SDL numbers the kernel's controls, which an untrue descriptor does not describe.
 TEST_F(PadSetup, AReplacedDescriptorKeepsItsControls) {
   write("user/a.toml", std::string("devices = ['*:*']\nmapping = '") + kSwapped + "'\n");
   write(
@@ -311,13 +312,13 @@ TEST_F(PadSetup, TheUsersDataBaseNamesTheControlsOfLivePadsOnEveryDriver) {
     EXPECT_EQ(recorded(files(), info).info.mapping, in_line) << driver;
   }
   EXPECT_TRUE(remarks_.empty());
-  // config/pads knows more than a line can say.
+  // A mapping cannot express everything in config/pads.
   const PadFiles mapped = files(write("map.toml", "[[pad]]\nvendor = 0x1209\n"));
   EXPECT_TRUE(recorded(mapped, made_pad()).info.mapping.empty());
 }
 
 TEST_F(PadSetup, ADataBaseThatCannotBeReadIsToldOf) {
-  // Not SDL's variable: SDL itself would try to load a folder, of 2^63 bytes.
+  // Do not set SDL's variable: SDL would try to load the folder as a file of 2^63 bytes.
   const Environment config("XDG_CONFIG_HOME", folder_.c_str());
   fs::create_directories(user_mapping_file());
   recorded(files(), made_pad());

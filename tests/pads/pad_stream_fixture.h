@@ -1,4 +1,4 @@
-// A real stream over made-up drivers: pads are plugged in and out, what it hands on is read.
+// A real stream over fake drivers: plugs pads in and out and reads the stream's reports.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -18,13 +18,13 @@ class PadStreamTest : public testing::Test {
     options.changes_fd = bus_.changes_fd();
     stream_ = value_of(PadStream::start(std::move(options)));
   }
-  // With a ring of so many reports.
+  // Starts the stream with a ring of `reports` reports.
   void start_with_ring(std::size_t reports) {
     PadStreamOptions options;
     options.ring_reports = reports;
     start(std::move(options));
   }
-  // The next report; one of kind command and without text where none came in time.
+  // The next report; an empty one of kind command if none came in time.
   Report next() {
     const auto end = std::chrono::steady_clock::now() + kPatience;
     while (stream_->front() == nullptr) {
@@ -49,12 +49,12 @@ class PadStreamTest : public testing::Test {
     EXPECT_EQ(report.device, device);
     EXPECT_EQ(report.bytes[0], x);
   }
-  // Unplugged, and told so.
+  // Unplugs a pad and expects its `removed` report.
   void take_away(const FakeBus::Pad& pad, int device) {
     bus_.unplug(pad);
     expect(ReportKind::removed, device);
   }
-  // Plugged in behind hidraw, and announced.
+  // Plugs a pad in behind hidraw and expects its `added` report.
   FakeBus::Pad plugged(const std::string& unique_id, const std::string& port, int device) {
     auto pad = bus_.plug(kHidraw, unique_id, port);
     expect(ReportKind::added, device);
@@ -66,7 +66,7 @@ class PadStreamTest : public testing::Test {
       return told_.find(part) != std::string::npos;
     });
   }
-  // A folder of the user's with this calibration.
+  // A user folder with this calibration.
   std::string user_folder(const std::string& text) const {
     own_.write("user/a.toml", text);
     return own_.at("user");

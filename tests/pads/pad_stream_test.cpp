@@ -1,4 +1,4 @@
-// What a stream hands on of pads that are there: order, losses, stamps, motors, commands, its end.
+// A stream with plugged pads: order, losses, time stamps, motors, commands, its end.
 #include "gaitpad/pad_stream.h"
 
 #include <gtest/gtest.h>

@@ -19,7 +19,7 @@ Pads one_pad(bool streams = false) {
   return Pads({config}, kRateHz);
 }
 
-// The stick after so many ticks without a report.
+// The stick after `ticks` ticks without a report.
 Stick after_silence(Pads& pads, int ticks) {
   Stick stick;
   for (int i = 0; i < ticks; ++i) stick = pads.finish_tick();
@@ -96,7 +96,7 @@ TEST(Pads, AShortReportAndAnUnknownDeviceAreRefusedAndChangeNothing) {
   EXPECT_GT(pads.finish_tick().left.y, 0.9);
 }
 
-// Pushes the left stick as a thumb does, in 100 ms, one report a tick.
+// Pushes the left stick in 100 ms, like a thumb, with one report per tick.
 void push(Pads& pads, std::uint16_t device, int from_y, int to_y) {
   constexpr int kTicks = 24;
   for (int i = 0; i <= kTicks; ++i) {
@@ -105,7 +105,7 @@ void push(Pads& pads, std::uint16_t device, int from_y, int to_y) {
   }
 }
 
-// The second is a receiver, a virtual pad or the pad's twin: always there, never moved.
+// The second is a receiver, a virtual pad or the pad's twin: plugged in but never moved.
 TEST(Pads, APadThatIsMovedDrivesThoughAnotherIsThereThatNeverReports) {
   Pads pads({made_pad_config(), made_pad_config()}, kRateHz);
   push(pads, 1, kMiddle, kForward);
@@ -294,7 +294,7 @@ TEST(Pads, BothSticksOfAFallbackCountWhileTheDrivingOneRestsExactly) {
   EXPECT_EQ(pads.finish_tick().left, vec2(0.0));
   EXPECT_GT(pads.finish_tick().right.x, 0.9);
   pads.take_report(made_report(0xff, kMiddle, kKeys));
-  pads.take_report(made_report(kMiddle, 0x60, kPad));  // hardly beyond the inner zone
+  pads.take_report(made_report(kMiddle, 0x60, kPad));  // just beyond the inner zone
   const Stick stick = pads.finish_tick();
   EXPECT_GT(stick.left.y, 0.0);
   EXPECT_EQ(stick.left.x, 0.0);

@@ -22,7 +22,7 @@ TEST(Realtime, WhatWasRefusedIsSaidInOneSentenceWithItsRemedy) {
   EXPECT_EQ(realtime_remark(std::nullopt, "mlockall: no")->find("rtprio"), std::string::npos);
 }
 
-// KiB, as /proc/self/status says.
+// A value of /proc/self/status in KiB.
 long status_kib(const std::string& key) {
   std::ifstream file("/proc/self/status");
   std::string word;
@@ -51,7 +51,7 @@ TEST(Realtime, LockingTakesNoMemoryThatNobodyTouched) {
   const long taken_kib = status_kib("VmRSS") - before_kib;
   if (!refused) {
     EXPECT_GT(status_kib("VmLck"), 0);
-    // What is mapped afterwards is not locked, whatever a renderer may take.
+    // Memory that is mapped later, by a renderer for example, is not locked.
     const long locked_kib = status_kib("VmLck");
     void* later = ::mmap(nullptr, kBytes, PROT_READ | PROT_WRITE,
                          MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);

@@ -69,7 +69,7 @@ struct Made {
   VirtualPadShape shape;
   Events events;
   int count = 0;
-  std::vector<ff_effect> uploads;  // what a program asks for next
+  std::vector<ff_effect> uploads;  // next uploads of a program
   std::vector<std::uint16_t> plays;
 };
 class FakeVirtualPad final : public VirtualPad {
@@ -144,7 +144,7 @@ TEST_F(StandInTest, LooksLikeThePadAndSendsItsCalibratedStick) {
       << "every packet by itself: no press is missed";
 }
 
-// The first button of a pad that no file knows is taken for the left one.
+// The first button of an unknown pad is assumed to be the left one.
 constexpr std::uint16_t kFirstByPlace = BTN_X;
 
 TEST_F(StandInTest, LooksLikeAnXbox360PadIfAsked) {

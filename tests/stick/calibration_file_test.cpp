@@ -41,7 +41,7 @@ CalibrationFile full_file() {
   return file;
 }
 
-// By hand; keys that are left out keep their defaults.
+// A file written by hand; missing keys keep their defaults.
 TEST(CalibrationFile, EveryKeyIsReadAndAnEmptyFileGivesTheDefaults) {
   EXPECT_EQ(parsed(""), CalibrationFile());
   CalibrationFile expected = full_file();

@@ -312,8 +312,8 @@ TEST(CalibrationImport, CountsOfAKernelDriverAreRefusedForAHidrawPad) {
             "(/dev/input/event...)");
 }
 
-// Valid texts with a few bytes changed, cut out or doubled must not crash the import. What it
-// accepts can be saved.
+// Valid texts with a few bytes changed, cut out or doubled must not crash the import. Accepted
+// calibrations can be saved.
 TEST(CalibrationImport, DamagedTextsDoNotCrash) {
   const Pad pads[] = {pad_of(0, 255), pad_of(-32768, 32767)};
   const std::string seeds[] = {

@@ -1,4 +1,4 @@
-// Recordings by careless hands: what a calibration must not blame on the stick.
+// Recordings by careless hands, which a calibration must not blame on the stick.
 #include <gtest/gtest.h>
 
 #include <array>
@@ -118,8 +118,8 @@ class CarelessHand {
     }
     rest(0.8);
   }
-  // A hand that touches the stick moves it: a slow drift by 1.2 % (3 % of a thumb that plays with
-  // it), time constant 2 s (0.4 s).
+  // A hand that touches the stick moves it: a drift of 1.2 % with time constant 2 s, or 3 % and 0.4
+  // s for a thumb that plays with it.
   std::vector<vec2> shaken() {
     std::vector<vec2> path = moves_.path();
     const bool plays = habit_ == Habit::rests_a_thumb;
@@ -143,8 +143,8 @@ class CarelessHand {
   std::vector<made::Stretch> touched_;
 };
 
-// Whether what a file would take over is wrong for the stick: its rest walks, or its full
-// deflection comes far before its rim, or not at all.
+// True if a saved calibration would be wrong: the stick walks at rest, or its full deflection is
+// reached far before its rim, or never.
 bool is_wrong(const MadeStick& stick, const StickAdvice& advice) {
   if (!advice.has_centre || advice.verdict == Verdict::unknown) return false;
   const StickCalibration& c = advice.calibration;
@@ -156,7 +156,7 @@ bool is_wrong(const MadeStick& stick, const StickAdvice& advice) {
     const vec2 to = radius * vec2(std::cos(angle), std::sin(angle));
     if (glm::length(stick_position(c, stick.centre + to)) < 0.9) return true;
   }
-  // A range of which a fifth is missing is full too early.
+  // If a fifth of the range is missing, full deflection comes too early.
   return c.outer < 0.8 || c.x.max < 0.85 * (stick.centre.x + gate_radius(stick, 0.0));
 }
 
@@ -174,7 +174,7 @@ TEST(CarelessHands, OfSixtyRecordingsAtMostOneGivesAWrongFileUnwarned) {
       const bool is_wrong_now = is_wrong(stick, advice);
       wrong += is_wrong_now;
       unwarned += is_wrong_now && !is_warned(advice);
-      // No stick of these is to be replaced but by a warning to measure again.
+      // None of these sticks gets the verdict "replace" without a warning to measure again.
       if (advice.verdict == Verdict::replace) {
         EXPECT_TRUE(is_warned(advice)) << habit << " " << k << " " << advice.reason;
       }

@@ -68,7 +68,7 @@ TEST(CalibrationGuide, BothSticksMayBeMovedAtOnce) {
   EXPECT_EQ(hand.guide.step(), GuideStep::turn);
 }
 
-// Noisy, off its middle; one that reaches less than half of the range.
+// A noisy stick with a shifted centre, and one that reaches less than half of the range.
 TEST(CalibrationGuide, AWornStickCompletesEveryStep) {
   for (const auto& [sigma, centre, reach] :
        {std::tuple(0.03, vec2(-0.15, 0.12), 0.75), {0.01, vec2(0.06, -0.05), 0.36}}) {

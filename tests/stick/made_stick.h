@@ -51,7 +51,7 @@ struct MadeStick {
   vec2 sigma{0.0};          // Gaussian, of each report
   double hysteresis = 0.0;  // it rests half of this towards the side of the release
   vec2 drift_per_s{0.0};    // of everything; `centre` is true in the middle of the time
-  double creep = 0.0;       // this far off right after a release, gone exponentially in 0.3 s
+  double creep = 0.0;       // offset after a release, decays with time constant 0.3 s
   double wander = 0.0;      // random walk of everything: standard deviation after one second
   Gate gate = Gate::circle;
   double reach_x = 1.0, reach_y = 1.0;      // of the gate about `centre`; circle: reach_x
@@ -63,7 +63,7 @@ struct MadeStick {
   // Faults. Times are drawn from the seed.
   double roam = 0.0, roam_s = 1.0;  // moves untouched: standard deviation and time constant
   double displaced = 0.0;           // rests this far off its home ...
-  int displaced_times = 0;          // ... after so many of the first 12 releases
+  int displaced_times = 0;          // ... after this number of the first 12 releases
   int drop_outs = 0;                // the contact is lost: an axis shows its end
   double drop_out_s = 0.04;         // each lasts 0.5 to 1.5 times this long
   int freezes = 0;                  // an axis, or both, keep a value while the stick moves
@@ -113,7 +113,7 @@ inline double true_circularity_error(const MadeStick& stick) {
 class MadeMoves {
  public:
   explicit MadeMoves(const MadeStick& stick) : stick_(stick), random_(stick.seed * 7919u + 1u) {
-    // From which side the stick was released before the recording began is random.
+    // The side of the last release before the recording is random.
     home_ = home_after(random_.within(-kPi, kPi));
     at_ = home_;
   }
@@ -202,12 +202,12 @@ inline double quantised(double position, int bits) {
   return (std::round((clamped + 1.0) * half) - half) / half;
 }
 
-// From one report to a later one, of a path.
+// An interval of reports of a path.
 struct Stretch {
   std::size_t first = 0, last = 0;
 };
 
-// Stretches at random places that `fits` accepts, apart from each other; fewer if there is no room.
+// Intervals at random places that `fits` accepts, apart from each other; fewer if they do not fit.
 template <typename Fits>
 std::vector<Stretch> stretches(Chance& random, std::size_t size, double rate_hz, int count,
                                double least_s, double most_s, const Fits& fits) {
@@ -227,7 +227,7 @@ std::vector<Stretch> stretches(Chance& random, std::size_t size, double rate_hz,
   return found;
 }
 
-// How far an axis is from where it froze, when it is free again.
+// Distance of each axis from its frozen value when it is free again.
 inline vec2 behind(const std::vector<vec2>& path, const Stretch& s) {
   return glm::abs(path[std::min(s.last + 1, path.size() - 1)] - path[s.first - 1]);
 }
@@ -238,7 +238,7 @@ inline vec2 behind(const std::vector<vec2>& path, const Stretch& s) {
 inline StickTrack reported(const MadeStick& stick, std::vector<vec2> path) {
   Chance random(stick.seed), faults(stick.seed * 31u + 5u);
   const double interval_ns = 1e9 / stick.rate_hz;
-  // A freeze shows if the axis moved on meanwhile, and something else moved, too.
+  // A freeze is visible only if the axis moved on and another one moved as well.
   const auto freezes = made::stretches(
       faults, path.size(), stick.rate_hz, stick.freezes, stick.freeze_s, 1.3 * stick.freeze_s,
       [&](const made::Stretch& s) {

@@ -11,14 +11,14 @@ namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
 
-// Where a thumb is that pushes forward in 100 ms, as smoothly as people do (minimum jerk).
+// Deflection of a stick that is pushed forward in 100 ms by minimum jerk, like people's movements.
 double pushed(double time_s) {
   const double u = std::clamp(time_s / 0.1, 0.0, 1.0);
   return u * u * u * (10.0 + u * (6.0 * u - 15.0));
 }
 
-// Reports of a pad that sends every `report_ms` what it measured every `value_ms`, for a second in
-// which the stick is pushed twice and held in between.
+// Counts for one second of a pad that reports every `report_ms` and measures every `value_ms`; the
+// stick is pushed twice and held in between.
 NewValueCount counted(int report_ms, int value_ms) {
   NewValueCount count;
   for (int ms = 0; ms < 1000; ms += report_ms) {

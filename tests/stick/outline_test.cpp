@@ -250,8 +250,8 @@ TEST(Outline, AWeakSectorIsItsWorstDirection) {
   }
 }
 
-// The picture's lowest bar stands at the arrow and is the number beside it, also of a stick whose
-// centre is off the middle.
+// The picture's lowest bar is at the arrow and has the number beside it, also for a stick with a
+// shifted centre.
 TEST(Outline, TheLeastReachByDirectionIsThatOfTheWorstDirection) {
   for (std::uint32_t seed = 1; seed <= 12; ++seed) {
     Draw draw(seed);

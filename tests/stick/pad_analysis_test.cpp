@@ -123,7 +123,7 @@ TEST(StickAdvice, OneReleaseAssumesAHysteresisAndSaysSo) {
   EXPECT_NE(advice.reason.find("assumed"), std::string::npos) << advice.reason;
 }
 
-// The reason's number is that of the picture and the table: the worst direction's, not that of the
+// The reason has the same number as picture and table: the reach of the worst direction, not of the
 // side next to it.
 TEST(StickAdvice, TheReasonNamesTheWorstDirectionsReach) {
   StickStatistics s = measured();
@@ -136,7 +136,7 @@ TEST(StickAdvice, TheReasonNamesTheWorstDirectionsReach) {
             std::string::npos)
       << advice.reason;
   EXPECT_EQ(advice.reason.find("0.76"), std::string::npos) << advice.reason;
-  // A good stick's number likewise.
+  // The same for a good stick.
   s = measured();
   s.outline.radius[70] = 0.85;
   advice = advice_for(s);
@@ -323,7 +323,7 @@ class RecordedSticks : public testing::Test {
   void SetUp() override { GAITPAD_NEEDS(kPadRecordings); }
 };
 
-// Both sticks saturate in both axes and are round at the corners. Computed from the greatest radius
+// Both sticks saturate on both axes and are round at the corners. Computed from the greatest radius
 // of all reports in each bin, their circularity errors are 8.5 and 7.4 %.
 TEST_F(RecordedSticks, OutlineOfARealDualSense) {
   for (const std::size_t side : {0, 1}) {
@@ -340,8 +340,8 @@ TEST_F(RecordedSticks, OutlineOfARealDualSense) {
   }
 }
 
-// The zones are Sony's, and come from the recording in which the stick is turned, alone and
-// together with the one in which it rests.
+// Three sets of zones: Sony's, from the recording in which the stick is turned, and from both
+// recordings.
 TEST_F(RecordedSticks, RestNeverWalksWithTheZonesOfTheRecordingsThatTurn) {
   constexpr const char* kLeft = "dualsense_usb_left_stick.hid";
   constexpr const char* kRight = "dualsense_usb_right_stick.hid";

@@ -200,8 +200,8 @@ TEST(RestStatistics, OneReleaseGivesNoHysteresis) {
   expect_centre(stick, s, stick.centre);
 }
 
-// Between two tracks (two recordings, or the pad was unplugged) nobody needs to have touched the
-// stick.
+// Between two tracks (two recordings, or the pad was unplugged) the stick may not have been
+// touched.
 TEST(RestStatistics, RestsOfSeveralTracksGiveHysteresisOnlyAfterARelease) {
   MadeStick stick;
   stick.sigma = vec2(0.003);
@@ -234,7 +234,7 @@ TEST(RestStatistics, WanderHidesInNoReleaseHoweverSlowItIs) {
     for (const double roam_s : {1.0, 3.0, 5.0}) {
       stick.roam_s = roam_s;
       stick.roam = 0.06;
-      // In a second a stick with this spread and time constant moves by 0.06 sqrt(2 / tau) at most.
+      // A stick with this spread and time constant moves by at most 0.06 sqrt(2 / tau) in a second.
       const double wander = statistics_of(stick, made_session(stick)).wander;
       EXPECT_GT(wander, 0.4 * 0.06 * std::sqrt(2.0 / roam_s)) << seed << " " << roam_s;
       EXPECT_LT(wander, 2.5 * 0.06 * std::sqrt(2.0 / roam_s)) << seed << " " << roam_s;
@@ -257,7 +257,7 @@ TEST(RestStatistics, DisplacedRestsAreCounted) {
   EXPECT_GE(found, 8);
 }
 
-// Of twelve releases, the last one at the end of the recording, two are displaced.
+// Two of twelve releases are displaced; the last release ends the recording.
 TEST(RestStatistics, TheLastHandsOffTimeCountsToo) {
   for (std::uint32_t seed = 1; seed <= 40; ++seed) {
     MadeStick stick = usual_stick(seed);

@@ -79,7 +79,7 @@ TEST(StickStatistics, AHundredThousandSamplesTakeATenthOfASecondOrSo) {
     moves.turn(1.0);
   }
   const StickTrack track = reported(stick, moves.path());
-  // Of the processor, however busy it is: 0.06 s without sanitizers.
+  // Processor time, independent of other load: 0.06 s without sanitizers.
   const std::clock_t begin = std::clock();
   statistics_of(stick, track);
   EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 3.0);

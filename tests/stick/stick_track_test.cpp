@@ -92,7 +92,7 @@ TEST(StickTrack, UnpluggingEndsATrack) {
   tracker.add_report(report_at(1, {1, 0, 0, 0, 0}));
   tracker.cut();
   EXPECT_EQ(tracker.state().axis[kLeftX], PadState{}.axis[kLeftX]);
-  tracker.cut();  // cutting twice is cutting once
+  tracker.cut();  // a second cut has no effect
   tracker.add_report(report_at(2, {1, 0, 0, 0, 0}));
   tracker.add_report(report_at(3, {1, 0, 0, 0, 0}));
   ASSERT_EQ(tracker.tracks().stick[0].size(), 2u);
@@ -231,7 +231,7 @@ TEST(ReportStatistics, JumpsOfSingleReportsAreToldFromLongerOnes) {
     for (const int reports : {1, 3}) {
       stick.spike_reports = reports;
       const StickStatistics s = statistics_of(stick, made_session(stick));
-      // Longer ones that stay at one place are drop-outs, too.
+      // Longer ones that stay at one place also count as drop-outs.
       const std::int64_t longer = s.long_jumps + s.drop_outs;
       EXPECT_GT(s.jumps, 8) << name_of(stick);
       EXPECT_TRUE(reports == 1 ? longer <= 2 : longer >= 5) << longer << " " << name_of(stick);

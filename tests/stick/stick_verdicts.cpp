@@ -1,10 +1,9 @@
-// Judges made sticks, healthy and faulty, whose truth is known. Prints tables in Markdown: the
-// verdicts of each kind, what the calibrated stick then does untouched and at full deflection, and
-// the errors of the numbers.
+// Judges simulated sticks, healthy and faulty, with known truth. Prints tables in Markdown: the
+// verdicts of each kind, the calibrated stick's output untouched and at full deflection, and the
+// errors of the numbers.
 //   stick_verdicts [STICKS OF EACH KIND] [KIND]    default: 40, all; with KIND a line a stick
-// Every fourth stick is on any pad: 8 to 16 bits, 25 to 8,000 Hz as far as the fault can be seen
-// there, jitter, losses, changes only.
-// Exit status 1: a stick was not judged as it must be.
+// Every fourth stick is on a random pad: 8 to 16 bits, 25 to 8,000 Hz if the fault is visible at
+// that rate, jitter, losses, changes only. Exit status 1: a stick got a wrong verdict.
 #include <cstdio>
 #include <cstdlib>
 #include <iterator>
@@ -24,7 +23,7 @@ namespace {
 
 // ---- The kinds
 
-// What a person must be told, or must see of the calibrated stick.
+// The required verdict or behaviour of the calibrated stick.
 enum class Must {
   be_good,
   pass,
@@ -44,7 +43,7 @@ struct Kind {
   const char* name;
   Must must;
   void (*make)(Draw&, MadeStick&);
-  double least_hz = 25.0;  // of any pad: slower ones do not show the fault, or not the whole rim
+  double least_hz = 25.0;  // lowest report rate that shows the fault and the whole rim
 };
 
 // The stick of the tables: 12 bits, 250 reports a second.
@@ -204,7 +203,7 @@ Untouched untouched(MadeStick stick, const StickCalibration& calibration) {
   });
   if (stays) return found;
   Simulation simulation = simulation_with(calibration);
-  // A pad counts from when its stick was at rest.
+  // A pad counts only after its stick was at rest.
   simulation.step(
       std::vector<Report>{word_report(vec2(calibration.x.centre, calibration.y.centre))});
   std::size_t next = 0;
@@ -250,8 +249,8 @@ void add_errors(const MadeStick& stick, const StickStatistics& s, Errors& errors
         std::fabs(stick.centre.y - *s.min_y - gate_radius(stick, -0.5 * kPi)));
 }
 
-// What a stick does to a person whose calibration is that of a sound stick of its size: the truth
-// that the verdict is compared with.
+// The behaviour of a stick with the calibration of a sound stick of its size: the truth for the
+// verdict.
 enum class Truth { sound, walks, misses, jumps, slow };
 constexpr const char* kTruthNames[] = {"nothing", "walks untouched", "misses a direction", "jumps",
                                        "reports too slowly to tell"};

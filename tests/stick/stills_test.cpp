@@ -174,7 +174,8 @@ TEST(HandsOffTime, BeginsAfterTheReleaseHasSettledAndEndsWithTheNextPush) {
     }
     moves.push(0.0);
     const Stills found = stills_of(stick, moves);
-    // Of 9 s: 0.3 s of settling after each release, 0.25 s or less before a push, blocks of 0.1 s.
+    // 9 s less 0.3 s of settling after each release and up to 0.25 s before a push, in blocks of
+    // 0.1 s.
     ASSERT_EQ(found.hands_off.size(), 5u) << name_of(stick);
     EXPECT_LT(seconds_of(found.hands_off), 9.0 - 4 * 0.25) << name_of(stick);
     EXPECT_GT(seconds_of(found.hands_off), 9.0 - 4 * 0.3 - 5 * 0.35) << name_of(stick);

@@ -7,14 +7,14 @@
 namespace gaitpad {
 namespace {
 
-// Of a sound stick: its inner zone is 0.1 raw.
+// The calibration of a sound stick: its inner zone is 0.1 raw.
 StickCalibration sound_calibration() {
   StickCalibration c;
   c.inner = 0.1;
   return c;
 }
 
-// How often a stick is said to have moved untouched.
+// Number of warnings that a stick moved untouched.
 int warnings(const StickTrack& track) {
   const StickCalibration c = sound_calibration();
   UntouchedWatch watch;

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Writes the tables of docs/calibration.md: made sticks whose faults are known, and their verdicts.
+"""Writes the tables of docs/calibration.md: verdicts of simulated sticks with known faults.
 
   verdict_table.py build/tests/stick_verdicts [STICKS OF EACH KIND]
 """

@@ -1,4 +1,4 @@
-// A family of strides keeps what it promises: read through forward kinematics, number by number.
+// Checks the promises of a family of strides by forward kinematics of its numbers.
 #include "gaitpad/clean_strides.h"
 
 #include <gtest/gtest.h>
@@ -28,8 +28,7 @@ std::vector<double> numbers_of(const StrideFamily& family) {
   return numbers;
 }
 
-// A leg of a cell by its angles alone, over the path: x and z from the table's frame, y over the
-// floor.
+// A leg's pose from a cell's angles: x and z in the table's frame, y over the floor.
 LegPose pose_in(const GaitCycle& cycle, const StrideCell& cell, int side) {
   const StrideFamily& family = *cycle.strides;
   LegAngles angles = family.stand_rad[side];
@@ -47,7 +46,7 @@ StrideCell sample_of(const StrideTable& table, int i) {
   return mixed(mixed(knot(i - 1), knot(i + 1), 1.0 / 6, 1.0 / 6), knot(i), 1.0, 4.0 / 6);
 }
 
-// A phase of a foot's own cycle, which begins at its strike.
+// Phases of a foot's own cycle, which begins at its strike.
 struct Stance {
   double own, roll, support;
 };
@@ -156,7 +155,7 @@ TEST(StrideFamily, ItsSplinesGoThroughTheSamplesThatTheyAreMadeFor) {
   for (int i = 0; i < kCycleSamples; ++i) {
     auto* number = reinterpret_cast<double*>(&samples[i]);
     for (std::size_t n = 0; n < sizeof(StrideCell) / sizeof(double); ++n)
-      number[n] = std::sin(1.0 + i * i + 3.0 * n);  // as rough as samples can be
+      number[n] = std::sin(1.0 + i * i + 3.0 * n);  // as rough as possible
   }
   std::vector<StrideTable> tables(kStrideRatios);
   for (StrideTable& table : tables) table.knot = knots_through(samples);
@@ -218,7 +217,7 @@ TEST(StrideFamily, KeepsTheBuiltInWalksJoints) {
   const GaitCycle cycle = clean_cycle(procedural_gait());
   const StrideTable own = cycle.strides->table[static_cast<std::size_t>(1.0 / kRatioStep + 0.5)];
   ASSERT_NEAR(own.stride_m, cycle.stride_m, 1e-12);
-  // Root mean square change of an angle, the data read a little later or earlier.
+  // Root mean square change of an angle; the data may be shifted in phase.
   const auto change = [&](int side, int joint, double shift) {
     double squares = 0.0;
     for (int i = 0; i < kCycleSamples; ++i) {
@@ -267,8 +266,8 @@ TEST(StrideFamily, IsSymmetricWhereTheDataAre) {
   }
 }
 
-// Half of a symmetric stride is solved; all of it, of a walk that is hardly uneven, has the same
-// answer. Equal cycles have the same strides, bit by bit.
+// A symmetric stride, of which half is solved, and a slightly uneven one, which is solved whole,
+// have nearly the same solution. Equal cycles have bit-identical strides.
 TEST(StrideFamily, OfEqualAndOfNearlyEqualCyclesIsTheSame) {
   GaitCycle uneven = procedural_gait();
   uneven.samples[3].pelvis_m.x += 1e-8;

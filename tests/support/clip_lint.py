@@ -18,8 +18,8 @@ import numpy as np
 from support.glb import Glb, world
 
 SIDES = ("left", "right")
-CLOSURE_DEG, SEAM_TIMES, SPEED_PERCENT, SLIDE_MM = 1.0, 1.05, 1.0, 1.0  # what is asked of a clip
-UNSTEADY_SHARE = 0.4  # of the clip: the loop is cut behind it
+CLOSURE_DEG, SEAM_TIMES, SPEED_PERCENT, SLIDE_MM = 1.0, 1.05, 1.0, 1.0  # bounds of a clip
+UNSTEADY_SHARE = 0.4  # of the clip: the loop is cut after it
 MOST_STRIDES = 4
 
 
@@ -95,7 +95,7 @@ class Clip:
             rates_on = [*rates, velocity(keys[b], keys[b + 1])]
             inside = max(np.linalg.norm(q - p) for p, q in zip(rates_on, rates_on[1:]))
             seam = np.linalg.norm(rates[0] - rates[-1])
-            if seam * self.rate_hz > 1.0:  # deg/s: below, nobody sees it
+            if seam * self.rate_hz > 1.0:  # deg/s: less is invisible
                 worst = max(worst, seam / max(inside, 1e-9))
         return worst
 

@@ -12,8 +12,8 @@ PANELS = ("hip, degrees", "knee, degrees", "ankle, degrees", "pelvis, mm")
 
 
 def draw_curves(rows, path):
-    """A line a clip: source dashed, walk solid, over one stride: flexion of hip, knee, ankle; height of the hips about
-    its mean."""
+    """One line per clip, source dashed, walk solid, over one stride: flexion of hip, knee, ankle; height of the hips
+    about its mean."""
     figure = Figure(figsize=(12.5, 0.55 + 2.15 * len(rows)), facecolor="white", layout="constrained")
     grid = figure.subplots(len(rows), 4, sharex=True, squeeze=False)
     for panels, row in zip(grid, rows):
@@ -65,7 +65,7 @@ def bones(stride, parents, phase):
 
 
 def draw_sheet(rows, path):
-    """A line a clip: source (light) and walk beside it at eight phases."""
+    """One line per clip: source (light) and walk beside it at eight phases."""
     columns = 2 if len(rows) > 6 else 1
     lines = -(-len(rows) // columns)
     figure = Figure(figsize=(13 * columns, 1.85 * lines), facecolor="white", layout="constrained")

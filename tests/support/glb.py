@@ -1,5 +1,4 @@
-"""Binary glTF as a second pair of eyes sees it: reader and forward kinematics. Shares no code with the
-program that writes it."""
+"""An independent reader of binary glTF with forward kinematics. Shares no code with the program that writes it."""
 import json
 import struct
 

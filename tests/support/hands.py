@@ -30,7 +30,7 @@ class Hand:
             self.hold(1 / self.rate_hz)
 
     def push(self, angle, held_s, rest_s):
-        """The ways there and back count as held and as rest."""
+        """The movement there counts as held time, the movement back as rest."""
         self.go(math.cos(angle), math.sin(angle))
         self.hold(held_s - self.thumb_s)
         self.go(0.0, 0.0)

@@ -1,4 +1,4 @@
-"""The independent judge of `gaitpad replay --out DIR`: measures every bound that can be seen from the exported files."""
+"""The independent judge of `gaitpad replay --out DIR`: measures every bound that the exported files show."""
 import functools
 
 import numpy as np
@@ -13,7 +13,7 @@ HARMONICS = 10
 
 
 class Check:
-    """One line of the table. ok is None where there is nothing to judge (a figure for the reader)."""
+    """One line of the table. ok is None if the figure has no bound."""
 
     def __init__(self, name, value, bound=None, kind="<=", unit="", note="", low=None):
         self.name, self.value, self.bound, self.kind = name, value, bound, kind
@@ -52,7 +52,7 @@ def worst(values, default=0.0):
 
 
 def runs(mask):
-    """(from, to) of each stretch of True, `to` behind the last."""
+    """(from, to) of each run of True, `to` exclusive."""
     edge = np.diff(np.concatenate([[0], np.asarray(mask, dtype=int), [0]]))
     return list(zip(np.nonzero(edge == 1)[0], np.nonzero(edge == -1)[0]))
 
@@ -186,7 +186,7 @@ def _order_check(stage, swing):
 
 # ---- steps, speed, drift ---------------------------------------------------------------------
 def realised_steps(w, side):
-    """(tick, metres) of each landing of that foot: from where the standing heel last stood."""
+    """(tick, metres) of each landing of that foot: from the last place of the standing heel."""
     result = []
     standing = 1 - side
     planted = np.nonzero(w.col[f"{SIDES[standing]}_heel_planted"])[0]

@@ -1,4 +1,4 @@
-"""What pages name in backticks, and whether the sources or the program's help have it."""
+"""Finds names in backticks on pages and checks that the sources or the program's help have them."""
 import functools
 import pathlib
 import re
@@ -9,10 +9,10 @@ SOURCE_ROOTS = ("src", "drivers", "tools", "tests", "config")
 LOOSE = ("CMakeLists.txt", "CMakePresets.json", ".clang-format", ".clang-tidy")
 BINARY = {".png", ".gif", ".bvh", ".hid", ".pyc"}
 SOURCE_FILE = re.compile(r"(?<![\w./~$-])[\w.*-][\w./*-]*\.(?:cpp|h|c|py|sh|toml|md|gd|txt|json|hid|png)(?!\w)")
-ELSEWHERE = re.compile(r"(?<!\w)(?:~|\$\w+)?/[\w./*$~-]+")  # on the reader's machine: ~/.config, /dev, /etc
-PLACEHOLDER = re.compile(r"[A-Z]+|vvvv|pppp")  # what the reader puts in: NAME, FILE
+ELSEWHERE = re.compile(r"(?<!\w)(?:~|\$\w+)?/[\w./*$~-]+")  # paths on the reader's machine: ~/.config, /dev, /etc
+PLACEHOLDER = re.compile(r"[A-Z]+|vvvv|pppp")  # placeholders: NAME, FILE
 
-# Comments by language; what is quoted is kept, because keys and messages are named, too.
+# Comments by language; quoted text is kept, because pages also name keys and messages.
 QUOTED = r'"(?:\\.|[^"\\\n])*"|' + r"'(?:\\.|[^'\\\n])*'"
 COMMENTS = {
     **dict.fromkeys((".cpp", ".h", ".c"), re.compile(QUOTED + r"|(//[^\n]*|/\*.*?\*/)", re.S)),
@@ -21,7 +21,7 @@ COMMENTS = {
 
 
 def spans_of(text):
-    """(what a backtick encloses, the line or table row that it stands in), outside blocks of code."""
+    """(text in backticks, its line or table row), outside blocks of code."""
     text = re.sub(r"^```.*?^```", "", text, flags=re.S | re.M)
     for block in re.split(r"\n(?=[|\-*]|\d+\. |\n)|\n\n", text):
         for span in re.findall(r"`([^`]+)`", block):
@@ -61,7 +61,7 @@ class Sources:
 
     @functools.lru_cache(maxsize=None)
     def members(self, owner):
-        """The words in the braces of that class or namespace, wherever it is opened."""
+        """The words in the braces of that class or namespace, in all files."""
         words = set()
         for opened in re.finditer(rf"\b(?:class|struct|enum|namespace)\s+{owner}\b[^;{{()]*{{", self.everything):
             depth, end = 1, opened.end()
@@ -90,7 +90,7 @@ class Help:
 
 
 class Judge:
-    """Says of a span of a page what of it does not exist."""
+    """Reports the parts of a span that do not exist."""
 
     def __init__(self, program, foreign):
         self.sources, self.help = Sources(), Help(program)
@@ -101,7 +101,7 @@ class Judge:
 
     @staticmethod
     def is_foreign(span, page, foreign):
-        """Whether one of those expressions fits the span, or the page and the span."""
+        """True if one of the expressions matches the span, or the page and the span."""
         told = f"{page.relative_to(ROOT)}: {span}"
         return any(re.fullmatch(name, span) or re.fullmatch(name, told) for name in foreign)
 
@@ -149,7 +149,7 @@ class Judge:
             yield f"no {function}() in the files of its row"
 
     def is_made(self, name):
-        """Files that the program writes or reads: their names stand in its sources."""
+        """Files that the program writes or reads: its sources contain their names."""
         return "/" not in name and any(
             f'{name}"' in text or f'{pathlib.Path(name).stem}"' in text for p, text in self.sources.text.items()
             if p.startswith(("src/", "tools/", "drivers/")))

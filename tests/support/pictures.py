@@ -1,4 +1,4 @@
-"""Pictures as their readers see them."""
+"""Pixels of pictures."""
 import matplotlib.image
 import numpy as np
 

@@ -12,12 +12,12 @@ ROUND = ROOT / "config/traces/round.hid"
 
 
 def has_sanitizers(program):
-    """Such a program takes more time, and memory that AddressSanitizer keeps from being used again."""
+    """A program with sanitizers is slower, and AddressSanitizer delays the reuse of freed memory."""
     return b"__asan_init" in program.read_bytes()
 
 
 def run(program, *arguments, status=0, **options):
-    """To its end, which must have that exit status (None: any)."""
+    """Runs a command to its end and expects that exit status (None: any)."""
     stdin = {} if "input" in options else {"stdin": subprocess.DEVNULL}
     done = subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, check=False,
                           **{**stdin, "timeout": 300, **options})
@@ -27,14 +27,14 @@ def run(program, *arguments, status=0, **options):
 
 
 def call(*command, **options):
-    """What another program prints; it must end well."""
+    """The output of another program, which must succeed."""
     done = subprocess.run([str(c) for c in command], capture_output=True, text=True, check=False, **options)
     assert done.returncode == 0, done.stdout + done.stderr
     return done.stdout
 
 
 def refuse(program, *arguments, says=(), status=1, **options):
-    """It must fail and print nothing but one sentence on stderr, which names each of `says`."""
+    """Expects a failure with only one sentence on stderr that contains each of `says`."""
     done = run(program, *arguments, status=status, **options)
     assert done.stdout == "", f"{arguments}: {done.stdout}"
     if status == 1:
@@ -57,7 +57,7 @@ def started(program, *arguments, **options):
 
 
 def wait_until(condition, most_s=60):
-    """Until condition() is true, which must be before that many seconds are over."""
+    """Waits until condition() is true, at most that number of seconds."""
     deadline = time.monotonic() + most_s
     while not condition():
         assert time.monotonic() < deadline
@@ -65,13 +65,13 @@ def wait_until(condition, most_s=60):
 
 
 def wait_until_recorded(path):
-    """Until the session that records there has written reports."""
+    """Waits until the session that records there has written reports."""
     part = pathlib.Path(f"{path}.part")
     wait_until(lambda: part.exists() and part.read_bytes().count(b"\nE: ") > 20)
 
 
 def wait_until_works(process, seconds=0.5):
-    """Until a started program has used so much processor time."""
+    """Waits until a started program has used that processor time."""
     def used_s():
         fields = pathlib.Path(f"/proc/{process.pid}/stat").read_text().rpartition(")")[2].split()
         return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")

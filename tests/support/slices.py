@@ -12,7 +12,7 @@ NUMBER = int(os.environ.get("GAITPAD_SLICE", "0"))
 
 
 def is_chosen(name, parts):
-    """Whether the thing of that name is in this run's part of `parts`. A name stays in its part when others come or go."""
+    """True if the name is in this run's part of `parts`. A name stays in its part when others are added or removed."""
     return ALL or zlib.crc32(name.encode()) % parts == NUMBER % parts
 
 
@@ -21,12 +21,12 @@ def chosen(items, parts, name=str):
 
 
 def text(parts):
-    """For the test's output: how to repeat it."""
+    """How to repeat the run, for the test's output."""
     return "all (GAITPAD_ALL=1)" if ALL else f"part {NUMBER % parts + 1} of {parts} (GAITPAD_SLICE={NUMBER}; GAITPAD_ALL=1: all)"
 
 
 def need(tool, package):
     """Skips the test where a program or a file is missing. A run of everything fails instead: it leaves nothing out."""
-    import pytest  # scripts without tests choose slices, too
+    import pytest  # scripts without tests also choose slices
     if not shutil.which(tool) and not os.path.exists(tool):
         (pytest.fail if ALL else pytest.skip)(f"{tool} is not here (package {package})")

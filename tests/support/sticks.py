@@ -1,7 +1,6 @@
-"""Recordings of a pad whose sticks are known: where they rest, how far they go, how they tremble.
+"""Recordings of a pad whose sticks are known: centre, range and noise.
 
-A second derivation beside tests/stick/made_stick.h, in other words and with another random source.
-"""
+A second derivation of tests/stick/made_stick.h, written independently and with another random source. """
 import math
 import random
 
@@ -88,7 +87,7 @@ def trace_text(left, right, steps, bits=16, serial="", swap=lambda x, y: (x, y),
     text = traces.device(descriptor(bits), name, ids=f"3 1209 {product:04x}", physical="made", unique=serial)
     for time, place, side in steps:
         axes = [*swap(*left.position(time, place, side)), *right.position(time, place, side)]
-        axes[1], axes[3] = -axes[1], -axes[3]  # HID's y grows towards the thumb's owner
+        axes[1], axes[3] = -axes[1], -axes[3]  # HID's y grows towards the player
         squeeze = round(255 * max(0.0, place[1]))
         data = b"".join(counts(a, bits).to_bytes(bits // 8, "little") for a in axes) + bytes([squeeze, squeeze, 0])
         text += traces.report(time, data)

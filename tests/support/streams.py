@@ -1,4 +1,4 @@
-"""What `gaitpad play --stream` sends: receivers, and its bones worked out from an exported pose.glb."""
+"""Receivers for `gaitpad play --stream`, and the expected bones, computed from an exported pose.glb."""
 import json
 import re
 import select
@@ -12,7 +12,7 @@ import numpy as np
 from support.bvh import matrices_of
 from support.glb import Glb, world
 
-# Unity's names of a humanoid's bones, and which carries each. The one above does where a skeleton lacks that.
+# Unity's names of a humanoid's bones and their parents. If a skeleton lacks the parent, its own parent takes its place.
 PARENTS = {"Hips": None, "Spine": "Hips", "Chest": "Spine", "UpperChest": "Chest", "Neck": "UpperChest", "Head": "Neck"}
 for _side in ("Left", "Right"):
     for _chain in (("Hips", "UpperLeg", "LowerLeg", "Foot", "Toes"), ("UpperChest", "Shoulder", "UpperArm", "LowerArm", "Hand")):
@@ -23,7 +23,7 @@ ARM_JOINTS = {"Shoulder": "Shoulder", "UpperArm": "Arm", "LowerArm": "ForeArm", 
 
 
 def joint_of(bone):
-    """The built-in walk's joint."""
+    """The built-in walk's joint of a bone."""
     for side in ("Left", "Right"):
         part = bone.removeprefix(side)
         if part != bone:
@@ -32,7 +32,7 @@ def joint_of(bone):
 
 
 class Receiver:
-    """Datagrams of one port, received beside the test until it is closed. Port 0: any free one."""
+    """Receives the datagrams of one port in the background until it is closed. Port 0: any free one."""
 
     def __init__(self, port=0, address="127.0.0.1"):
         self._socket = socket.socket(socket.AF_INET6 if ":" in address else socket.AF_INET, socket.SOCK_DGRAM)
@@ -61,7 +61,7 @@ class Receiver:
 
 
 def free_ports(count):
-    """The first of so many neighbouring ports that are free now."""
+    """The first of `count` neighbouring ports that are free now."""
     for first in range(39600, 60000, count):
         sockets = [socket.socket(socket.AF_INET, socket.SOCK_DGRAM) for _ in range(count)]
         try:
@@ -80,7 +80,7 @@ class OscDump:
     """liblo's own receiver, `oscdump`, for one port."""
 
     def __init__(self, port):
-        self._output = tempfile.TemporaryFile("w+")  # a pipe would soon be full, and it would wait
+        self._output = tempfile.TemporaryFile("w+")  # a full pipe would block it
         self._process = subprocess.Popen(["oscdump", "-L", str(port)], stdout=self._output)
 
     def __enter__(self):
@@ -92,7 +92,7 @@ class OscDump:
         self._output.close()
 
     def messages(self):
-        """Ends it. (path, types, values) of each message."""
+        """Ends the receiver and returns (path, types, values) of each message."""
         self._process.terminate()
         self._process.wait(10)
         self._output.seek(0)
@@ -105,7 +105,7 @@ class OscDump:
 
 
 def rotation_of(place):
-    """Of seven numbers, the last four of which are a quaternion x y z w."""
+    """The rotation matrix of seven numbers; the last four are a quaternion x y z w."""
     return matrices_of(np.roll(np.array(place[3:], float), 1))
 
 
@@ -134,7 +134,7 @@ def level(v):
 
 
 class ExportedBones:
-    """The humanoid of a pose.glb: each bone counts from a T pose that is made of the pose in which it is bound."""
+    """The humanoid of a pose.glb: bones are relative to a T pose that is computed from the bind pose."""
 
     def __init__(self, path):
         file = Glb(path)
@@ -162,12 +162,12 @@ class ExportedBones:
             self.t_pose[bone] = to_aim @ facing @ turn[self.index[bone]]
 
     def rotations(self, tick):
-        """By bone, in the world."""
+        """World rotation of each bone."""
         return {bone: self.world[tick, i] @ self.t_pose[bone].T for bone, i in self.index.items()}
 
 
 def hostile(frame, rng):
-    """A datagram: noise, a damaged object, one with a value of another kind, or a sound one with its tick as it was."""
+    """A datagram: noise, a damaged object, one with a value of another kind, or a valid one with its tick unchanged."""
     text = json.dumps(frame)
     kind = rng.integers(6)
     if kind == 0:

@@ -11,7 +11,7 @@ import time
 
 
 class Terminal:
-    """Runs until the block ends; whatever it shows is in `text`."""
+    """Runs until the block ends; `text` is everything that it shows."""
 
     def __init__(self, *command, env=None, rows=24, columns=80):
         self._command = [str(word) for word in command]
@@ -44,7 +44,7 @@ class Terminal:
         while True:
             try:
                 data = os.read(self._master, 4096)
-            except OSError:  # nobody holds the other end any more
+            except OSError:  # the other end is closed
                 return
             with self._more:
                 self.text += data.decode(errors="replace")
@@ -57,7 +57,7 @@ class Terminal:
         fcntl.ioctl(self._slave, termios.TIOCSWINSZ, struct.pack("HHHH", rows, columns, 0, 0))
 
     def wait_for(self, pattern, seconds=20.0, since=0):
-        """The first match of a regular expression in what was shown from that character on."""
+        """The first match of a regular expression in the output after that character."""
         end = time.monotonic() + seconds
         with self._more:
             while True:
@@ -79,7 +79,7 @@ class Terminal:
         return status
 
     def _read_all(self):
-        """What the program wrote comes before what is written now."""
+        """Waits until everything that the program wrote has arrived."""
         os.write(self._slave, b"\0")
         self._more.wait_for(lambda: "\0" in self.text, 10)
         self.text = self.text.replace("\0", "")
@@ -97,10 +97,10 @@ class Terminal:
         self.process.send_signal(signal.SIGCONT)
 
     def is_as_before(self):
-        """The terminal's mode."""
+        """True if the terminal's mode is the one before the program."""
         return termios.tcgetattr(self._slave) == self.mode_before
 
     def is_cooked(self):
-        """Lines and echo, as shells have it."""
+        """True if the terminal has line mode and echo, as in a shell."""
         flags = termios.tcgetattr(self._slave)[3]
         return bool(flags & termios.ECHO) and bool(flags & termios.ICANON)

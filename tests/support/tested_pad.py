@@ -1,4 +1,4 @@
-"""A folder of `gaitpad selftest`, judged anew: its recording must still show each control that the person saw."""
+"""A folder of `gaitpad selftest`, checked again: its recording must still show each control that the person saw."""
 import json
 
 SHOWN = 0.6  # of an axis, all the way is 1
@@ -12,7 +12,7 @@ def shows(row, name):
 
 
 def problems(run, folder):
-    """One sentence for each control that was seen and is not shown any more."""
+    """One sentence for each control that the person saw and the recording no longer shows."""
     report = json.loads((folder / "report.json").read_text())
     lines = run("decode", folder / "controls.hid", "--json").stdout.splitlines()
     rows = [row for row in map(json.loads, lines) if "axes" in row]

@@ -1,4 +1,4 @@
-"""Traces (`.hid`) of made pads, written line by line or from a stick's timeline, and what a trace holds."""
+"""Writes traces (`.hid`) of made pads line by line or from a stick's timeline, and reads traces."""
 import math
 import pathlib
 
@@ -15,7 +15,7 @@ DESCRIPTOR = bytes([
     0xC0])
 # Default calibration of the interface: radial zone, then 0.11 on the sideways axis.
 DEFAULT_INNER, DEFAULT_OUTER, DEFAULT_SIDEWAYS = 0.2, 0.95, 0.11
-# A calibration without zones: what the trace says is what frames.csv shows.
+# A calibration without zones: frames.csv shows the values of the trace.
 EXACT_CALIBRATION = """name = "exact, for tests"
 devices = ["1209:0001"]
 
@@ -32,7 +32,7 @@ outer = 1.0
 
 
 def raw_stick(x, y):
-    """Uncalibrated position that the default calibration turns into (x right, y forward)."""
+    """The raw position that the default calibration maps to (x right, y forward)."""
     x = math.copysign(DEFAULT_SIDEWAYS + (1 - DEFAULT_SIDEWAYS) * abs(x), x) if x else 0.0
     length = math.hypot(x, y)
     if length == 0:
@@ -43,7 +43,7 @@ def raw_stick(x, y):
 
 # ---- lines -----------------------------------------------------------------------------------
 def device(descriptor, name, ids="3 1209 0001", physical="", unique=""):
-    """What a trace says of a pad. ids: bus, vendor and product in hexadecimal."""
+    """The lines of a trace that describe a pad. ids: bus, vendor and product in hexadecimal."""
     lines = [f"R: {len(descriptor)} {bytes(descriptor).hex(' ')}", f"N: {name}"]
     lines += [f"P: {physical}"] if physical else []
     return "\n".join(lines + [f"I: {ids}"] + ([f"U: {unique}"] if unique else [])) + "\n"
@@ -95,7 +95,7 @@ def ramp(start_s, end_s, start, end, step_s=0.01):
 
 # ---- what a trace holds ----------------------------------------------------------------------
 def lines(path, letters):
-    """(letter, the rest) of the lines that begin so."""
+    """(letter, rest) of the lines with these letters."""
     text = pathlib.Path(path).read_text(errors="replace")
     return [(line[0], line[3:]) for line in text.splitlines() if line[1:2] == ":" and line[0] in letters]
 
@@ -113,7 +113,7 @@ def trace_changes(path):
 
 
 def beginning(path, seconds):
-    """The trace up to that moment, without its end."""
+    """The trace up to that time, without its end."""
     kept = [line for line in pathlib.Path(path).read_text().splitlines(keepends=True)
             if line[:2] not in ("E:", "C:", "Q:") or float(line.split()[1]) < seconds]
     return "".join(kept)

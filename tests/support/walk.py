@@ -14,7 +14,7 @@ COLUMNS = (
     "right_toe_planted,left_heel_x_m,left_heel_y_m,left_heel_z_m,left_toe_x_m,left_toe_y_m,left_toe_z_m,"
     "right_heel_x_m,right_heel_y_m,right_heel_z_m,right_toe_x_m,right_toe_y_m,right_toe_z_m,"
     "left_ik_iterations,right_ik_iterations,left_ik_error_m,right_ik_error_m").split(",")
-SETTLE_S = 3.0  # after a change of stick or style the walk counts as steady again
+SETTLE_S = 3.0  # this long after a change of stick or style, the walk counts as steady
 
 
 STAGES, SWINGS = np.array(["idle", "flight", "roll"]), np.array(["none", "left", "right"])
@@ -151,7 +151,7 @@ class Walk:
         return bvhs.second_differences(self.local) * (self.rate / 240.0) ** 2
 
     def cycles(self, side, mask):
-        """(from, to) between neighbouring landings of one foot lying wholly inside the mask."""
+        """(from, to) of neighbouring landings of one foot between which the mask is true."""
         marks = self.landings[side]
         return [(a, b) for a, b in zip(marks[:-1], marks[1:]) if mask[a:b + 1].all()]
 
@@ -159,7 +159,7 @@ class Walk:
         return "procedural" not in str(self.summary["motion"]).lower()
 
     def knee_angles(self, side):
-        """Degrees between thigh and shank, negative where the knee lies behind the hip-ankle line."""
+        """Degrees between thigh and shank, negative if the knee is behind the hip-ankle line."""
         hip, knee, ankle = (self.position[:, j] for j in (self.hip[side], self.knee[side], self.ankle[side]))
         thigh, shank = knee - hip, ankle - knee
         size = np.linalg.norm(np.cross(thigh, shank), axis=-1)

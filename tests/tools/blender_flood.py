@@ -1,10 +1,9 @@
-"""Run by Blender: the add-on hears hostile datagrams, and then one that is sound.
+"""Run by Blender: the add-on receives hostile datagrams, then a valid one.
 
 Usage: blender -b --factory-startup -P blender_flood.py -- ADDON FOLDER
 
-FOLDER holds `datagrams` (length of 4 bytes, bytes) and the sound `frame.json`. Prints what came of them. The socket is
-one that hands them out without waiting: a flood that never ends.
-"""
+FOLDER holds `datagrams` (length of 4 bytes, bytes) and the sound `frame.json`. Prints the result. The fake socket
+returns them without waiting: an endless flood. """
 import importlib.util
 import json
 import math

@@ -1,9 +1,9 @@
-"""Run by Blender: where the joints of each file are at some times, in its own unit, z up, as one line of JSON a file.
+"""Run by Blender: prints the joints' places at some times, in the file's unit, z up, one line of JSON per file.
 
 Usage: blender -b --factory-startup -P blender_joints.py -- FILE...
 
-Debian 12's Blender 3.4 asks numpy and Python for what they no longer have (`numpy.bool`, open mode "U"): given back.
-"""
+Debian 12's Blender 3.4 needs parts that numpy and Python have removed (`numpy.bool`, open mode "U"), so they are
+restored. """
 import builtins
 import json
 import sys

@@ -1,4 +1,5 @@
-"""Run by Blender: the add-on walks one armature by a stream, beside the same walk as an imported animation.
+"""Run by Blender: the add-on moves an armature by a stream, which is compared with the same walk as an imported
+animation.
 
 Usage: blender -b --factory-startup -P blender_live.py -- ADDON pose.glb FRAMES TICKS_PER_S
 
@@ -15,7 +16,7 @@ import time
 
 import numpy
 
-numpy.bool = bool  # Debian 12's Blender 3.4 asks numpy for what it no longer has
+numpy.bool = bool  # Debian 12's Blender 3.4 needs it, but numpy has removed it
 
 import bpy
 import mathutils
@@ -57,7 +58,7 @@ def made():
 
 
 def directions(puppet):
-    """Of its limbs, seen from the armature's own front: x to its left, y up, z forward."""
+    """Directions of its limbs in the armature's frame: x to its left, y up, z forward."""
     bpy.context.view_layer.update()
     back = mathutils.Matrix.Rotation(-FACING, 3, "Z")
     found = {}
@@ -74,7 +75,7 @@ def rotations(armature, names):
 
 
 def degrees_between(one, other):
-    """By the bone's own turn: exact for small angles, too."""
+    """Degrees between bones, from the sine of the half angle, which is also exact for small angles."""
     turn = {name: one[name].rotation_difference(other[name]) for name in one}
     return {name: math.degrees(2 * math.asin(min(1.0, math.hypot(*q[1:])))) for name, q in turn.items()}
 
@@ -134,7 +135,7 @@ for tick, time_s in ticks:  # the key frames: each at its time, counted from the
     show(tick / rate_hz * fps)
     print(json.dumps({"recorded": tick, "degrees": degrees_between(recorded, rotations(animated, bones.values()))}), flush=True)
 
-name = live.name  # no object of Blender's outlives the loading of a file
+name = live.name  # loading a file invalidates all objects of Blender
 bpy.ops.wm.save_as_mainfile(filepath=glb + ".blend")
 bpy.ops.wm.open_mainfile(filepath=glb + ".blend")
 print(json.dumps({"stored": addon.bone_map(bpy.data.objects[name]) == bones}), flush=True)

@@ -1,5 +1,5 @@
-"""tools/blender/gaitpad_live.py: its guesses follow the program's rules, and in Debian's Blender it walks an armature
-as the exported walk goes, pose by pose and as recorded key frames."""
+"""tools/blender/gaitpad_live.py: it guesses bones by the program's rules, and in Debian's Blender it moves an armature
+like the exported walk, pose by pose and as recorded key frames."""
 import ast
 import json
 import math
@@ -28,7 +28,7 @@ DATAGRAMS = 100_000
 
 @pytest.fixture(scope="module")
 def addon():
-    """The file without Blender: its user interface is empty."""
+    """Loads the add-on without Blender, with an empty user interface."""
     blender = types.SimpleNamespace(props=mock.MagicMock(), app=mock.MagicMock(),
                                     types=types.SimpleNamespace(PropertyGroup=object, Operator=object, Panel=object))
     modules = {"bpy": blender, "mathutils": mock.MagicMock()}
@@ -102,11 +102,11 @@ def test_bones_of_usual_armatures_are_found(addon):
 
 
 # --- in Blender -----------------------------------------------------------------------------------------------------
-# Where they point in a T pose: x to the left, y up, z forward.
+# Directions of limbs in a T pose: x to the left, y up, z forward.
 LIMBS = {"LeftUpperLeg": (0, -1, 0), "RightLowerLeg": (0, -1, 0), "LeftLowerLeg": (0, -1, 0), "LeftUpperArm": (1, 0, 0),
          "RightUpperArm": (-1, 0, 0), "RightLowerArm": (-1, 0, 0)}
 
-# Another body, an injury, and where there are captures a skeleton of a hundred joints.
+# Another body, an injury and, if captures are present, a skeleton of a hundred joints.
 OPTIONS = ("--style", "limp_left", "--character", "child", *(("--motion", CLIP) if CLIP.exists() else ()))
 
 
@@ -135,7 +135,7 @@ def test_blender_walks_as_the_exported_walk_does(run, tmp_path):
         assert said and said[-1].startswith('{"port"'), "".join(said)
         start = json.loads(said[-1])
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
-            for datagram in datagrams:  # each when the one before has been looked at, however slow this machine is
+            for datagram in datagrams:  # each after the one before was processed, so a slow machine passes
                 sender.sendto(datagram, ("127.0.0.1", start["port"]))
                 said.append(next(blender.stdout))
         rest = "".join(said) + blender.communicate(timeout=120)[0]
@@ -159,7 +159,7 @@ def test_blender_walks_as_the_exported_walk_does(run, tmp_path):
 
 @pytest.mark.skipif(not shutil.which("blender"), reason="there is no blender (package blender)")
 def test_blender_takes_what_is_sound_of_hundred_thousand_datagrams(run, tmp_path):
-    """Each look at the stream is bounded, whatever comes, and it goes on behind anything malformed."""
+    """Each read of the stream is bounded, and malformed datagrams are skipped."""
     frame = json.loads(streamed(run, tmp_path)[-1])
     rng = np.random.default_rng(34)
     (tmp_path / "datagrams").write_bytes(b"".join(len(d).to_bytes(4, "little") + d

@@ -1,4 +1,4 @@
-"""gaitpad calibrate at a terminal, a recording being the pad that a hand moves through the steps."""
+"""gaitpad calibrate at a terminal; its pad is a recording of a hand that follows the steps."""
 import math
 import os
 import signal
@@ -64,7 +64,7 @@ def at_terminal(program, environment):
 
 @pytest.fixture
 def files(tmp_path):
-    """What the calibrations of this user are now: name -> text."""
+    """A function that returns this user's calibrations: name -> text."""
     return lambda: {path.name: path.read_text() for path in (tmp_path / "gaitpad/calibration").glob("*")}
 
 
@@ -166,7 +166,7 @@ def test_keys_skip_repeat_and_go_back(at_terminal, round_trace):
         at = terminal.wait_for("Step 2 of 7", since=at).end()
         terminal.press("s")
         at = terminal.wait_for("Step 3 of 7", since=at).end()
-        terminal.press("\x1b[B")  # an arrow is no b
+        terminal.press("\x1b[B")  # an arrow does not count as `b`
         time.sleep(0.2)
         assert "Step 2" not in terminal.text[at:]
         terminal.press("b")

@@ -28,7 +28,7 @@ class Turning(Stick):
 
 
 class User:
-    """Somebody with a folder, a pad's recordings and calibrations of their own."""
+    """A user with an own folder, recordings of a pad and calibrations."""
 
     def __init__(self, run, folder):
         self._run, self.folder, self.own = run, folder, folder / "config/gaitpad/calibration"
@@ -115,7 +115,7 @@ def test_what_was_not_seen_is_neither_printed_nor_stored(user):
 
 
 def test_both_sticks_of_a_pad_report_at_one_rate(user):
-    """Of a pad that reports changes only, every 8 ms, the right stick rests while the left one moves."""
+    """A pad reports only changes, every 8 ms; the right stick rests while the left one moves."""
     sticks = user.calibrated("--trace", ROUND, status=1)["sticks"]  # its left stick is not turned round
     assert sticks["left"]["rate_hz"] == pytest.approx(125, abs=1)
     for key in ("rate_hz", "jitter_ms", "gaps"):
@@ -165,7 +165,7 @@ def test_play_and_record_use_it_and_the_recording_carries_it(user):
     # Nothing else is needed: another user's replay gives the same poses.
     replayed = user.run("replay", out, "--json", environment={"XDG_CONFIG_HOME": "/nonexistent"})
     assert json.loads(replayed.stdout)["pose_hash"] == json.loads(done.stdout)["pose_hash"]
-    # A replay hangs on no user's folder.
+    # A replay does not depend on a user's folder.
     own = user.run("replay", trace, "--json").stdout
     assert own == user.run("replay", trace, "--json", environment={"XDG_CONFIG_HOME": "/nonexistent"}).stdout
 
@@ -189,7 +189,7 @@ def test_checks_todays_stick_against_its_file(user):
     told = user.calibrated("--trace", moved, "--check", user.written())["changes"]
     assert any("left" in c and "centre" in c for c in told), told
     assert not any("right" in c for c in told), told
-    # A pad that is only laid down is enough to see that a centre has moved.
+    # A recording of a resting pad is enough to see that a centre has moved.
     resting = [(i / 250, (0, 0), (0, 0)) for i in range(1000)]
     laid = user.trace(Stick(centre=(0.08, 0)), steps=resting, serial=SERIAL)
     assert any("left" in c and "centre" in c for c in user.calibrated("--trace", laid, "--check", user.written())["changes"])
@@ -215,7 +215,7 @@ def test_prints_and_writes_where_it_is_told(user):
     done = user.run("calibrate", "--trace", trace, "--out", "-")
     assert tomllib.loads(done.stdout)["unique_id"] == SERIAL
     assert not user.own.exists()
-    (user.folder / "-").write_text("left = nonsense\n")  # a file of that name is no business of `--out -`
+    (user.folder / "-").write_text("left = nonsense\n")  # `--out -` must not touch a file of that name
     again = user.run("calibrate", "--trace", trace, "--out", "-")
     assert (again.stdout, again.stderr) == (done.stdout, "")
     out = user.folder / "mine.toml"

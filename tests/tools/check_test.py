@@ -18,7 +18,7 @@ RECORDINGS = 8
 
 
 def tap(text):
-    """[(is met, path, {message, details} or None)] of a plan of that many."""
+    """[(is met, path, {message, details} or None)] of a TAP plan of `count`."""
     lines = text.splitlines()
     assert lines[0] == "TAP version 14" and re.fullmatch(r"1\.\.\d+", lines[1])
     results = []
@@ -158,7 +158,7 @@ def replayed(run, trace, motion, out):
 
 
 def hash_until(run, trace, tick):
-    """Of the first ticks alone, by an end in the recording."""
+    """A recording of only the first ticks, with an end."""
     cut = trace.with_name("cut.hid")
     lines = [line for line in trace.read_text().splitlines() if not line.startswith("Q:")]
     cut.write_text("\n".join(lines) + f"\nQ: {6.0:013.6f} {tick}\n")
@@ -219,7 +219,7 @@ def test_numbers_are_those_of_the_files_of_a_replay(one, run, tmp_path):
 
 # ---- files that changed ----------------------------------------------------------------------
 def world(run, folder):
-    """A recording with an expectation that depends on a file of each kind, in a configuration of its own."""
+    """A recording with an expectation that depends on one file of each kind, in an own configuration."""
     shutil.copytree(ROOT / "config", folder / "config")
     own = folder / "set"
     own.mkdir()

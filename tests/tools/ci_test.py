@@ -1,4 +1,4 @@
-"""The examples of docs/ci.md are run as they stand there, on a folder `walks` of four recordings."""
+"""Runs the examples of docs/ci.md unchanged on a folder `walks` of four recordings."""
 import os
 import re
 import shutil
@@ -14,7 +14,7 @@ PAGE = (ROOT / "docs/ci.md").read_text()
 
 
 def block(language, word):
-    """The block of that language in which the word stands."""
+    """The code block of that language that contains the word."""
     return next(text for text in re.findall(rf"^```{language}\n(.*?)^```", PAGE, flags=re.S | re.M) if word in text)
 
 
@@ -91,7 +91,7 @@ def test_gnu_parallel(shell, walks):
 
 
 def test_the_slurm_script(shell, walks):
-    """What sbatch sets for each task is set here."""
+    """The test sets the variables that sbatch sets for each task."""
     script = block("bash", "#SBATCH")
     first, last = map(int, re.search(r"--array=(\d+)-(\d+)", script).groups())
     count = {"SLURM_ARRAY_TASK_COUNT": str(last - first + 1),

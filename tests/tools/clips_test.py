@@ -25,7 +25,7 @@ def flip(clip):
 
 
 def bend(clip, degrees):
-    """Turns a joint within the loop by so many degrees, an array over its frames."""
+    """Turns a joint within the loop by these degrees, an array over its frames."""
     a, b = clip.loop
     keys = clip.turns[max(clip.turns)]
     for i, half in zip(range(a, b + 1), np.radians(degrees) / 2):
@@ -34,7 +34,7 @@ def bend(clip, degrees):
 
 
 def share(clip):
-    """Of the loop that is over, 0 to 1."""
+    """Elapsed share of the loop, 0 to 1."""
     a, b = clip.loop
     return np.linspace(0, 1, b - a + 1)
 
@@ -44,7 +44,7 @@ def break_the_loop(clip):
 
 
 def jerk_at_the_seam(clip):
-    """A bow: smooth within the loop, and as before at both ends, where its velocity turns round."""
+    """A parabola: smooth within the loop and unchanged at both ends, where its velocity reverses."""
     bend(clip, 160 * share(clip) * (1 - share(clip)))
 
 

@@ -1,4 +1,4 @@
-"""gaitpad doctor: says what it found, ends by it, and changes nothing unasked."""
+"""gaitpad doctor: its findings, its exit status, and that it changes nothing unasked."""
 import json
 import os
 import pathlib

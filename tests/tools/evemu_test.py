@@ -1,5 +1,5 @@
-"""evemu recordings: what gaitpad writes, evemu's own library reads; what that library writes, gaitpad reads. Without
-the library the same forms are read in tests/hid/evemu_test.cpp."""
+"""evemu recordings: evemu's library reads gaitpad's files, and gaitpad reads the library's. Without the library the
+same forms are read in tests/hid/evemu_test.cpp."""
 import ctypes
 import json
 import os

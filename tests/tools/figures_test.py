@@ -1,5 +1,5 @@
-"""gaitpad figures: its files, the contract of CSV and claims.json, and several claims reckoned again
-from the CSVs alone."""
+"""gaitpad figures: its files, the contract of CSV and claims.json, and several claims computed again from only the
+CSVs."""
 import csv
 import json
 import math
@@ -53,7 +53,7 @@ def rms(a, b):
 
 
 class Made:
-    """A folder that `gaitpad figures` filled, and what is in it."""
+    """A folder with the output of `gaitpad figures`."""
 
     def __init__(self, run, out):
         self.out = out

@@ -1,5 +1,5 @@
-"""`replay --gltf`: pose.glb holds the walk of pose.bvh, read by code of its own; Khronos' validator finds nothing to
-object to, and Blender sees the same joints at the same places in both files."""
+"""`replay --gltf`: pose.glb holds the walk of pose.bvh, read by code of its own; Khronos' validator accepts it, and
+Blender finds the joints of both files at the same places."""
 import csv
 import json
 import os
@@ -153,7 +153,7 @@ def test_blender_sees_the_same_joints_at_the_same_places(exported):
 
 
 def check_joints(out, read):
-    """What Blender read of the .glb and of the .bvh, in one unit, and the pelvis against frames.csv."""
+    """Blender's joints of the .glb and the .bvh in one unit, and the pelvis compared with frames.csv."""
     unit_m = json.loads((out / "summary.json").read_text())["metres_per_unit"]
     roots = []
     for time_s, of_glb, of_bvh in zip(read[0]["times_s"], read[0]["joints"], read[1]["joints"]):

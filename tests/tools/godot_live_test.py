@@ -1,4 +1,4 @@
-"""tools/examples/godot: the example's skeleton stands as the stream says, in Debian's Godot."""
+"""tools/examples/godot: in Debian's Godot, the example's skeleton has the streamed pose."""
 import json
 import math
 import shutil
@@ -48,13 +48,13 @@ def test_the_skeleton_stands_as_the_stream_says(tmp_path):
         assert said[-1:] == ["ready\n"], "".join(said)
         said.clear()
         with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as sender:
-            for frame in frames:  # each when the one before has been looked at, however slow this machine is
+            for frame in frames:  # each after the one before was processed, so a slow machine passes
                 sender.sendto(json.dumps(frame).encode(), ("127.0.0.1", PORT))
                 said.append(godot.stdout.readline())
             sender.sendto(json.dumps({**frames[0], "tick": -1}).encode(), ("127.0.0.1", PORT))
         rest = "".join(said) + godot.communicate(timeout=60)[0]
     finally:
-        godot.terminate()  # timeout ends Godot, too
+        godot.terminate()  # `timeout` also ends Godot
     assert "ERROR" not in rest, rest
     rows = {row["tick"]: row["bones"] for row in (json.loads(line) for line in rest.splitlines() if line[:1] == "{")}
     assert len(rows) == len(frames), rest

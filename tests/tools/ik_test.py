@@ -23,7 +23,7 @@ angle_rad = 0.6
 
 
 def end_of(angles):
-    """Where Rx(a) Rz(b) link Rx(c) link puts the end."""
+    """The end of the chain Rx(a) Rz(b) link Rx(c) link."""
     a, b, c = angles
     turn_x = lambda v, t: (v[0], v[1] * math.cos(t) - v[2] * math.sin(t), v[1] * math.sin(t) + v[2] * math.cos(t))
     turn_z = lambda v, t: (v[0] * math.cos(t) - v[1] * math.sin(t), v[0] * math.sin(t) + v[1] * math.cos(t), v[2])

@@ -1,4 +1,4 @@
-"""gaitpad as others link it: installed, found by CMake and pkg-config, or fetched as a subproject."""
+"""gaitpad in other projects: installed, found by CMake and pkg-config, or fetched as a subproject."""
 import csv
 import io
 import os

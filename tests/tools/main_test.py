@@ -96,7 +96,7 @@ def test_bench_lists_each_measurement(benched):
     assert {(r["characters"], r["width"]) for r in benched if r["name"] == "crowd"} == {
         (n, width) for n in (1, 8, 64) for width in (1, 2, 4, 8) if width <= widest}
     assert [r["characters"] for r in benched if r["name"] == "step"] == [1, 4]
-    # What other programs do meanwhile counts only where threads work together.
+    # Only benchmarks with several threads measure elapsed time.
     elapsed = {r["name"] for r in benched if r["clock"] == "elapsed"}
     assert elapsed == {"load_built_in", "load_clip", "load_cached", "load"}
     assert all(r["clock"] == "thread" for r in benched if r["name"] not in elapsed)

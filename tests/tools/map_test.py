@@ -1,4 +1,4 @@
-"""gaitpad map, with a recording in a pad's place: a person who pushes each control as it is asked for."""
+"""gaitpad map, with a recording as its pad: a person who pushes each requested control."""
 import os
 
 import pytest

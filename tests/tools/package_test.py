@@ -1,4 +1,4 @@
-"""gaitpad as it is installed: manual pages, completions, what desktops and udev read."""
+"""The installed gaitpad: manual pages, completions, files for desktops and udev."""
 import pathlib
 import re
 import shutil
@@ -92,7 +92,7 @@ def test_pages_have_the_texts_of_help(pages, run, commands):
 # ---- completions -----------------------------------------------------------------------------
 @pytest.fixture
 def complete(prefix, tmp_path):
-    """What bash offers behind these words, with the installed program first in PATH."""
+    """bash's completions after these words, with the installed program first in PATH."""
     (tmp_path / "mine.hid").write_text("")
     (tmp_path / "folder").mkdir()
     script = prefix / "share/bash-completion/completions/gaitpad"

@@ -1,4 +1,4 @@
-"""tools/realtime.sh: what it calls passed, failed and not judged; a short run through the program."""
+"""tools/realtime.sh: its verdicts passed, failed and not judged; a short run through the program."""
 import os
 import re
 import subprocess
@@ -41,7 +41,7 @@ def test_late_ticks_fail_also_where_the_control_was_late_which_is_told():
 def test_a_tick_left_out_or_run_twice_is_a_failure_whatever_the_host_did():
     for ticks in (71900, 72010):
         expect("FAILED", ticks=ticks, steal=50)
-    # What was late at the end may be missing: nine milliseconds are two ticks.
+    # Late ticks at the end may be missing: nine milliseconds are two ticks.
     expect("PASSED", ticks=71998)
 
 

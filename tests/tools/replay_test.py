@@ -1,4 +1,4 @@
-"""gaitpad replay as a user meets it: what it writes, when an event counts, and what it refuses."""
+"""gaitpad replay for users: its files, the tick of an event, and its errors."""
 import csv
 import json
 import os
@@ -327,7 +327,7 @@ def test_a_recording_of_many_hours_is_refused_unless_it_is_asked_for(made):
     made.run(WALK, "--max-hours", "0.002")
 
 
-# With the process's number alone as its temporary name.
+# The links have the temporary names that would contain only the process id.
 def test_a_link_in_the_way_is_not_followed(program, made):
     kept = made.write("kept", "mine")
     trace = made.write("made.hid", WALK)

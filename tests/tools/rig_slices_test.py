@@ -1,4 +1,4 @@
-"""What one run of the rig leaves out of its tables comes in another one: tools/rig/cells.py."""
+"""Every cell of the rig's tables is in some run (tools/rig/cells.py)."""
 import collections
 import sys
 import warnings

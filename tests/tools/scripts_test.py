@@ -1,4 +1,4 @@
-"""tools/folders.sh and tools/build.sh: where they build, and what they say while they do."""
+"""tools/folders.sh and tools/build.sh: their folders and their messages."""
 import os
 import subprocess
 

@@ -1,4 +1,4 @@
-"""No text of a device, a file or a user commands the terminal: what a program prints is escaped."""
+"""No text of a device, a file or a user controls the terminal: the program escapes its output."""
 import json
 import os
 import random

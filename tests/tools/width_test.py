@@ -1,4 +1,4 @@
-"""What people read fits their terminal, measured on pseudo terminals; in a pipe no line is broken."""
+"""Output fits the terminal's width, measured on pseudo terminals; in a pipe no line is broken."""
 import re
 import subprocess
 
@@ -33,7 +33,7 @@ def shown(program, arguments, columns):
 
 
 def too_long(text, columns):
-    # Of a line that is rewritten in place only the longest state counts; sequences take no room.
+    # A line that is rewritten in place has the width of its longest state; escape sequences have none.
     text = re.sub(r"\x1b\[[0-9;?]*[A-Za-z]", "", text)
     return [part for line in text.split("\n") for part in line.split("\r") if len(part) > columns]
 

@@ -1,4 +1,4 @@
-"""What draws is a module that is loaded when something is drawn: a replay, as a test runs it, maps none of its libraries."""
+"""The drawing code is a module that is loaded only to draw: a replay without a picture maps none of its libraries."""
 import json
 import os
 import pathlib

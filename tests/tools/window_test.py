@@ -95,7 +95,7 @@ def hsv_of_scene(picture):
 
 
 def coloured(picture, colour):
-    """Pixels of a character in the scene: its hue, within 10 degrees, however lit; shoes are pale."""
+    """Pixels of a character in the scene: its hue within 10 degrees under any light; shoes are pale."""
     hsv = hsv_of_scene(picture)
     rgb = np.array([(colour >> 16) & 255, (colour >> 8) & 255, colour & 255]) / 255.0
     hue = colors.rgb_to_hsv(rgb)[0]
@@ -237,7 +237,7 @@ def test_wrong_usage_is_2(refuse, arguments):
     refuse(*arguments.split(), status=2, env=environment())
 
 
-MOST_MIB = 250e6 / 2**20  # of a program that makes pictures, however many frames are behind them
+MOST_MIB = 250e6 / 2**20  # of a program that makes pictures of any number of frames
 
 
 def peak_mib(program, *arguments):

@@ -1,5 +1,5 @@
-// libFuzzer target: a calibration file. What the reader takes must come back from its text as it
-// was, and no position that it makes leaves the unit disc.
+// libFuzzer target: a calibration file. An accepted calibration must survive writing and reading
+// unchanged, and no position that it gives leaves the unit disc.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>

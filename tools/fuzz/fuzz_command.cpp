@@ -1,6 +1,6 @@
-// libFuzzer target: commands, a line each, as C: lines and keys give them, and the same bytes as a
-// script. What command_problem() has nothing against is a command with a finite value, and a
-// script's events come back from their reports.
+// libFuzzer target: commands, one per line, as in C: lines and from keys, and the same bytes as a
+// script. Every text that command_problem() accepts is a command with a finite value, and a
+// script's events survive the conversion to reports and back.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>
@@ -25,7 +25,7 @@ void check_command(std::string_view line) {
   if (!command) return;
   if (!std::isfinite(command->value) || command->walker < 0) std::abort();
   if (!problem && command->walker > kCharacters) std::abort();
-  // A name is a part of the text: it stays valid as long as the text does.
+  // A name is a part of the text: it stays valid while the text exists.
   const char* name = command->name.data();
   const bool is_inside =
       name >= line.data() && name + command->name.size() <= line.data() + line.size();

@@ -1,6 +1,6 @@
 // libFuzzer target: two bytes of descriptor length, a descriptor, then reports of up to 64 bytes.
-// Parses, builds the layout with and without the program's overrides, decodes. The line of SDL's
-// data base that is written for it is read back.
+// Parses the descriptor, builds the layout with and without the pad map, and decodes the reports.
+// The mapping that is written for it is read back.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>
@@ -49,7 +49,7 @@ void write_mapping(const gaitpad::DeviceInfo& device, const gaitpad::PadLayout& 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size < 6) return 0;
   gaitpad::DeviceInfo device;
-  // The ids choose among the overrides: their low bits pick one of those that exist.
+  // Pick one of the existing overrides by the low bits of the ids.
   const auto& pads = overrides();
   const auto& pad = pads[data[0] % pads.size()];
   if ((data[1] & 1) != 0 && pad.vendor && !pad.products.empty()) {

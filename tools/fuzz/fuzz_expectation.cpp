@@ -1,5 +1,5 @@
-// libFuzzer target: an expectation (NAME.expect.toml). What the reader takes must come back from
-// its text as it was.
+// libFuzzer target: an expectation (NAME.expect.toml). An accepted expectation must survive writing
+// and reading unchanged.
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>

@@ -1,7 +1,6 @@
 // libFuzzer target: a hostile pad is forwarded to other programs. A byte of choices, the length of
-// a descriptor (two bytes), the descriptor, or the axes and keys of an evdev node; then reports,
-// and plugging between them. Every event for the virtual pad is one that it has stated, in its
-// range.
+// a descriptor (two bytes), the descriptor, or the axes and keys of an evdev node; then reports and
+// plug events. The virtual pad has stated every event that it gets, with its range.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -16,7 +15,7 @@
 #include "session/pad_forward.h"
 
 namespace gaitpad {
-// No kernel makes a pad here.
+// Fuzzing must not create a pad in the kernel.
 Result<std::unique_ptr<VirtualPad>> VirtualPad::create(const VirtualPadShape&) {
   return Error{"not while fuzzing"};
 }
@@ -28,7 +27,7 @@ using namespace gaitpad;
 constexpr int kRate_hz = 240;
 enum Choice : std::uint8_t { kIsNode = 1, kStreams = 2, kIsFallback = 4, kIsUnplugged = 8 };
 
-// Six bytes an axis: its code, its bounds (16 bits, shifted by the code's high bits); then keys.
+// Six bytes per axis: its code, its bounds (16 bits, shifted by the code's high bits); then keys.
 std::vector<std::uint8_t> node_descriptor(std::span<const std::uint8_t> bytes) {
   EvdevAbilities node;
   while (bytes.size() >= 6 && bytes[0] != 0xff) {

@@ -1,5 +1,5 @@
-// libFuzzer target: a calibration of another tool, for pads of 8 and of 16 bits. What is taken can
-// be saved and loaded.
+// libFuzzer target: a calibration of another tool, for pads of 8 and of 16 bits. An accepted
+// calibration can be saved and loaded.
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>

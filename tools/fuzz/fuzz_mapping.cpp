@@ -1,6 +1,6 @@
-// libFuzzer target: a line of SDL's data base, as an M: line of a recording holds it, then further
-// lines, as a user's file has them. The pads that it is read for are decoded within bounds, and a
-// line that is written for such a layout is read back.
+// libFuzzer target: a mapping as in an M: line of a recording, then further mappings as in a user's
+// file. Pads with this mapping are decoded within bounds, and a mapping that is written for such a
+// layout is read back.
 #include <array>
 #include <cstdint>
 #include <cstdlib>

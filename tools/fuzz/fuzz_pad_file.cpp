@@ -1,5 +1,5 @@
-// libFuzzer target: a pad file. A refusal is one sentence; with what is taken, reports of pads that
-// its entries are for are decoded within bounds.
+// libFuzzer target: a pad file. A refusal is one sentence. With an accepted file, reports of the
+// pads of its entries are decoded within bounds.
 #include <algorithm>
 #include <array>
 #include <cstdint>

@@ -1,7 +1,7 @@
-// libFuzzer target: a session of two characters, a line of the input each eight ticks. `@` and two
-// bytes is a report of the pad with these counts; any other line is a command, as C: lines give it.
-// A command that command_problem() refuses changes nothing and is counted, any other is obeyed, and
-// every pose is finite.
+// libFuzzer target: a session of two characters that reads one line of the input every eight ticks.
+// `@` and two bytes are a report of the pad with these counts; any other line is a command as in a
+// C: line. A command that command_problem() refuses is counted and changes nothing, any other takes
+// effect, and every pose is finite.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -18,7 +18,7 @@
 
 namespace gaitpad {
 
-// Without the files of the cache: the strides are solved once a run.
+// Replaces the cache's files: the strides are solved once per run.
 std::string stride_cache_folder() { return {}; }
 Result<GaitCycle> cached_clean_strides(GaitCycle cycle, const std::string&) {
   return with_clean_strides(std::move(cycle));
@@ -52,7 +52,7 @@ void check_line(std::string_view line, Simulation& session) {
   const std::int64_t bad_before = session.counts().bad_commands;
   session.step({&report, 1});
   if (report.kind == ReportKind::command) {
-    // A limb whose joints would all be locked is refused by the session alone.
+    // Only the session can refuse to lock all joints of a limb.
     const bool is_refused = session.counts().bad_commands > bad_before;
     const bool may_lock = text_of(report).find("weight") != std::string_view::npos;
     if (command_problem(text_of(report), styles, kCharacters) ? !is_refused

@@ -1,6 +1,6 @@
-// libFuzzer target: where a stream goes (osc://HOST:PORT, json://HOST:PORT), a line; then the name
-// of a character, a line; then numbers for its bones. What is sent is sound JSON with that name,
-// and OSC bundles that liblo takes. The program itself receives nothing by OSC or JSON.
+// libFuzzer target: a line with a stream's target (osc://HOST:PORT, json://HOST:PORT), a line with
+// a character's name, then numbers for its bones. The program sends valid JSON with that name, and
+// OSC bundles that liblo accepts. The program itself receives nothing by OSC or JSON.
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -27,7 +27,7 @@ void check_address(std::string_view text) {
   if (!address && address.error().message.find('\n') != std::string::npos) std::abort();
 }
 
-// The next number of the input, finite, as the numbers of poses are.
+// The next number of the input, made finite like the numbers of poses.
 double next_number(std::string_view& bytes) {
   double number = 0.0;
   std::memcpy(&number, bytes.data(), std::min(bytes.size(), sizeof number));

@@ -1,5 +1,5 @@
-// libFuzzer target: a terrain's text, or a height picture's bytes. Whatever is taken has a sound
-// ground at any place.
+// libFuzzer target: a terrain's text, or a height picture's bytes. An accepted terrain has a finite
+// height and a unit normal at any place.
 #include <cmath>
 #include <cstdint>
 #include <cstdlib>

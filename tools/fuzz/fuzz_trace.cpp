@@ -1,4 +1,4 @@
-// libFuzzer target: a trace. What the reader takes must come back from the writer unchanged.
+// libFuzzer target: a trace. An accepted trace must survive writing and reading unchanged.
 #include <cstdint>
 #include <cstdlib>
 #include <string_view>

@@ -1,4 +1,4 @@
-// Pads for the fuzz targets, and what holds for the state of every pad.
+// Pads for the fuzz targets, and a check for the state of any pad.
 #pragma once
 #include <cstdlib>
 

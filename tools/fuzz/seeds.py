@@ -17,7 +17,7 @@ def bytes_behind(line, words):
 
 
 def write_pads(out):
-    """The traces as they are; fuzz_descriptor's frame (two choosing bytes, length) round their bytes."""
+    """The traces unchanged, and fuzz_descriptor's inputs: two bytes of choices and the length before their bytes."""
     for path in sorted((ROOT / "tests/data/pads").glob("*.hid")):
         text = path.read_text()
         (out / "fuzz_trace" / path.name).write_text(text)
@@ -29,7 +29,7 @@ def write_pads(out):
 
 
 def write_session(out):
-    """A recording that holds files: a text, bytes, one that was saved while it ran."""
+    """A recording with embedded files: a text, bytes, one that was saved while it ran."""
     pad = next(iter(sorted((ROOT / "tests/data/pads").glob("*.hid")))).read_text()
     lines = [line for line in pad.splitlines() if line[:2] in ("R:", "N:", "I:", "E:")]
     head = ("V: 2 rate_hz=240\nO: pace own\nO: style styles/even.toml\nO: terrain g.toml\nO: crowd 2\n"
@@ -171,7 +171,7 @@ def write_streams(out):
 
 
 def write_forwards(out):
-    """fuzz_forward's frame round the bytes of recordings, and two nodes of evdev."""
+    """fuzz_forward's inputs from recordings, and two nodes of evdev."""
     for path in sorted((ROOT / "tests/data/pads").glob("*.hid"))[::3]:
         text = path.read_text()
         descriptor = bytes_behind(lines_of(text, "R")[0], 2)

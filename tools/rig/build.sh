@@ -5,7 +5,7 @@ root=$(cd "$(dirname "$0")/../.." && pwd)
 mkdir -p "$root/build/rig"
 exec 9>"$root/build/rig/lock"
 flock 9
-# build PROGRAM SOURCES: a pattern; headers that it fits count too.
+# build PROGRAM SOURCES: SOURCES is a pattern; headers that match it also count.
 build() {
   local program=$root/build/rig/$1 newer
   newer=$(find "$root/tools/rig" -name "$2.[ch]" -newer "$program" 2>/dev/null || echo new)

@@ -1,5 +1,5 @@
-"""Which cells of a table of pads and drivers a run tests: every kind on one of its drivers, and every driver with one
-kind at least. GAITPAD_SLICE chooses (tests/support/slices.py); the others run with GAITPAD_ALL=1, --long, or when
+"""Which cells of a table of pads and drivers a run tests: every kind on one of its drivers, and every driver with at
+least one kind. GAITPAD_SLICE chooses (tests/support/slices.py); the others run with GAITPAD_ALL=1, --long, or when
 --only names them.
 
     @pytest.mark.parametrize("case", cells({"generic": ("hidraw", "usb"), "xbox360": ("usb", "evdev")}))
@@ -12,7 +12,7 @@ from support import slices
 
 
 def chosen(drivers_of, number):
-    """{kind: driver} of the slice of that number: drawn until every driver is there."""
+    """{kind: driver} of that slice: drawn at random until every driver occurs."""
     every, chance = {driver for drivers in drivers_of.values() for driver in drivers}, random.Random(number)
     while True:
         row = {kind: chance.choice(drivers) for kind, drivers in drivers_of.items()}
@@ -30,5 +30,5 @@ def case(name, is_chosen):
 
 
 def some(names, parts):
-    """Of that list one in `parts`."""
+    """One in `parts` of the list runs in this slice."""
     return [case(name, slices.is_chosen(name, parts)) for name in names]

@@ -39,9 +39,9 @@ def _usb_descriptors(interfaces, interval):
 
 
 def _drivers_of_models(on):
-    """hid-playstation and its like give a device up that answers nothing; hid-generic serves it without them."""
+    """hid-playstation and similar drivers drop a device that does not answer; without them hid-generic serves it."""
     models = ["hid_playstation", "hid_sony", "hid_nintendo", "hid_steam", "hid_logitech_dj", "hid_logitech_hidpp"]
-    file = pathlib.Path("/etc/modprobe.d/rig.conf")  # in this folder, whose change udevd notices
+    file = pathlib.Path("/etc/modprobe.d/rig.conf")  # in this folder, because udevd notices its changes
     if on:
         file.unlink()
     else:
@@ -87,7 +87,7 @@ class Composite(Nodes):
         _drivers_of_models(on=True)
 
     def _answer(self):
-        """The report descriptors; all else is refused."""
+        """Answers requests for report descriptors; stalls all others."""
         while True:
             event = os.read(self._control, 12)
             kind, request, value, index, length = struct.unpack("<BBHHH4x", event)

@@ -1,4 +1,4 @@
-"""The rig's tests in the guest: each in a process of its own with a time limit, one line a test.
+"""Runs the rig's tests in the guest, each in its own process with a time limit, and prints one line per test.
 
 A test fails by an exception and skips by pytest.skip; what it prints is in /results/NAME.log. Marks:
   @pytest.mark.timeout(120)  seconds on a free machine, 60 without it: the test is ended after pads.PATIENCE times as
@@ -75,7 +75,7 @@ def run_child(item, log):
     file = os.open(log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o644)
     os.dup2(file, 1)
     os.dup2(file, 2)
-    sys.stdout.reconfigure(line_buffering=True)  # a test that is ended has told what it did
+    sys.stdout.reconfigure(line_buffering=True)  # keep the output of a test that is killed
     status = FAILED
     try:
         reports = runtestprotocol(item, log=False, nextitem=None)

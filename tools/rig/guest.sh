@@ -40,11 +40,11 @@ share() {
   echo "local,path=$2,mount_tag=$1,security_model=none,multidevs=remap${3:-}"
 }
 machine=(-smp 1 -nodefaults -display none -nic none -no-reboot -kernel "$kernel/vmlinuz" -initrd "$kernel/initramfs")
-# no_timer_check: a kernel that its host holds back while it boots takes its timer for broken.
+# no_timer_check: a kernel that boots slowly on a busy host would assume a broken timer.
 boot="console=ttyS0 quiet loglevel=4 panic=-1 mitigations=off random.trust_cpu=on no_timer_check"
 
-# KVM where it boots this kernel within ten seconds, emulation else. Asked once for each kernel and machine: there are
-# machines whose /dev/kvm can be opened and runs nothing, and what hangs there may not even be ended by a signal.
+# Uses KVM if it boots this kernel within ten seconds, otherwise emulation. Tried once for each kernel and machine: on
+# some machines /dev/kvm can be opened but runs nothing, and a process that hangs there may ignore signals.
 accelerator() {
   local known=$kernel/accelerator host probe i
   host=$(uname -nr; grep -m 1 'model name' /proc/cpuinfo || true)

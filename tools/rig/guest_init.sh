@@ -1,5 +1,5 @@
-# The guest's first process inside the host's root: file systems, drivers, udevd; then /results/.run, whose
-# output and exit status go to the host; then power-off, whatever happened.
+# The guest's first process inside the host's root: file systems, drivers, udevd; then /results/.run, whose output and
+# exit status go to the host; then power-off in any case.
 export PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8
 exec >/results/output 2>&1 </dev/null
 

@@ -52,7 +52,7 @@ static _Noreturn void die(const char* what) {
   exit(1);
 }
 
-// Starts the controller and lets it be found; its address.
+// Starts the controller, makes it discoverable and returns its address.
 static struct address controller(int number) {
   const int hci = socket(kBluetooth, SOCK_RAW, kHci);
   if (hci < 0) die("no Bluetooth");
@@ -97,7 +97,7 @@ static size_t bytes_of(const char* hex, uint8_t* bytes, size_t most) {
   return size;
 }
 
-// False: the host dropped the link.
+// Returns false if the host dropped the link.
 static int print_packet(int channel, char letter) {
   uint8_t bytes[kMaxPacket];
   const ssize_t size = recv(channel, bytes, sizeof bytes, 0);

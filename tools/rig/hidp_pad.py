@@ -18,7 +18,7 @@ GET_REPORT, SET_REPORT, DATA_FEATURE, DATA_INPUT, DATA_OUTPUT, DONE, REFUSED = 0
 
 @contextlib.contextmanager
 def bluetooth(pads=1):
-    """Virtual controllers for the PC and so many pads."""
+    """Virtual controllers for the PC and this number of pads."""
     subprocess.run(["modprobe", "-a", *MODULES], check=True)
     with subprocess.Popen(["btvirt", f"-l{2 * pads}"], stdout=subprocess.DEVNULL) as virtual:
         try:

@@ -1,11 +1,11 @@
-// When does a report reach user space? Reads COUNT reports of a pad by one way and prints for each
-// the moment right after reading it and the number that the sender wrote into its left stick.
+// Measures when a report reaches user space. Reads COUNT reports of a pad by one way and prints for
+// each the time right after reading it and the number that the sender wrote into its left stick.
 //
 //   rig_latency WAY VENDOR:PRODUCT COUNT       WAY: bare_hidraw, bare_evdev, or a driver's name
 //
-// Says `ready` when the pad is open; ends after COUNT reports or a second of silence.
-// `bare_*` is poll() and read() on the node and nothing else: the limit that a driver is held
-// against. Prints `NANOSECONDS NUMBER`, CLOCK_MONOTONIC, number = x + 256 y of an 8-bit stick.
+// Says `ready` when the pad is open; ends after COUNT reports or a second of silence. `bare_*` is
+// only poll() and read() on the node: the reference for a driver. Prints `NANOSECONDS NUMBER`,
+// CLOCK_MONOTONIC, number = x + 256 y of an 8-bit stick.
 #include <fcntl.h>
 #include <linux/input.h>
 #include <poll.h>
@@ -94,14 +94,14 @@ std::vector<Reading> read_bare_evdev(int fd, std::size_t count) {
 
 int byte_of(float axis) { return static_cast<int>(std::lround((axis + 1.0f) * 127.5f)); }
 
-// As the I/O thread does it.
+// Reads like the I/O thread.
 std::vector<Reading> read_device(Device& device, const PadLayout& layout, std::size_t count) {
   std::vector<Reading> readings;
   readings.reserve(count);
   auto report = std::make_unique<Report>();
   PadState state;
   std::int64_t newest_ns = now_ns();
-  // SDL's timer is always ready: silence is told by the clock.
+  // SDL's timer is always ready, so the clock decides about silence.
   while (readings.size() < count && now_ns() - newest_ns < kPatienceMs * 1'000'000LL) {
     std::vector<pollfd> waiting(device.poll_fds().begin(), device.poll_fds().end());
     if (::poll(waiting.data(), waiting.size(), kPatienceMs) <= 0) break;
@@ -109,7 +109,7 @@ std::vector<Reading> read_device(Device& device, const PadLayout& layout, std::s
     while ((status = device.read(*report)) == Device::Status::report) {
       const std::int64_t time_ns = newest_ns = now_ns();
       if (!decode(layout, *report, state)) continue;
-      // Decoded, y grows forward: against the byte.
+      // Decoded y grows forward, the byte backwards.
       readings.push_back(
           {time_ns, byte_of(state.axis[kLeftX]) + 256 * byte_of(-state.axis[kLeftY])});
     }

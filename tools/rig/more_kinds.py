@@ -1,4 +1,4 @@
-"""More kinds of pads, as tables: what each is, how its controls are sent, and what they are called.
+"""Tables of more kinds of pads: their ids, the encoding of their controls, and the controls' names.
 
     with plug(MORE["extreme3d"]) as pad: pad.set(lx=0)
 

@@ -1,4 +1,4 @@
-"""Bare reads of device nodes, the yardstick beside the program: EventNode and HidrawNode."""
+"""Bare reads of device nodes, the reference for the program: EventNode and HidrawNode."""
 import collections
 import errno
 import fcntl

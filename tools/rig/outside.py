@@ -1,5 +1,5 @@
-"""What needs no kernel runs outside the guest: recordings are replayed and decoded on the host, by the same program. Floating
-point is emulated in the guest, so a replay takes seconds there and hundredths of a second here.
+"""Commands that need no kernel run outside the guest: the same program replays and decodes recordings on the host.
+Floating point is emulated in the guest, so a replay takes seconds there and hundredths of a second here.
 
 In the guest:      ask([PROGRAM, "replay", "/results/walk.hid", "--json"]) is as subprocess.run() on the host
 On the host:       outside.py RESULTS answers until it or its parent ends; RESULTS is the guest's /results

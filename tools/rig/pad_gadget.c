@@ -58,7 +58,7 @@ static size_t control_reply(const struct usb_ctrlrequest* request, uint8_t* repl
   if (request->bRequestType != 0xa1 || request->bRequest != 1) return 0;  // GET_REPORT
   pthread_mutex_lock(&pad_mutex);
   size_t size = 0;
-  // Without report ids the id asked for is 0.
+  // Without report ids the requested id is 0.
   if (high == 1 && (id == 0 || id == pad.state.bytes[0]))
     size = copy(reply, pad.state.bytes, pad.state.size);
   if (high == 3 && pad.kind.feature && !pad.refuses_features)
@@ -108,7 +108,7 @@ static _Noreturn void* control_thread(void* unused) {
   }
 }
 
-// False: quit.
+// Returns false for `quit`.
 static bool obey(char* line) {
   char word[16] = "", whole[64];
   int used = 0;
@@ -134,7 +134,7 @@ static void obey_commands(const char* folder) {
   snprintf(path, sizeof path, "%s/fifo", folder);
   unlink(path);
   if (mkfifo(path, 0600) != 0) die(path);
-  const int fifo = open(path, O_RDWR);  // also its own writer: never at its end
+  const int fifo = open(path, O_RDWR);  // also open for writing, so it never ends
   note("ready", pad.kind.name);
   for (;;) {
     struct pollfd wait = {fifo, POLLIN, 0};
@@ -157,7 +157,7 @@ static void obey_commands(const char* folder) {
   }
 }
 
-// The kind with the trace's ids, or a plain HID one; the trace's own descriptor where the class is
+// The kind with the trace's ids, or a plain HID pad; with the trace's descriptor if the class is
 // HID.
 static struct pad_kind trace_kind(void) {
   const struct pad_kind* known = find_kind_by_id(trace.vendor, trace.product);

@@ -21,7 +21,7 @@
 #define ZERO_TO_255 0x15, 0, 0x26, 0xff, 0
 #define BUTTONS(count) \
   PAGE(0x09), 0x19, 1, 0x29, count, 0x15, 0, 0x25, 1, FIELDS(1, count, INPUT, 2)
-// 0..7 clockwise from the top in steps of 45 degrees, all else none.
+// 0..7 clockwise from the top in steps of 45 degrees; other values: released.
 #define HAT                                                                      \
   PAGE(0x01), USAGE(0x39), 0x15, 0, 0x25, 7, 0x35, 0, 0x46, 0x3b, 1, 0x65, 0x14, \
       FIELDS(4, 1, INPUT, 0x42), 0x65, 0, 0x45, 0
@@ -41,7 +41,7 @@ static size_t motion_calibration(uint8_t id, size_t size, uint8_t* reply) {
   return size;
 }
 
-// The MAC behind the report id, least significant byte first.
+// The MAC after the report id, least significant byte first.
 static size_t mac_report(const struct pad* pad, uint8_t id, size_t size, uint8_t* reply) {
   memset(reply, 0, size);
   reply[0] = id;
@@ -271,7 +271,7 @@ static const struct field ds3_fields[] = {
     {"x", 31, 1}, {"guide", 32, 1}, {0}};
 // clang-format on
 
-// f2: the pad's address from byte 4 on; f5: that of the host it is paired with.
+// f2: the pad's address from byte 4; f5: the address of the paired host.
 static size_t ds3_feature(const struct pad* pad, uint8_t id, uint8_t* reply) {
   if (id != 0xf2 && id != 0xf5) return 0;
   memset(reply, 0, 17);

@@ -1,4 +1,4 @@
-// The kinds of pad that the rig can be: what each says of itself, its input report, its answers.
+// The kinds of virtual pads of the rig: their ids and descriptors, input reports and answers.
 #pragma once
 #include <stdbool.h>
 #include <stddef.h>
@@ -34,12 +34,12 @@ struct pad_kind {
   uint8_t neutral[64];
   // The reply to GET_REPORT of a feature: its size, 0 to stall.
   size_t (*feature)(const struct pad* pad, uint8_t id, uint8_t* reply);
-  // What an OUT packet makes the pad do: true if `reply` shall be sent.
+  // Handles an OUT packet; true if `reply` is to be sent.
   bool (*answer)(struct pad* pad, const struct packet* out, struct packet* reply);
   size_t (*announce)(const struct pad* pad, uint8_t* packet);  // sent first, when plugged
 };
 
-// What is common to the pad's threads; pad_gadget.c locks it.
+// State shared by the pad's threads; pad_gadget.c locks it.
 struct pad {
   struct pad_kind kind;
   uint8_t mac[6];  // most significant byte first

@@ -51,7 +51,7 @@ static bool burst_packet(int64_t now, struct packet* packet, int64_t* next_ns) {
   if (burst.left == 0 || !due(burst.next_ns, now, next_ns)) return false;
   if (now - burst.next_ns > burst.period_ns) {
     ++burst.late;
-    burst.next_ns = now;  // no catching up: a pad's clock does not run faster than its rate
+    burst.next_ns = now;  // late reports are not made up for: a pad never exceeds its rate
   }
   burst.next_ns += burst.period_ns;
   write_bits(&pad->state, (struct field){"", (uint16_t)(8 * burst.at), 32},
@@ -85,7 +85,7 @@ static bool state_packet(int64_t now, struct packet* packet, int64_t* next_ns) {
   if (!stream && (!changed || stream_rate_hz > 0.0)) return false;
   if (stream) {
     next_stream_ns += (int64_t)(1e9 / stream_rate_hz);
-    if (next_stream_ns < now) next_stream_ns = now;  // nobody polled: no catching up
+    if (next_stream_ns < now) next_stream_ns = now;  // the host did not poll: skip missed reports
   }
   changed = false;
   write_bits(&pad->state, pad->kind.counter, pad->counter++);
@@ -93,7 +93,7 @@ static bool state_packet(int64_t now, struct packet* packet, int64_t* next_ns) {
   return true;
 }
 
-// What is to be sent now, else when to look again. With pad_mutex.
+// The packet to send now, or the time to check again. With pad_mutex.
 static bool next_packet(struct packet* packet, int64_t* next_ns) {
   const int64_t now = now_ns();
   *next_ns = now + INT64_C(1000000000);

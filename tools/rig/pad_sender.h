@@ -1,6 +1,6 @@
-// What a pad sends. A write to the IN endpoint waits until the host polls it, so one thread does
-// nothing else: it sends the newest state when it gets there; queued packets, numbered bursts and
-// recordings one by one, none skipped.
+// The sending thread of a pad. A write to the IN endpoint blocks until the host polls it, so a
+// thread of its own writes: the newest state, but every packet of the queue, of numbered bursts and
+// of recordings.
 #pragma once
 #include <pthread.h>
 
@@ -17,7 +17,7 @@ void start_sender(struct pad* pad, int in_endpoint, struct trace* trace);
 void sender_enable(bool on);
 // A reply. With pad_mutex.
 void enqueue(const struct packet* packet);
-// With pad_mutex: something that the thread looks at has changed.
+// Wakes the thread after a change of its inputs. With pad_mutex.
 void wake_sender(void);
 
 // A command that changes what is sent; false: refused. With pad_mutex.

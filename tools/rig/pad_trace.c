@@ -37,7 +37,7 @@ bool read_trace(const char* path, struct trace* trace) {
   memset(trace, 0, sizeof *trace);
   snprintf(trace->path, sizeof trace->path, "%s", path);
   static char line[4 * kMaxDescriptor];
-  int device = -1, first = -1;  // a file of several devices: the first one plays
+  int device = -1, first = -1;  // in a file of several devices the first one is played
   while (fgets(line, sizeof line, file)) {
     unsigned vendor, product;
     int used = 0;

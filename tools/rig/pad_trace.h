@@ -1,5 +1,5 @@
-// Reads what a pad needs of a `.hid` recording: the first device's ids and descriptor, its reports
-// in time.
+// Reads a `.hid` recording for a pad: the first device's ids and descriptor, and its reports with
+// times.
 #pragma once
 #include <stdbool.h>
 #include <stddef.h>
@@ -22,5 +22,5 @@ struct trace {
   size_t event_count, byte_count;
 };
 
-// False where the file cannot be read; other lines than R, N, I and E are passed over.
+// False if the file cannot be read; lines other than R, N, I and E are skipped.
 bool read_trace(const char* path, struct trace* trace);

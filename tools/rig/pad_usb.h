@@ -7,7 +7,7 @@ struct endpoints {
   int control, in, out;
 };
 
-// Mounts the function below `folder`, states its descriptors; ends the program where that fails.
+// Mounts the function below `folder`, states its descriptors; ends the program if that fails.
 struct endpoints make_gadget(const struct pad_kind* kind, int index, const char* serial,
                              const char* folder);
 void plug_gadget(int index, bool on);

@@ -10,7 +10,7 @@ import time
 ROOT = os.environ.get("RIG_ROOT") or os.path.realpath(os.path.join(os.path.dirname(__file__), "../.."))
 GADGET = os.path.join(ROOT, "build/rig/pad_gadget")
 LONG = os.environ.get("RIG_LONG") == "1"  # run with the long floods and counts
-PATIENCE = 6  # how many times longer than on a free machine something may take: a busy host gives the guest a fraction of it
+PATIENCE = 6  # factor on time limits of a free machine: a busy host gives the guest a fraction of it
 KERNEL = tuple(int(part) for part in os.uname().release.split(".")[:2])
 
 KINDS = ("generic", "ds4", "dualsense", "switch", "xbox360", "xboxone")
@@ -39,7 +39,7 @@ def settle():
 
 
 def udev_properties(node):
-    """What udev's data base says of a device node."""
+    """The properties of a device node in udev's data base."""
     number = os.stat(node).st_rdev
     try:
         with open(f"/run/udev/data/c{os.major(number)}:{os.minor(number)}") as file:
@@ -50,13 +50,14 @@ def udev_properties(node):
 
 
 class Nodes:
-    """Device nodes below one folder of /sys/devices; each property looks anew."""
+    """Device nodes below one folder of /sys/devices; each property searches again."""
 
     def __init__(self, sysfs):
         self.sysfs = sysfs
 
     def _find(self, kind, prefix):
-        """By the links of /sys/class: walking through the folder itself takes the guest a tenth of a second."""
+        """Uses the links of /sys/class, because walking through the folder itself takes the guest a tenth of a
+        second."""
         links, found = f"/sys/class/{kind}", []
         inside = self.sysfs.removeprefix("/sys/") + "/"
         with contextlib.suppress(FileNotFoundError):  # no device of this class has been there yet
@@ -161,7 +162,7 @@ class Pad(Nodes):
                 if len(line) > 3]
 
     def out_packets(self, since_ns=0):
-        """What arrived at the OUT endpoint."""
+        """The packets that arrived at the OUT endpoint."""
         return [Packet(int(line[1]), bytes.fromhex(line[2])) for line in self.lines("out")
                 if int(line[1]) >= since_ns]
 
@@ -171,12 +172,12 @@ class Pad(Nodes):
     # --- commands
 
     def command(self, text):
-        """As it is to the daemon; does not wait."""
+        """Sends the text to the daemon without waiting for its answer."""
         with open(self.folder + "/fifo", "w") as fifo:
             fifo.write(text + "\n")
 
     def _done(self, text):
-        """Waits for the daemon's answer; ValueError where it refused."""
+        """Waits for the daemon's answer; raises ValueError if it refused."""
         before = len(self.lines("answer"))
         self.command(text)
         answer = wait_for(lambda: self.lines("answer")[before:], 5, text)[-1]
@@ -205,7 +206,7 @@ class Pad(Nodes):
         self._done("set " + " ".join(f"{name}={int(value)}" for name, value in fields.items()))
 
     def move(self, **fields):
-        """As a thumb does, in some 60 ms: `ly=(from, to)`."""
+        """Moves like a thumb, in about 60 ms: `ly=(from, to)`."""
         for part in (1 / 3, 2 / 3, 1.0):
             self.set(**{name: round(start + (end - start) * part) for name, (start, end) in fields.items()})
 

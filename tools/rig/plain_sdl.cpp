@@ -1,5 +1,5 @@
-// A plain SDL2 program, as its documentation has it: the peer in the table of latencies. Arguments
-// and output as rig_latency's, without WAY.
+// A plain SDL2 program in the style of its documentation: the reference in the table of latencies.
+// Arguments and output as rig_latency's, without WAY.
 #include <SDL2/SDL.h>
 #include <time.h>
 

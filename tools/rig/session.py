@@ -29,8 +29,8 @@ def remark(text):
 
 
 def run(*command, seconds=60, columns=()):
-    """Runs a command, the program's path for "gaitpad", which must succeed; its output. Outside the guest where it opens
-    no device."""
+    """Runs a command, which must succeed, and returns its output; "gaitpad" is the program. Runs outside the guest if
+    it opens no device."""
     command = [PROGRAM if word == "gaitpad" else str(word) for word in command]
     print("$", *command, flush=True)
     if command[0] == PROGRAM and command[1] in outside.COMMANDS:
@@ -43,8 +43,8 @@ def run(*command, seconds=60, columns=()):
 
 
 def record(*arguments, reports=1, user=()):
-    """`gaitpad record`, by the command `user` as somebody else, until it has so many reports: a busy host may take long to
-    open the pad. The recording's lines."""
+    """The lines of a `gaitpad record` that ran, by the command `user` as another user, until it had that number of
+    reports: a busy host may take long to open the pad."""
     path = "/tmp/recorded.hid"
 
     def lines():
@@ -90,7 +90,7 @@ class Session:
     def __enter__(self):
         print("$", *self._command, flush=True)
         with contextlib.suppress(FileNotFoundError):
-            os.unlink(self.path)  # of an earlier session: lines() would take it for this one
+            os.unlink(self.path)  # an earlier session's file, which lines() would mistake for this one's
         self.process = subprocess.Popen(self._command, stdout=subprocess.PIPE, text=True)
         try:
             wait_for(lambda: self.lines("V:") and self.plugged() >= self.awaited or self.process.poll() is not None, 60,
@@ -115,10 +115,10 @@ class Session:
         assert self.summary["pose_hash"] == self.replayed["pose_hash"], "the replay differs from the session"
 
     def lines(self, start=""):
-        """Of the recording so far, all or those that begin with two characters."""
+        """Lines of the recording so far, all or those that begin with these two characters."""
         path = self.path if os.path.exists(self.path) else self.path + ".part"
         with contextlib.suppress(FileNotFoundError), open(path, "rb") as file:
-            file.seek(self._read)  # what is known is not read again: a test asks many times a second
+            file.seek(self._read)  # read only new lines, because a test asks many times a second
             data = file.read()
             data = data[:data.rfind(b"\n") + 1]
             self._read += len(data)
@@ -134,8 +134,8 @@ class Session:
         return sum(line.endswith(" remove") for line in self.lines("H:"))
 
     def show(self, driver, pad, seconds, **state):
-        """Sets the pad's state, for so long at least. SDL keeps the newest state alone, and a busy host may keep the
-        program from looking for longer: for its driver the next state waits until this one is in the recording."""
+        """Sets the pad's state for at least that time. SDL keeps only the newest state, and on a busy host the program
+        may read later; so with its driver this waits until the state is in the recording."""
         before = len(self.lines("E:"))
         pad.set(**state)
         time.sleep(seconds)
@@ -143,7 +143,8 @@ class Session:
             wait_for(lambda: len(self.lines("E:")) > before, 10, f"a report of {state}")
 
     def wait_quiet(self, seconds=0.5):
-        """Until no report has come for so long: what was sent is in the recording, however busy the host is."""
+        """Waits until no report has come for that time, so that everything sent is in the recording even on a busy
+        host."""
         before = -1
         while before != (before := len(self.lines("E:"))):
             time.sleep(seconds)
@@ -170,7 +171,7 @@ class Session:
 
 
 def tick_times_ns(lines):
-    """When each tick of a recording was due, by CLOCK_MONOTONIC: a function of its number."""
+    """A function from a tick's number to its due time by CLOCK_MONOTONIC."""
     rate_hz, starts = 240, []
     for line in lines:
         if found := re.match(r"V: \d rate_hz=(\d+)", line):

@@ -1,4 +1,4 @@
-"""A pad's battery as the kernel's driver has it: 8 tenths and charging, of a DualSense (hid-playstation.c: 10 n + 5 %)."""
+"""A pad's battery from the kernel's driver: 8 tenths and charging, of a DualSense (hid-playstation.c: 10 n + 5 %)."""
 import json
 import subprocess
 

@@ -1,4 +1,4 @@
-"""Pads as they are over Bluetooth, through uhid: full reports with their checksums, and rumble with its own."""
+"""Pads in their Bluetooth form, through uhid: full reports with their checksums, and rumble with its own."""
 import time
 
 import pytest
@@ -11,7 +11,7 @@ from uhid_pad import UhidPad, with_checksum
 EIGHT_BITS, SIXTEEN_BITS = 127.5, 32767.5
 HALF = {"dualsense_bt": EIGHT_BITS, "ds4_bt": EIGHT_BITS, "xbox_bt": SIXTEEN_BITS}
 STICKS = {"lx": "left_x", "ly": "left_y", "rx": "right_x", "ry": "right_y"}
-# Where the strengths (strong, weak) stand in the output report of that id, whose checksum begins with 0xa2.
+# Id of the output report, and its bytes with the strengths (strong, weak). Its checksum begins with 0xa2.
 OUTPUT = {"dualsense_bt": (0x31, 6, 5), "ds4_bt": (0x11, 7, 6)}
 
 
@@ -54,7 +54,7 @@ def test_decoded_and_replayed(case):
 @pytest.mark.timeout(60)
 @pytest.mark.parametrize("kind", ["dualsense_bt", "ds4_bt"])
 def test_a_wrong_checksum_moves_nothing(kind):
-    """The kernel's own drivers look, too, and drop such a report before hidraw sees it."""
+    """The kernel's own drivers also check it and drop a wrong report before hidraw."""
     with UhidPad(kind) as pad:
         with Session("%04x:%04x" % pad.kind.ids, "--driver", "hidraw", name=f"checksum-{kind}") as session:
             pad.set(lx=200)

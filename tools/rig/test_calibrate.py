@@ -21,7 +21,7 @@ FIRST_BYTE = {"generic": 0, "dualsense": 1}  # of lx ly rx ry lt rt
 # In counts: where the sticks rest, how far they go; the noise is one count to either side.
 CENTRES = {"left": (138, 120), "right": (121, 134)}
 REACHES = {"left": 108, "right": 100}
-# Where the hand's (right, forward) goes, in counts (y grows towards the thumb's owner).
+# From the hand's (right, forward) to counts (y grows towards the player).
 AS_IT_SHOULD_BE = lambda x, y: (x, -y)
 TURNED = lambda x, y: (-y, -x)  # a quarter to the left: right goes forward, forward to the left
 
@@ -139,7 +139,7 @@ def check_use(pad, driver):
     with Session(IDS[pad.kind], "--driver", driver, name=f"calibrated-{pad.kind}-{driver}") as session:
         pad.set(lx=x + 1, ly=y - 1)
         time.sleep(0.5)
-        # Long: where the pad's last report before it was centred asked for a small step back, that is ended first.
+        # The wait is long: if the last report before centring asked for a small step back, that step ends first.
         for offset in (0, 1, -1, 0) * 3:
             pad.set(lx=x + offset, ly=y - reach)
             time.sleep(0.5)

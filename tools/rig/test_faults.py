@@ -1,4 +1,4 @@
-"""What goes wrong with pads: unplugging, silence, stalls, floods, odd packets, missing permission.
+"""Faults of pads: unplugging, silence, stalls, floods, odd packets, missing permission.
 
 Each fault 50 times with --long, two to five times otherwise. A session must survive, be neutral in time, leak no handle,
 and replay to the same poses (session.py asserts that at the end of each).
@@ -38,14 +38,14 @@ def push_forward(pad):
 
 
 def neutral_in_time(frames, ticks, seconds=0.1):
-    """After each of these ticks the stick is neutral within so many seconds."""
+    """After each of these ticks the stick is neutral within that number of seconds."""
     for tick in ticks:
         after = frames[min(len(frames) - 1, tick + round(seconds / TICK_S) + 1)]
         assert float(after["stick_x"]) == float(after["stick_y"]) == 0.0, (tick, after["stick_y"])
 
 
 class BareWatch:
-    """Waits beside the program for the pad's leaving, by a poll() of its usbfs node; ns of CLOCK_MONOTONIC."""
+    """Measures in parallel when the pad is unplugged, by poll() on its usbfs node; ns of CLOCK_MONOTONIC."""
 
     def __init__(self, pad):
         self._fd = os.open(pad.usb, os.O_RDWR | os.O_CLOEXEC)
@@ -107,7 +107,7 @@ def test_unplugged_while_walking_and_plugged_in_again(case):
 
 @pytest.mark.timeout(900)
 def test_unplugged_during_open():
-    """Blind flapping under a loop of programs that open whatever there is, and under a session."""
+    """Random plugging during a session and a loop of programs that open every pad."""
     chance = random.Random(1)
     with Pad("dualsense") as pad, Session(IDS["dualsense"], name="flapping") as session:
         for _ in range(TIMES):
@@ -217,8 +217,8 @@ def test_flood_of_four_pads_with_a_paused_reader(driver):
 @pytest.mark.timeout(120)
 @pytest.mark.parametrize("driver", ["hidraw", "usb", "evdev"])
 def test_the_last_state_is_right_after_a_burst_with_a_stopped_reader(driver):
-    """Of a pad that says only once what has changed. Stopped for longer than the kernel keeps reports: hidraw drops the
-    newest, and the next one is the state."""
+    """The pad reports each change once. The program is stopped for longer than the kernel keeps reports: hidraw drops
+    the newest ones, and the next one is the state."""
     rate_hz, seconds = 250, 1.5
     with Pad("generic") as pad, Session(IDS["generic"], "--driver", driver, "--no-rumble", name=f"last-{driver}") as session:
         for turn in range(TIMES if LONG else 2):
@@ -341,7 +341,7 @@ def test_no_permission_and_the_rule():
             assert len(rows) == 2 and all(row["usable"] for row in rows), rows
         record(user=[*as_user, "--groups", group])
         pad.unplug()
-        pad.plug()  # the rule holds for the node that comes next, too
+        pad.plug()  # the rule also applies to the next node
         assert [row["usable"] for row in listed("--groups", group) if row["path"] == pad.hidraw] == [True]
     remark(f"no permission: {OPENINGS} times said, after the rule {OPENINGS} times opened by an ordinary user of group input")
 
@@ -353,7 +353,7 @@ def tagged(node):
 @pytest.mark.timeout(120)
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGKILL", "SIGSEGV"])
 def test_the_kernel_gets_its_pad_back(name):
-    """However the program ends that took it."""
+    """The pad returns to its kernel driver after any end of the program."""
     with Pad("generic") as pad:
         for _ in range(TIMES if LONG and name == "SIGKILL" else 2):
             play = subprocess.Popen([PROGRAM, "play", IDS["generic"], "--driver", "usb", "--no-window"],
@@ -375,7 +375,8 @@ def kill_all():
 @pytest.mark.timeout(120)
 @pytest.mark.parametrize("kind", ["ds4", pytest.param("generic", marks=pytest.mark.long)])
 def test_after_killall_doctor_says_so_and_the_next_session_mends_it(kind):
-    """Nobody is left who could give the pad back to its kernel driver, and it can be told by its ids or its name at most."""
+    """No process is left to return the pad to its kernel driver, and it can be identified only by its ids or its
+    name."""
     with Pad(kind) as pad:
         with subprocess.Popen([PROGRAM, "play", IDS[kind], "--driver", "usb", "--no-window"],
                               stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL):

@@ -1,5 +1,5 @@
 """A pad for other programs: the calibrated one in place of the real one by `forward`, the driving one of a session by
-`play --forward`, and a recording by `replay --to`. SDL, evdev and hidraw read what came out."""
+`play --forward`, and a recording by `replay --to`. SDL, evdev and hidraw read the virtual pad."""
 import contextlib
 import ctypes
 import errno
@@ -24,7 +24,7 @@ from uhid_pad import UhidPad
 
 FULL = 32767
 NAME = b"gaitpad calibrated pad"
-# Centre a tenth beside the middle, as of a worn stick; round zone.
+# A worn stick's centre, a tenth off the middle; round zone.
 CALIBRATION = """name = "rig"
 devices = ["054c:09cc"]
 
@@ -38,7 +38,7 @@ outer = 0.9
 
 
 def calibrated(lx, ly):
-    """By config/README.md's words: each axis from its centre, then the round zone; y forward."""
+    """By the rules of config/README.md: each axis from its centre, then the round zone; y forward."""
     x, y = lx / 127.5 - 1 - 0.1, -(ly / 127.5 - 1)
     x = x / (0.9 - 0.1 if x > 0 else 0.1 + 0.9)
     length = math.hypot(x, y)
@@ -98,7 +98,7 @@ def test_sdl_reads_the_forwarded_pad_exactly(tmp_path):
         wait_for(virtual_pad, 10, "the virtual pad")
         time.sleep(0.5)
         with SdlPad() as sdl:
-            # SDL tells no movement of an axis before its first one of more than an eightieth (SDL_joystick.c).
+            # SDL reports an axis only after its first movement of more than an eightieth (SDL_joystick.c).
             for corner in (0, 255):
                 pad.set(lx=corner, ly=corner)
                 wait_for(lambda: min(map(abs, sdl.left())) > FULL / 2, 20, "both axes of the stick in SDL")
@@ -289,8 +289,8 @@ inner = 0.0
 outer = 1.0
 """
 MOST_OVER_BARE_US = 300
-# Work beside the emulator makes a block late, by half a millisecond for seconds on end, and never one early: the
-# quickest block of each reader is compared.
+# Other load on the host delays blocks by half a millisecond for seconds, and never makes one early: the quickest block
+# of each reader is compared.
 FORWARD_ATTEMPTS = 6
 
 

@@ -1,5 +1,5 @@
-"""Pads over the kernel's own Bluetooth stack (HIDP over L2CAP between virtual controllers): decoded as sent, felt,
-lost and found again. test_bluetooth.py has the same pads without a link, over uhid."""
+"""Pads over the kernel's own Bluetooth stack (HIDP over L2CAP between virtual controllers): decoding, rumble, loss and
+return of the link. test_bluetooth.py has the same pads without a link, over uhid."""
 import contextlib
 import statistics
 import time
@@ -18,8 +18,8 @@ from uhid_pad import with_checksum
 KINDS = ("dualsense_bt", "ds4_bt", "xbox_bt")
 ALL = [f"{kind}-{driver}" for kind in KINDS for driver in ("hidraw", "evdev", "sdl")]
 CHOSEN = ALL[slices.NUMBER % len(ALL)]  # in every run a link is lost once
-# A link that both ends still hold is missed when its channels are closed. The kernel says so at once on USB; here the
-# L2CAP channels are taken down first.
+# Seconds until a lost link is noticed. On USB the kernel reports a loss at once; here it closes the L2CAP channels
+# first.
 MOST_LOST_S = 3.0
 
 

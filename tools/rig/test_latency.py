@@ -22,8 +22,8 @@ GENERIC = "1209:0001"
 RATE_HZ, SECONDS = 250, 0.8
 BLOCKS = 10 if LONG else 3
 ATTEMPTS = 3
-LOST_BY_SDL = 0.02  # it keeps the newest state alone: a guest that its host holds back may miss some
-WARM_UP = 10  # reports of a block that are not counted: the first was written before anybody polled
+LOST_BY_SDL = 0.02  # it keeps only the newest state: on a busy host the guest may miss some
+WARM_UP = 10  # reports of a block that are not counted: the first is written before any reader polls
 # driver: (the bare read beside it, by how much its first quartile may exceed that one's, in us). A reader that looks
 # once in a millisecond would exceed it by 250, one of SDL's looks in two by 500.
 LIMITS_US = {"hidraw": ("bare_hidraw", 150), "usb": ("bare_hidraw", 150), "evdev": ("bare_evdev", 150),
@@ -38,7 +38,7 @@ def percentile(values, share):
 
 
 def latencies_us(sent, received):
-    """By number: when it was written, when it was there. The first of equal numbers counts."""
+    """Times of writing and arrival by number. The first of equal numbers counts."""
     arrival = {}
     for ns, number in received:
         arrival.setdefault(number, ns)
@@ -64,7 +64,7 @@ def bare_block(pad, way, ids=GENERIC):
 
 
 def play_block(pad, driver):
-    """The same of `play`, on its own threads, and [(ns of the tick's begin, number)]."""
+    """The same for `play`, on its own threads, and [(ns of the tick's begin, number)]."""
     times = RESULTS / f"latency_{driver}.csv"
     with Session(GENERIC, "--driver", driver, "--no-rumble", "--report-times", times, name=f"latency_{driver}") as session:
         time.sleep(0.5)
@@ -93,7 +93,7 @@ def block(pad, way):
 
 
 def over_bare_us(blocks, driver, what):
-    """Block by block against the bare one beside it; of these the median, which one noisy block does not move."""
+    """The median of the differences between each block and its bare neighbour; one noisy block does not move it."""
     return statistics.median(a[what] - b[what] for a, b in zip(blocks[driver], blocks[LIMITS_US[driver][0]]))
 
 
@@ -163,7 +163,7 @@ def test_drivers_are_as_fast_as_the_bare_read():
     with Pad("generic") as pad:
         blocks = measure(pad, ways, found, ticks, lost)
         slow = too_slow(blocks)
-        # The host of an emulator may be busy for a while: what was too slow is measured anew, beside its bare read.
+        # The host may be busy for a while: ways that were too slow are measured again with their bare reads.
         for _ in range(ATTEMPTS):
             if slow:
                 slow = too_slow(measure(pad, [*{LIMITS_US[way][0]: None for way in slow}, *slow], found, ticks, lost))

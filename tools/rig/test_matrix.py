@@ -15,7 +15,7 @@ DRIVERS = {"generic": ("hidraw", "usb", "evdev", "sdl"), "ds4": ("hidraw", "usb"
 BYTES = {"rest": 128, "low": 0, "high": 255, "some": (200, 100, 50, 25), "trigger": 255, "forward": 0}
 WORDS = {"rest": 0, "low": -32768, "high": 32767, "some": (20000, 10000, -5000, -20000), "forward": 32767}
 VALUES = {"generic": BYTES, "ds4": BYTES, "dualsense": BYTES,
-          # within what the flash says of the sticks' reach: 2048 +- 1536
+          # within the sticks' reach by the flash: 2048 +- 1536
           "switch": {"rest": 2048, "low": 512, "high": 3584, "some": (3200, 1500, 1000, 2500), "trigger": 1,
                      "forward": 3584},
           "xbox360": {**WORDS, "trigger": 255}, "xboxone": {**WORDS, "trigger": 1023}}
@@ -33,7 +33,7 @@ NAMES_OF = {
     "switch": {"a": "b", "b": "a", "x": "y", "y": "x", **{name: name for name in MIDDLE + ("guide", "misc1")}},
     "xbox360": {name: name for name in BUTTONS + MIDDLE + ("guide",)},
     "xboxone": {name: name for name in BUTTONS + MIDDLE}}
-# What the kernel's driver keeps from its event node of the pad: a click of the touchpad is its touchpad's, Mute is the
+# Buttons that are missing on the pad's event node: a click of the touchpad belongs to the touchpad's node, Mute is the
 # driver's own switch, and SDL has no name for the generic pad's spare buttons.
 KEPT = {("ds4", "evdev"): {"touchpad"}, ("ds4", "sdl"): {"touchpad"}, ("dualsense", "evdev"): {"touchpad", "misc1"},
         ("dualsense", "sdl"): {"touchpad", "misc1"}}
@@ -43,7 +43,7 @@ NAMES = {"lx": "left_x", "ly": "left_y", "rx": "right_x", "ry": "right_y", "lt":
 
 
 def directions(eighth):
-    """Of the D-pad at that eighth of a turn, clockwise from up."""
+    """Names of the pressed D-pad buttons at that eighth of a turn, clockwise from up."""
     names = {DPAD[eighth // 2]}
     return names | {DPAD[(eighth // 2 + 1) % 4]} if eighth % 2 else names
 
@@ -54,7 +54,7 @@ def at_rest(kind):
 
 
 def states(kind, driver):
-    """What is sent, one after the other: sticks in both extremes and between, triggers, each button, the D-pad in eight
+    """The states to send in order: sticks at both extremes and between, triggers, each button, the D-pad in eight
     directions."""
     v, rest = VALUES[kind], at_rest(kind)
     yield {**rest, **dict(zip(STICKS, v["some"]))}
@@ -74,7 +74,7 @@ def states(kind, driver):
 
 
 def expected_stick(kind, driver, name, value):
-    """Decoded, +y forward. HID pads have y towards the thumb, Switch and Xbox packets have it forward."""
+    """The decoded value, +y forward. HID pads have y backwards, Switch and Xbox packets have it forward."""
     if kind == "switch":
         if driver in ("hidraw", "usb"):
             return value / 2047.5 - 1  # as the pad counts, its calibration comes later

@@ -28,7 +28,7 @@ SEEN = {"generic": BYTES_SEEN, "ds4": STICKS_SEEN, "dualsense": STICKS_SEEN,
 
 LX_BYTE = {"generic": 0, "ds4": 1, "dualsense": 1, "switch": 6}
 
-# Of strong 0xc000, weak 0x4000: what the packet begins with, where the strengths stand and what they are.
+# The packet of strong 0xc000, weak 0x4000: its first bytes, and the place and value of the strengths.
 RUMBLE = {"ds4": (b"\x05", {4: 0x40, 5: 0xc0}), "dualsense": (b"\x02", {3: 0x40, 4: 0xc0}),
           "xbox360": (b"\x00\x08", {3: 0xc0, 4: 0x40}), "xboxone": (b"\x09", {8: 0x60, 9: 0x20})}
 

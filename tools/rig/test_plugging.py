@@ -1,4 +1,4 @@
-"""Plugging in again and again: pads of all kinds in turn, each with one short push, every one of which is seen.
+"""Repeated plugging: pads of all kinds in turn, each with one short push that the session must see.
 
 Four times each kind, a thousand times with --long, in sessions of fifty. Then at the full speed of the guest, by uhid: a pad
 alone, and one behind a receiver that stays. A thousand times each, in less than 20 minutes:
@@ -72,8 +72,8 @@ def test_every_push_after_plugging_in_is_seen():
 @pytest.mark.timeout(200)
 @pytest.mark.parametrize("case", ["generic-hidraw", "generic-usb", "xbox360-evdev"])
 def test_a_pad_that_rests_when_it_is_opened_counts_from_its_first_push(case):
-    """It has sent nothing since it was plugged in, so only asking it tells that its stick rests. An event node cannot be
-    asked: its axes are 0 until the first report, which is an Xbox pad's middle and a HID pad's edge."""
+    """The pad has sent nothing since it was plugged in, so only a request shows that its stick rests. An event node
+    cannot be asked: its axes are 0 until the first report, which is an Xbox pad's middle and a HID pad's edge."""
     kind, driver = case.split("-")
     times = 20 if LONG else 5
     with Pad(kind, plug=False) as pad, Session(IDS[kind], "--driver", driver, "--no-rumble", name=f"rest-{case}",

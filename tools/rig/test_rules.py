@@ -1,4 +1,4 @@
-"""config/udev judged by udev itself: what `udevadm test` says of each node of thirteen devices, four of them keyboards."""
+"""Tests config/udev with udev itself: `udevadm test` of each node of thirteen devices, four of them keyboards."""
 import os
 import pathlib
 import re
@@ -25,7 +25,7 @@ def rules():
 
 
 def is_opened(path):
-    """By udev's own words: mode, group and tag."""
+    """True if udev gives access. Its output shows mode, group and tag, which must agree."""
     told = subprocess.run(["udevadm", "test", "--action=add", str(path)], capture_output=True, text=True, check=True)
     text = told.stdout + told.stderr
     ours = {word: bool(re.search(rf"60-gaitpad\.rules:\d+ {word}", text)) for word in ("MODE 0660", "GROUP")}

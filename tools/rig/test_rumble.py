@@ -1,4 +1,5 @@
-"""A beat at each heel strike, as strong as the walk is fast, and the stop behind it: as the pad receives them."""
+"""A beat at each heel strike, stronger for a faster walk, and the stop after it, from the packets that the pad
+receives."""
 import time
 
 import pytest
@@ -8,7 +9,7 @@ from pads import Pad
 from session import IDS, Session, remark
 from test_matrix import DRIVERS, VALUES
 
-# Where the strengths (strong, weak) stand in the packets that begin so, and how many bits they have there.
+# First bytes of the packets, and places of the strengths (strong, weak) in them.
 PACKETS = {"ds4": (b"\x05", 5, 4), "dualsense": (b"\x02", 4, 3), "xbox360": (b"\x00\x08", 3, 4), "xboxone": (b"\x09", 8, 9)}
 
 
@@ -51,7 +52,7 @@ def test_heel_strikes_are_felt(case):
     assert abs(len(runs) - strikes) <= 1, f"{len(runs)} beats for {strikes} heel strikes"
     assert all(end is not None for _, _, end in runs), runs
     lengths_s = sorted((end - start) / 1e9 for start, _, end in runs)
-    # A guest that its host holds back may begin or end a single beat late.
+    # On a busy host a single beat may begin or end late.
     assert 0.02 < lengths_s[1] and lengths_s[len(lengths_s) // 2] < 0.18 and lengths_s[-1] < 1.0, runs
     slow = [level for start, level, _ in runs if walked_ns + 1.5e9 < start < middle_ns]
     fast = [level for start, level, _ in runs if middle_ns + 1.5e9 < start < middle_ns + 3e9]

@@ -17,7 +17,7 @@ from support import tested_pad
 from test_calibrate import AS_IT_SHOULD_BE, CENTRES, REACHES, PadHand
 
 STRAIGHT = {"left": AS_IT_SHOULD_BE, "right": AS_IT_SHOULD_BE}
-# What a prompt asks for (the words that tell it from the others), and the field of the pad that does it.
+# Words that identify a prompt, and the pad's field that it asks for.
 BUTTONS = {"bottom one": "a", "right one of": "b", "left one of": "x", "top one": "y", "left of the middle": "back",
            "in the middle": "guide", "right of the middle": "start", "left stick in": "leftstick",
            "right stick in": "rightstick", "left shoulder": "leftshoulder", "right shoulder": "rightshoulder",
@@ -27,7 +27,7 @@ PUSHES = {"to the right": (1, 0), "to the left": (-1, 0), "forward": (0, 1), "ba
 
 
 class Person:
-    """Does what the terminal asks for."""
+    """A scripted person that follows the terminal's prompts."""
 
     def __init__(self, pad, terminal):
         self.pad, self.terminal, self.at = pad, terminal, 0
@@ -152,7 +152,7 @@ def check_report(report, asked):
     assert {c["control"]: c["result"] for c in report["controls"] if c["result"] != "seen"} == {"misc1": "absent"}
     names = {c["control"] for c in report["controls"]}
     assert {"left_x+", "left_x-", "left_y+", "left_y-", "right_x+", "right_y-", "left_trigger", "a", "guide", "dpup",
-            "touchpad", "misc1"} <= names and "paddle1" not in names, names  # paddles: the Edge alone has them
+            "touchpad", "misc1"} <= names and "paddle1" not in names, names  # only the Edge has paddles
     opened = {driver["driver"] for driver in report["drivers"] if driver["opened"]}
     assert opened == {"hidraw", "evdev", "sdl", "usb"}, report["drivers"]
     hidraw = next(driver for driver in report["drivers"] if driver["driver"] == "hidraw")

@@ -63,7 +63,7 @@ _XBOX_BT = (_GAMEPAD + bytes([0x85, 1]) + _fields(4, 16, _STICKS) + _fields(1, 1
             + bytes([0x05, 0x0f, 0x09, 0x21, 0x85, 3]) + _fields(8, 8, tag=0x90) + b"\xc0")
 
 
-# One report of a vendor's: for each of four plugs a type, two bytes of buttons, two sticks, two triggers (SDL's
+# One vendor report with a type, two bytes of buttons, two sticks and two triggers for each of four plugs (SDL's
 # SDL_hidapi_gamecube.c). The second byte is the first plug's type.
 _GAMECUBE = (bytes([0x06, 0, 0xff, 0x09, 1, 0xa1, 1]) + _vendor(0x21, 36, 0x80) + _vendor(0x13, 1, 0x90)
              + _vendor(0x11, 4, 0x90) + b"\xc0")
@@ -252,7 +252,7 @@ class HidPad(Nodes):
     # --- what a test sends
 
     def send(self, report=None):
-        """This report once as it is, or the state with its checksum."""
+        """Sends this report unchanged once, or the state with its checksum."""
         with self._lock:
             if report is None:
                 report = bytes(self.state)

@@ -1,4 +1,4 @@
-"""A pad that only evdev knows, over /dev/uinput: `with UinputPad() as pad: pad.set(X=100, A=1)`."""
+"""A pad with only an evdev node, over /dev/uinput: `with UinputPad() as pad: pad.set(X=100, A=1)`."""
 import fcntl
 import glob
 import os

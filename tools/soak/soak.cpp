@@ -1,8 +1,8 @@
 // soak SECONDS --record FILE.hid | MOTION...: runs the window for a long time with everything that
-// may leak: a pad plugged in and out, styles, panels, themes; and either records the session and
-// replays it at the end, or loads these motions again and again. Prints the memory in use every few
-// seconds and rows for tools/measured.py as the last line; exit status 1 if a row is out of its
-// bounds. tools/soak.sh builds it and makes the motions.
+// may leak: plugs a pad in and out, changes styles, panels and themes, and either records the
+// session and replays it at the end, or loads these motions repeatedly. Prints the memory in use
+// every few seconds and rows for tools/measured.py as the last line; exit status 1 if a row is out
+// of its bounds. tools/soak.sh builds it and makes the motions.
 #include <SDL2/SDL.h>
 #include <fmt/format.h>
 #include <malloc.h>
@@ -39,7 +39,7 @@ constexpr int kWidth = 640, kHeight = 360;  // software draws it in milliseconds
 constexpr double kTick_s = 1.0 / kDefaultRateHz;
 // In the first ten minutes, or in the first quarter of a shorter run, the caches fill.
 constexpr double kFilling_s = 600.0, kFillingShare = 0.25;
-constexpr double kGrowth_mb = 1.0;  // allowed from the first quarter of the rest to its last
+constexpr double kGrowth_mb = 1.0;  // allowed between the first and last quarter of the rest
 
 // Sanitizers keep freed memory.
 #ifdef GAITPAD_SANITIZED
@@ -56,8 +56,8 @@ double resident_mb() {
 
 // --- what the machine does meanwhile
 
-// A thread that only sleeps until its next tick, at a higher priority than any of the program where
-// that is allowed. Where it is late the machine stood still.
+// A thread that only sleeps until its next tick, with a higher priority than the program's threads
+// if that is allowed. If it is late, the machine stood still.
 class SleepingThread {
  public:
   SleepingThread() : thread_([this] { run(); }) {}
@@ -121,7 +121,7 @@ class LoopWait {
 
 // --- what is done to the program
 
-// A pad that only SDL sees.
+// A virtual joystick inside SDL.
 class VirtualPad {
  public:
   void plug() {
@@ -144,7 +144,7 @@ class VirtualPad {
     index_ = -1;
   }
   bool is_plugged() const { return joystick_ != nullptr; }
-  int plugs() const { return plugs_; }  // how often it was plugged in
+  int plugs() const { return plugs_; }  // times that it was plugged in
   void push(double forward) {
     if (joystick_ == nullptr) return;
     SDL_JoystickSetVirtualAxis(joystick_, SDL_CONTROLLER_AXIS_LEFTY,
@@ -175,7 +175,7 @@ void drop(const std::string& path) {
   SDL_PushEvent(&event);
 }
 
-// Due every so many seconds.
+// Due at a fixed interval in seconds.
 class Every {
  public:
   explicit Every(double period_s) : period_s_(period_s), next_s_(period_s) {}
@@ -228,7 +228,7 @@ class Soak {
                                        SDLK_F6, SDLK_F7, SDLK_TAB, SDLK_t};
 
   void look(double time_s) {
-    ::malloc_trim(0);  // free memory that was not given back is no leak
+    ::malloc_trim(0);  // freed memory that was not returned is not a leak
     memory_mb_.push_back(resident_mb());
     loop_wait_.look();
     fmt::print("{:6.0f} s  {:7.1f} MB\n", time_s, memory_mb_.back());
@@ -271,7 +271,7 @@ struct Rows {
   }
 };
 
-// Ticks of another pose than the recording's session had: all or none, by the hash.
+// Ticks whose pose differs from the recorded session: by the hash, all or none.
 void replay_recording(const SessionSpec& session, const RunSummary& live, double seconds,
                       Rows& rows) {
   SessionSpec spec;
@@ -336,7 +336,7 @@ int run(double seconds, const std::string& record, const std::vector<std::string
              fmt::format("<= {}", kGrowth_mb), growth_mb <= kGrowth_mb || !kIsJudged);
   rows.add("times plugged in", soak.plugs());
   if (!record.empty() && result->status) {
-    // The last one may come after the session's last look.
+    // The last one may come after the session's last check.
     const auto missed = static_cast<double>(soak.plugs() - result->status->pads.plugged);
     rows.judge("of these not noticed", missed, "", "<= 1", missed >= 0.0 && missed <= 1.0);
     judge_ticks(*result->status, sleeper_late, steal_s, soak.loop_wait_s(), rows);

@@ -4,6 +4,7 @@
 
 #include "base/lanes.h"
 #include "gaitpad/walk.h"
+#include "motion/stride_lanes.h"
 
 namespace gaitpad {
 
@@ -97,20 +98,33 @@ struct ParamsOf {
   std::array<V, 2> arm_swing;  // of UpperBodyParams in force
 };
 
+// A place on the ground that moves evenly with the phase.
+template <class V>
+struct LineOf {
+  Vec<V> at_zero_m{}, per_phase_m{};
+  Vec<V> at(const V& phase) const noexcept { return at_zero_m + per_phase_m * phase; }
+};
+
 // What the tables say of one moment of a step. A step leads from the stride that the last step was
 // taken with to the one that it is taken with itself: the hips follow the first one's table from
 // the footprint that they come from, the second one's towards the next, and change over smoothly.
 template <class V>
 struct PlanOf {
-  V phase{};   // of the data, unwrapped: within this step it does not jump
-  V change{};  // from the one stride, at 0, to the other, at 1
-  V shown{};   // how much of the tables shows: 0 when standing
-  std::array<StrideTrackOf<V>, 2> track;  // of the two strides,
-  std::array<Vec<V>, 2> flying_m;         // and where the heel that flies is in each of them
-  StrideCellOf<V> cell;                   // both, mixed by `change` and `shown`
-  StrideFootOf<V> flying;                 // the foot that flies, or is about to
-  V heel_up_m{};                          // its heel's height,
-  StrideTrackOf<V> short_track;           // and the stride that it flies in at a start or stop
+  V phase{};                          // of the data, unwrapped: within this step it does not jump
+  V change{};                         // from the one stride, at 0, to the other, at 1
+  V shown{};                          // how much of the tables shows: 0 when standing
+  V ratio_ahead{};                    // of the stride that the step is taken with
+  std::array<RatiosOf<V>, 2> ratios;  // of the two strides,
+  std::array<FootprintsOf<V>, 2> track;  // where they go,
+  std::array<LineOf<V>, 2> hips_m;       // the hips' path in each of them, by phase,
+  std::array<Vec<V>, 2> flying_m;        // and where the heel that flies is in each of them
+  StrideCellOf<V> cell;                  // both, mixed by `change` and `shown`
+  StrideFootOf<V> flying;                // the foot that flies, or is about to
+  V heel_up_m{};                         // its heel's height,
+  FootprintsOf<V> short_track;           // and the stride that it flies in at a start or stop
+  // Where the footprints point of the foot that stands, of the other one when it lifted off, and of
+  // its landing: on the ground, unit.
+  Vec<V> stands{}, lifted{}, lands{};
 };
 
 template <class V>

@@ -134,9 +134,13 @@ struct PelvisOf {
   Vec<V> hip(const LegBuild& leg) const noexcept {
     return position_m + rotation * all_of<V>(leg.model.hip_m);
   }
+  // In the world, of a place in its frame from the hip joint.
+  Vec<V> place(const LegBuild& leg, const Vec<V>& from_hip_m) const noexcept {
+    return hip(leg) + rotation * from_hip_m;
+  }
 };
 
-// What a leg's solver came to: in the pelvis' frame, from the hip joint.
+// What a leg's solver came to. Heel and toe in the world.
 template <class V>
 struct PosedLegOf {
   V iterations{}, squares{};  // of the error, square metres

@@ -360,13 +360,32 @@ void report_leg(const MomentOf<V>& at, Side side, const PosedLegOf<V>& posed, St
 
 // --- The pose ------------------------------------------------------------------------------------
 
-// Rx(x) Rz(z) Ry(y) of half the angles.
+// Sines and cosines of half the angles of both legs.
 template <class V>
-Quat<V> turn_xzy(const V& x_rad, const V& z_rad, const V& y_rad) noexcept {
-  V xs, xc, zs, zc, ys, yc;
-  sin_cos_of(V(0.5 * x_rad), xs, xc);
-  sin_cos_of(V(0.5 * z_rad), zs, zc);
-  sin_cos_of(V(0.5 * y_rad), ys, yc);
+struct HalfTurns {
+  std::array<V, kLegDofs> sine, cosine;
+};
+template <class V>
+std::array<HalfTurns<V>, 2> half_turns(const typename LegFlow<V>::Angles& angles_rad) noexcept {
+  std::array<HalfTurns<V>, 2> half;
+  for (int j = 0; j < kLegDofs; ++j) {
+    if constexpr (kAlone<V>) {  // both legs side by side
+      Lanes<2> sine, cosine;
+      sin_cos_of(0.5 * Lanes<2>{angles_rad[0][j], angles_rad[1][j]}, sine, cosine);
+      for (int side : {0, 1}) half[side].sine[j] = sine[side], half[side].cosine[j] = cosine[side];
+    } else {
+      for (int side : {0, 1})
+        sin_cos_of(V(0.5 * angles_rad[side][j]), half[side].sine[j], half[side].cosine[j]);
+    }
+  }
+  return half;
+}
+
+// Rx(x) Rz(z) Ry(y) of three angles, from the x one on.
+template <class V>
+Quat<V> turn_xzy(const HalfTurns<V>& half, int x) noexcept {
+  const V xs = half.sine[x], xc = half.cosine[x], zs = half.sine[x + 1], zc = half.cosine[x + 1],
+          ys = half.sine[x + 2], yc = half.cosine[x + 2];
   const V w = xc * zc, i = xs * zc, j = -xs * zs, k = xc * zs;
   return Quat<V>(w * yc - j * ys, i * yc - k * ys, w * ys + j * yc, k * yc + i * ys);
 }
@@ -402,13 +421,14 @@ void set_joint(const Quat<V>& q, int joint, const Locals<kWidthOf<V>>& local) no
 template <class V>
 void write_legs(const WalkModel& model, const StateOf<V>& state,
                 const Locals<kWidthOf<V>>& local) noexcept {
+  const std::array<HalfTurns<V>, 2> half = half_turns<V>(state.legs.angles_rad);
   for (const Side side : {kLeftSide, kRightSide}) {
     const LegBuild& leg = model.leg[side];
-    const auto& q = state.legs.angles_rad[side];
+    const HalfTurns<V>& q = half[side];
     const auto& foot = state.foot[side].pose;
     const std::array<Quat<V>, 4> turn = {
-        turn_xzy(q[kHipX], q[kHipZ], q[kHipY]), rotation_about_x(q[kKneeX]),
-        turn_xzy(q[kAnkleX], q[kAnkleZ], q[kAnkleY]), toes_turn<V>(leg, foot, foot.toe_rad)};
+        turn_xzy(q, kHipX), Quat<V>(q.cosine[kKneeX], q.sine[kKneeX], V{}, V{}),
+        turn_xzy(q, kAnkleX), toes_turn<V>(leg, foot, foot.toe_rad)};
     for (int i = 0; i < 4; ++i) {
       const LegJointFrame& frame = leg.joint[i];
       if (frame.joint >= 0)

@@ -406,11 +406,13 @@ void plan_stride(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& stat
                 track_of<V>(tick.model, at.backward, ahead)};
   const V left_rad = state.foot[kLeftSide].lift_yaw_rad,
           right_rad = state.foot[kRightSide].lift_yaw_rad;
-  plan.stands = direction_of<V>(at.right_steps ? left_rad : right_rad);
-  plan.lifted = direction_of<V>(at.right_steps ? right_rad : left_rad);
+  if (any(at.flies)) plan.lifted = direction_of<V>(at.right_steps ? right_rad : left_rad);
   plan.lands = direction_of<V>(state.path.landing_heading_rad);
-  plan.hips_m = {path_from_standing<V>(at, state, plan.track[0], plan.stands),
-                 path_to_landing<V>(at, plan.track[1], state.path.landing_m, plan.lands)};
+  plan.hips_m[1] = path_to_landing<V>(at, plan.track[1], state.path.landing_m, plan.lands);
+  if (any(at.led | at.strikes())) {
+    const Vec<V> stands = direction_of<V>(at.right_steps ? left_rad : right_rad);
+    plan.hips_m[0] = path_from_standing<V>(at, state, plan.track[0], stands);
+  }
   const StrideScale& scale = tick.model.stride_scale;
   for (int k : {0, 1}) {
     plan.flying_m[k] = Vec<V>{};

@@ -116,15 +116,15 @@ struct PlanOf {
   V ratio_ahead{};                    // of the stride that the step is taken with
   std::array<RatiosOf<V>, 2> ratios;  // of the two strides,
   std::array<FootprintsOf<V>, 2> track;  // where they go,
-  std::array<LineOf<V>, 2> hips_m;       // the hips' path in each of them, by phase,
-  std::array<Vec<V>, 2> flying_m;        // and where the heel that flies is in each of them
-  StrideCellOf<V> cell;                  // both, mixed by `change` and `shown`
-  StrideFootOf<V> flying;                // the foot that flies, or is about to
-  V heel_up_m{};                         // its heel's height,
-  FootprintsOf<V> short_track;           // and the stride that it flies in at a start or stop
-  // Where the footprints point of the foot that stands, of the other one when it lifted off, and of
-  // its landing: on the ground, unit.
-  Vec<V> stands{}, lifted{}, lands{};
+  // The hips' path in each of them, by phase; in the first one where hips lead or a step begins,
+  std::array<LineOf<V>, 2> hips_m;
+  std::array<Vec<V>, 2> flying_m;  // and where the heel that flies is in each of them
+  StrideCellOf<V> cell;            // both, mixed by `change` and `shown`
+  StrideFootOf<V> flying;          // the foot that flies, or is about to
+  V heel_up_m{};                   // its heel's height,
+  FootprintsOf<V> short_track;     // and the stride that it flies in at a start or stop
+  // Where the footprints point that the flying foot left and that it will land on: unit.
+  Vec<V> lifted{}, lands{};
 };
 
 template <class V>

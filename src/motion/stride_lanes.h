@@ -202,7 +202,10 @@ Vec<V> scaled_heel(const StrideScale& to, const Vec<V>& heel_m, int side) noexce
 // A pelvis' hips, turned as the pelvis is.
 template <class V>
 Vec<V> pelvis_turned(const vec3& place_m, const V& yaw_rad, const Vec<V>& tilt) noexcept {
-  return rotation_about_y(yaw_rad) * (rotation_by_vector<V>(tilt) * all_of<V>(place_m));
+  V sine, cosine;
+  sin_cos_of(yaw_rad, sine, cosine);
+  const Vec<V> p = rotation_by_vector<V>(tilt) * all_of<V>(place_m);
+  return {cosine * p.x + sine * p.z, p.y, cosine * p.z - sine * p.x};
 }
 
 // The character's strides (StrideScale), from the motion's. So that the legs keep their angles, the

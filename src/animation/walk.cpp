@@ -588,7 +588,8 @@ void pose_robust(const PlannedTick& planned, std::array<PosedLeg, 2>& posed) noe
     return;
   }
   for (const Side side : {kLeftSide, kRightSide}) {
-    set_even_goals<double>(tick.model.leg[side], state, pelvis, side, legs[side].goals);
+    set_limits<double>(tick.model.leg[side], legs[side].goals);
+    set_leg<double>(tick.model.leg[side], state.foot[side].pose, pelvis, legs[side].goals);
     set_shares<double>(tick, planned.at, planned.plan, pelvis, side, state, legs[side].goals,
                        legs[side].shares, legs[side].angles_rad);
   }

@@ -123,7 +123,8 @@ PosedLegOf<V> pose_side(const Tick& tick, std::span<const Walking> walks, const 
     state.legs.angles_rad[side] = even;
     return posed;
   }
-  set_even_goals<V>(leg, state, pelvis, side, goals);
+  set_limits<V>(leg, goals);
+  set_leg<V>(leg, state.foot[side].pose, pelvis, goals);
   LegShares<V> shares;
   std::array<V, kLegDofs> angles;
   set_shares<V>(tick, at, plan, pelvis, side, state, goals, shares, angles);

@@ -153,10 +153,10 @@ inline MaskOf<V> close_lanes(const PlannedLeg<V>& planned, LegValues<V>& angles_
   turn_lanes(foot_z, foot_x, s[6], c[6]);
 
   // The knee, then the least turn of the hip that brings the ankle to its place.
-  MaskOf<V> good = zero == zero;
   const Vec3Of<V>& ankle = planned.ankle_m;
   const V square = dot_of(ankle, ankle), bends = (square - a * a - b * b) / (2.0 * a * b),
           bent = sqrt_of(max_of(V(1.0 - bends * bends), zero));
+  MaskOf<V> good = bends * bends < one;
   LegValues<V> next;
   next[kKneeX] = angle_near(bent, bends, angles_rad[kKneeX], s[3], c[3], good);
   const Vec3Of<V> from = -(a + b * bends) * y - (b * bent) * z;
@@ -199,7 +199,6 @@ inline MaskOf<V> close_lanes(const PlannedLeg<V>& planned, LegValues<V>& angles_
                              s[5], c[5], good);
   next[kAnkleY] = angle_near(dot_of(thigh_x, planned.foot_z), dot_of(thigh_x, planned.foot_x),
                              angles_rad[kAnkleY], s[6], c[6], good);
-  good = good & (bends * bends < one);
   for (int j = 0; j < kLegDofs; ++j)
     good = good & (next[j] >= planned.min_rad[j]) & (next[j] <= planned.max_rad[j]);
   for (int j = 0; j < kLegDofs; ++j) angles_rad[j] = good ? next[j] : angles_rad[j];

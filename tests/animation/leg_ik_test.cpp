@@ -226,6 +226,7 @@ TEST(LegInClosedForm, BringsTheFootExactlyToItsPlaceByTheNearestPose) {
 
 TEST(LegInClosedForm, LeavesALegAloneThatIsTooShortOrFarFromItsStart) {
   Random random(8);
+  int missed = 0;
   for (int k = 0; k < 200; ++k) {
     ClosedLegs both(random, 0.0);
     for (LegToClose& leg : both.legs) {
@@ -238,7 +239,13 @@ TEST(LegInClosedForm, LeavesALegAloneThatIsTooShortOrFarFromItsStart) {
       EXPECT_EQ(both.legs[i].reached, 0.0);
       EXPECT_EQ(both.legs[i].angles_rad, before[i]);
     }
+    const ClosedLegs far(random, 0.5);
+    for (int i : {0, 1}) {
+      if (far.legs[i].reached == 0.0) EXPECT_EQ(far.closed(i), far.start[i]);
+      missed += far.legs[i].reached == 0.0;
+    }
   }
+  EXPECT_GT(missed, 390);  // of 400
 }
 
 TEST(Lanes, SineAndCosineAreThoseOfOneNumber) {

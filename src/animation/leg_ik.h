@@ -1,4 +1,6 @@
-// The robust solver of gaitpad/ik.h for legs, whose sizes are known when compiling: seven single
+// Legs whose foot is planned as a whole have one degree of freedom left, the knee's swivel, and a
+// closed form for the rest. Where that does not reach: the robust solver of gaitpad/ik.h for legs,
+// whose sizes are known when compiling: seven single
 // rotations (hip x z y, knee x, ankle x z y) and the six rows that hold a foot. Several legs are
 // solved side by side, one a lane: the two of a character, or those of a crowd. Every lane gets the
 // bits that solve_robust() gives with max_tries = 1, whatever the others do.
@@ -21,6 +23,15 @@ struct LegGoals {
   // the first point, side and across of the second, across of the third.
   Vec3Of<V> side, across, along;
   std::array<V, 6> goal_m;
+};
+
+// A leg whose foot is planned as a whole: where its ankle is to be, in the pelvis' frame from the
+// hip joint, and the foot's axes.
+template <class V>
+struct PlannedLeg {
+  V thigh_m, shank_m;
+  std::array<V, kLegDofs> min_rad, max_rad;
+  Vec3Of<V> ankle_m, foot_x, foot_y, foot_z;
 };
 
 template <class V>
@@ -53,6 +64,15 @@ struct LegToSolve {
   LegSolution<double> solution;
 };
 
+// One leg, and whether it was reached: 1 or 0. Else the angles are as they were.
+struct LegToClose {
+  PlannedLeg<double> planned;
+  LegAngles angles_rad;
+  double reached = 0.0;
+};
+template <int kRegister>
+void close_legs(std::array<LegToClose, 2>& legs) noexcept;
+
 // kWidth: 2, 4 or 8. kWeighted: the legs' `shares` are looked at. kRegister: the width of the
 // registers that it is compiled for; wider ones bring instructions with three operands, by which
 // two legs take a seventh less time.
@@ -60,6 +80,11 @@ template <int kWidth, bool kWeighted, int kRegister = kWidth>
 void solve_legs(const std::array<LegToSolve*, kWidth>& legs) noexcept;
 
 // The two of one character, for the widest registers in use.
+inline void close_two_legs(std::array<LegToClose, 2>& legs) noexcept {
+  const int lanes = lanes_in_use();
+  const auto close = lanes >= 8 ? close_legs<8> : lanes >= 4 ? close_legs<4> : close_legs<2>;
+  close(legs);
+}
 template <bool kWeighted>
 inline void solve_two_legs(std::array<LegToSolve, 2>& legs) noexcept {
   const int lanes = lanes_in_use();

@@ -104,6 +104,107 @@ inline V first_rows(const LegRows<V>& dx) noexcept {
   return dx[0] * dx[0] + dx[1] * dx[1] + dx[2] * dx[2];
 }
 
+// --- The closed form -----------------------------------------------------------------------------
+
+// The angle with this sine and cosine, up to a common factor, near another angle. Clears `is_near`
+// where it is not.
+template <class V>
+inline V angle_near(const V& sine, const V& cosine, const V& old_rad, const V& old_sine,
+                    const V& old_cosine, MaskOf<V>& is_near) noexcept {
+  constexpr double kNear = 0.035;  // tangent: farther away the swivel would not be the nearest
+  const V across = sine * old_cosine - cosine * old_sine,
+          along = cosine * old_cosine + sine * old_sine;
+  is_near = is_near & (abs_of(across) < kNear * along);
+  return old_rad + atan_kernel(V(across / along));
+}
+
+// How much three joint axes have to turn for a rotation vector: x, z and y of Rx Rz Ry. `x` and `y`
+// are the axes before the last turn, `z` is the second one.
+template <class V>
+inline std::array<V, 3> turns_xzy(const Vec3Of<V>& vector, const Vec3Of<V>& x, const Vec3Of<V>& y,
+                                  const Vec3Of<V>& z, const V& sine_z, const V& cosine_z) noexcept {
+  const V first = dot_of(vector, x) / cosine_z;
+  return {first, dot_of(vector, z), dot_of(vector, y) + sine_z * first};
+}
+
+// Brings a leg's foot to where it is planned. The knee's bend follows from the distance to the
+// ankle. Of the poses that are left, which differ by the knee's swivel about the line from hip to
+// ankle, it takes the one nearest to the start: the least sum of squares of the angles' changes, as
+// the pseudoinverse has it, to first order. Where it is true the angles are exact; elsewhere, where
+// a leg is too short, at a limit or far from its start, they are as they were.
+template <class V>
+inline MaskOf<V> close_lanes(const PlannedLeg<V>& planned, LegValues<V>& angles_rad) noexcept {
+  LegValues<V> s, c;
+  for (int j = 0; j < kLegDofs; ++j) sin_cos_of(angles_rad[j], s[j], c[j]);
+  const V zero{}, one = all_of<V>(1.0), a = planned.thigh_m, b = planned.shank_m;
+  // The hip's axes at the start: of its second turn, then all of them after it, then the thigh's.
+  const Vec3Of<V> hip_z{zero, -s[0], c[0]}, hip_x{c[1], s[1] * c[0], s[1] * s[0]},
+      hip_y{-s[1], c[1] * c[0], c[1] * s[0]};
+  Vec3Of<V> x = hip_x, z = hip_z;
+  const Vec3Of<V>& y = hip_y;
+  turn_lanes(z, x, s[2], c[2]);
+  Vec3Of<V> shank_y = y, shank_z = z;
+  turn_lanes(shank_y, shank_z, s[3], c[3]);
+  Vec3Of<V> foot_x = x, foot_y = shank_y, ankle_z = shank_z;
+  turn_lanes(foot_y, ankle_z, s[4], c[4]);
+  turn_lanes(foot_x, foot_y, s[5], c[5]);
+  const Vec3Of<V> ankle_x = foot_x;
+  Vec3Of<V> foot_z = ankle_z;
+  turn_lanes(foot_z, foot_x, s[6], c[6]);
+
+  // The knee, then the least turn of the hip that brings the ankle to its place.
+  const Vec3Of<V>& ankle = planned.ankle_m;
+  const V square = dot_of(ankle, ankle), bends = (square - a * a - b * b) / (2.0 * a * b),
+          bent = sqrt_of(max_of(V(1.0 - bends * bends), zero));
+  MaskOf<V> good = bends * bends < one;
+  LegValues<V> next;
+  next[kKneeX] = angle_near(bent, bends, angles_rad[kKneeX], s[3], c[3], good);
+  const Vec3Of<V> from = -(a + b * bends) * y - (b * bent) * z;
+  Vec3Of<V> axis = cross_of(from, ankle);
+  V w = square + dot_of(from, ankle);
+  // Rotation vectors of hip and foot, and what is left of the foot's for the ankle.
+  const Vec3Of<V> of_hip = axis * (2.0 / w),
+                  of_foot =
+                      0.5 * (cross_of(foot_x, planned.foot_x) + cross_of(foot_y, planned.foot_y) +
+                             cross_of(foot_z, planned.foot_z)),
+                  of_ankle = of_foot - of_hip - x * (next[kKneeX] - angles_rad[kKneeX]),
+                  line = ankle * (1.0 / sqrt_of(square));
+  const auto hip = turns_xzy(of_hip, hip_x, hip_y, hip_z, s[1], c[1]),
+             turns = turns_xzy(of_ankle, ankle_x, foot_y, ankle_z, s[5], c[5]),
+             hip_swivels = turns_xzy(line, hip_x, hip_y, hip_z, s[1], c[1]),
+             ankle_swivels = turns_xzy(line, ankle_x, foot_y, ankle_z, s[5], c[5]);
+  V along{}, squares{};
+  for (int i = 0; i < 3; ++i) {
+    along += ankle_swivels[i] * turns[i] - hip_swivels[i] * hip[i];
+    squares += hip_swivels[i] * hip_swivels[i] + ankle_swivels[i] * ankle_swivels[i];
+  }
+  const Vec3Of<V> swivel = line * (0.5 * along / squares);
+  const Vec3Of<V> vector = axis + swivel * w + cross_of(swivel, axis);
+  w = w - dot_of(swivel, axis);
+  const V norm = 1.0 / sqrt_of(V(w * w + dot_of(vector, vector)));
+  const QuatOf<V> turn{w * norm, vector.x * norm, vector.y * norm, vector.z * norm};
+
+  // The angles of that pose.
+  const Vec3Of<V> thigh_x = turn * x, thigh_y = turn * y, thigh_z = cross_of(thigh_x, thigh_y);
+  next[kHipX] = angle_near(thigh_y.z, thigh_y.y, angles_rad[kHipX], s[0], c[0], good);
+  next[kHipZ] = angle_near(V(-thigh_y.x), sqrt_of(V(thigh_y.y * thigh_y.y + thigh_y.z * thigh_y.z)),
+                           angles_rad[kHipZ], s[1], c[1], good);
+  next[kHipY] = angle_near(thigh_z.x, thigh_x.x, angles_rad[kHipY], s[2], c[2], good);
+  shank_y = bends * thigh_y + bent * thigh_z;
+  shank_z = bends * thigh_z - bent * thigh_y;
+  const V up_x = dot_of(thigh_x, planned.foot_y), up_y = dot_of(shank_y, planned.foot_y),
+          up_z = dot_of(shank_z, planned.foot_y);
+  next[kAnkleX] = angle_near(up_z, up_y, angles_rad[kAnkleX], s[4], c[4], good);
+  next[kAnkleZ] = angle_near(V(-up_x), sqrt_of(V(up_y * up_y + up_z * up_z)), angles_rad[kAnkleZ],
+                             s[5], c[5], good);
+  next[kAnkleY] = angle_near(dot_of(thigh_x, planned.foot_z), dot_of(thigh_x, planned.foot_x),
+                             angles_rad[kAnkleY], s[6], c[6], good);
+  for (int j = 0; j < kLegDofs; ++j)
+    good = good & (next[j] >= planned.min_rad[j]) & (next[j] <= planned.max_rad[j]);
+  for (int j = 0; j < kLegDofs; ++j) angles_rad[j] = good ? next[j] : angles_rad[j];
+  return good;
+}
+
 // --- Equation (5) --------------------------------------------------------------------------------
 
 // The exact rows are closed in every step, this share of the rest: with all of it some walks swing
@@ -218,9 +319,8 @@ inline LegSolution<V> solve_lanes(const LegGoals<V>& goals, const LegShares<V>& 
 
 // Numbers of several legs side by side, and back: the structs are the same numbers in the same
 // order.
-template <std::size_t kWidth, class One, class Several>
-inline void gather(const std::array<LegToSolve*, kWidth>& legs, One LegToSolve::*part,
-                   Several& to) noexcept {
+template <std::size_t kWidth, class Leg, class One, class Several>
+inline void gather(const std::array<Leg*, kWidth>& legs, One Leg::*part, Several& to) noexcept {
   static_assert(sizeof to == kWidth * sizeof(One));
   auto* lanes = reinterpret_cast<Lanes<kWidth>*>(&to);
   std::array<const double*, kWidth> from;
@@ -232,9 +332,9 @@ inline void gather(const std::array<LegToSolve*, kWidth>& legs, One LegToSolve::
     lanes[k] = row;
   }
 }
-template <std::size_t kWidth, class One, class Several>
-inline void scatter(const Several& from, One LegToSolve::*part,
-                    const std::array<LegToSolve*, kWidth>& legs) noexcept {
+template <std::size_t kWidth, class Leg, class One, class Several>
+inline void scatter(const Several& from, One Leg::*part,
+                    const std::array<Leg*, kWidth>& legs) noexcept {
   const auto* lanes = reinterpret_cast<const Lanes<kWidth>*>(&from);
   for (std::size_t i = 0; i < kWidth; ++i) {
     auto* to = reinterpret_cast<double*>(&(legs[i]->*part));
@@ -243,6 +343,19 @@ inline void scatter(const Several& from, One LegToSolve::*part,
 }
 
 }  // namespace
+
+template <int kRegister>
+void close_legs(std::array<LegToClose, 2>& legs) noexcept {
+  using V = Lanes<2>;
+  PlannedLeg<V> planned;
+  LegValues<V> angles_rad;
+  const std::array<LegToClose*, 2> both = {&legs[0], &legs[1]};
+  gather(both, &LegToClose::planned, planned);
+  gather(both, &LegToClose::angles_rad, angles_rad);
+  const auto reached = close_lanes<V>(planned, angles_rad);
+  scatter(angles_rad, &LegToClose::angles_rad, both);
+  for (int side : {0, 1}) legs[side].reached = is_set(reached, side) ? 1.0 : 0.0;
+}
 
 template <int kWidth, bool kWeighted, int kRegister>
 void solve_legs(const std::array<LegToSolve*, kWidth>& legs) noexcept {

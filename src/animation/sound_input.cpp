@@ -8,6 +8,10 @@
 
 namespace gaitpad {
 
+bool is_same(const UpperBodyParams& a, const UpperBodyParams& b) noexcept {
+  return std::memcmp(&a, &b, sizeof a) == 0 || a == b;
+}
+
 bool is_sound(const GaitParams& params, const WalkState& state) noexcept {
   using Pair = Lanes<2>;
   const ParamsRange& range = params_range();
@@ -18,7 +22,7 @@ bool is_sound(const GaitParams& params, const WalkState& state) noexcept {
   };
   // The body's numbers, which stand last, are many and seldom change.
   constexpr std::size_t kBody = sizeof(UpperBodyParams) / sizeof(double);
-  const bool same = params.body == state.body.goal;
+  const bool same = is_same(params.body, state.body.goal);
   const std::size_t count = same ? kParamsNumbers - kBody : kParamsNumbers;
   MaskOf<Pair> outside{};
   for (std::size_t k = 0; k < count; k += 2) {

@@ -6,9 +6,10 @@
 // the trunk and spreads the arms, poses the spine, then the arms that hang on it, then the head.
 // What is as the data have it is not touched, so it costs nothing and keeps its bits.
 #include <bit>
-#include <cstdint>
+#include <cstring>
 
 #include "animation/floor.h"
+#include "animation/sound_input.h"
 #include "animation/walk_figure.h"
 #include "motion/leg_pose.h"
 
@@ -19,34 +20,44 @@ namespace {
 
 constexpr RobustOptions kRobustBody = {.tolerance_m = 1e-6, .max_iterations = 40, .max_tries = 1};
 constexpr double kSmoothing = 0.22;     // s at the reference leg
-constexpr double kSettled = 40.0;       // time constants after which a value is at its goal
+constexpr double kSettled = 24.0;       // time constants: all but 1e-9 of a change is over
 constexpr double kRailProbe_m = 0.035;  // between two probes of the ground under a rail
 constexpr int kRailProbes = 15;  // to either side, 0.56 m: a mean over two treads rises evenly
 constexpr double kRailSmoothing = 0.06;
 
 // The parameters are numbers alone, so all of them are smoothed as one row.
 using BodyValues = std::array<double, sizeof(UpperBodyParams) / sizeof(double)>;
-using BodyBits = std::array<std::uint64_t, std::tuple_size_v<BodyValues>>;
 
 // Brings the values in force nearer to their goals. At the goals this costs one comparison.
 void settle_values(const Tick& tick, UpperBodyState& body) noexcept {
   const UpperBodyParams& goal = tick.params.body;
   const double tau = kSmoothing * tick.model.time_scale;
-  // Most often not a bit has changed, and that is seen faster.
-  if (std::bit_cast<BodyBits>(goal) != std::bit_cast<BodyBits>(body.goal) && !(goal == body.goal)) {
+  if (!is_same(goal, body.goal)) {
     body.goal = goal;
     body.unsettled_ticks = static_cast<int>(std::min(kSettled * tau / tick.dt_s, 1e6));
   }
   if (body.unsettled_ticks <= 0) return;
   const auto to = std::bit_cast<BodyValues>(goal);
-  auto now = std::bit_cast<BodyValues>(body.now);
-  --body.unsettled_ticks;
-  for (std::size_t i = 0; i < to.size(); ++i) {
-    Damped<double> value{now[i], body.per_s[i]};
-    value.advance(to[i], tau, tick.dt_s);
-    const bool is_there = body.unsettled_ticks == 0;
-    now[i] = is_there ? to[i] : value.x;
-    body.per_s[i] = is_there ? 0.0 : value.v;
+  if (--body.unsettled_ticks == 0) {
+    body.now = goal;
+    body.per_s = {};
+    return;
+  }
+  using Pair = Lanes<2>;
+  const auto before = std::bit_cast<BodyValues>(body.now);
+  const BodyValues rate = body.per_s;
+  BodyValues now = before;
+  const Damping damping(tau, tick.dt_s);
+  for (std::size_t i = 0; i < to.size(); i += 2) {
+    const std::size_t at = std::min(i, to.size() - 2);  // the last pair of an odd count overlaps
+    Damped<Pair> value;
+    Pair aim;
+    std::memcpy(&value.x, &before[at], sizeof(Pair));
+    std::memcpy(&value.v, &rate[at], sizeof(Pair));
+    std::memcpy(&aim, &to[at], sizeof(Pair));
+    value.advance(aim, damping);
+    std::memcpy(&now[at], &value.x, sizeof(Pair));
+    std::memcpy(&body.per_s[at], &value.v, sizeof(Pair));
   }
   body.now = std::bit_cast<UpperBodyParams>(now);
 }
@@ -111,12 +122,22 @@ quat rotation_above(const Skeleton& skeleton, const PosePart& pose, int joint) n
   return rotation;
 }
 
-// Turns a joint and all above it by `turn`, which is in the walker's axes at its heading.
+// Turns joints and all above them by `turn`, which is in the walker's axes at its heading.
+void turn_joints(const Skeleton& skeleton, double heading_rad, const quat& turn,
+                 std::span<const int> joints, const PosePart& pose) noexcept {
+  const quat to = rotation_y(heading_rad), world = to * turn * glm::conjugate(to);
+  quat above = kIdentity;
+  for (int last = -1; const int joint : joints) {
+    above = last >= 0 && skeleton.joints[joint].parent == last
+                ? above * pose.local[last]
+                : rotation_above(skeleton, pose, joint);
+    pose.local[joint] = glm::normalize(glm::conjugate(above) * world * above * pose.local[joint]);
+    last = joint;
+  }
+}
 void turn_joint(const Skeleton& skeleton, double heading_rad, const quat& turn, int joint,
                 const PosePart& pose) noexcept {
-  const quat above = rotation_above(skeleton, pose, joint), to = rotation_y(heading_rad);
-  const quat world = to * turn * glm::conjugate(to);
-  pose.local[joint] = glm::normalize(glm::conjugate(above) * world * above * pose.local[joint]);
+  turn_joints(skeleton, heading_rad, turn, {&joint, 1}, pose);
 }
 
 // The spine's joints share the lean; arms keep hanging as they did.
@@ -128,8 +149,7 @@ void lean_trunk(const WalkModel& model, const WalkState& state, const PosePart& 
   const double share = 1.0 / static_cast<double>(spine.size());
   const quat turn = rotation_y(share * ahead) * rotation_z(-share * body.left_rad) *
                     rotation_x(share * body.forward_rad);
-  for (const int joint : spine)
-    turn_joint(model.cycle.skeleton, state.path.heading_rad, turn, joint, pose);
+  turn_joints(model.cycle.skeleton, state.path.heading_rad, turn, spine, pose);
   const quat back = rotation_x(-body.forward_rad) * rotation_z(body.left_rad);
   for (const ArmBuild& arm : model.body.arm) {
     if (arm.is_there)
@@ -170,7 +190,7 @@ void ease_chest(const Tick& tick, WalkState& state, const PosePart& pose) noexce
   if (value == goal) return;
   const vec3 off = rotation_vector(from_rotation_vector(value) * from_rotation_vector(-goal));
   const quat turn = from_rotation_vector(off / static_cast<double>(spine.size()));
-  for (const int joint : spine) turn_joint(skeleton, heading, turn, joint, pose);
+  turn_joints(skeleton, heading, turn, spine, pose);
 }
 
 void spread_arms(const WalkModel& model, const WalkState& state, const PosePart& pose) noexcept {

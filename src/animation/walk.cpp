@@ -556,33 +556,48 @@ void pose_robust(const PlannedTick& planned, std::array<PosedLeg, 2>& posed) noe
   const Tick& tick = *planned.tick;
   WalkState& state = *planned.state;
   const Pelvis& pelvis = planned.pelvis;
+  std::array<LegToClose, 2> closed;
   std::array<LegToSolve, 2> legs;
   for (const Side side : {kLeftSide, kRightSide}) {
     advance_weighted_leg<double>(tick, planned.at, side, state);
-    set_leg_goals<double>(tick, planned.plan, pelvis, side, state, legs[side].goals,
-                          legs[side].angles_rad);
+    set_start<double>(tick, planned.plan, side, state, closed[side].angles_rad);
+    set_planned_leg<double>(tick.model.leg[side], state.foot[side].pose, pelvis,
+                            closed[side].planned);
   }
-  solve_two_legs<false>(legs);
+  close_two_legs(closed);
+  const bool missed = closed[0].reached * closed[1].reached == 0.0;
+  if (missed) {
+    for (const Side side : {kLeftSide, kRightSide}) {
+      legs[side].angles_rad = closed[side].angles_rad;
+      set_even_goals<double>(tick.model.leg[side], state, pelvis, side, legs[side].goals);
+    }
+    solve_two_legs<false>(legs);
+  }
   for (const Side side : {kLeftSide, kRightSide}) {
-    state.legs.even_rad[side] = legs[side].angles_rad;
-    posed[side] = posed_leg<double>(legs[side].solution, state.foot[side].pose.pitch_rad);
+    const bool solves = closed[side].reached == 0.0;
+    state.legs.even_rad[side] = solves ? legs[side].angles_rad : closed[side].angles_rad;
+    posed[side] = closed_leg<double>(state.foot[side].pose);
+    if (solves)
+      keep_solved<double>(tick.model.leg[side], true, legs[side].solution, pelvis, posed[side]);
     const double ankle = state.legs.even_rad[side][kAnkleX];
     if (!needs_mending<double>(tick.model, planned.at, side, ankle, posed[side].failed)) continue;
     posed[side] = mended_leg(tick, state, pelvis, side, posed[side]);
-    set_leg<double>(tick.model.leg[side], state.foot[side].pose, pelvis, legs[side].goals);
   }
   if (!has_weights(state.gait, kLeftSide) && !has_weights(state.gait, kRightSide)) {
     state.legs.angles_rad = state.legs.even_rad;
     return;
   }
-  for (const Side side : {kLeftSide, kRightSide})
+  for (const Side side : {kLeftSide, kRightSide}) {
+    set_limits<double>(tick.model.leg[side], legs[side].goals);
+    set_leg<double>(tick.model.leg[side], state.foot[side].pose, pelvis, legs[side].goals);
     set_shares<double>(tick, planned.at, planned.plan, pelvis, side, state, legs[side].goals,
                        legs[side].shares, legs[side].angles_rad);
+  }
   solve_two_legs<true>(legs);
   for (const Side side : {kLeftSide, kRightSide}) {
     const LegToSolve& leg = legs[side];
     keep_shared<double>(tick.model.leg[side], side, leg.goals, leg.shares, leg.angles_rad,
-                        leg.solution, state.legs, posed[side]);
+                        leg.solution, pelvis, state.legs, posed[side]);
   }
 }
 
@@ -599,7 +614,7 @@ void pose_legs(const PlannedTick& planned) noexcept {
   }
   WalkFrame* const frame = &state.frame;
   for (const Side side : {kLeftSide, kRightSide})
-    report_leg<double>(tick.model, planned.at, pelvis, side, posed[side], state, {&frame, 1});
+    report_leg<double>(planned.at, side, posed[side], state, {&frame, 1});
 }
 
 void finish_tick(const PlannedTick& planned, Pose& pose) noexcept {

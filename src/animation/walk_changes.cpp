@@ -156,9 +156,10 @@ int ticks_to_lift_off(const WalkModel& model, const WalkState& state) noexcept {
   const StridePlace lifts = stride_of(model, state.clock.backward, phase, state.gait.ratio_behind);
   const Moment at = moment_of(model, state);
   const FootState& foot = state.foot[stands];
-  const vec3 place = path_from_standing<double>(at, state, lifts.track, phase) +
-                     over_ground<double>(foot.lift_yaw_rad, lifts.cell.pelvis_m);
-  const vec3 ahead = heading_direction(foot.lift_yaw_rad) * (state.clock.backward ? -1.0 : 1.0);
+  const vec3 forward = heading_direction(foot.lift_yaw_rad),
+             place = path_from_standing<double>(at, state, lifts.track, forward).at(phase) +
+                     over_ground<double>(forward, lifts.cell.pelvis_m),
+             ahead = forward * (state.clock.backward ? -1.0 : 1.0);
   const SmoothFade<vec3>& pelvis = state.path.pelvis_m;
   SmoothFade<vec3> off{pelvis.x - state.path.rest_m, pelvis.v, pelvis.a};
   for (int n = 1; n < std::min(most, state.clock.rest_ticks); ++n) {

@@ -53,8 +53,6 @@ void set_vector(const Vec<V>& from, Vec3Of<V>& to) noexcept {
 template <class V>
 void set_leg(const LegBuild& leg, const PoseOf<V>& foot, const PelvisOf<V>& pelvis,
              LegGoals<V>& goals) noexcept {
-  goals.thigh_m = all_of<V>(leg.model.thigh_m);
-  goals.shank_m = all_of<V>(leg.model.shank_m);
   const Quat<V> rotation = conjugate_of(pelvis.rotation) * foot.rotation;
   const Vec<V> side = rotation * all_of<V>(leg.side), along = rotation * all_of<V>(leg.line);
   set_vector<V>(side, goals.side);
@@ -78,15 +76,11 @@ void set_rows(const LegBuild& leg, const Vec<V>& first_m, const vec3& ahead_m,
                   up};
 }
 
-// Where one leg's solver starts, and what is to be reached. So near to where it ends that one
-// iteration is mostly enough.
+// Where one leg starts, near to where it ends.
 template <class V>
-void set_leg_goals(const Tick& tick, const PlanOf<V>& plan, const PelvisOf<V>& pelvis, Side side,
-                   StateOf<V>& state, LegGoals<V>& goals,
-                   std::array<V, kLegDofs>& angles_rad) noexcept {
-  const LegBuild& leg = tick.model.leg[side];
+void set_start(const Tick& tick, const PlanOf<V>& plan, Side side, StateOf<V>& state,
+               std::array<V, kLegDofs>& angles_rad) noexcept {
   const StartAngle start(tick.dt_s);
-  goals.weight.fill(all_of<V>(1.0));
   for (int j = 0; j < kLegDofs; ++j) {
     V data = tick.model.stand_rad[side][j] + plan.cell.leg_rad[side][j];
     if (j == kKneeX) data = max_of(data, all_of<V>(kLeastKnee));
@@ -99,11 +93,42 @@ void set_leg_goals(const Tick& tick, const PlanOf<V>& plan, const PelvisOf<V>& p
     angles_rad[j] = start(data, off, V(legs.last_off_rad[side][j]));
     legs.last_off_rad[side][j] = off;
     legs.data_rad[side][j] = data;
-    goals.min_rad[j] = all_of<V>(leg.chain.dof[j].min_rad);
-    goals.max_rad[j] = all_of<V>(leg.chain.dof[j].max_rad);
+  }
+}
+
+// What is to be reached, by a leg of even weights.
+template <class V, class Limited>
+void set_limits(const LegBuild& leg, Limited& to) noexcept {
+  to.thigh_m = all_of<V>(leg.model.thigh_m);
+  to.shank_m = all_of<V>(leg.model.shank_m);
+  for (int j = 0; j < kLegDofs; ++j) {
+    to.min_rad[j] = all_of<V>(leg.chain.dof[j].min_rad);
+    to.max_rad[j] = all_of<V>(leg.chain.dof[j].max_rad);
   }
   // Without the ankle's limit first, so that the knee does not twist.
-  goals.min_rad[kAnkleX] = all_of<V>(-kPi);
+  to.min_rad[kAnkleX] = all_of<V>(-kPi);
+}
+template <class V>
+void set_planned_leg(const LegBuild& leg, const PoseOf<V>& foot, const PelvisOf<V>& pelvis,
+                     PlannedLeg<V>& planned) noexcept {
+  set_limits<V>(leg, planned);
+  const Quat<V> to_pelvis = conjugate_of(pelvis.rotation), q = to_pelvis * foot.rotation;
+  const V xx = q.x * q.x, yy = q.y * q.y, zz = q.z * q.z, xy = q.x * q.y, xz = q.x * q.z,
+          yz = q.y * q.z, wx = q.w * q.x, wy = q.w * q.y, wz = q.w * q.z;
+  planned.foot_x = {1.0 - 2.0 * (yy + zz), 2.0 * (xy + wz), 2.0 * (xz - wy)};
+  planned.foot_y = {2.0 * (xy - wz), 1.0 - 2.0 * (xx + zz), 2.0 * (yz + wx)};
+  planned.foot_z = {2.0 * (xz + wy), 2.0 * (yz - wx), 1.0 - 2.0 * (xx + yy)};
+  Vec3Of<V> heel;
+  set_vector<V>(to_pelvis * (foot.heel_m - pelvis.hip(leg)), heel);
+  const vec3& in_foot = leg.model.heel_m;
+  planned.ankle_m =
+      heel - (in_foot.x * planned.foot_x + in_foot.y * planned.foot_y + in_foot.z * planned.foot_z);
+}
+template <class V>
+void set_even_goals(const LegBuild& leg, const StateOf<V>& state, const PelvisOf<V>& pelvis,
+                    Side side, LegGoals<V>& goals) noexcept {
+  set_limits<V>(leg, goals);
+  goals.weight.fill(all_of<V>(1.0));
   set_leg<V>(leg, state.foot[side].pose, pelvis, goals);
   set_vector<V>(all_of<V>(leg.model.heel_m), goals.point_m[0]);
   set_vector<V>(all_of<V>(leg.model.toe_m), goals.point_m[1]);
@@ -265,7 +290,8 @@ void set_shares(const Tick& tick, const MomentOf<V>& at, const PlanOf<V>& plan,
 template <class V>
 void keep_shared(const LegBuild& leg, Side side, const LegGoals<V>& goals,
                  const LegShares<V>& shares, const std::array<V, kLegDofs>& angles_rad,
-                 const LegSolution<V>& solution, LegFlow<V>& legs, PosedLegOf<V>& posed) noexcept {
+                 const LegSolution<V>& solution, const PelvisOf<V>& pelvis, LegFlow<V>& legs,
+                 PosedLegOf<V>& posed) noexcept {
   const auto uneven = shares.uneven != V{};
   for (int j = 0; j < kLegDofs; ++j)
     legs.angles_rad[side][j] = uneven ? angles_rad[j] : legs.even_rad[side][j];
@@ -273,7 +299,7 @@ void keep_shared(const LegBuild& leg, Side side, const LegGoals<V>& goals,
   const Vec3Of<V> line = (solution.toe_m - point) / shares.lever_m;
   const auto along = [&](const V& way_m) {
     const Vec3Of<V> place = point + line * way_m;
-    return Vec<V>{place.x, place.y, place.z};
+    return pelvis.place(leg, Vec<V>{place.x, place.y, place.z});
   };
   posed.iterations += uneven ? solution.iterations : V{};
   posed.squares = uneven ? solution.squares : posed.squares;
@@ -293,26 +319,33 @@ V level_toe(const V& pitch_rad, const V& flight_progress) noexcept {
   return -soft_positive(pitch_rad, max_of(all_of<V>(1e-9), V(kSoftToe * air)));
 }
 
-// What the solver came to: the foot is where it was to be.
+// The foot is where it is planned.
 template <class V>
-PosedLegOf<V> posed_leg(const LegSolution<V>& solution, const V& pitch_rad) noexcept {
+PosedLegOf<V> closed_leg(const PoseOf<V>& foot) noexcept {
+  return {all_of<V>(1.0), V{}, V{}, foot.heel_m, foot.toe_m, foot.pitch_rad};
+}
+// Where it was not reached in closed form: what the solver came to.
+template <class V>
+void keep_solved(const LegBuild& leg, const MaskOf<V>& where, const LegSolution<V>& solution,
+                 const PelvisOf<V>& pelvis, PosedLegOf<V>& posed) noexcept {
   const auto& heel = solution.heel_m;
   const auto& toe = solution.toe_m;
   const MaskOf<V> reached =
       solution.squares <= all_of<V>(kRobust.tolerance_m * kRobust.tolerance_m);
-  return {solution.iterations,      solution.squares,      value<V>(reached, 0.0, 1.0),
-          {heel.x, heel.y, heel.z}, {toe.x, toe.y, toe.z}, pitch_rad};
+  posed.iterations = where ? solution.iterations : posed.iterations;
+  posed.squares = where ? solution.squares : posed.squares;
+  posed.failed = where ? value<V>(reached, 0.0, 1.0) : posed.failed;
+  posed.heel_m = chosen(where, pelvis.place(leg, Vec<V>{heel.x, heel.y, heel.z}), posed.heel_m);
+  posed.toe_m = chosen(where, pelvis.place(leg, Vec<V>{toe.x, toe.y, toe.z}), posed.toe_m);
 }
 
 // What the legs of one tick came to: the toes, and what the tick reports of them.
 template <class V>
-void report_leg(const WalkModel& model, const MomentOf<V>& at, const PelvisOf<V>& pelvis, Side side,
-                const PosedLegOf<V>& posed, StateOf<V>& state,
+void report_leg(const MomentOf<V>& at, Side side, const PosedLegOf<V>& posed, StateOf<V>& state,
                 std::span<WalkFrame* const> frames) noexcept {
   state.foot[side].pose.toe_rad =
       level_toe<V>(posed.pitch_rad, at.in_flight[side] ? at.flight_progress() : V{});
-  const Vec<V> hip = pelvis.hip(model.leg[side]), heel = hip + pelvis.rotation * posed.heel_m,
-               toe = hip + pelvis.rotation * posed.toe_m;
+  const Vec<V>&heel = posed.heel_m, &toe = posed.toe_m;
   const V error_m = sqrt_of(posed.squares);
   for (std::size_t lane = 0; lane < frames.size(); ++lane) {
     const auto of = [lane](const V& v) { return lane_of(v, static_cast<int>(lane)); };
@@ -327,13 +360,32 @@ void report_leg(const WalkModel& model, const MomentOf<V>& at, const PelvisOf<V>
 
 // --- The pose ------------------------------------------------------------------------------------
 
-// Rx(x) Rz(z) Ry(y) of half the angles.
+// Sines and cosines of half the angles of both legs.
 template <class V>
-Quat<V> turn_xzy(const V& x_rad, const V& z_rad, const V& y_rad) noexcept {
-  V xs, xc, zs, zc, ys, yc;
-  sin_cos_of(V(0.5 * x_rad), xs, xc);
-  sin_cos_of(V(0.5 * z_rad), zs, zc);
-  sin_cos_of(V(0.5 * y_rad), ys, yc);
+struct HalfTurns {
+  std::array<V, kLegDofs> sine, cosine;
+};
+template <class V>
+std::array<HalfTurns<V>, 2> half_turns(const typename LegFlow<V>::Angles& angles_rad) noexcept {
+  std::array<HalfTurns<V>, 2> half;
+  for (int j = 0; j < kLegDofs; ++j) {
+    if constexpr (kAlone<V>) {  // both legs side by side
+      Lanes<2> sine, cosine;
+      sin_cos_of(0.5 * Lanes<2>{angles_rad[0][j], angles_rad[1][j]}, sine, cosine);
+      for (int side : {0, 1}) half[side].sine[j] = sine[side], half[side].cosine[j] = cosine[side];
+    } else {
+      for (int side : {0, 1})
+        sin_cos_of(V(0.5 * angles_rad[side][j]), half[side].sine[j], half[side].cosine[j]);
+    }
+  }
+  return half;
+}
+
+// Rx(x) Rz(z) Ry(y) of three angles, from the x one on.
+template <class V>
+Quat<V> turn_xzy(const HalfTurns<V>& half, int x) noexcept {
+  const V xs = half.sine[x], xc = half.cosine[x], zs = half.sine[x + 1], zc = half.cosine[x + 1],
+          ys = half.sine[x + 2], yc = half.cosine[x + 2];
   const V w = xc * zc, i = xs * zc, j = -xs * zs, k = xc * zs;
   return Quat<V>(w * yc - j * ys, i * yc - k * ys, w * ys + j * yc, k * yc + i * ys);
 }
@@ -369,13 +421,14 @@ void set_joint(const Quat<V>& q, int joint, const Locals<kWidthOf<V>>& local) no
 template <class V>
 void write_legs(const WalkModel& model, const StateOf<V>& state,
                 const Locals<kWidthOf<V>>& local) noexcept {
+  const std::array<HalfTurns<V>, 2> half = half_turns<V>(state.legs.angles_rad);
   for (const Side side : {kLeftSide, kRightSide}) {
     const LegBuild& leg = model.leg[side];
-    const auto& q = state.legs.angles_rad[side];
+    const HalfTurns<V>& q = half[side];
     const auto& foot = state.foot[side].pose;
     const std::array<Quat<V>, 4> turn = {
-        turn_xzy(q[kHipX], q[kHipZ], q[kHipY]), rotation_about_x(q[kKneeX]),
-        turn_xzy(q[kAnkleX], q[kAnkleZ], q[kAnkleY]), toes_turn<V>(leg, foot, foot.toe_rad)};
+        turn_xzy(q, kHipX), Quat<V>(q.cosine[kKneeX], q.sine[kKneeX], V{}, V{}),
+        turn_xzy(q, kAnkleX), toes_turn<V>(leg, foot, foot.toe_rad)};
     for (int i = 0; i < 4; ++i) {
       const LegJointFrame& frame = leg.joint[i];
       if (frame.joint >= 0)

@@ -8,7 +8,6 @@
 // out. Every lane gets the bits that its walk gets alone.
 #pragma once
 #include "animation/walk_parts.h"
-#include "motion/stride_lanes.h"
 
 namespace gaitpad {
 namespace {
@@ -179,13 +178,21 @@ TablesOf<V> tables_of(const WalkModel& model, const MaskOf<V>& backward) noexcep
   return tables;
 }
 
-// In the character's lengths (StrideScale): where a stride goes, and all of it at one phase.
+// Where a stride of the character goes.
 template <class V>
-StrideTrackOf<V> track_of(const WalkModel& model, const MaskOf<V>& backward,
-                          const V& ratio) noexcept {
-  StrideTrackOf<V> track;
-  track_at<V>(ratios_at<V>(tables_of<V>(model, backward), ratio), track);
-  scale_track<V>(model.stride_scale, track);
+FootprintsOf<V> track_of(const WalkModel& model, const MaskOf<V>& backward,
+                         const V& ratio) noexcept {
+  const FootprintLine &forward = model.forward, &back = model.back;
+  const V at = min_of(max_of(ratio, V{}), value<V>(backward, back.most_ratio, forward.most_ratio));
+  FootprintsOf<V> track;
+  constexpr int kNumbers = sizeof(Footprints) / sizeof(double);
+  const auto numbers = [](const Footprints& from) {
+    return reinterpret_cast<const double*>(&from);
+  };
+  auto* to = reinterpret_cast<V*>(&track);
+  for (int k = 0; k < kNumbers; ++k)
+    to[k] = value<V>(backward, numbers(back.at_zero)[k], numbers(forward.at_zero)[k]) +
+            value<V>(backward, numbers(back.per_ratio)[k], numbers(forward.per_ratio)[k]) * at;
   return track;
 }
 // The running step's length over the data's.
@@ -248,15 +255,79 @@ void raise_limping_heel(const Tick& tick, const MomentOf<V>& at, const StateOf<V
 // More bounce lets the pelvis sink deeper, less keeps it as low as it is at its lowest: no leg has
 // to be longer for it.
 template <class V>
-V bounced(const GaitFlow<V>& gait, const PlanOf<V>& plan) noexcept {
+V bounced(const StrideScale& scale, const GaitFlow<V>& gait, const PlanOf<V>& plan) noexcept {
   const V y = plan.cell.pelvis_m.y, more = gait.bounce.x - 1.0;
   const auto bounces = more != V{};
   if (!any(bounces)) return y;
+  std::array<StrideTrackOf<V>, 2> track;
+  for (int k : {0, 1}) track_at<V>(plan.ratios[k], track[k]);
   const auto of = [&](V StrideTrackOf<V>::*height) {
-    return V(plan.shown * mix(plan.track[0].*height, plan.track[1].*height, plan.change));
+    return V(plan.shown * scale.length * mix(track[0].*height, track[1].*height, plan.change));
   };
   const V stays = more > V{} ? of(&StrideTrackOf<V>::high_m) : of(&StrideTrackOf<V>::low_m);
   return bounces ? y + more * (y - stays) : y;
+}
+
+template <class V>
+Vec<V> direction_of(const V& heading_rad) noexcept {
+  V sine, cosine;
+  sin_cos_of(heading_rad, sine, cosine);
+  return {sine, V{}, cosine};
+}
+template <class V>
+Vec<V> side_of(const Vec<V>& forward) noexcept {
+  return {forward.z, V{}, V{} - forward.x};
+}
+
+// Where a point of the travel frame of a stride is, seen from the footprint of `side` in the
+// running step: of the flying foot the one that it left (which 0) or will land on (1).
+template <class V>
+Vec<V> from_footprint(const MomentOf<V>& at, const FootprintsOf<V>& track, const V& phase,
+                      Side side, int which, const Vec<V>& travel_m) noexcept {
+  // The right foot goes from its footprint of this stride to the next one's, the left foot from the
+  // last one's to this one's.
+  const double turns_right = which, turns_left = which - 1;
+  const V turns = at.steps(side) ? all_of<V>(side == kRightSide ? turns_right : turns_left) : V{};
+  Vec<V> p = travel_m - track.footprint_m[side];
+  p.z += track.stride_m * (phase - turns);
+  return p;
+}
+
+// A place seen from where it points `forward`.
+template <class V>
+Vec<V> turned(const Vec<V>& forward, const Vec<V>& p) noexcept {
+  return {forward.z * p.x + forward.x * p.z, p.y, forward.z * p.z - forward.x * p.x};
+}
+// The same on the ground.
+template <class V>
+Vec<V> over_ground(const Vec<V>& forward, const Vec<V>& p) noexcept {
+  return {forward.z * p.x + forward.x * p.z, V{}, forward.z * p.z - forward.x * p.x};
+}
+
+// The hips' path in the strides of a track, without their oscillation: in the stride before from
+// the footprint of the foot that stands; in this one to the next landing.
+template <class V>
+LineOf<V> path_past(const Vec<V>& heel_m, const Vec<V>& forward, const Vec<V>& footprint_m,
+                    const V& stride_m, const V& turns) noexcept {
+  const Vec<V> along = forward * stride_m;
+  return {heel_m - turned<V>(forward, footprint_m) - along * turns, along};
+}
+template <class V>
+LineOf<V> path_from_standing(const MomentOf<V>& at, const StateOf<V>& state,
+                             const FootprintsOf<V>& track, const Vec<V>& forward) noexcept {
+  return path_past<V>(
+      chosen(at.right_steps, state.foot[kLeftSide].heel_anchor_m,
+             state.foot[kRightSide].heel_anchor_m),
+      forward, chosen(at.right_steps, track.footprint_m[kLeftSide], track.footprint_m[kRightSide]),
+      track.stride_m, V{});
+}
+template <class V>
+LineOf<V> path_to_landing(const MomentOf<V>& at, const FootprintsOf<V>& track,
+                          const Vec<V>& landing_m, const Vec<V>& forward) noexcept {
+  return path_past<V>(
+      landing_m, forward,
+      chosen(at.right_steps, track.footprint_m[kRightSide], track.footprint_m[kLeftSide]),
+      track.stride_m, value<V>(at.right_steps, 1.0, 0.0));
 }
 
 inline constexpr double kShownAfter = 0.55;  // of a first step: all of the tables shows
@@ -314,8 +385,7 @@ void plan_short_flight(const Tick& tick, const MomentOf<V>& at, const StateOf<V>
   flying.heel_m = chosen(at.right_steps, scaled_heel<V>(model.stride_scale, heel_m, kRightSide),
                          scaled_heel<V>(model.stride_scale, heel_m, kLeftSide));
   const auto is_short = at.starting | at.closing;
-  track_at<V>(own, plan.short_track);
-  scale_track<V>(model.stride_scale, plan.short_track);
+  plan.short_track = track_of<V>(model, at.backward, ratio);
   plan.flying = chosen_foot<V>(is_short, flying, plan.flying);
   plan.heel_up_m = is_short ? flying.heel_m.y : plan.heel_up_m;
 }
@@ -330,12 +400,21 @@ void plan_stride(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& stat
   const KnotsOf<V> knots = knots_at<V>(phase);
   const V behind = state.gait.ratio_behind, ahead = ratio_ahead<V>(tick.model, at, state);
   const TablesOf<V> tables = tables_of<V>(tick.model, at.backward);
-  const std::array<RatiosOf<V>, 2> ratios = {ratios_at<V>(tables, behind),
-                                             ratios_at<V>(tables, ahead)};
+  plan.ratio_ahead = ahead;
+  auto& ratios = plan.ratios = {ratios_at<V>(tables, behind), ratios_at<V>(tables, ahead)};
+  plan.track = {track_of<V>(tick.model, at.backward, behind),
+                track_of<V>(tick.model, at.backward, ahead)};
+  const V left_rad = state.foot[kLeftSide].lift_yaw_rad,
+          right_rad = state.foot[kRightSide].lift_yaw_rad;
+  if (any(at.flies)) plan.lifted = direction_of<V>(at.right_steps ? right_rad : left_rad);
+  plan.lands = direction_of<V>(state.path.landing_heading_rad);
+  plan.hips_m[1] = path_to_landing<V>(at, plan.track[1], state.path.landing_m, plan.lands);
+  if (any(at.led | at.strikes())) {
+    const Vec<V> stands = direction_of<V>(at.right_steps ? left_rad : right_rad);
+    plan.hips_m[0] = path_from_standing<V>(at, state, plan.track[0], stands);
+  }
   const StrideScale& scale = tick.model.stride_scale;
   for (int k : {0, 1}) {
-    track_at<V>(ratios[k], plan.track[k]);
-    scale_track<V>(scale, plan.track[k]);
     plan.flying_m[k] = Vec<V>{};
     if (!any(at.flies)) continue;
     const Vec<V> heel_m = heel_at<V>(ratios[k], knots, at.right_steps);
@@ -353,27 +432,13 @@ void plan_stride(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& stat
   raise_limping_heel<V>(tick, at, state, tables, knots, ahead, plan);
   if (any(at.starting | at.closing))
     plan_short_flight<V>(tick, at, state, tables, ahead, phase, plan);
-  plan.cell.pelvis_m.y = bounced<V>(state.gait, plan);
+  plan.cell.pelvis_m.y = bounced<V>(scale, state.gait, plan);
 }
 // Now.
 template <class V>
 void plan_stride(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& state,
                  PlanOf<V>& plan) noexcept {
   plan_stride<V>(tick, at, state, at.phase, at.step_share(), plan);
-}
-
-// Where a point of the travel frame of a stride is, seen from the footprint of `side` in the
-// running step: of the flying foot the one that it left (which 0) or will land on (1).
-template <class V>
-Vec<V> from_footprint(const MomentOf<V>& at, const StrideTrackOf<V>& track, const V& phase,
-                      Side side, int which, const Vec<V>& travel_m) noexcept {
-  // The right foot goes from its footprint of this stride to the next one's, the left foot from the
-  // last one's to this one's.
-  const double turns_right = which, turns_left = which - 1;
-  const V turns = at.steps(side) ? all_of<V>(side == kRightSide ? turns_right : turns_left) : V{};
-  Vec<V> p = travel_m - track.footprint_m[side];
-  p.z += track.stride_m * (phase - turns);
-  return p;
 }
 
 // --- Hips and landing place ----------------------------------------------------------------------
@@ -425,17 +490,6 @@ V step_length(const MomentOf<V>& at, const V& length_m) noexcept {
   return at.closing ? V{} : signed_m;
 }
 
-template <class V>
-Vec<V> direction_of(const V& heading_rad) noexcept {
-  V sine, cosine;
-  sin_cos_of(heading_rad, sine, cosine);
-  return {sine, V{}, cosine};
-}
-template <class V>
-Vec<V> side_of(const Vec<V>& forward) noexcept {
-  return {forward.z, V{}, V{} - forward.x};
-}
-
 // How far the walk turns in the time of the running step.
 template <class V>
 V turn_ahead(const Tick& tick, const StateOf<V>& state, const MomentOf<V>& at) noexcept {
@@ -458,6 +512,7 @@ void plan_landing(const Tick& tick, const MomentOf<V>& at, StateOf<V>& state) no
   const V ticks = at.ticks_to_strike() + 1.0, heading = heading_ahead<V>(tick, state, ticks);
   const Vec<V> standing = chosen(at.right_steps, state.foot[kLeftSide].heel_anchor_m,
                                  state.foot[kRightSide].heel_anchor_m);
+  const Vec<V> to = direction_of<V>(heading);
   const V stands_rad =
       at.right_steps ? state.foot[kLeftSide].lift_yaw_rad : state.foot[kRightSide].lift_yaw_rad;
   const auto open = on_way & (at.replanned | (at.flight_progress() <= all_of<V>(kFreeze)));
@@ -484,7 +539,7 @@ void plan_landing(const Tick& tick, const MomentOf<V>& at, StateOf<V>& state) no
     const V lands_rad =
         heading + (steps_on ? in_place * kFootAhead * turn_ahead<V>(tick, state, at) : V{});
     const Vec<V> along = direction_of<V>(V(stands_rad + kWayTurns * turn)),
-                 from = direction_of<V>(stands_rad), to = direction_of<V>(heading);
+                 from = direction_of<V>(stands_rad);
     const V lead_m = in_place * tick.model.rest_lead_m;
     const Vec<V> across =
         side_of<V>(to) * asides_m - side_of<V>(from) * stood_m + (from - to) * lead_m;
@@ -496,7 +551,7 @@ void plan_landing(const Tick& tick, const MomentOf<V>& at, StateOf<V>& state) no
     }
   }
   // Along the heading, which may still turn after the place is settled.
-  const V step_m = dot_of(path.landing_m - standing, direction_of<V>(heading));
+  const V step_m = dot_of(path.landing_m - standing, to);
   for (const Side side : {kLeftSide, kRightSide})
     path.stride_m[side] = (on_way & at.steps(side)) ? step_m : path.stride_m[side];
   if constexpr (kAlone<V>) {
@@ -504,71 +559,43 @@ void plan_landing(const Tick& tick, const MomentOf<V>& at, StateOf<V>& state) no
   }
 }
 
-// The hips' place on the tables' path, without their oscillation: of the stride before, from the
-// footprint of the foot that stands; of this one, to the next landing.
+// The pelvis' place in the tables at a phase, between two ratios.
 template <class V>
-Vec<V> path_from_standing(const MomentOf<V>& at, const StateOf<V>& state,
-                          const StrideTrackOf<V>& track, const V& phase) noexcept {
-  const auto from = [&](Side stand) {
-    const auto& foot = state.foot[stand];
-    return foot.heel_anchor_m + rotation_about_y(foot.lift_yaw_rad) *
-                                    from_footprint<V>(at, track, phase, stand, 0, Vec<V>{});
-  };
-  return chosen(at.right_steps, from(kLeftSide), from(kRightSide));
-}
-template <class V>
-Vec<V> path_to_landing(const MomentOf<V>& at, const StrideTrackOf<V>& track, const V& phase,
-                       const Vec<V>& landing_m, const V& heading_rad) noexcept {
-  const Vec<V> seen =
-      chosen(at.right_steps, from_footprint<V>(at, track, phase, kRightSide, 1, Vec<V>{}),
-             from_footprint<V>(at, track, phase, kLeftSide, 1, Vec<V>{}));
-  return landing_m + rotation_about_y(heading_rad) * seen;
+Vec<V> pelvis_between(const StrideScale& scale, const RatiosOf<V>& behind, const RatiosOf<V>& ahead,
+                      const V& change, const V& phase) noexcept {
+  PelvisCellOf<V> cell;
+  stride_between<V>(behind, ahead, change, knots_at<V>(phase), cell);
+  scale_pelvis<V>(scale, cell);
+  return cell.pelvis_m;
 }
 
-// How far the pelvis is off the hips' path in the tables, over the ground.
+// Where the stride ahead has the pelvis on its way to the landing.
 template <class V>
-Vec<V> over_ground(const V& heading_rad, const Vec<V>& pelvis_m) noexcept {
-  V sine, cosine;
-  sin_cos_of(heading_rad, sine, cosine);
-  return {cosine * pelvis_m.x + sine * pelvis_m.z, V{}, cosine * pelvis_m.z - sine * pelvis_m.x};
-}
-
-// Where the tables of one ratio have the pelvis on its way to the landing.
-template <class V>
-Vec<V> pelvis_to_landing(const WalkModel& model, const MomentOf<V>& at, const StateOf<V>& state,
-                         const RatiosOf<V>& ratio, const StrideTrackOf<V>& track,
-                         const V& phase) noexcept {
-  StrideCellOf<V> cell;
-  stride_between<V>(ratio, ratio, V{}, knots_at<V>(phase), cell);
-  scale_stride<V>(model.stride_scale, cell);
-  const PathFlow<V>& path = state.path;
-  return path_to_landing<V>(at, track, phase, path.landing_m, path.landing_heading_rad) +
-         over_ground<V>(path.landing_heading_rad, cell.pelvis_m);
+Vec<V> pelvis_to_landing(const StrideScale& scale, const PlanOf<V>& plan, const V& phase) noexcept {
+  return plan.hips_m[1].at(phase) +
+         over_ground<V>(plan.lands,
+                        pelvis_between<V>(scale, plan.ratios[1], plan.ratios[1], V{}, phase));
 }
 
 // A step takes the hips from the path of the stride before it over to its own. After a step in
 // which they led they go on from where they are.
 template <class V>
 SmoothFade<Vec<V>> path_at_strike(const WalkModel& model, const MomentOf<V>& at,
-                                  const StateOf<V>& state, const V& ratio) noexcept {
+                                  const StateOf<V>& state, const PlanOf<V>& plan) noexcept {
   const PathFlow<V>& path = state.path;
-  const StrideTrackOf<V> behind = track_of<V>(model, at.backward, state.gait.ratio_behind),
-                         ahead = track_of<V>(model, at.backward, ratio);
+  const Vec<V> heading = direction_of<V>(path.heading_rad);
   V phase = at.stage_phase, rate = at.phase_rate;
   std::array<Vec<V>, 3> off;
   for (int k : {0, 1, 2}) {
-    Vec<V> from = path_from_standing<V>(at, state, behind, phase);
+    Vec<V> from = plan.hips_m[0].at(phase);
     if (any(at.was_led)) {
-      StrideCellOf<V> cell;
-      const RatiosOf<V> ratios =
-          ratios_at<V>(tables_of<V>(model, at.backward), state.gait.ratio_behind);
-      stride_between<V>(ratios, ratios, V{}, knots_at<V>(phase), cell);
-      scale_stride<V>(model.stride_scale, cell);
+      const Vec<V> pelvis =
+          pelvis_between<V>(model.stride_scale, plan.ratios[0], plan.ratios[0], V{}, phase);
       const Vec<V> goes = path.pelvis_m.x + path.pelvis_m.v * all_of<V>(k) +
                           path.pelvis_m.a * all_of<V>(0.5 * k * k);
-      from = chosen(at.was_led, goes - over_ground<V>(path.heading_rad, cell.pelvis_m), from);
+      from = chosen(at.was_led, goes - over_ground<V>(heading, pelvis), from);
     }
-    off[k] = from - path_to_landing<V>(at, ahead, phase, path.landing_m, path.landing_heading_rad);
+    off[k] = from - plan.hips_m[1].at(phase);
     // A walk beside it that stands has no ticks left.
     const V left = max_of(V(at.stage_ticks - double(k)), all_of<V>(1.0));
     approach(phase, rate, at.stage_end, at.end_rate, left, 1.0);
@@ -594,9 +621,8 @@ void advance_hips(const Tick& tick, const MomentOf<V>& at, StateOf<V>& state,
   const auto on_way = at.on_way();
   if (!any(on_way)) return;
   const Vec<V> before = path.hips_m;
-  const Vec<V> to =
-      path_to_landing<V>(at, plan.track[1], plan.phase, path.landing_m, path.landing_heading_rad);
-  const V ratio = ratio_ahead<V>(tick.model, at, state);
+  const Vec<V> to = plan.hips_m[1].at(plan.phase);
+  const V ratio = plan.ratio_ahead;
   SmoothFade<Vec<V>> off = path.off_m;
   const auto strikes = on_way & at.strikes();
   const auto differs = [](const Vec<V>& a, const Vec<V>& b) {
@@ -608,13 +634,14 @@ void advance_hips(const Tick& tick, const MomentOf<V>& at, StateOf<V>& state,
        (path.landing_heading_rad != path.last_heading_rad));
   if (any(moved)) {
     // The path has moved, and the hips have not.
-    const StrideTrackOf<V> last = track_of<V>(tick.model, at.backward, path.last_ratio);
+    const FootprintsOf<V> last = track_of<V>(tick.model, at.backward, path.last_ratio);
     const Vec<V> was =
-        path_to_landing<V>(at, last, plan.phase, path.last_landing_m, path.last_heading_rad);
+        path_to_landing<V>(at, last, path.last_landing_m, direction_of<V>(path.last_heading_rad))
+            .at(plan.phase);
     off.x = chosen(moved, off.x + (was - to), off.x);
   }
   if (any(strikes))
-    off = chosen_fade<V>(strikes, path_at_strike<V>(tick.model, at, state, ratio), off);
+    off = chosen_fade<V>(strikes, path_at_strike<V>(tick.model, at, state, plan), off);
   const V ticks = at.ticks_to_strike() + 1.0;
   off.move(ticks);
   off = chosen_fade<V>(ticks > all_of<V>(1.0), off, SmoothFade<Vec<V>>{});
@@ -645,26 +672,10 @@ inline constexpr double kBeforeStep = 0.1, kAfterStep = 0.14;  // phases around 
 inline constexpr int kPhaseTries = 6, kFewTries = 2;
 inline constexpr double kFastestPhase = 2.5;  // of the clock's
 
-// The pelvis' place by the tables at a phase.
-template <class V>
-Vec<V> pelvis_by_tables(const WalkModel& model, const MomentOf<V>& at, const StateOf<V>& state,
-                        const std::array<RatiosOf<V>, 2>& ratios, const PlanOf<V>& plan,
-                        const V& phase) noexcept {
-  StrideCellOf<V> cell;
-  stride_between<V>(ratios[0], ratios[1], plan.change, knots_at<V>(phase), cell);
-  scale_stride<V>(model.stride_scale, cell);
-  const PathFlow<V>& path = state.path;
-  const Vec<V> from = path_from_standing<V>(at, state, plan.track[0], phase),
-               to = path_to_landing<V>(at, plan.track[1], phase, path.landing_m,
-                                       path.landing_heading_rad);
-  return from * (1.0 - plan.change) + to * plan.change +
-         over_ground<V>(path.landing_heading_rad, cell.pelvis_m);
-}
-
 // Moves the pelvis by one tick.
 template <class V>
 void move_pelvis(const WalkModel& model, const MomentOf<V>& at, StateOf<V>& state,
-                 const std::array<RatiosOf<V>, 2>& ratios, const PlanOf<V>& plan) noexcept {
+                 const PlanOf<V>& plan) noexcept {
   PathFlow<V>& path = state.path;
   Vec<V> place = path.rest_m, rate{}, bend{};
   V ticks = at.rest_ticks + 1.0;
@@ -673,8 +684,8 @@ void move_pelvis(const WalkModel& model, const MomentOf<V>& at, StateOf<V>& stat
     std::array<Vec<V>, 3> around;
     const V step = kAimTicks * at.strike_rate;
     for (int k : {0, 1, 2})
-      around[k] = pelvis_to_landing<V>(model, at, state, ratios[1], plan.track[1],
-                                       V(at.strike_phase + double(k - 1) * step));
+      around[k] =
+          pelvis_to_landing<V>(model.stride_scale, plan, V(at.strike_phase + double(k - 1) * step));
     place = chosen(strides, around[1], place);
     rate = chosen(strides, (around[2] - around[0]) * all_of<V>(0.5 / kAimTicks), rate);
     bend = chosen(strides,
@@ -698,16 +709,22 @@ void move_pelvis(const WalkModel& model, const MomentOf<V>& at, StateOf<V>& stat
 // The phase at which the tables have the pelvis where it is.
 template <class V>
 V phase_of_pelvis(const WalkModel& model, const MomentOf<V>& at, const StateOf<V>& state,
-                  const std::array<RatiosOf<V>, 2>& ratios, const PlanOf<V>& plan,
-                  V& rate) noexcept {
+                  const PlanOf<V>& plan, V& rate) noexcept {
   const PathFlow<V>& path = state.path;
-  V sine, cosine;
-  sin_cos_of(path.landing_heading_rad, sine, cosine);
-  const auto along = [&](const Vec<V>& p) { return V(p.x * sine + p.z * cosine); };
+  const auto along = [&](const Vec<V>& p) { return V(p.x * plan.lands.x + p.z * plan.lands.z); };
+  const auto both = [&](Vec<V> LineOf<V>::*of) {
+    return mix(along(plan.hips_m[0].*of), along(plan.hips_m[1].*of), plan.change);
+  };
+  const V at_zero = both(&LineOf<V>::at_zero_m), per_phase = both(&LineOf<V>::per_phase_m);
+  const auto by_tables = [&](const V& p) {
+    const Vec<V> pelvis =
+        pelvis_between<V>(model.stride_scale, plan.ratios[0], plan.ratios[1], plan.change, p);
+    return V(at_zero + per_phase * p + pelvis.z);
+  };
   const V wanted = along(path.pelvis_m.x);
   const double least = kLeastWay_m2 * model.size * model.size,
                time = kInTime_m * kInTime_m * model.size * model.size;
-  const V goes = smoothstep(0.0, kGoesSomewhere, ratio_ahead<V>(model, at, state));
+  const V goes = smoothstep(0.0, kGoesSomewhere, plan.ratio_ahead);
   const V in_time = (at.starting | at.closing) ? V(time * (1.0 - goes)) : all_of<V>(time);
   const V low = at.step_phase - kBeforeStep, high = at.strike_phase + kAfterStep;
   // The phase counts from the running step's own strike; it may fall far behind the clock.
@@ -717,10 +734,7 @@ V phase_of_pelvis(const WalkModel& model, const MomentOf<V>& at, const StateOf<V
   const auto all_tries = at.replanned | at.strikes();
   const V last = phase;
   for (int n = 0; n < (any(all_tries) ? kPhaseTries : kFewTries); ++n) {
-    const V here = along(pelvis_by_tables<V>(model, at, state, ratios, plan, phase)),
-            there =
-                along(pelvis_by_tables<V>(model, at, state, ratios, plan, V(phase + kPhaseStep)));
-    const V slope = (there - here) / kPhaseStep;
+    const V here = by_tables(phase), slope = (by_tables(V(phase + kPhaseStep)) - here) / kPhaseStep;
     const V step = ((here - wanted) * slope + in_time * (phase - at.phase)) /
                    (slope * slope + in_time + least);
     const V next = min_of(max_of(V(phase - step), low), high);
@@ -737,17 +751,16 @@ V phase_of_pelvis(const WalkModel& model, const MomentOf<V>& at, const StateOf<V
 
 // Reads the tables again at another phase; the foot that flies keeps to the clock.
 template <class V>
-void read_at(const WalkModel& model, const StateOf<V>& state,
-             const std::array<RatiosOf<V>, 2>& ratios, const MaskOf<V>& where, const V& phase,
-             PlanOf<V>& plan) noexcept {
+void read_at(const WalkModel& model, const StateOf<V>& state, const MaskOf<V>& where,
+             const V& phase, PlanOf<V>& plan) noexcept {
   StrideCellOf<V> cell;
-  stride_between<V>(ratios[0], ratios[1], plan.change, knots_at<V>(phase), cell);
+  stride_between<V>(plan.ratios[0], plan.ratios[1], plan.change, knots_at<V>(phase), cell);
   scale_stride<V>(model.stride_scale, cell);
   constexpr int kNumbers = sizeof(StrideCell) / sizeof(double);
   const auto* from = reinterpret_cast<const V*>(&cell);
   auto* to = reinterpret_cast<V*>(&plan.cell);
   for (int k = 0; k < kNumbers; ++k) to[k] = where ? V(plan.shown * from[k]) : to[k];
-  const V bounces = bounced<V>(state.gait, plan);
+  const V bounces = bounced<V>(model.stride_scale, state.gait, plan);
   plan.cell.pelvis_m.y = where ? bounces : plan.cell.pelvis_m.y;
 }
 
@@ -766,20 +779,15 @@ template <class V>
 void lead_hips(const Tick& tick, MomentOf<V>& at, StateOf<V>& state, PlanOf<V>& plan) noexcept {
   PathFlow<V>& path = state.path;
   GaitFlow<V>& gait = state.gait;
-  const Vec<V> by_tables = path.hips_m + over_ground<V>(path.heading_rad, plan.cell.pelvis_m);
+  const Vec<V> heading = direction_of<V>(path.heading_rad),
+               by_tables = path.hips_m + over_ground<V>(heading, plan.cell.pelvis_m);
   const Vec<V> last = path.pelvis_m.x;
   const auto off_clock = at.led | (gait.off_phase.x != V{}) | at.replanned;
   V phase = at.phase, rate = at.phase_rate;
-  std::array<RatiosOf<V>, 2> ratios;
-  if (any(off_clock)) {
-    const TablesOf<V> tables = tables_of<V>(tick.model, at.backward);
-    ratios = {ratios_at<V>(tables, gait.ratio_behind),
-              ratios_at<V>(tables, ratio_ahead<V>(tick.model, at, state))};
-  }
   if (any(at.led)) {
-    move_pelvis<V>(tick.model, at, state, ratios, plan);
+    move_pelvis<V>(tick.model, at, state, plan);
     V moves{};
-    const V found = phase_of_pelvis<V>(tick.model, at, state, ratios, plan, moves);
+    const V found = phase_of_pelvis<V>(tick.model, at, state, plan, moves);
     phase = (at.led & at.started) ? found : phase;
     rate = (at.led & at.started) ? moves : rate;
     // While the hips come to rest over both feet the data stand still.
@@ -807,9 +815,9 @@ void lead_hips(const Tick& tick, MomentOf<V>& at, StateOf<V>& state, PlanOf<V>& 
   const V goes = at.replanned ? rate + gait.off_phase.v : phase - lasts;
   gait.phase_rate = off_clock ? goes : at.phase_rate;
   gait.phase = off_clock ? phase : at.phase;
-  read_at<V>(tick.model, state, ratios, off_clock, phase, plan);
+  read_at<V>(tick.model, state, off_clock, phase, plan);
   at.phase = off_clock ? phase : at.phase;
-  const Vec<V> off = over_ground<V>(path.heading_rad, plan.cell.pelvis_m);
+  const Vec<V> off = over_ground<V>(heading, plan.cell.pelvis_m);
   path.hips_m = chosen(at.led, path.pelvis_m.x - off, path.hips_m);
 }
 
@@ -1065,13 +1073,13 @@ Vec<V> short_flight(const MomentOf<V>& at, const StateOf<V>& state, const PlanOf
                     Side side, const V& u) noexcept {
   const auto& foot = state.foot[side];
   const PathFlow<V>& path = state.path;
-  const StrideTrackOf<V>& track = plan.short_track;
+  const FootprintsOf<V>& track = plan.short_track;
   const Vec<V> ahead = from_footprint<V>(at, track, plan.phase, side, 1, plan.flying.heel_m);
   const auto in_place = abs_of(track.stride_m) < all_of<V>(kInPlaceStride_m);
   const V gone =
       in_place ? smootherstep(u) : 1.0 + ahead.z / (in_place ? all_of<V>(1.0) : track.stride_m);
-  const Vec<V> aside = rotation_about_y(path.landing_heading_rad) * Vec<V>{ahead.x, V{}, V{}};
-  return foot.heel_anchor_m + (path.landing_m - foot.heel_anchor_m) * gone + aside;
+  return foot.heel_anchor_m + (path.landing_m - foot.heel_anchor_m) * gone +
+         side_of<V>(plan.lands) * ahead.x;
 }
 
 // Its heel goes a little higher than in such strides, so that the toe leaves the floor at once.
@@ -1089,22 +1097,20 @@ Vec<V> flight_heel(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& st
                    const PlanOf<V>& plan, Side side, const V& u, V& base_m) noexcept {
   const auto& foot = state.foot[side];
   const PathFlow<V>& path = state.path;
-  const Quat<V> old = rotation_about_y(foot.lift_yaw_rad),
-                next = rotation_about_y(path.landing_heading_rad);
   const V gone = smootherstep(u);
   const Vec<V> from_old =
                    from_footprint<V>(at, plan.track[0], plan.phase, side, 0, plan.flying_m[0]),
                from_next =
                    from_footprint<V>(at, plan.track[1], plan.phase, side, 1, plan.flying_m[1]);
-  Vec<V> p = (foot.heel_anchor_m + old * from_old) * (1.0 - gone) +
-             (path.landing_m + next * from_next) * gone;
+  Vec<V> p = (foot.heel_anchor_m + turned<V>(plan.lifted, from_old)) * (1.0 - gone) +
+             (path.landing_m + turned<V>(plan.lands, from_next)) * gone;
   const auto is_short = at.starting | at.closing;
   if (any(is_short)) {
     // Before it lands a first step is one of the walk.
     const V lands =
         at.starting ? kLikeAStep * smootherstep(V((u - kWalksFrom) / (1.0 - kWalksFrom))) : V{};
     const Vec<V> short_m = short_flight<V>(at, state, plan, side, u),
-                 walks = path.landing_m + next * from_next;
+                 walks = path.landing_m + turned<V>(plan.lands, from_next);
     p = chosen(is_short, short_m * (1.0 - lands) + walks * lands, p);
   }
   // On an arc: not on its chord, which leads through the standing leg, nor on both directions

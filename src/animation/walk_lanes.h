@@ -88,11 +88,21 @@ PosedLegOf<V> pose_side(const Tick& tick, std::span<const Walking> walks, const 
                         const PlanOf<V>& plan, const PelvisOf<V>& pelvis, Side side,
                         StateLanes<V>& state) noexcept {
   advance_weighted_leg<V>(tick, at, side, state);
+  const LegBuild& leg = tick.model.leg[side];
   LegGoals<V> goals;
   std::array<V, kLegDofs>& even = state.legs.even_rad[side];
-  set_leg_goals<V>(tick, plan, pelvis, side, state, goals, even);
-  const LegSolution<V> solution = solve_lanes<V, false>(goals, LegShares<V>{}, even);
-  PosedLegOf<V> posed = posed_leg<V>(solution, state.foot[side].pose.pitch_rad);
+  set_start<V>(tick, plan, side, state, even);
+  PlannedLeg<V> planned;
+  set_planned_leg<V>(leg, state.foot[side].pose, pelvis, planned);
+  PosedLegOf<V> posed = closed_leg<V>(state.foot[side].pose);
+  const MaskOf<V> missed = not_of(close_lanes<V>(planned, even));
+  if (any(missed)) {
+    std::array<V, kLegDofs> solved = even;
+    set_even_goals<V>(leg, state, pelvis, side, goals);
+    const LegSolution<V> solution = solve_lanes<V, false>(goals, LegShares<V>{}, solved);
+    for (int j = 0; j < kLegDofs; ++j) even[j] = missed ? solved[j] : even[j];
+    keep_solved<V>(leg, missed, solution, pelvis, posed);
+  }
   const MaskOf<V> mends = needs_mending<V>(tick.model, at, side, even[kAnkleX], posed.failed);
   PosedLeg one;
   const int count = static_cast<int>(walks.size());
@@ -113,12 +123,13 @@ PosedLegOf<V> pose_side(const Tick& tick, std::span<const Walking> walks, const 
     state.legs.angles_rad[side] = even;
     return posed;
   }
-  if (any(mends)) set_leg<V>(tick.model.leg[side], state.foot[side].pose, pelvis, goals);
+  set_limits<V>(leg, goals);
+  set_leg<V>(leg, state.foot[side].pose, pelvis, goals);
   LegShares<V> shares;
   std::array<V, kLegDofs> angles;
   set_shares<V>(tick, at, plan, pelvis, side, state, goals, shares, angles);
   const LegSolution<V> shared = solve_lanes<V, true>(goals, shares, angles);
-  keep_shared<V>(tick.model.leg[side], side, goals, shares, angles, shared, state.legs, posed);
+  keep_shared<V>(leg, side, goals, shares, angles, shared, pelvis, state.legs, posed);
   return posed;
 }
 
@@ -160,8 +171,7 @@ void advance_lanes(const WalkModel& model, double dt_s, std::span<const Walking>
   store<V>(state.foot[1].pose, count, states, pose_of<1>);
   for (const Side side : {kLeftSide, kRightSide}) {
     const PosedLegOf<V> posed = pose_side<V>(tick, walks, at, plan, pelvis, side, state);
-    report_leg<V>(tick.model, at, pelvis, side, posed, state,
-                  {frames.data(), static_cast<std::size_t>(count)});
+    report_leg<V>(at, side, posed, state, {frames.data(), static_cast<std::size_t>(count)});
   }
   store<V>(state.legs, count, states, legs_of);
   write_pose<V>(tick.model, at, state, pelvis, local);

@@ -81,8 +81,8 @@ void add(const IkResult& r, PosedLeg& solved) noexcept {
 PosedLeg posed_leg(PosedLeg solved, const IkAngles& angles, const LegBuild& leg,
                    const Pelvis& pelvis, const FootPose& foot) noexcept {
   const IkFrame end = end_frame(leg.chain, angles);
-  solved.heel_m = end.position_m + end.rotation * leg.model.heel_m;
-  solved.toe_m = end.position_m + end.rotation * leg.model.toe_m;
+  solved.heel_m = pelvis.place(leg, end.position_m + end.rotation * leg.model.heel_m);
+  solved.toe_m = pelvis.place(leg, end.position_m + end.rotation * leg.model.toe_m);
   solved.pitch_rad = foot_pitch(leg, pelvis, foot, end);
   return solved;
 }

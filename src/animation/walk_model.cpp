@@ -343,6 +343,20 @@ StrideScale stride_scale(const GaitCycle& cycle, double scale, double ratio) noe
   return to;
 }
 
+FootprintLine footprint_line(const std::vector<StrideTable>& tables,
+                             const StrideScale& scale) noexcept {
+  FootprintLine line;
+  line.most_ratio = kRatioStep * static_cast<double>(tables.size() - 1);
+  line.at_zero = tables.front();
+  Footprints most = tables.back();
+  for (Footprints* at : {&line.at_zero, &most}) scale_footprints<double>(scale, *at);
+  line.per_ratio.stride_m = (most.stride_m - line.at_zero.stride_m) / line.most_ratio;
+  for (int side : {0, 1})
+    line.per_ratio.footprint_m[side] =
+        (most.footprint_m[side] - line.at_zero.footprint_m[side]) / line.most_ratio;
+  return line;
+}
+
 // Joints between two of a leg, and between the pelvis and the hip, keep their standing rotation.
 void lay_out_legs(WalkModel& model) {
   const Skeleton& skeleton = model.cycle.skeleton;
@@ -437,6 +451,8 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
     model.rest_lead_m += 0.5 * (-leg.model.heel_m.z - leg.model.hip_m.z);
   }
   model.stride_scale = stride_scale(cycle, character.scale, ratio);
+  model.forward = footprint_line(strides.table, model.stride_scale);
+  model.back = footprint_line(strides.back, model.stride_scale);
   const double knee = std::min(strides.stand_rad[0][kKneeX], strides.stand_rad[1][kKneeX]);
   const Stand stand = standing_legs({model.leg[0].model, model.leg[1].model}, knee);
   model.stand_m = stand.pelvis_m;
@@ -463,7 +479,9 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
 StridePlace stride_of(const WalkModel& model, bool backward, double phase, double ratio) noexcept {
   const StrideFamily& family = *model.cycle.strides;
   StridePlace place = stride_at(backward ? family.back : family.table, phase, ratio);
-  scale_track<double>(model.stride_scale, place.track);
+  scale_footprints<double>(model.stride_scale, place.track);
+  place.track.low_m *= model.stride_scale.length;
+  place.track.high_m *= model.stride_scale.length;
   scale_stride<double>(model.stride_scale, place.cell);
   return place;
 }

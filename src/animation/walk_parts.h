@@ -4,6 +4,7 @@
 
 #include "base/lanes.h"
 #include "gaitpad/walk.h"
+#include "motion/stride_lanes.h"
 
 namespace gaitpad {
 
@@ -97,20 +98,33 @@ struct ParamsOf {
   std::array<V, 2> arm_swing;  // of UpperBodyParams in force
 };
 
+// A place on the ground that moves evenly with the phase.
+template <class V>
+struct LineOf {
+  Vec<V> at_zero_m{}, per_phase_m{};
+  Vec<V> at(const V& phase) const noexcept { return at_zero_m + per_phase_m * phase; }
+};
+
 // What the tables say of one moment of a step. A step leads from the stride that the last step was
 // taken with to the one that it is taken with itself: the hips follow the first one's table from
 // the footprint that they come from, the second one's towards the next, and change over smoothly.
 template <class V>
 struct PlanOf {
-  V phase{};   // of the data, unwrapped: within this step it does not jump
-  V change{};  // from the one stride, at 0, to the other, at 1
-  V shown{};   // how much of the tables shows: 0 when standing
-  std::array<StrideTrackOf<V>, 2> track;  // of the two strides,
-  std::array<Vec<V>, 2> flying_m;         // and where the heel that flies is in each of them
-  StrideCellOf<V> cell;                   // both, mixed by `change` and `shown`
-  StrideFootOf<V> flying;                 // the foot that flies, or is about to
-  V heel_up_m{};                          // its heel's height,
-  StrideTrackOf<V> short_track;           // and the stride that it flies in at a start or stop
+  V phase{};                          // of the data, unwrapped: within this step it does not jump
+  V change{};                         // from the one stride, at 0, to the other, at 1
+  V shown{};                          // how much of the tables shows: 0 when standing
+  V ratio_ahead{};                    // of the stride that the step is taken with
+  std::array<RatiosOf<V>, 2> ratios;  // of the two strides,
+  std::array<FootprintsOf<V>, 2> track;  // where they go,
+  // The hips' path in each of them, by phase; in the first one where hips lead or a step begins,
+  std::array<LineOf<V>, 2> hips_m;
+  std::array<Vec<V>, 2> flying_m;  // and where the heel that flies is in each of them
+  StrideCellOf<V> cell;            // both, mixed by `change` and `shown`
+  StrideFootOf<V> flying;          // the foot that flies, or is about to
+  V heel_up_m{};                   // its heel's height,
+  FootprintsOf<V> short_track;     // and the stride that it flies in at a start or stop
+  // Where the footprints point that the flying foot left and that it will land on: unit.
+  Vec<V> lifted{}, lands{};
 };
 
 template <class V>
@@ -120,9 +134,13 @@ struct PelvisOf {
   Vec<V> hip(const LegBuild& leg) const noexcept {
     return position_m + rotation * all_of<V>(leg.model.hip_m);
   }
+  // In the world, of a place in its frame from the hip joint.
+  Vec<V> place(const LegBuild& leg, const Vec<V>& from_hip_m) const noexcept {
+    return hip(leg) + rotation * from_hip_m;
+  }
 };
 
-// What a leg's solver came to: in the pelvis' frame, from the hip joint.
+// What a leg's solver came to. Heel and toe in the world.
 template <class V>
 struct PosedLegOf {
   V iterations{}, squares{};  // of the error, square metres

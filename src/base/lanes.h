@@ -411,6 +411,7 @@ template <class V>
 inline Quat<V> rotation_by_vector(const Vec<V>& v) noexcept {
   const V angle = length_of(v);
   const auto is_small = angle < all_of<V>(1e-12);
+  if (!any(is_small)) return rotation_about_axis<V>(v / angle, angle);
   const V one = all_of<V>(1.0);
   return chosen(is_small, normalized(Quat<V>(one, 0.5 * v.x, 0.5 * v.y, 0.5 * v.z)),
                 rotation_about_axis<V>(v / (is_small ? one : angle), angle));

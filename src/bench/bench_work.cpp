@@ -119,7 +119,7 @@ std::array<IkRow, 6> foot_rows(const LegBuild& leg, const IkFrame& frame, bool i
 // Both legs of one tick, solved side by side as in the walk. They start at the walk's start angles
 // and move to the walk's solution.
 struct RobustLegs {
-  std::array<LegToSolve, 2> legs;
+  std::array<LegToClose, 2> legs;
   std::array<LegAngles, 2> start_rad;
 };
 Vec3Of<double> three(const vec3& v) { return {v.x, v.y, v.z}; }
@@ -129,24 +129,17 @@ void add_legs(const Walker& before, const Walker& now, double dt_s, std::vector<
   for (const Side side : {kLeftSide, kRightSide}) {
     const LegBuild& leg = now.model->leg[side];
     const LegState &last = before.state.legs, &solved = now.state.legs;
-    LegGoals<double>& goals = both.legs[side].goals;
-    goals.weight.fill(1.0);
+    PlannedLeg<double>& planned = both.legs[side].planned;
     for (int j = 0; j < kLegDofs; ++j) {
       const double off = last.even_rad[side][j] - last.data_rad[side][j];
       both.start_rad[side][j] = start(solved.data_rad[side][j], off, last.last_off_rad[side][j]);
-      goals.min_rad[j] = leg.chain.dof[j].min_rad;
-      goals.max_rad[j] = leg.chain.dof[j].max_rad;
     }
-    goals.min_rad[kAnkleX] = -kPi;
-    goals.thigh_m = leg.model.thigh_m;
-    goals.shank_m = leg.model.shank_m;
-    const auto rows =
-        foot_rows(leg, end_frame(leg.chain, all_angles(solved.even_rad[side])), false);
-    goals.point_m = {three(rows[0].point_m), three(rows[3].point_m), three(rows[5].point_m)};
-    goals.side = three(rows[0].direction);
-    goals.across = three(rows[1].direction);
-    goals.along = three(rows[2].direction);
-    for (int r = 0; r < 6; ++r) goals.goal_m[r] = rows[r].goal_m;
+    set_limits<double>(leg, planned);
+    const IkFrame foot = end_frame(leg.chain, all_angles(solved.even_rad[side]));
+    planned.ankle_m = three(foot.position_m);
+    planned.foot_x = three(foot.rotation * kLeft);
+    planned.foot_y = three(foot.rotation * kUp);
+    planned.foot_z = three(foot.rotation * kForward);
   }
 }
 
@@ -190,9 +183,9 @@ std::vector<Legs> solves_of(const Session& session, Simulation simulation,
 
 int solve(RobustLegs& both) {
   for (const Side side : {kLeftSide, kRightSide}) both.legs[side].angles_rad = both.start_rad[side];
-  solve_two_legs<false>(both.legs);
+  close_two_legs(both.legs);
   benchmark::DoNotOptimize(both.legs);
-  return static_cast<int>(both.legs[0].solution.iterations + both.legs[1].solution.iterations);
+  return static_cast<int>(both.legs[0].reached + both.legs[1].reached);
 }
 int solve(PaperLeg& leg) {
   IkAngles angles = leg.start;

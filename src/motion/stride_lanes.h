@@ -116,12 +116,22 @@ KnotsOf<V> knots_at(const V& phase) noexcept {
   return knots;
 }
 
-// A cubic spline in phase, smooth to the second derivative, and cubic in ratio, which is clamped to
-// the tables. Blends two ratios: `change` is 0 at `a` and 1 at `b`.
+// The first numbers of a StrideCell.
 template <class V>
+struct PelvisCellOf {
+  Vec<V> pelvis_m{};
+  V pelvis_yaw_rad{};
+  Vec<V> pelvis_tilt{};
+  V rest{};
+};
+
+// A cubic spline in phase, smooth to the second derivative, and cubic in ratio, which is clamped to
+// the tables. Blends two ratios: `change` is 0 at `a` and 1 at `b`. Numbers: a StrideCell, or its
+// first numbers.
+template <class V, template <class> class Numbers>
 void stride_between(const RatiosOf<V>& a, const RatiosOf<V>& b, const V& change,
-                    const KnotsOf<V>& knots, StrideCellOf<V>& cell) noexcept {
-  RowsOf<V, StrideCellOf, 4 * kStrideRatios> rows;
+                    const KnotsOf<V>& knots, Numbers<V>& cell) noexcept {
+  RowsOf<V, Numbers, 4 * kStrideRatios> rows;
   std::array<V, 4> weight_a, weight_b;
   for (int n = 0; n < 4; ++n) {
     weight_a[n] = a.weight[n] * (1.0 - change);
@@ -140,7 +150,7 @@ void stride_between(const RatiosOf<V>& a, const RatiosOf<V>& b, const V& change,
     for (int t = std::max(0, std::min(a.first[lane], b.first[lane])); t < end; ++t) {
       if (by_table[t + 1] == 0.0) continue;
       for (int m = 0; m < 4; ++m)
-        rows.add(lane, (*a.tables[lane])[t].knot[at[m]],
+        rows.add(lane, reinterpret_cast<const Numbers<double>&>((*a.tables[lane])[t].knot[at[m]]),
                  by_table[t + 1] * lane_of(knots.weight[m], lane));
     }
   }
@@ -178,11 +188,9 @@ Vec<V> heel_at(const RatiosOf<V>& at, const KnotsOf<V>& knots, const MaskOf<V>& 
 // --- The motion's strides in a character's lengths -----------------------------------------------
 
 template <class V>
-void scale_track(const StrideScale& to, StrideTrackOf<V>& track) noexcept {
+void scale_footprints(const StrideScale& to, FootprintsOf<V>& track) noexcept {
   if (to.length == 1.0 && to.pelvis == 1.0) return;
   track.stride_m = track.stride_m * to.length;
-  track.low_m = track.low_m * to.length;
-  track.high_m = track.high_m * to.length;
   for (int side : {0, 1})
     track.footprint_m[side] = track.footprint_m[side] * to.length + all_of<V>(to.apart_m[side]);
 }
@@ -195,16 +203,18 @@ Vec<V> scaled_heel(const StrideScale& to, const Vec<V>& heel_m, int side) noexce
 // A place relative to the pelvis, turned with the pelvis.
 template <class V>
 Vec<V> pelvis_turned(const vec3& place_m, const V& yaw_rad, const Vec<V>& tilt) noexcept {
-  return rotation_about_y(yaw_rad) * (rotation_by_vector<V>(tilt) * all_of<V>(place_m));
+  V sine, cosine;
+  sin_cos_of(yaw_rad, sine, cosine);
+  const Vec<V> p = rotation_by_vector<V>(tilt) * all_of<V>(place_m);
+  return {cosine * p.x + sine * p.z, p.y, cosine * p.z - sine * p.x};
 }
 
-// Scales the motion's stride to the character (StrideScale). The legs keep their angles: a wider
-// pelvis turns and rolls less, by `length / pelvis`, and the middle of the hips follows its scaled
-// path.
-template <class V>
-void scale_stride(const StrideScale& to, StrideCellOf<V>& cell) noexcept {
+// Scales the pelvis of the motion's stride to the character (StrideScale). The legs keep their
+// angles: a wider pelvis turns and rolls less, by `length / pelvis`, and the middle of the hips
+// follows its scaled path.
+template <class V, template <class> class Numbers>
+void scale_pelvis(const StrideScale& to, Numbers<V>& cell) noexcept {
   if (to.length == 1.0 && to.pelvis == 1.0) return;
-  for (int side : {0, 1}) cell.foot[side].heel_m = scaled_heel<V>(to, cell.foot[side].heel_m, side);
   if (to.length == to.pelvis) {
     cell.pelvis_m = cell.pelvis_m * to.length;
     return;
@@ -219,6 +229,12 @@ void scale_stride(const StrideScale& to, StrideCellOf<V>& cell) noexcept {
                   to.pelvis * hips_m(turns, to.standing_m[1]);
   cell.pelvis_yaw_rad = cell.pelvis_yaw_rad * turns;
   cell.pelvis_tilt.z = cell.pelvis_tilt.z * turns;
+}
+template <class V>
+void scale_stride(const StrideScale& to, StrideCellOf<V>& cell) noexcept {
+  if (to.length == 1.0 && to.pelvis == 1.0) return;
+  for (int side : {0, 1}) cell.foot[side].heel_m = scaled_heel<V>(to, cell.foot[side].heel_m, side);
+  scale_pelvis<V>(to, cell);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdint>
@@ -156,6 +157,95 @@ TYPED_TEST(LegIk, AnInputThatIsNotFiniteFailsAloneAndEnds) {
     EXPECT_LE(lanes[lane].solution.squares, 1e-12);
     for (int j = 0; j < kLegDofs; ++j) EXPECT_TRUE(std::isfinite(lanes[lane].angles_rad[j]));
   }
+}
+
+// --- The closed form -----------------------------------------------------------------------------
+
+Vec3Of<double> parts(const vec3& v) { return {v.x, v.y, v.z}; }
+
+// Two legs that start so far from poses that they can take.
+struct ClosedLegs {
+  std::array<IkChain, 2> chain;
+  std::array<IkAngles, 2> pose{}, start{};
+  std::array<IkFrame, 2> goal;
+  std::array<LegToClose, 2> legs;
+
+  ClosedLegs(Random& random, double off_rad) {
+    for (int i : {0, 1}) {
+      const Leg leg = random_leg(random, 0.0, 0.0, 1.0);
+      chain[i] = leg.chain;
+      pose[i] = start[i] = leg.start;
+      goal[i] = end_frame(chain[i], pose[i]);
+      PlannedLeg<double>& planned = legs[i].planned;
+      planned.thigh_m = -chain[i].dof[kHipY].link_m.y;
+      planned.shank_m = -chain[i].dof[kKneeX].link_m.y;
+      planned.ankle_m = parts(goal[i].position_m);
+      planned.foot_x = parts(goal[i].rotation * kLeft);
+      planned.foot_y = parts(goal[i].rotation * kUp);
+      planned.foot_z = parts(goal[i].rotation * kForward);
+      for (int j = 0; j < kLegDofs; ++j) {
+        start[i][j] += random.between(-off_rad, off_rad);
+        legs[i].angles_rad[j] = start[i][j];
+        planned.min_rad[j] = chain[i].dof[j].min_rad;
+        planned.max_rad[j] = chain[i].dof[j].max_rad;
+      }
+    }
+    close_two_legs(legs);
+  }
+  IkAngles closed(int i) const {
+    IkAngles all{};
+    std::copy(legs[i].angles_rad.begin(), legs[i].angles_rad.end(), all.begin());
+    return all;
+  }
+  double way(int i, const IkAngles& to) const {
+    double squares = 0.0;
+    for (int j = 0; j < kLegDofs; ++j) squares += (to[j] - start[i][j]) * (to[j] - start[i][j]);
+    return std::sqrt(squares);
+  }
+};
+
+TEST(LegInClosedForm, BringsTheFootExactlyToItsPlaceByTheNearestPose) {
+  Random random(7);
+  int reached = 0;
+  for (int k = 0; k < 2000; ++k) {
+    const ClosedLegs both(random, 0.01);
+    for (int i : {0, 1}) {
+      if (both.legs[i].reached == 0.0) continue;
+      ++reached;
+      const IkFrame end = end_frame(both.chain[i], both.closed(i));
+      EXPECT_LT(glm::distance(end.position_m, both.goal[i].position_m), 1e-9) << k;
+      EXPECT_LT(glm::length(rotation_vector(glm::conjugate(both.goal[i].rotation) * end.rotation)),
+                1e-9)
+          << k;
+      // The pose that the goal was made from is one of those that reach it.
+      EXPECT_LT(both.way(i, both.closed(i)), 1.01 * both.way(i, both.pose[i]) + 1e-6) << k;
+    }
+  }
+  EXPECT_GT(reached, 3000);
+}
+
+TEST(LegInClosedForm, LeavesALegAloneThatIsTooShortOrFarFromItsStart) {
+  Random random(8);
+  int missed = 0;
+  for (int k = 0; k < 200; ++k) {
+    ClosedLegs both(random, 0.0);
+    for (LegToClose& leg : both.legs) {
+      const double most_m = leg.planned.thigh_m + leg.planned.shank_m;
+      leg.planned.ankle_m = {0.0, -most_m - 0.001, 0.0};
+    }
+    const std::array<LegAngles, 2> before = {both.legs[0].angles_rad, both.legs[1].angles_rad};
+    close_two_legs(both.legs);
+    for (int i : {0, 1}) {
+      EXPECT_EQ(both.legs[i].reached, 0.0);
+      EXPECT_EQ(both.legs[i].angles_rad, before[i]);
+    }
+    const ClosedLegs far(random, 0.5);
+    for (int i : {0, 1}) {
+      if (far.legs[i].reached == 0.0) EXPECT_EQ(far.closed(i), far.start[i]);
+      missed += far.legs[i].reached == 0.0;
+    }
+  }
+  EXPECT_GT(missed, 390);  // of 400
 }
 
 TEST(Lanes, SineAndCosineAreThoseOfOneNumber) {

@@ -46,11 +46,15 @@ using StrideCell = StrideCellOf<double>;
 
 // Where a stride goes.
 template <class V>
-struct StrideTrackOf {
+struct FootprintsOf {
   V stride_m{};
   // Where the heels stand along the path: the left foot's after its strike near phase 0.5, the
   // right foot's after phase 0.
   std::array<Vec<V>, 2> footprint_m{};
+};
+using Footprints = FootprintsOf<double>;
+template <class V>
+struct StrideTrackOf : FootprintsOf<V> {
   V low_m{}, high_m{};  // between which the pelvis rises and falls, as in StrideCell
 };
 using StrideTrack = StrideTrackOf<double>;

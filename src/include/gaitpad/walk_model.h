@@ -104,12 +104,19 @@ struct LegBuild {
   double track_m = 0;    // sideways place of the heel from the pelvis' path, + left
 };
 
+// Where a character's strides go, in its lengths: evenly farther for greater ratios.
+struct FootprintLine {
+  Footprints at_zero, per_ratio;
+  double most_ratio = 0.0;  // of the tables
+};
+
 struct WalkModel {
   std::shared_ptr<const Terrain> terrain = flat_terrain();  // never null
   // The data; its skeleton and legs have the character's lengths, its strides the motion's, so that
   // characters of all builds share them.
   GaitCycle cycle;
   StrideScale stride_scale;
+  FootprintLine forward, back;
   std::array<double, 2> own_step_m{};  // by Side: the data's steps on this character
   std::array<LegBuild, 2> leg;
   double size = 1.0;        // leg length over kReferenceLeg_m

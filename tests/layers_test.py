@@ -9,7 +9,6 @@ import re
 # The libraries, lowest first: a library includes its own headers and those of the libraries before it.
 LIBRARIES = {
     "core": ["src/base", "src/motion", "src/strides", "src/control", "src/animation"],
-    "c": ["src/c"],
     "pictures": ["src/draw"],
     "files": ["src/files"],
     "devices": ["src/hid", "src/stick", "src/pads", "drivers", "drivers/pads"],
@@ -23,7 +22,6 @@ ROOMS = {
     "src/strides": (["base", "motion"], ["glm/"]),
     "src/control": (["base"], []),
     "src/animation": (["base", "motion", "control"], []),
-    "src/c": ([], []),
     "src/files": ([], ["fmt/", "toml++/", "nlohmann/"]),
     "src/hid": ([], ["fmt/"]),
     "src/stick": (["hid"], ["fmt/"]),
@@ -49,7 +47,6 @@ PUBLIC = {
     "src/control": ["control", "gait_params", "stick", "style"],
     "src/animation": ["crowd", "ik", "terrain", "walk", "walk_model", "walk_output"],
     "src/files": ["bvh", "config_files", "gltf", "motion_file"],
-    "src/c": ["gaitpad"],
     "src/strides": ["clean_strides"],
     "src/hid": ["decode", "descriptor", "driver", "pad_map", "report", "trace"],
     "src/stick": ["calibration", "untouched"],
@@ -59,7 +56,6 @@ PUBLIC = {
 }
 # What further headers of a vendor single files may include, and nobody else.
 DRIVER_VENDORS = {
-    "src/include/gaitpad/gaitpad.h": ["stddef.h", "stdint.h"],  # a header for C
     "src/files/height_picture.cpp": ["png.h"],
     "src/check/pose_track.cpp": ["zlib.h"],
     "src/strides/stride_solver.cpp": ["Eigen/"],

@@ -13,8 +13,6 @@ foreach(component ${components})
   install(TARGETS gaitpad_${component} EXPORT gaitpad-${component} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
   install(EXPORT gaitpad-${component} NAMESPACE gaitpad:: DESTINATION ${package_folder})
 endforeach()
-install(TARGETS gaitpad_c EXPORT gaitpad-c LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR})
-install(EXPORT gaitpad-c NAMESPACE gaitpad:: DESTINATION ${package_folder})
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/include/gaitpad DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN "*.h")
 
 # The pkg-config modules of the drivers that were built, and the names of their CMake targets.

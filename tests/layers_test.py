@@ -50,7 +50,7 @@ PUBLIC = {
     "src/base": ["curve", "hash", "limbs", "math", "result"],
     "src/motion": ["anatomy", "flight", "gait_cycle", "motion", "skeleton", "stride_family"],
     "src/control": ["control", "gait_params", "stick", "style"],
-    "src/animation": ["crowd", "ik", "terrain", "walk", "walk_model"],
+    "src/animation": ["crowd", "ik", "terrain", "walk", "walk_model", "walk_output"],
     "src/files": ["bvh", "config_files", "gltf", "motion_file"],
     "src/strides": ["clean_strides"],
     "src/hid": ["decode", "descriptor", "driver", "pad_map", "report", "trace"],

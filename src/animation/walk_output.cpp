@@ -1,0 +1,112 @@
+// Events, partial poses, and poses in the caller's floats.
+#include "gaitpad/walk_output.h"
+
+#include <algorithm>
+#include <optional>
+
+namespace gaitpad {
+namespace {
+
+// Whose step runs. After the last landing of a stop the roll belongs to no step.
+std::optional<Side> steps_of(Stage stage, Side swing, bool goes_on) noexcept {
+  if (stage == Stage::flight) return swing;
+  if (stage == Stage::roll && goes_on) return other(swing);
+  return std::nullopt;
+}
+
+quat turned_back(const Placement& model, const quat& world) noexcept {
+  return glm::conjugate(rotation_y(model.heading_rad)) * world;
+}
+
+int bones_of(std::span<const int> joints, std::span<float> out, std::size_t floats) noexcept {
+  return static_cast<int>(std::min(joints.size(), out.size() / floats));
+}
+
+}  // namespace
+
+WalkEvents walk_events(const WalkFrame& before, const WalkState& state) noexcept {
+  const WalkFrame& now = state.frame;
+  WalkEvents events;
+  const auto add = [&](WalkEventKind kind, Side side) {
+    const FootState& foot = state.foot[side];
+    const vec3& place_m = kind == WalkEventKind::toe_off ? foot.toe_anchor_m : foot.heel_anchor_m;
+    events.event[events.count++] = {kind, side, to_world(state.placed, place_m)};
+  };
+  for (const Side side : {kLeftSide, kRightSide}) {
+    if (now.steps[side] > before.steps[side]) add(WalkEventKind::heel_strike, side);
+  }
+  const auto steps = steps_of(now.stage, now.swing, state.clock.started);
+  if (!steps) return events;
+  if (steps != steps_of(before.stage, before.swing, true)) add(WalkEventKind::step_begin, *steps);
+  const bool flew = before.stage == Stage::flight && before.swing == now.swing;
+  if (now.stage == Stage::flight && !flew) add(WalkEventKind::toe_off, *steps);
+  return events;
+}
+
+std::vector<float> legs_and_pelvis(const WalkModel& model) {
+  const std::vector<Joint>& joints = model.cycle.skeleton.joints;
+  std::vector<float> weights(joints.size(), 0.0f);
+  for (const LegBuild& leg : model.leg) weights[leg.joint[0].joint] = 1.0f;
+  for (std::size_t j = 1; j < joints.size(); ++j)
+    weights[j] = std::max(weights[j], weights[joints[j].parent]);
+  for (const LegBuild& leg : model.leg) {
+    for (int j = joints[leg.joint[0].joint].parent; j >= 0; j = joints[j].parent) weights[j] = 1.0f;
+  }
+  return weights;
+}
+
+void mix_pose(std::span<const float> weights, const Pose& walk, Pose& own) noexcept {
+  const int count = std::min({static_cast<int>(weights.size()), walk.joint_count, own.joint_count});
+  for (int j = 0; j < count; ++j) {
+    const double weight = weights[j];
+    if (!(weight > 0.0)) continue;
+    if (weight >= 1.0) {
+      own.local[j] = walk.local[j];
+      if (j == 0) own.root_m = walk.root_m;
+      continue;
+    }
+    own.local[j] = nlerp(own.local[j], walk.local[j], weight);
+    if (j == 0) own.root_m = mix(own.root_m, walk.root_m, weight);
+  }
+}
+
+int write_rotations(const Pose& pose, const Placement& model, std::span<const int> joints,
+                    std::span<float> out, std::array<float, 3>& root_m) noexcept {
+  const vec3 place_m = from_world(model, pose.root_m);
+  for (int axis = 0; axis < 3; ++axis) root_m[axis] = static_cast<float>(place_m[axis]);
+  const int count = bones_of(joints, out, 4);
+  for (int bone = 0; bone < count; ++bone) {
+    const int j = joints[bone];
+    if (j < 0 || j >= pose.joint_count) continue;
+    const quat q = j == 0 ? turned_back(model, pose.local[0]) : pose.local[j];
+    float* to = out.data() + 4 * bone;
+    to[0] = static_cast<float>(q.x), to[1] = static_cast<float>(q.y);
+    to[2] = static_cast<float>(q.z), to[3] = static_cast<float>(q.w);
+  }
+  return count;
+}
+
+int write_matrices(const Skeleton& skeleton, const Pose& pose, const Placement& model,
+                   std::span<const int> joints, std::span<float> out) noexcept {
+  Pose seen = pose;
+  seen.joint_count = std::min(pose.joint_count, static_cast<int>(skeleton.joints.size()));
+  seen.root_m = from_world(model, pose.root_m);
+  seen.local[0] = turned_back(model, pose.local[0]);
+  JointFrames frames;
+  forward_kinematics(skeleton, seen, frames);
+  const int count = bones_of(joints, out, 16);
+  for (int bone = 0; bone < count; ++bone) {
+    const int j = joints[bone];
+    if (j < 0 || j >= seen.joint_count) continue;
+    const mat3 turn = glm::mat3_cast(frames.rotation[j]);
+    float* to = out.data() + 16 * bone;
+    for (int column = 0; column < 4; ++column) {
+      const vec3& axis = column < 3 ? turn[column] : frames.position_m[j];
+      for (int row = 0; row < 3; ++row) *to++ = static_cast<float>(axis[row]);
+      *to++ = column < 3 ? 0.0f : 1.0f;
+    }
+  }
+  return count;
+}
+
+}  // namespace gaitpad

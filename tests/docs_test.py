@@ -122,7 +122,7 @@ SABOTAGES = [  # page, what it says, what is false
     ("docs/walk.md", "`walk_changes.cpp`", "`walk_stops.cpp`"),
     ("docs/crowd.md", "`Crowd::advance()`", "`Crowd::step()`"),
     ("docs/pads.md", "`frame_us_p99`", "`frame_ms_p99`"),
-    ("docs/pads.md", "`model_of()`", "`model_for()`"),
+    ("docs/pads.md", "`quirks_of()`", "`quirks_for()`"),
     ("docs/pads.md", "`sony.cpp`", "`dualshock.cpp`"),
     ("docs/library.md", "`PadWish::driver`", "`PadWish::drivers`"),
     ("docs/library.md", "`gaitpad::session`", "`gaitpad::sitting`"),

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <utility>
 
-#include "drivers/pads/pad_model.h"
+#include "drivers/pads/pad_quirks.h"
 
 namespace gaitpad {
 
@@ -153,7 +153,7 @@ std::array<std::uint8_t, 4> vibration(const Rumble& rumble) noexcept {
           static_cast<std::uint8_t>(0x40 + low / 2)};
 }
 
-class SwitchPad final : public PadModel {
+class SwitchPad final : public PadQuirks {
  public:
   explicit SwitchPad(const DeviceInfo& device)
       : name_(device.name.empty() ? "this pad" : device.name),
@@ -395,7 +395,7 @@ constexpr std::uint32_t kFactoryBlock = 0x013080, kUserBlock = 0x1fc040, kNextSt
 // In the answer to a reading of the flash memory: the block, and in it the calibration.
 constexpr std::size_t kBlockAt = 0x10, kFactoryAt = kBlockAt + 0x28, kAnswerBytes = 0x50;
 
-class Switch2Pad final : public PadModel {
+class Switch2Pad final : public PadQuirks {
  public:
   explicit Switch2Pad(const DeviceInfo& device)
       : name_(device.name.empty() ? "this pad" : device.name) {}
@@ -450,7 +450,7 @@ class Switch2Pad final : public PadModel {
 
 }  // namespace
 
-std::unique_ptr<PadModel> make_switch_model(const DeviceInfo& device) {
+std::unique_ptr<PadQuirks> make_switch_quirks(const DeviceInfo& device) {
   constexpr std::uint16_t kProducts[] = {kJoyConLeft, kJoyConRight, kProController, kChargingGrip,
                                          kSnes,       kN64,         kMegaDrive};
   const bool is_known =

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "drivers/pads/crc32.h"
-#include "drivers/pads/pad_model.h"
+#include "drivers/pads/pad_quirks.h"
 #include "gaitpad/descriptor.h"
 
 namespace gaitpad {
@@ -62,9 +62,9 @@ std::uint8_t motor(std::uint16_t strength) noexcept {
 
 // Over Bluetooth both families send a short report 0x01 until a certain feature report is read,
 // then a full one with a checksum.
-class SonyModel : public PadModel {
+class SonyQuirks : public PadQuirks {
  public:
-  SonyModel(const DeviceInfo& device, std::uint8_t full_report)
+  SonyQuirks(const DeviceInfo& device, std::uint8_t full_report)
       : name_(device.name.empty() ? "this pad" : device.name),
         product_(device.product),
         is_bluetooth_(device.bus == BusType::bluetooth),
@@ -113,7 +113,7 @@ class SonyModel : public PadModel {
 
 // On USB it sends nothing until two features were read: Linux's hid-sony.c
 // (sixaxis_set_operational_usb), whose third step some copies answer by rumbling for ever.
-class DualShock3 final : public PadModel {
+class DualShock3 final : public PadQuirks {
  public:
   explicit DualShock3(const DeviceInfo& device)
       : name_(device.name.empty() ? "this pad" : device.name),
@@ -135,11 +135,11 @@ class DualShock3 final : public PadModel {
   std::vector<std::string> remarks_;
 };
 
-class DualShock4 final : public SonyModel {
+class DualShock4 final : public SonyQuirks {
   static constexpr std::uint8_t kReportInterval_ms = 4;
 
  public:
-  explicit DualShock4(const DeviceInfo& device) : SonyModel(device, 0x11) {}
+  explicit DualShock4(const DeviceInfo& device) : SonyQuirks(device, 0x11) {}
 
   // 0x05 works with every firmware that Linux knows, 0x02 with the first ones.
   void start(PadPort& port, StartedBy started) final {
@@ -165,7 +165,7 @@ class DualShock4 final : public SonyModel {
 // Of another maker, for the PlayStation 4: by USB alone, and not every one has motors. It tells
 // that in a feature which its descriptor must state: pads of the same makers that do not know it
 // hang when they are asked.
-class DualShock4OfOthers final : public PadModel {
+class DualShock4OfOthers final : public PadQuirks {
  public:
   static constexpr std::uint8_t kAbilities = 0x03, kEffects = 0x05;
   static constexpr std::size_t kAbilityBytes = 48, kEffectBytes = 32;
@@ -194,15 +194,15 @@ class DualShock4OfOthers final : public PadModel {
 bool is_dualshock4_of_others(const DeviceInfo& device) {
   if (device.bus != BusType::usb) return false;
   const auto d = parse_descriptor(device.descriptor);
-  using Model = DualShock4OfOthers;
-  return d && report_bytes(*d, FieldKind::feature, Model::kAbilities) == Model::kAbilityBytes &&
-         report_bytes(*d, FieldKind::output, Model::kEffects) == Model::kEffectBytes;
+  using Quirks = DualShock4OfOthers;
+  return d && report_bytes(*d, FieldKind::feature, Quirks::kAbilities) == Quirks::kAbilityBytes &&
+         report_bytes(*d, FieldKind::output, Quirks::kEffects) == Quirks::kEffectBytes;
 }
 
-class DualSense final : public SonyModel {
+class DualSense final : public SonyQuirks {
  public:
   explicit DualSense(const DeviceInfo& device)
-      : SonyModel(device, 0x31), has_new_motors_(device.product == kDualSenseEdge) {}
+      : SonyQuirks(device, 0x31), has_new_motors_(device.product == kDualSenseEdge) {}
 
   void start(PadPort& port, StartedBy started) final {
     if (is_bluetooth_ && started == StartedBy::us)
@@ -245,7 +245,7 @@ class DualSense final : public SonyModel {
 
 }  // namespace
 
-std::unique_ptr<PadModel> make_sony_model(const DeviceInfo& device) {
+std::unique_ptr<PadQuirks> make_sony_quirks(const DeviceInfo& device) {
   if (device.vendor != kSony)
     return is_dualshock4_of_others(device) ? std::make_unique<DualShock4OfOthers>() : nullptr;
   switch (device.product) {

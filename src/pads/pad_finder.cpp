@@ -14,9 +14,9 @@
 #include <utility>
 
 #include "base/text.h"
-#include "drivers/driver_entries.h"
+#include "drivers/driver_rows.h"
 #include "drivers/virtual_pad.h"
-#include "gaitpad/drivers.h"
+#include "gaitpad/driver_registry.h"
 #include "gaitpad/pad_stream.h"
 
 namespace gaitpad {

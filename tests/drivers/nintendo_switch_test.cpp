@@ -20,17 +20,17 @@ DeviceInfo switch_pad(std::uint16_t product, BusType bus) {
   device.name = product == 0x2009 ? "Pro Controller" : "A pad";
   return device;
 }
-std::unique_ptr<PadModel> model(BusType bus = BusType::usb) {
-  return make_switch_model(switch_pad(0x2009, bus));
+std::unique_ptr<PadQuirks> quirks(BusType bus = BusType::usb) {
+  return make_switch_quirks(switch_pad(0x2009, bus));
 }
 // A Pro Controller that the kernel drives: only asked for its memory.
-std::unique_ptr<PadModel> asked(ScriptedPort& port) {
-  auto pad = model();
+std::unique_ptr<PadQuirks> asked(ScriptedPort& port) {
+  auto pad = quirks();
   pad->start(port, StartedBy::kernel);
   return pad;
 }
-std::unique_ptr<PadModel> started(std::uint16_t product, ScriptedPort& port) {
-  auto pad = make_switch_model(switch_pad(product, BusType::bluetooth));
+std::unique_ptr<PadQuirks> started(std::uint16_t product, ScriptedPort& port) {
+  auto pad = make_switch_quirks(switch_pad(product, BusType::bluetooth));
   pad->start(port, StartedBy::us);
   return pad;
 }
@@ -93,10 +93,10 @@ void expect_axis(const FactoryAxis& axis, int min, int centre, int max) {
 }
 
 TEST(SwitchPro, KnowsThePadsOfTheSwitchAlone) {
-  EXPECT_NE(model(), nullptr);
+  EXPECT_NE(quirks(), nullptr);
   for (const std::uint16_t product : {0x2006, 0x2007, 0x200e, 0x2017, 0x2019, 0x201e})
-    EXPECT_NE(make_switch_model(switch_pad(product, BusType::bluetooth)), nullptr);
-  EXPECT_EQ(make_switch_model(switch_pad(0x0306, BusType::bluetooth)), nullptr) << "Wii";
+    EXPECT_NE(make_switch_quirks(switch_pad(product, BusType::bluetooth)), nullptr);
+  EXPECT_EQ(make_switch_quirks(switch_pad(0x0306, BusType::bluetooth)), nullptr) << "Wii";
 }
 
 // A left stick of 0x200 .. 0x800 .. 0xd00 in x and 0x100 .. 0x7f0 .. 0xe00 in y.
@@ -133,7 +133,7 @@ TEST(SwitchPro, ANesControllerIsToldFromAJoyConByWhatItSays) {
   ScriptedPort port = pad_with({}, 9);
   DeviceInfo device = switch_pad(0x2006, BusType::bluetooth);
   device.descriptor = {0xc0};
-  const auto pad = make_switch_model(device);
+  const auto pad = make_switch_quirks(device);
   pad->start(port, StartedBy::us);
   pad->amend(device);
   EXPECT_EQ(device.name, "NES Controller (L)");
@@ -145,7 +145,7 @@ TEST(SwitchPro, ANesControllerIsToldFromAJoyConByWhatItSays) {
 TEST(SwitchPro, TheChargingGripTellsWhichJoyConIsInIt) {
   ScriptedPort port = pad_with({{0x603d, joined(kLeft, kRight)}}, 2);
   DeviceInfo device = switch_pad(0x200e, BusType::usb);
-  const auto pad = make_switch_model(device);
+  const auto pad = make_switch_quirks(device);
   pad->start(port, StartedBy::us);
   pad->amend(device);
   EXPECT_EQ(device.product, 0x2007);
@@ -164,7 +164,7 @@ TEST(SwitchPro, OnlyTheSticksOfAModelAreRead) {
 
 TEST(SwitchPro, StartsOverUsbAsTheConsoleDoes) {
   ScriptedPort port = pad_with({{0x603d, joined(kLeft, kRight)}});
-  const auto pad = model();
+  const auto pad = quirks();
   pad->start(port, StartedBy::us);
   ASSERT_EQ(port.written.size(), 8u);
   EXPECT_EQ(port.written[0], (Packet{0x80, 0x02}));
@@ -315,7 +315,7 @@ TEST(SwitchPro, ALostAnswerIsAskedForAgain) {
 
 TEST(SwitchPro, ASilentPadEndsTheStartAndIsNamed) {
   ScriptedPort port;
-  const auto pad = model();
+  const auto pad = quirks();
   pad->start(port, StartedBy::us);
   EXPECT_FALSE(pad->factory_sticks());
   EXPECT_LE(port.written.size(), 16u);
@@ -329,18 +329,18 @@ TEST(SwitchPro, APadThatTalksWithoutEverAnsweringEndsTheStart) {
   ScriptedPort port;
   port.is_endless = true;
   port.waiting.push_back(Packet(64, 0x30));
-  const auto pad = model();
+  const auto pad = quirks();
   pad->start(port, StartedBy::us);
   EXPECT_LT(port.reads, 16 * 512 + 1);
   EXPECT_FALSE(pad->factory_sticks());
   ScriptedPort gone;
   gone.is_gone = true;
-  model()->start(gone, StartedBy::us);
+  quirks()->start(gone, StartedBy::us);
   EXPECT_EQ(gone.reads, 0) << "a pad that has gone is left alone";
 }
 
 TEST(SwitchPro, OnlyInputReportsAreHandedOn) {
-  const auto pad = model();
+  const auto pad = quirks();
   OutPacket reply;
   EXPECT_TRUE(pad->accept(Packet(64, 0x30), reply));
   EXPECT_TRUE(pad->accept(Packet(12, 0x3f), reply));
@@ -351,7 +351,7 @@ TEST(SwitchPro, OnlyInputReportsAreHandedOn) {
 }
 
 TEST(SwitchPro, RestingMotorsAreTheDocumentedPacketAndTheCounterRunsTo15) {
-  const auto pad = model();
+  const auto pad = quirks();
   for (int i = 0; i < 18; ++i) {
     const auto count = static_cast<std::uint8_t>(i % 16);
     EXPECT_EQ(rumble_of(*pad, {}),
@@ -370,7 +370,7 @@ TEST(SwitchPro, AmplitudesFollowThePublishedTable) {
         Row{0.230, 0x40, 0x0050}, Row{1.003, 0xc8, 0x0072}}) {
     const auto strength =
         static_cast<std::uint16_t>(std::min(65535.0, row.amplitude / 1.003 * 65535 + 0.5));
-    const auto pad = model();
+    const auto pad = quirks();
     const Packet packet = rumble_of(*pad, {.strong = strength, .weak = strength});
     for (const std::size_t at : {2u, 6u}) {
       EXPECT_EQ(packet[at], 0x00);
@@ -382,7 +382,7 @@ TEST(SwitchPro, AmplitudesFollowThePublishedTable) {
 }
 
 TEST(SwitchPro, StrongerIsNeverWeakerInThePacket) {
-  const auto pad = model();
+  const auto pad = quirks();
   int before = -1;
   for (int strength = 0; strength <= 65535; strength += 13) {
     const Packet packet =
@@ -397,7 +397,7 @@ TEST(SwitchPro, StrongerIsNeverWeakerInThePacket) {
 }
 
 TEST(SwitchPro, RunningMotorsAreToBeToldAgain) {
-  const auto pad = model();
+  const auto pad = quirks();
   OutPacket packet;
   pad->rumble({.strong = 1, .weak = 0}, packet);
   EXPECT_EQ(packet.repeat, std::chrono::milliseconds(50));
@@ -426,7 +426,7 @@ TEST(Switch2Pro, IsStartedByCommandsAndTellsItsSticks) {
   const Packet factory = joined(Packet(0x28, 0), range);
   const Packet user = joined({0xb2, 0xa1}, packed({0x810, 0x800, 0x600, 0x600, 0x600, 0x600}));
   ScriptedPort port = switch_2_with({{0x013080, factory}, {0x0130c0, factory}, {0x1fc080, user}});
-  const auto pad = make_switch_model(switch_pad(0x2069, BusType::usb));
+  const auto pad = make_switch_quirks(switch_pad(0x2069, BusType::usb));
   pad->start(port, StartedBy::us);
   const auto sticks = pad->factory_sticks().value();
   EXPECT_DOUBLE_EQ(sticks.left_x.min, fraction(0x800 - 0x400));
@@ -443,7 +443,7 @@ TEST(Switch2Pro, IsStartedByCommandsAndTellsItsSticks) {
 
 TEST(Switch2Pro, SaysThatItWasNotStartedWhereTheDriverCannot) {
   ScriptedPort port;
-  const auto pad = make_switch_model(switch_pad(0x2069, BusType::usb));
+  const auto pad = make_switch_quirks(switch_pad(0x2069, BusType::usb));
   pad->start(port, StartedBy::us);
   EXPECT_FALSE(pad->factory_sticks());
   EXPECT_EQ(pad->take_remarks(),

@@ -11,7 +11,7 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
-#include "gaitpad/drivers.h"
+#include "gaitpad/driver_registry.h"
 #include "pads/unseen_pad.h"
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/doctor_machine.h"

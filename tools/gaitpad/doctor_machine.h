@@ -10,7 +10,7 @@
 
 #include "drivers/system_nodes.h"
 #include "drivers/usb_interfaces.h"
-#include "gaitpad/pad_map.h"
+#include "gaitpad/pad_overrides.h"
 #include "gaitpad/pad_stream.h"
 #include "gaitpad/result.h"
 

@@ -1,4 +1,4 @@
-#include "gaitpad/pad_setup.h"
+#include "gaitpad/pad_configuration.h"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class PadSetup : public testing::Test {
+class PadConfiguration : public testing::Test {
  protected:
   void SetUp() override {
     fs::create_directories(folder_ + "/calibration");
@@ -73,7 +73,7 @@ constexpr FactorySticks kFactory = {.left_x = {-0.7123456789012345, 1.0 / 30, 0.
                                     .right_x = {-0.75, 0.01, 0.75},
                                     .right_y = {-0.75, -0.0, 0.75}};
 
-TEST_F(PadSetup, AReplayHasTheCalibrationOfTheLiveSessionBitByBit) {
+TEST_F(PadConfiguration, AReplayHasTheCalibrationOfTheLiveSessionBitByBit) {
   write("calibration/a.toml", "devices = ['*:*']\n[left]\ninner = 0.1234567890123456789\n");
   const std::string by_hand =
       write("own.toml",
@@ -96,7 +96,7 @@ TEST_F(PadSetup, AReplayHasTheCalibrationOfTheLiveSessionBitByBit) {
   }
 }
 
-TEST_F(PadSetup, TheKeyboardIsAFallbackLiveAndInAReplay) {
+TEST_F(PadConfiguration, TheKeyboardIsAFallbackLiveAndInAReplay) {
   const PadFiles all = files();
   DeviceInfo info = made_pad();
   info.driver = "keyboard";
@@ -112,7 +112,7 @@ TEST_F(PadSetup, TheKeyboardIsAFallbackLiveAndInAReplay) {
 // They come before the model's file, whose zones they keep; they are not for axes that are turned,
 // which the pad tells as they are. A file for this one device or one given by hand comes before
 // them.
-TEST_F(PadSetup, FactorySticksComeBeforeWhatIsNotForThisOneDevice) {
+TEST_F(PadConfiguration, FactorySticksComeBeforeWhatIsNotForThisOneDevice) {
   DeviceInfo info = made_pad();
   info.unique_id = "A1";
   info.physical_path = "usb-1";
@@ -136,7 +136,7 @@ TEST_F(PadSetup, FactorySticksComeBeforeWhatIsNotForThisOneDevice) {
   EXPECT_EQ(hand.left.x.centre, 0.0);
 }
 
-TEST_F(PadSetup, TheUsersFileComesBeforeAnEquallyGoodOneOfConfig) {
+TEST_F(PadConfiguration, TheUsersFileComesBeforeAnEquallyGoodOneOfConfig) {
   write("calibration/a.toml", "devices = ['1209:0001']\n[left]\ninner = 0.3\n");
   write("user/z.toml", "devices = ['1209:0001']\n[left]\ninner = 0.25\n");
   EXPECT_EQ(replayed(files(), recorded(files(), made_pad())).left.inner, 0.25);
@@ -145,7 +145,7 @@ TEST_F(PadSetup, TheUsersFileComesBeforeAnEquallyGoodOneOfConfig) {
   EXPECT_EQ(replayed(files(), recorded(files("", by_hand), made_pad())).left.inner, 0.4);
 }
 
-TEST_F(PadSetup, AReplayDoesNotSeeTheUsersFiles) {
+TEST_F(PadConfiguration, AReplayDoesNotSeeTheUsersFiles) {
   write("user/a.toml", "devices = ['*:*']\n[left]\ninner = 0.3\n");
   TraceDevice foreign;
   foreign.info = made_pad();
@@ -154,7 +154,7 @@ TEST_F(PadSetup, AReplayDoesNotSeeTheUsersFiles) {
   EXPECT_TRUE(pad_config(files(), foreign, "x"));
 }
 
-TEST_F(PadSetup, AFileForAnotherDriverIsNotTaken) {
+TEST_F(PadConfiguration, AFileForAnotherDriverIsNotTaken) {
   write("user/a.toml", "devices = ['*:*']\ndrivers = ['evdev', 'sdl']\n[left]\ninner = 0.3\n");
   DeviceInfo info = made_pad();
   info.driver = "hidraw";
@@ -164,7 +164,7 @@ TEST_F(PadSetup, AFileForAnotherDriverIsNotTaken) {
 }
 
 // It may be another pad's file, and nobody can tell.
-TEST_F(PadSetup, ADamagedFileOfTheUsersIsARemarkAndThePadPlaysOn) {
+TEST_F(PadConfiguration, ADamagedFileOfTheUsersIsARemarkAndThePadPlaysOn) {
   const std::string damaged = write("user/a.toml", "[left]\ninner = 7\n");
   write("user/b.toml", "devices = ['1209:0001']\n[left]\ninner = 0.25\n");
   EXPECT_EQ(replayed(files(), recorded(files(), made_pad())).left.inner, 0.25);
@@ -175,7 +175,7 @@ TEST_F(PadSetup, ADamagedFileOfTheUsersIsARemarkAndThePadPlaysOn) {
 }
 
 // What a recording holds beside steering would only tell strangers whose pad it was.
-TEST_F(PadSetup, ARecordingHoldsWhatSteersAndNothingElse) {
+TEST_F(PadConfiguration, ARecordingHoldsWhatSteersAndNothingElse) {
   write("user/a.toml",
         "name = 'mine'\nunique_id = 'A1'\nmeasured_on = '2026-11-21'\n[left.measured]\nsigma = "
         "0.5\n");
@@ -198,7 +198,7 @@ PadState decoded(const PadConfig& pad) {
   return state;
 }
 
-TEST_F(PadSetup, AFilesMappingComesBeforeConfigPadsAndAReplayHasItToo) {
+TEST_F(PadConfiguration, AFilesMappingComesBeforeConfigPadsAndAReplayHasItToo) {
   write("user/a.toml", "devices = ['*:*']\n");  // without one config/pads names the controls
   write("pads/a.toml", "[[pad]]\nvendor = 0x1209\n[pad.axes]\nright_x = '0001:0030'\n");
   EXPECT_EQ(decoded(replayed_pad(files(), recorded(files(), made_pad()))).axis[kRightX], 1.0f);
@@ -227,7 +227,7 @@ TEST_F(PadSetup, AFilesMappingComesBeforeConfigPadsAndAReplayHasItToo) {
 }
 
 // SDL counts what the kernel shows, which a descriptor that is untrue does not tell.
-TEST_F(PadSetup, AReplacedDescriptorKeepsItsControls) {
+TEST_F(PadConfiguration, AReplacedDescriptorKeepsItsControls) {
   write("user/a.toml", std::string("devices = ['*:*']\nmapping = '") + kSwapped + "'\n");
   write(
       "pads/a.toml",
@@ -237,7 +237,7 @@ TEST_F(PadSetup, AReplacedDescriptorKeepsItsControls) {
   EXPECT_EQ(decoded(pad).axis[kLeftX], 1.0f);
 }
 
-TEST_F(PadSetup, FactoryNumbersThatNoStickHasAreNotTaken) {
+TEST_F(PadConfiguration, FactoryNumbersThatNoStickHasAreNotTaken) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   FactorySticks odd;
   odd.left_x = {-1.0, nan, 1.0};
@@ -253,7 +253,7 @@ TEST_F(PadSetup, FactoryNumbersThatNoStickHasAreNotTaken) {
   EXPECT_EQ(calibration.right.y.max, 1.0);
 }
 
-TEST_F(PadSetup, ARecordingsOwnCalibrationComesBeforeTheFiles) {
+TEST_F(PadConfiguration, ARecordingsOwnCalibrationComesBeforeTheFiles) {
   write("calibration/a.toml", "devices = ['*:*']\n[left]\ninner = 0.3\n");
   TraceDevice device;
   device.info = made_pad();
@@ -267,7 +267,7 @@ TEST_F(PadSetup, ARecordingsOwnCalibrationComesBeforeTheFiles) {
       << damaged.error().message;
 }
 
-TEST_F(PadSetup, AMapGivenByHandComesBeforeConfigPads) {
+TEST_F(PadConfiguration, AMapGivenByHandComesBeforeConfigPads) {
   write("pads/a.toml", "[[pad]]\nvendor = 0x1209\npad = true\n");
   const std::string map = write("map.toml", "[[pad]]\nvendor = 0x1209\npad = false\n");
   TraceDevice device;
@@ -276,7 +276,7 @@ TEST_F(PadSetup, AMapGivenByHandComesBeforeConfigPads) {
   EXPECT_FALSE(pad_config(files(map), device, "x")->is_usable);
 }
 
-TEST_F(PadSetup, TextsOfAHostileDeviceFitIntoARecording) {
+TEST_F(PadConfiguration, TextsOfAHostileDeviceFitIntoARecording) {
   DeviceInfo info = made_pad();
   info.name = std::string(100'000, 'n');
   info.unique_id = std::string(100'000, 'u');
@@ -288,7 +288,7 @@ TEST_F(PadSetup, TextsOfAHostileDeviceFitIntoARecording) {
   static_cast<void>(replayed(files(), device));
 }
 
-TEST_F(PadSetup, DamagedFilesAreErrorsThatNameThem) {
+TEST_F(PadConfiguration, DamagedFilesAreErrorsThatNameThem) {
   const std::string damaged = write("damaged.toml", "unknown = 1\n");
   auto by_hand = load_pad_files({folder_}, "", damaged);
   ASSERT_FALSE(by_hand);
@@ -297,7 +297,7 @@ TEST_F(PadSetup, DamagedFilesAreErrorsThatNameThem) {
   EXPECT_FALSE(load_pad_files({folder_}, "/nonexistent.toml", ""));
 }
 
-TEST_F(PadSetup, TheUsersDataBaseNamesTheControlsOfLivePadsOnEveryDriver) {
+TEST_F(PadConfiguration, TheUsersDataBaseNamesTheControlsOfLivePadsOnEveryDriver) {
   const std::string guid = "03000000091200000100000000000000,Mine,";
   const std::string in_file = guid + "leftx:a2,lefty:a3,platform:Linux,",
                     in_line = guid + "leftx:a1,lefty:a0,platform:Linux,";
@@ -316,7 +316,7 @@ TEST_F(PadSetup, TheUsersDataBaseNamesTheControlsOfLivePadsOnEveryDriver) {
   EXPECT_TRUE(recorded(mapped, made_pad()).info.mapping.empty());
 }
 
-TEST_F(PadSetup, ADataBaseThatCannotBeReadIsToldOf) {
+TEST_F(PadConfiguration, ADataBaseThatCannotBeReadIsToldOf) {
   // Not SDL's variable: SDL itself would try to load a folder, of 2^63 bytes.
   const Environment config("XDG_CONFIG_HOME", folder_.c_str());
   fs::create_directories(user_mapping_file());

@@ -723,10 +723,12 @@ void add_measuring(CLI::App& command, CalibrateArguments& arguments) {
 
 // The options that convert instead of measuring.
 void add_conversions(CLI::App& command, CalibrateArguments& arguments) {
-  auto* import = command.add_option("--import", arguments.import,
-                                    "takes over a jscal line, evdev's absinfo or an SDL mapping; "
-                                    "without PAD all Linux lines of a gamecontrollerdb.txt; "
-                                    "- for standard input");
+  auto* import =
+      command.add_option("--import", arguments.import,
+                         "takes over the axes of a recording of evemu, libinput or umockdev, "
+                         "or an SDL mapping; "
+                         "without PAD all Linux lines of a gamecontrollerdb.txt; "
+                         "- for standard input");
   auto* export_sdl = command.add_flag("--export-sdl", arguments.exports_sdl,
                                       "prints the pad as SDL's mapping line");
   export_sdl->excludes(import)->excludes(command.get_option("--out"));

@@ -213,6 +213,7 @@ class HidrawDevice final : public Device {
     return sender_->send(packet);
   }
   std::optional<FactorySticks> factory_sticks() const override { return quirks_->factory_sticks(); }
+  std::optional<FactoryGyro> factory_gyro() const override { return quirks_->factory_gyro(); }
   std::int64_t lost() const noexcept override { return lost_ + quirks_->lost(); }
   std::vector<std::string> take_remarks() override {
     std::vector<std::string> remarks = quirks_->take_remarks();

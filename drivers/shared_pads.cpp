@@ -85,6 +85,7 @@ class SharedPad final : public Device {
   }
 
   std::optional<FactorySticks> factory_sticks() const override { return quirks_->factory_sticks(); }
+  std::optional<FactoryGyro> factory_gyro() const override { return quirks_->factory_gyro(); }
   std::int64_t lost() const noexcept override {
     const std::lock_guard lock(device_->mutex);
     return lost_ + device_->source->lost();

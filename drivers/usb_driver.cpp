@@ -389,6 +389,7 @@ class UsbDevice final : public Device {
   }
 
   std::optional<FactorySticks> factory_sticks() const override { return quirks_->factory_sticks(); }
+  std::optional<FactoryGyro> factory_gyro() const override { return quirks_->factory_gyro(); }
   std::int64_t lost() const noexcept override { return transfers_->lost() + quirks_->lost(); }
   std::vector<std::string> take_remarks() override { return quirks_->take_remarks(); }
 

@@ -77,6 +77,7 @@ class PadQuirks {
   // The packet that sets the motors; size 0: the pad has none.
   virtual void rumble(const Rumble&, OutPacket& packet) noexcept { packet.size = 0; }
   virtual std::optional<FactorySticks> factory_sticks() const { return std::nullopt; }
+  virtual std::optional<FactoryGyro> factory_gyro() const { return std::nullopt; }
   // Input reports that accept() refused because they are damaged (wrong checksum).
   virtual std::int64_t lost() const noexcept { return 0; }
   virtual std::vector<std::string> take_remarks() { return {}; }

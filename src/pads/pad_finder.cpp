@@ -682,6 +682,7 @@ std::optional<std::string> PadFinder::set_up(const PadSighting& sighting, Device
   if (!config->is_usable) return options_.wish.pad.empty() ? "" : name + ": no stick";
   config->is_present = false;  // until the reader sees `added`
   config->has_factory_sticks = factory.has_value();
+  config->factory_gyro = device.factory_gyro();
   pad = {std::move(recorded), std::move(*config), {}};
   pad.layout = pad.config.layout;
   return std::nullopt;

@@ -166,31 +166,67 @@ TEST(SwitchPro, StartsOverUsbAsTheConsoleDoes) {
   ScriptedPort port = pad_with({{0x603d, joined(kLeft, kRight)}});
   const auto pad = quirks();
   pad->start(port, StartedBy::us);
-  ASSERT_EQ(port.written.size(), 8u);
+  ASSERT_EQ(port.written.size(), 11u);
   EXPECT_EQ(port.written[0], (Packet{0x80, 0x02}));
   EXPECT_EQ(port.written[1], (Packet{0x80, 0x03}));
   EXPECT_EQ(port.written[2], (Packet{0x80, 0x02}));
   EXPECT_EQ(port.written[3], (Packet{0x80, 0x04}));
   const Packet still = {0x00, 0x01, 0x40, 0x40, 0x00, 0x01, 0x40, 0x40};
   EXPECT_EQ(port.written[4], joined(joined({0x01, 0x00}, still), {0x03, 0x30}));
-  EXPECT_EQ(port.written[5], joined(joined({0x01, 0x01}, still), {0x48, 0x01}));
-  EXPECT_EQ(port.written[6],
-            joined(joined({0x01, 0x02}, still), {0x10, 0x3d, 0x60, 0x00, 0x00, 18}));
+  EXPECT_EQ(port.written[5], joined(joined({0x01, 0x01}, still), {0x40, 0x01}));
+  EXPECT_EQ(port.written[6], joined(joined({0x01, 0x02}, still), {0x48, 0x01}));
   EXPECT_EQ(port.written[7],
-            joined(joined({0x01, 0x03}, still), {0x10, 0x10, 0x80, 0x00, 0x00, 22}));
+            joined(joined({0x01, 0x03}, still), {0x10, 0x3d, 0x60, 0x00, 0x00, 18}));
+  EXPECT_EQ(port.written[8],
+            joined(joined({0x01, 0x04}, still), {0x10, 0x10, 0x80, 0x00, 0x00, 22}));
+  EXPECT_EQ(port.written[9],
+            joined(joined({0x01, 0x05}, still), {0x10, 0x26, 0x80, 0x00, 0x00, 26}));
+  EXPECT_EQ(port.written[10],
+            joined(joined({0x01, 0x06}, still), {0x10, 0x20, 0x60, 0x00, 0x00, 24}));
   EXPECT_TRUE(pad->take_remarks().empty());
 }
 
 TEST(SwitchPro, OnBluetoothThereIsNoUsbHandshakeAndTheKernelsPadIsOnlyAskedForItsMemory) {
   ScriptedPort port = pad_with({{0x603d, joined(kLeft, kRight)}});
   started(0x2009, port);
-  ASSERT_EQ(port.written.size(), 4u);
+  ASSERT_EQ(port.written.size(), 7u);
   EXPECT_EQ(port.written[0][10], 0x03);
   port = pad_with({{0x603d, joined(kLeft, kRight)}});
   EXPECT_TRUE(asked(port)->factory_sticks());
-  ASSERT_EQ(port.written.size(), 2u);
-  EXPECT_EQ(port.written[0][10], 0x10);
-  EXPECT_EQ(port.written[1][10], 0x10);
+  ASSERT_EQ(port.written.size(), 4u);
+  for (const Packet& packet : port.written) EXPECT_EQ(packet[10], 0x10);
+}
+
+// Twelve numbers of 16 bits as the flash holds them: accelerometer, then the gyroscope's zeros and
+// its counts at 936 degrees a second.
+Packet motion(const std::array<int, 6>& gyro) {
+  Packet bytes(12, 0x11);
+  for (const int n : gyro) {
+    bytes.push_back(static_cast<std::uint8_t>(n & 0xff));
+    bytes.push_back(static_cast<std::uint8_t>((n >> 8) & 0xff));
+  }
+  return bytes;
+}
+
+TEST(SwitchPro, TheUsersCalibrationOfTheGyroscopeComesBeforeTheFactorys) {
+  const Packet factory = motion({10, -20, 30, 13381, 13351, 13401}),
+               own = joined({0xb2, 0xa1}, motion({0, 0, -7, 13371, 14000, 13364}));
+  std::map<std::uint32_t, Packet> flash = {{0x603d, joined(kLeft, kRight)}, {0x6020, factory}};
+  ScriptedPort port = pad_with(flash);
+  const auto from_factory = asked(port)->factory_gyro();
+  ASSERT_TRUE(from_factory);
+  EXPECT_EQ(from_factory->zero, (std::array<double, 3>{10.0, -20.0, 30.0}));
+  for (const double scale : from_factory->rad_s_per_count)
+    EXPECT_NEAR(scale, 936.0 / 13371.0 * 3.14159265358979 / 180.0, 1e-12);
+  flash[0x8026] = own;
+  port = pad_with(flash);
+  const auto from_user = asked(port)->factory_gyro();
+  ASSERT_TRUE(from_user);
+  EXPECT_EQ(from_user->zero, (std::array<double, 3>{0.0, 0.0, -7.0}));
+  EXPECT_NEAR(from_user->rad_s_per_count[1], 936.0 / 14000.0 * 3.14159265358979 / 180.0, 1e-12);
+  flash = {{0x603d, joined(kLeft, kRight)}};
+  port = pad_with(flash);
+  EXPECT_FALSE(asked(port)->factory_gyro()) << "blank";
 }
 
 TEST(SwitchPro, TheTwoSticksKeepTheirNumbersInDifferentOrder) {
@@ -310,7 +346,7 @@ TEST(SwitchPro, ALostAnswerIsAskedForAgain) {
   };
   const auto pad = asked(port);
   EXPECT_TRUE(pad->factory_sticks());
-  EXPECT_EQ(port.written.size(), 6u);
+  EXPECT_EQ(port.written.size(), 12u) << "four parts of the memory, the third time each";
 }
 
 TEST(SwitchPro, ASilentPadEndsTheStartAndIsNamed) {

@@ -278,11 +278,55 @@ TEST(Sony, BluetoothPadsAreAskedForFullReportsOnlyIfTheKernelHasNot) {
   EXPECT_TRUE(pad->take_remarks().empty());
 
   port.features_asked.clear();
+  port.features.clear();
   pad = quirks(kDualShock4, BusType::bluetooth);
   pad->start(port, StartedBy::kernel);
-  pad = quirks(kDualShock4, BusType::usb);
+  EXPECT_EQ(port.features_asked, (std::vector<std::uint8_t>{0x05})) << "for its gyroscope alone";
+  EXPECT_TRUE(pad->take_remarks().empty());
+}
+
+// A feature of these numbers of 16 bits.
+Packet gyro_feature(std::uint8_t id, std::size_t size, const std::array<int, 11>& numbers) {
+  Packet feature(size, 0);
+  feature[0] = id;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    feature[1 + 2 * i] = static_cast<std::uint8_t>(numbers[i] & 0xff);
+    feature[2 + 2 * i] = static_cast<std::uint8_t>((numbers[i] >> 8) & 0xff);
+  }
+  return feature;
+}
+// At 540 degrees a second each way: pitch counts 8640, yaw 8650 and 8630, roll 9000.
+void expect_scales(const std::optional<FactoryGyro>& gyro) {
+  ASSERT_TRUE(gyro);
+  EXPECT_EQ(gyro->zero, (std::array<double, 3>{})) << "the reports are without bias";
+  EXPECT_NEAR(gyro->rad_s_per_count[0], 540.0 / 8640.0 * 3.14159265358979 / 180.0, 1e-12);
+  EXPECT_NEAR(gyro->rad_s_per_count[1], 540.0 / 8640.0 * 3.14159265358979 / 180.0, 1e-12);
+  EXPECT_NEAR(gyro->rad_s_per_count[2], 540.0 / 9000.0 * 3.14159265358979 / 180.0, 1e-12);
+}
+
+TEST(Sony, TheGyroscopesCalibrationIsReadInItsOrder) {
+  const std::array<int, 11> by_axis = {5, -5, 0, 8645, -8635, 8645, -8635, 9000, -9000, 540, 540};
+  const std::array<int, 11> by_way = {5, -5, 0, 8645, 8645, 9000, -8635, -8635, -9000, 540, 540};
+  ScriptedPort port;
+  port.features[0x02] = gyro_feature(0x02, 37, by_axis);
+  auto pad = quirks(kDualShock4, BusType::usb);
+  pad->start(port, StartedBy::kernel);
+  expect_scales(pad->factory_gyro());
+  port.features[0x05] = sealed(0xa3, gyro_feature(0x05, 41, by_way));
+  pad = quirks(kDualShock4, BusType::bluetooth);
+  pad->start(port, StartedBy::kernel);
+  expect_scales(pad->factory_gyro());
+  port.features[0x05] = gyro_feature(0x05, 41, by_axis);
+  pad = quirks(kDualSense, BusType::usb);
+  pad->start(port, StartedBy::kernel);
+  expect_scales(pad->factory_gyro());
+  pad = quirks(kDualSense, BusType::bluetooth);
   pad->start(port, StartedBy::us);
-  EXPECT_TRUE(port.features_asked.empty());
+  EXPECT_FALSE(pad->factory_gyro()) << "no checksum";
+  port.features[0x05] = Packet(41, 0);
+  pad = quirks(kDualSense, BusType::usb);
+  pad->start(port, StartedBy::us);
+  EXPECT_FALSE(pad->factory_gyro()) << "empty";
 }
 
 TEST(Sony, APadThatRefusesFullReportsIsNamedOnce) {

@@ -21,7 +21,7 @@
 #include <string_view>
 #include <utility>
 
-#include "drivers/driver_entries.h"
+#include "drivers/driver_rows.h"
 #include "drivers/event_node.h"
 #include "drivers/posix.h"
 #include "drivers/system_nodes.h"

@@ -14,7 +14,7 @@
 #include <memory>
 #include <utility>
 
-#include "drivers/driver_entries.h"
+#include "drivers/driver_rows.h"
 #include "drivers/posix.h"
 #include "drivers/virtual_pad.h"
 

@@ -20,10 +20,10 @@
 #include <thread>
 #include <utility>
 
-#include "drivers/driver_entries.h"
+#include "drivers/driver_rows.h"
 #include "drivers/open_descriptors.h"
 #include "drivers/pads/packet_sender.h"
-#include "drivers/pads/pad_model.h"
+#include "drivers/pads/pad_quirks.h"
 #include "drivers/pads/pads_of_devices.h"
 #include "drivers/posix.h"
 #include "drivers/system_nodes.h"
@@ -54,7 +54,7 @@ struct OpenNode {
   int fd = -1;  // the handle's own; -1: not found
 };
 
-// The kernel always expects a report id, 0 if the pad has none; pad models only write one that
+// The kernel always expects a report id, 0 if the pad has none; quirks only write one that
 // exists.
 std::vector<std::uint8_t> with_id(bool is_numbered, std::span<const std::uint8_t> packet) {
   std::vector<std::uint8_t> whole(packet.begin(), packet.end());
@@ -105,7 +105,7 @@ bool is_another_hidraw(int fd, const DeviceInfo& info) {
          (!info.physical_path.empty() && info.physical_path != port.data());
 }
 
-// The pad model's way to the open pad.
+// The quirks' way to the open pad.
 class HidrawPort final : public PadPort {
  public:
   HidrawPort(hid_device* handle, int fd, bool is_numbered)
@@ -175,7 +175,7 @@ class HidrawDevice final : public Device {
         node_(std::move(node)),
         handle_(std::move(opened.handle)),
         fd_(opened.fd),
-        model_(make_pad_model(info_)),
+        quirks_(make_pad_quirks(info_)),
         is_numbered_(has_report_ids(info_)) {
     if (fd_ < 0) timer_.emplace().set(1, kBlindPeriod_ns);
     wait_on_ = {.fd = fd_ >= 0 ? fd_ : timer_->fd(), .events = POLLIN, .revents = 0};
@@ -184,18 +184,18 @@ class HidrawDevice final : public Device {
     if (is_unplugged_ || ::access(node_.c_str(), F_OK) != 0) return;
     if (is_rumbling_) rumble({});
     HidrawPort port(handle_.get(), fd_, is_numbered_);
-    model_->stop(port);
+    quirks_->stop(port);
   }
 
   void start(StartedBy started) {
     HidrawPort port(handle_.get(), fd_, is_numbered_);
-    model_->start(port, started);
-    model_->amend(info_);
+    quirks_->start(port, started);
+    quirks_->amend(info_);
     // Only on a cable: over Bluetooth a pad reports when it connects, and some block on requests.
     if (info_.bus == BusType::usb) first_size_ = first_packet(port, info_.descriptor, buffer_);
     OutPacket still;
-    model_->rumble({}, still);
-    if (still.size == 0 && !model_->replies()) return;
+    quirks_->rumble({}, still);
+    if (still.size == 0 && !quirks_->replies()) return;
     sender_ = hidraw_sender(fd_, is_numbered_);
     if (!sender_ && access_problem(node_).empty())
       remarks_.push_back(node_ + ": the motors cannot be reached");
@@ -208,14 +208,15 @@ class HidrawDevice final : public Device {
   bool rumble(const Rumble& rumble) noexcept override {
     if (!sender_) return false;
     OutPacket packet;
-    model_->rumble(rumble, packet);
+    quirks_->rumble(rumble, packet);
     is_rumbling_ = rumble.strong != 0 || rumble.weak != 0;
     return sender_->send(packet);
   }
-  std::optional<FactorySticks> factory_sticks() const override { return model_->factory_sticks(); }
-  std::int64_t lost() const noexcept override { return lost_ + model_->lost(); }
+  std::optional<FactorySticks> factory_sticks() const override { return quirks_->factory_sticks(); }
+  std::optional<FactoryGyro> factory_gyro() const override { return quirks_->factory_gyro(); }
+  std::int64_t lost() const noexcept override { return lost_ + quirks_->lost(); }
   std::vector<std::string> take_remarks() override {
-    std::vector<std::string> remarks = model_->take_remarks();
+    std::vector<std::string> remarks = quirks_->take_remarks();
     std::move(remarks_.begin(), remarks_.end(), std::back_inserter(remarks));
     remarks_.clear();
     return remarks;
@@ -233,7 +234,7 @@ class HidrawDevice final : public Device {
   int fd_ = -1;                 // the handle's
   std::optional<Timer> timer_;  // if that is unknown: ready every millisecond
   pollfd wait_on_{};
-  std::unique_ptr<PadModel> model_;
+  std::unique_ptr<PadQuirks> quirks_;
   std::unique_ptr<PacketSender> sender_;  // null: no motors
   bool is_numbered_;
   bool is_rumbling_ = false, is_raw_ = false;
@@ -286,13 +287,13 @@ bool HidrawDevice::fill(std::span<const std::uint8_t> packet, Report& report) no
   }
   report.time_ns = now_ns();
   OutPacket reply;
-  const bool is_input = model_->accept(packet, reply);
+  const bool is_input = quirks_->accept(packet, reply);
   if (reply.size > 0 && sender_) sender_->send(reply);
   if (!is_raw_) {
-    if (plug_.has_changed(*model_, report)) return true;
+    if (plug_.has_changed(*quirks_, report)) return true;
     if (!is_input) return false;
   }
-  const std::span<const std::uint8_t> input = is_raw_ ? packet : model_->report_of(packet);
+  const std::span<const std::uint8_t> input = is_raw_ ? packet : quirks_->report_of(packet);
   report.kind = ReportKind::input;
   report.size = static_cast<std::uint16_t>(input.size());
   std::copy(input.begin(), input.end(), report.bytes.begin());

@@ -15,11 +15,11 @@
 #include <utility>
 
 #include "base/files.h"
-#include "drivers/driver_entries.h"
+#include "drivers/driver_rows.h"
 #include "drivers/posix.h"
 #include "drivers/sdl_reports.h"
 #include "drivers/system_nodes.h"
-#include "gaitpad/drivers.h"
+#include "gaitpad/driver_registry.h"
 #include "gaitpad/trace.h"
 #include "hid/evdev_layout.h"
 #include "hid/sdl_lines.h"

@@ -16,7 +16,7 @@ namespace {
 constexpr int kMaxPackets = 64;  // read in a row, before other pads get their turn
 constexpr std::size_t kInbox = 64;
 
-// The model's way to the device: it writes and does not ask.
+// The quirks' way to the device: it writes and does not ask.
 class WritingPort final : public PadPort {
  public:
   explicit WritingPort(PacketSource& source) : source_(source) {}
@@ -41,13 +41,13 @@ class WritingPort final : public PadPort {
 class SharedPad final : public Device {
  public:
   SharedPad(std::shared_ptr<SharedDevice> device, DeviceInfo info)
-      : device_(std::move(device)), info_(std::move(info)), model_(make_pad_model(info_)) {
+      : device_(std::move(device)), info_(std::move(info)), quirks_(make_pad_quirks(info_)) {
     const std::lock_guard lock(device_->mutex);
     const auto fds = device_->source->poll_fds();
     fds_.assign(fds.begin(), fds.end());
     if (bell_.fd() >= 0) fds_.push_back({.fd = bell_.fd(), .events = POLLIN, .revents = 0});
     WritingPort port(*device_->source);
-    model_->start(port, StartedBy::us);
+    quirks_->start(port, StartedBy::us);
     device_->pads.push_back(this);
   }
   ~SharedPad() override {
@@ -78,18 +78,19 @@ class SharedPad final : public Device {
   bool rumble(const Rumble& strengths) noexcept override {
     const std::lock_guard lock(device_->mutex);
     OutPacket packet;
-    model_->rumble(strengths, packet);
+    quirks_->rumble(strengths, packet);
     if (packet.size == 0 || !device_->source->send(packet)) return false;
     is_rumbling_ = strengths.strong != 0 || strengths.weak != 0;
     return true;
   }
 
-  std::optional<FactorySticks> factory_sticks() const override { return model_->factory_sticks(); }
+  std::optional<FactorySticks> factory_sticks() const override { return quirks_->factory_sticks(); }
+  std::optional<FactoryGyro> factory_gyro() const override { return quirks_->factory_gyro(); }
   std::int64_t lost() const noexcept override {
     const std::lock_guard lock(device_->mutex);
     return lost_ + device_->source->lost();
   }
-  std::vector<std::string> take_remarks() override { return model_->take_remarks(); }
+  std::vector<std::string> take_remarks() override { return quirks_->take_remarks(); }
 
  private:
   enum class Ring { no, yes };
@@ -111,15 +112,15 @@ class SharedPad final : public Device {
       first_ = (first_ + 1) % kInbox;
       --count_;
       OutPacket reply;
-      const bool is_input = model_->accept({report.bytes.data(), report.size}, reply);
-      if (is_raw_ || plug_.has_changed(*model_, report) || is_input) return true;
+      const bool is_input = quirks_->accept({report.bytes.data(), report.size}, reply);
+      if (is_raw_ || plug_.has_changed(*quirks_, report) || is_input) return true;
     }
     return false;
   }
 
   std::shared_ptr<SharedDevice> device_;
   DeviceInfo info_;
-  std::unique_ptr<PadModel> model_;
+  std::unique_ptr<PadQuirks> quirks_;
   Bell bell_;  // rings for packets that another pad's read has put into the inbox
   std::vector<pollfd> fds_;
   std::array<Report, kInbox> inbox_;

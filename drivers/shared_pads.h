@@ -1,5 +1,5 @@
 // Several pads in one device that can be opened only once, as by the usb driver: each takes every
-// packet, and its model keeps those of its own reports.
+// packet, and its quirks keep those of its own reports.
 #pragma once
 #include <poll.h>
 
@@ -7,7 +7,7 @@
 #include <mutex>
 #include <vector>
 
-#include "drivers/pads/pad_model.h"
+#include "drivers/pads/pad_quirks.h"
 #include "gaitpad/driver.h"
 
 namespace gaitpad {

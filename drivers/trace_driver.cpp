@@ -10,7 +10,7 @@
 #include <utility>
 
 #include "base/text.h"
-#include "drivers/driver_entries.h"
+#include "drivers/driver_rows.h"
 #include "drivers/pads/recorded_packets.h"
 #include "drivers/posix.h"
 #include "gaitpad/trace.h"
@@ -22,7 +22,7 @@ constexpr std::int64_t kTail_us = 1'000'000;  // like a replay: one more second 
 
 // One run of a file. All of its open devices share it and its start time.
 struct Playback {
-  Trace trace;                            // behind the models of its pads
+  Trace trace;                            // behind the quirks of its pads
   std::vector<TraceEvent> raw_events;     // before them
   std::int64_t start_ns = 0;              // CLOCK_MONOTONIC
   std::int64_t first_us = 0, end_us = 0;  // of the file

@@ -1,5 +1,5 @@
 // USB pads without the kernel's input layer: HID-class pads as they describe themselves,
-// vendor-class pads (Xbox) as their pad model states them. While a pad is open the kernel's driver
+// vendor-class pads (Xbox) as their quirks state them. While a pad is open the kernel's driver
 // is detached, and only with the user's consent.
 #include <errno.h>
 #include <fcntl.h>
@@ -13,8 +13,8 @@
 #include <mutex>
 #include <string_view>
 
-#include "drivers/driver_entries.h"
-#include "drivers/pads/pad_model.h"
+#include "drivers/driver_rows.h"
+#include "drivers/pads/pad_quirks.h"
 #include "drivers/pads/pads_of_devices.h"
 #include "drivers/posix.h"
 #include "drivers/shared_pads.h"
@@ -272,7 +272,7 @@ class CommandInterface {
   bool is_claimed_ = false;
 };
 
-// The pad model's way to the pad while it starts; here waiting is allowed.
+// The quirks' way to the pad while it starts; here waiting is allowed.
 class StartPort final : public PadPort {
  public:
   StartPort(UsbTransfers& transfers, libusb_device_handle* handle, std::uint8_t interface)
@@ -345,10 +345,10 @@ class StartPort final : public PadPort {
 
 class UsbDevice final : public Device {
  public:
-  UsbDevice(DeviceInfo info, std::unique_ptr<PadModel> model,
+  UsbDevice(DeviceInfo info, std::unique_ptr<PadQuirks> quirks,
             std::unique_ptr<ClaimedInterface> interface, std::unique_ptr<UsbTransfers> transfers)
       : info_(std::move(info)),
-        model_(std::move(model)),
+        quirks_(std::move(quirks)),
         interface_(std::move(interface)),
         transfers_(std::move(transfers)) {}
 
@@ -356,14 +356,14 @@ class UsbDevice final : public Device {
     if (is_rumbling_ && rumble(Rumble{})) transfers_->flush(milliseconds(100));
     if (transfers_->is_gone()) return;
     StartPort port(*transfers_, interface_->handle(), interface_number_);
-    model_->stop(port);
+    quirks_->stop(port);
   }
 
   void start(const UsbInterface& interface) {
     interface_number_ = interface.number;
     StartPort port(*transfers_, interface_->handle(), interface.number);
-    model_->start(port, StartedBy::us);
-    model_->amend(info_);
+    quirks_->start(port, StartedBy::us);
+    quirks_->amend(info_);
     if (interface.ids.interface_class != kHidClass) return;
     first_.size = static_cast<std::uint16_t>(first_packet(port, info_.descriptor, first_.bytes));
   }
@@ -382,26 +382,27 @@ class UsbDevice final : public Device {
 
   bool rumble(const Rumble& strengths) noexcept override {
     OutPacket packet;
-    model_->rumble(strengths, packet);
+    quirks_->rumble(strengths, packet);
     if (packet.size == 0 || !transfers_->send(packet)) return false;
     is_rumbling_ = strengths.strong != 0 || strengths.weak != 0;
     return true;
   }
 
-  std::optional<FactorySticks> factory_sticks() const override { return model_->factory_sticks(); }
-  std::int64_t lost() const noexcept override { return transfers_->lost() + model_->lost(); }
-  std::vector<std::string> take_remarks() override { return model_->take_remarks(); }
+  std::optional<FactorySticks> factory_sticks() const override { return quirks_->factory_sticks(); }
+  std::optional<FactoryGyro> factory_gyro() const override { return quirks_->factory_gyro(); }
+  std::int64_t lost() const noexcept override { return transfers_->lost() + quirks_->lost(); }
+  std::vector<std::string> take_remarks() override { return quirks_->take_remarks(); }
 
  private:
   // Fills `report` with the oldest input report that has arrived, and answers packets before it.
   bool take_input(Report& report) noexcept {
     while (take_packet(report)) {
       const std::span<const std::uint8_t> packet(report.bytes.data(), report.size);
-      const bool is_input = model_->accept(packet, reply_);
+      const bool is_input = quirks_->accept(packet, reply_);
       if (reply_.size > 0) transfers_->send(reply_);
-      if (is_raw_ || plug_.has_changed(*model_, report)) return true;
+      if (is_raw_ || plug_.has_changed(*quirks_, report)) return true;
       if (!is_input) continue;
-      const std::span<const std::uint8_t> input = model_->report_of(packet);
+      const std::span<const std::uint8_t> input = quirks_->report_of(packet);
       if (input.data() == packet.data()) return true;
       report.size = static_cast<std::uint16_t>(input.size());
       std::copy(input.begin(), input.end(), report.bytes.begin());
@@ -420,7 +421,7 @@ class UsbDevice final : public Device {
 
   DeviceInfo info_;
   Report first_;  // the first packet; size 0: none
-  std::unique_ptr<PadModel> model_;
+  std::unique_ptr<PadQuirks> quirks_;
   std::unique_ptr<ClaimedInterface> interface_;
   std::unique_ptr<UsbTransfers> transfers_;  // destroyed before the interface
   OutPacket reply_;
@@ -429,10 +430,10 @@ class UsbDevice final : public Device {
   bool is_rumbling_ = false, is_raw_ = false;
 };
 
-// The model and descriptor of a vendor-class pad; without a model for all others.
-VendorPad model_of(const UsbInterfaceClass& ids, const DeviceInfo& info) {
+// The quirks and descriptor of a vendor-class pad; without quirks for all others.
+VendorPad quirks_of(const UsbInterfaceClass& ids, const DeviceInfo& info) {
   for (const auto make : {make_xbox_360_pad, make_gip_pad}) {
-    if (auto pad = make(ids, info); pad.model) return pad;
+    if (auto pad = make(ids, info); pad.quirks) return pad;
   }
   return {};
 }
@@ -444,8 +445,8 @@ Result<std::unique_ptr<Device>> open_pad(const std::string& node, const UsbInter
   libusb_device_handle* const handle = (*claimed)->handle();
   auto pad = describe_pad(node, handle, interface.number);
   if (!pad) return pad.error();
-  VendorPad vendor = model_of(interface.ids, info);
-  if (!vendor.model) {
+  VendorPad vendor = quirks_of(interface.ids, info);
+  if (!vendor.quirks) {
     vendor.descriptor = report_descriptor(handle, interface.number);
     if (vendor.descriptor.empty()) vendor.descriptor = interface.descriptor;
     if (vendor.descriptor.empty()) return Error{node + ": the pad does not say what it sends"};
@@ -453,14 +454,14 @@ Result<std::unique_ptr<Device>> open_pad(const std::string& node, const UsbInter
                             kControlTimeoutMs);
   }
   info.descriptor = std::move(vendor.descriptor);
-  if (!vendor.model) {
+  if (!vendor.quirks) {
     if (info.version == 0) info.version = pad->hid_version;
-    vendor.model = make_pad_model(info);
+    vendor.quirks = make_pad_quirks(info);
   }
   fit_transfers(info.descriptor, pad->endpoints);
   auto transfers = UsbTransfers::start((*claimed)->context(), handle, pad->endpoints);
   if (!transfers) return Error{node + ": " + transfers.error().message};
-  auto device = std::make_unique<UsbDevice>(std::move(info), std::move(vendor.model),
+  auto device = std::make_unique<UsbDevice>(std::move(info), std::move(vendor.quirks),
                                             std::move(*claimed), std::move(*transfers));
   device->start(interface);
   return std::unique_ptr<Device>(std::move(device));
@@ -552,7 +553,7 @@ DeviceListing listing_of(const SystemNode& device, const UsbInterface& interface
   info.physical_path = usb_physical_path(device.sysfs_path, interface.number);
   info.version = interface.version;
   info.descriptor = interface.descriptor;
-  if (auto vendor = model_of(interface.ids, info); vendor.model) {
+  if (auto vendor = quirks_of(interface.ids, info); vendor.quirks) {
     info.version = device.version;
     info.descriptor = std::move(vendor.descriptor);
   }

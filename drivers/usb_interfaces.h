@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/pads/pad_model.h"
+#include "drivers/pads/pad_quirks.h"
 #include "gaitpad/driver.h"
 
 namespace gaitpad {

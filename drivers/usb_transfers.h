@@ -14,7 +14,7 @@
 #include <span>
 #include <vector>
 
-#include "drivers/pads/pad_model.h"
+#include "drivers/pads/pad_quirks.h"
 #include "drivers/posix.h"
 #include "gaitpad/report.h"
 #include "gaitpad/result.h"

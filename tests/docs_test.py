@@ -122,7 +122,7 @@ SABOTAGES = [  # page, what it says, what is false
     ("docs/walk.md", "`walk_changes.cpp`", "`walk_stops.cpp`"),
     ("docs/crowd.md", "`Crowd::advance()`", "`Crowd::step()`"),
     ("docs/pads.md", "`frame_us_p99`", "`frame_ms_p99`"),
-    ("docs/pads.md", "`model_of()`", "`model_for()`"),
+    ("docs/pads.md", "`quirks_of()`", "`quirks_for()`"),
     ("docs/pads.md", "`sony.cpp`", "`dualshock.cpp`"),
     ("docs/library.md", "`PadWish::driver`", "`PadWish::drivers`"),
     ("docs/library.md", "`gaitpad::session`", "`gaitpad::sitting`"),
@@ -151,7 +151,7 @@ def test_what_does_not_exist_is_found(judge, page, said, false):
 
 # What is not run here, and why.
 NOT_RUN = {
-    r"git clone|sudo |cd |blender |jscal |systemctl ": "needs the network, root, a real pad, a login or another program",
+    r"git clone|sudo |cd |blender |systemctl ": "needs the network, root, a real pad, a login or another program",
     r"bash tools/|cmake |c\+\+ |/usr/bin/python3 ": "builds or tests the repository itself",
     r"build-[a-z]+/": "a build of another kind",
 }

@@ -53,10 +53,10 @@ PUBLIC = {
     "src/animation": ["crowd", "ik", "terrain", "walk", "walk_model", "walk_output"],
     "src/files": ["bvh", "config_files", "gltf", "motion_file"],
     "src/strides": ["clean_strides"],
-    "src/hid": ["decode", "descriptor", "driver", "pad_map", "report", "trace"],
+    "src/hid": ["decode", "descriptor", "driver", "pad_overrides", "report", "trace"],
     "src/stick": ["calibration", "untouched"],
-    "drivers": ["drivers", "keyboard"],
-    "src/pads": ["pad_setup", "pad_stream", "pads"],
+    "drivers": ["driver_registry", "keyboard"],
+    "src/pads": ["pad_configuration", "pad_stream", "pads"],
     "src/session": ["followers", "live", "replay", "session_frame", "session_spec", "simulation", "summary"],
 }
 # What further headers of a vendor single files may include, and nobody else.

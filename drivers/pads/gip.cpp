@@ -2,7 +2,7 @@
 // number and length. The command serves as the report id.
 #include <algorithm>
 
-#include "drivers/pads/pad_model.h"
+#include "drivers/pads/pad_quirks.h"
 
 namespace gaitpad {
 
@@ -112,9 +112,9 @@ bool is_of_protocol(std::uint8_t command) noexcept {
   return std::find(std::begin(kCommands), std::end(kCommands), command) != std::end(kCommands);
 }
 
-class GipModel final : public PadModel {
+class GipQuirks final : public PadQuirks {
  public:
-  explicit GipModel(std::uint32_t id) : id_(id) {}
+  explicit GipQuirks(std::uint32_t id) : id_(id) {}
 
   // A pad announces itself when it gets power, mostly long before it is opened: do not wait for it.
   void start(PadPort& port, StartedBy) override {
@@ -218,7 +218,7 @@ VendorPad make_gip_pad(const UsbInterfaceClass& interface, const DeviceInfo& dev
       interface.protocol != 0xd0) {
     return {};
   }
-  return {std::make_unique<GipModel>(pad_id(device.vendor, device.product)),
+  return {std::make_unique<GipQuirks>(pad_id(device.vendor, device.product)),
           {std::begin(kDescriptor), std::end(kDescriptor)}};
 }
 

@@ -1,14 +1,16 @@
 // Pads of the Switch (Pro Controller, Joy-Cons, NES, SNES, N64 and Mega Drive controllers): their
-// start, the stick calibration in their flash memory, their motors. All send the same report 0x30.
-// Packets, memory map and vibration codes are from dekuNukem's Nintendo_Switch_Reverse_Engineering
-// (bluetooth_hid_notes.md, USB-HID-Notes.md, spi_flash_notes.md, rumble_data_table.md), ids and
-// kinds from Linux's hid-nintendo.c. The Switch 2's Pro Controller is started by commands to its
-// second USB interface: numbers from SDL 3's SDL_hidapi_switch2.c.
+// start, the calibration of sticks and gyroscope in their flash memory, their motors. All send the
+// same report 0x30. Packets, memory map and vibration codes are from dekuNukem's
+// Nintendo_Switch_Reverse_Engineering (bluetooth_hid_notes.md, USB-HID-Notes.md,
+// spi_flash_notes.md, rumble_data_table.md), ids and kinds from Linux's hid-nintendo.c. The Switch
+// 2's Pro Controller is started by commands to its second USB interface: numbers from SDL 3's
+// SDL_hidapi_switch2.c.
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "drivers/pads/pad_model.h"
+#include "drivers/pads/pad_quirks.h"
+#include "gaitpad/math.h"
 
 namespace gaitpad {
 
@@ -49,6 +51,7 @@ enum : std::uint8_t {  // subcommands
   kDeviceInfo = 0x02,
   kSetReportMode = 0x03,
   kReadFlash = 0x10,
+  kEnableMotion = 0x40,
   kEnableVibration = 0x48,
 };
 
@@ -73,6 +76,14 @@ constexpr std::uint32_t kUserAddress = 0x8010;  // per stick a mark, then the 9 
 constexpr std::size_t kUserBytes = 22;
 constexpr std::size_t kStickBytes = 9, kMarkBytes = 2;
 constexpr std::array<std::uint8_t, kMarkBytes> kMark = {0xb2, 0xa1};
+
+// The calibration of accelerometer and gyroscope: twelve numbers, the gyroscope's zeros from the
+// seventh on, its counts at 936 degrees a second from the tenth on.
+constexpr std::uint32_t kFactoryMotionAddress = 0x6020;
+constexpr std::uint32_t kUserMotionAddress = 0x8026;  // a mark before it
+constexpr std::size_t kMotionBytes = 24, kGyroZeros = 6, kGyroTurns = 9;
+constexpr double kTurn_rad_s = 936.0 * kDegree;
+constexpr double kUsualTurn = 13371.0;  // counts
 
 constexpr int kBlank = 0xfff, kMaxCount = 0xfff;
 // Limits of a working stick: the centre is off by at most half of the way, and each way is at least
@@ -118,6 +129,21 @@ std::optional<StickRange> stick_range(std::span<const std::uint8_t, kStickBytes>
   return range;
 }
 
+// None: blank, or numbers that no such chip has.
+std::optional<FactoryGyro> gyro_of(std::span<const std::uint8_t, kMotionBytes> bytes) noexcept {
+  const auto number = [bytes](std::size_t i) {
+    return static_cast<double>(static_cast<std::int16_t>(bytes[2 * i] | bytes[2 * i + 1] << 8));
+  };
+  FactoryGyro gyro;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double zero = number(kGyroZeros + axis), turn = number(kGyroTurns + axis) - zero;
+    if (!(turn > 0.5 * kUsualTurn && turn < 2.0 * kUsualTurn)) return std::nullopt;
+    gyro.zero[axis] = zero;
+    gyro.rad_s_per_count[axis] = kTurn_rad_s / turn;
+  }
+  return gyro;
+}
+
 FactoryAxis factory_axis(const StickRange& range, std::size_t axis) noexcept {
   constexpr double kMiddle = kMaxCount / 2.0;
   const auto fraction = [](int count) { return (count - kMiddle) / kMiddle; };
@@ -153,7 +179,7 @@ std::array<std::uint8_t, 4> vibration(const Rumble& rumble) noexcept {
           static_cast<std::uint8_t>(0x40 + low / 2)};
 }
 
-class SwitchPad final : public PadModel {
+class SwitchPad final : public PadQuirks {
  public:
   explicit SwitchPad(const DeviceInfo& device)
       : name_(device.name.empty() ? "this pad" : device.name),
@@ -174,6 +200,7 @@ class SwitchPad final : public PadModel {
     const bool has_user = has_factory && read_flash(port, kUserAddress, user);
     choose_sticks(has_factory ? std::span<const std::uint8_t>(factory) : std::span<std::uint8_t>(),
                   has_user ? std::span<const std::uint8_t>(user) : std::span<std::uint8_t>());
+    if (has_factory && has_motion()) gyro_ = asked_gyro(port);
   }
 
   void amend(DeviceInfo& device) const override {
@@ -202,6 +229,7 @@ class SwitchPad final : public PadModel {
   }
 
   std::optional<FactorySticks> factory_sticks() const override { return sticks_; }
+  std::optional<FactoryGyro> factory_gyro() const override { return gyro_; }
   std::vector<std::string> take_remarks() override { return std::exchange(remarks_, {}); }
 
  private:
@@ -224,6 +252,7 @@ class SwitchPad final : public PadModel {
       if (!has_answered) remarks_.push_back(name_ + ": does not answer the start over USB");
     }
     ask(port, kSetReportMode, std::to_array<std::uint8_t>({kInFull}));
+    if (has_motion()) ask(port, kEnableMotion, std::to_array<std::uint8_t>({0x01}));
     ask(port, kEnableVibration, std::to_array<std::uint8_t>({0x01}));
   }
 
@@ -235,6 +264,23 @@ class SwitchPad final : public PadModel {
     const bool is_left = product_ == kJoyConLeft || product_ == kN64 || kind_ == kLeftKind;
     const bool is_right = product_ == kJoyConRight || kind_ == kRightKind;
     return side == Side::left ? is_left : is_right;
+  }
+
+  bool has_motion() const noexcept {
+    return product_ != kN64 && product_ != kSnes && product_ != kMegaDrive;
+  }
+
+  // The user's calibration comes before the factory's.
+  std::optional<FactoryGyro> asked_gyro(PadPort& port) {
+    std::array<std::uint8_t, kMarkBytes + kMotionBytes> user{};
+    const auto own = std::span<const std::uint8_t>(user);
+    if (read_flash(port, kUserMotionAddress, user) &&
+        std::equal(kMark.begin(), kMark.end(), user.begin())) {
+      if (auto gyro = gyro_of(own.subspan<kMarkBytes, kMotionBytes>())) return gyro;
+    }
+    std::array<std::uint8_t, kMotionBytes> factory{};
+    if (!read_flash(port, kFactoryMotionAddress, factory)) return std::nullopt;
+    return gyro_of(factory);
   }
 
   void ask_kind(PadPort& port) {
@@ -367,6 +413,7 @@ class SwitchPad final : public PadModel {
   Clock::time_point end_;
   std::uint8_t count_ = 0;
   std::optional<FactorySticks> sticks_;
+  std::optional<FactoryGyro> gyro_;
   std::vector<std::string> remarks_;
 };
 
@@ -395,7 +442,7 @@ constexpr std::uint32_t kFactoryBlock = 0x013080, kUserBlock = 0x1fc040, kNextSt
 // In the answer to a reading of the flash memory: the block, and in it the calibration.
 constexpr std::size_t kBlockAt = 0x10, kFactoryAt = kBlockAt + 0x28, kAnswerBytes = 0x50;
 
-class Switch2Pad final : public PadModel {
+class Switch2Pad final : public PadQuirks {
  public:
   explicit Switch2Pad(const DeviceInfo& device)
       : name_(device.name.empty() ? "this pad" : device.name) {}
@@ -450,7 +497,7 @@ class Switch2Pad final : public PadModel {
 
 }  // namespace
 
-std::unique_ptr<PadModel> make_switch_model(const DeviceInfo& device) {
+std::unique_ptr<PadQuirks> make_switch_quirks(const DeviceInfo& device) {
   constexpr std::uint16_t kProducts[] = {kJoyConLeft, kJoyConRight, kProController, kChargingGrip,
                                          kSnes,       kN64,         kMegaDrive};
   const bool is_known =

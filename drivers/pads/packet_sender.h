@@ -5,7 +5,7 @@
 #include <memory>
 #include <thread>
 
-#include "drivers/pads/pad_model.h"
+#include "drivers/pads/pad_quirks.h"
 
 namespace gaitpad {
 

@@ -66,7 +66,7 @@ std::shared_ptr<AdapterMotors> motors_of(const std::string& adapter) {
   return motors;
 }
 
-class GameCubePlug final : public PadModel {
+class GameCubePlug final : public PadQuirks {
  public:
   GameCubePlug(int plug, const std::string& adapter)
       : plug_(static_cast<std::size_t>(plug) - 1), motors_(motors_of(adapter)) {}
@@ -181,7 +181,7 @@ std::vector<std::uint8_t> without_other_pads(std::vector<std::uint8_t> descripto
 }
 
 // Hands on the reports of one collection.
-class OneOfSeveral final : public PadModel {
+class OneOfSeveral final : public PadQuirks {
  public:
   explicit OneOfSeveral(std::set<std::uint8_t> others) : others_(std::move(others)) {}
   bool accept(std::span<const std::uint8_t> packet, OutPacket& reply) noexcept override {
@@ -251,7 +251,7 @@ bool is_one_of_several(const std::vector<std::uint8_t>& descriptor) {
          });
 }
 
-std::unique_ptr<PadModel> make_one_of_several_model(const DeviceInfo& device) {
+std::unique_ptr<PadQuirks> make_one_of_several_quirks(const DeviceInfo& device) {
   const auto parsed = parse_descriptor(device.descriptor);
   if (!parsed) return nullptr;
   std::set<std::uint8_t> others;

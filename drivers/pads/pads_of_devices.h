@@ -11,7 +11,7 @@
 #include <string_view>
 #include <vector>
 
-#include "drivers/pads/pad_model.h"
+#include "drivers/pads/pad_quirks.h"
 #include "gaitpad/driver.h"
 
 namespace gaitpad {
@@ -40,8 +40,8 @@ Result<std::unique_ptr<Device>> join_joy_cons(std::unique_ptr<Device> one,
 class PlugWatch {
  public:
   // Then `report` says so.
-  bool has_changed(const PadModel& model, Report& report) noexcept {
-    if (model.is_plugged() == was_plugged_) return false;
+  bool has_changed(const PadQuirks& quirks, Report& report) noexcept {
+    if (quirks.is_plugged() == was_plugged_) return false;
     was_plugged_ = !was_plugged_;
     report.kind = was_plugged_ ? ReportKind::added : ReportKind::removed;
     report.size = 0;

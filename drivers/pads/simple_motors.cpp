@@ -1,7 +1,7 @@
 // Pads that describe themselves and only need a packet for their motors: Stadia, Xbox and Luna on
 // Bluetooth, 8BitDo. Packets are from SDL's SDL_hidapi_stadia.c, SDL_hidapi_xboxone.c,
 // SDL_hidapi_luna.c and SDL_hidapi_8bitdo.c; ids of Xbox pads from Linux's hid-ids.h.
-#include "drivers/pads/pad_model.h"
+#include "drivers/pads/pad_quirks.h"
 
 namespace gaitpad {
 
@@ -49,9 +49,9 @@ constexpr MotorPad kPads[] = {{0x18d1, 0x9400, &set_stadia},          // Stadia
                               {0x0171, 0x0419, &set_xbox_bluetooth},  // Luna
                               {0x2dc8, 0x6012, &set_8bitdo}};         // 8BitDo Ultimate 2 Wireless
 
-class MotorModel final : public PadModel {
+class MotorQuirks final : public PadQuirks {
  public:
-  explicit MotorModel(const MotorPad& pad) : pad_(pad) {}
+  explicit MotorQuirks(const MotorPad& pad) : pad_(pad) {}
   void rumble(const Rumble& rumble, OutPacket& packet) noexcept override {
     packet = {};
     pad_.set(rumble, packet);
@@ -63,10 +63,10 @@ class MotorModel final : public PadModel {
 
 }  // namespace
 
-std::unique_ptr<PadModel> make_motor_model(const DeviceInfo& device) {
+std::unique_ptr<PadQuirks> make_motor_quirks(const DeviceInfo& device) {
   for (const MotorPad& pad : kPads) {
     if (pad.vendor == device.vendor && pad.product == device.product)
-      return std::make_unique<MotorModel>(pad);
+      return std::make_unique<MotorQuirks>(pad);
   }
   return nullptr;
 }

@@ -3,11 +3,13 @@
 // hid-playstation.c and were compared with what that driver sends. DualShock 4s of other makers:
 // whether they have motors, by SDL's SDL_hidapi_ps4.c.
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "drivers/pads/crc32.h"
-#include "drivers/pads/pad_model.h"
+#include "drivers/pads/pad_quirks.h"
 #include "gaitpad/descriptor.h"
+#include "gaitpad/math.h"
 
 namespace gaitpad {
 
@@ -60,11 +62,36 @@ std::uint8_t motor(std::uint16_t strength) noexcept {
   return strength == 0 ? 0 : std::max<std::uint8_t>(1, static_cast<std::uint8_t>(strength >> 8));
 }
 
+// The calibration of a gyroscope: what it counted at rest and while it was turned both ways about
+// each axis, then the speed of both turns in degrees a second. What it counts at rest is in the
+// reports no more (hid-playstation.c: "bias"). None: numbers that no such chip has.
+enum class TurnOrder { by_axis, by_way };  // plus and minus of each axis; all plus, then all minus
+constexpr std::size_t kGyroBytes = 23;
+std::optional<FactoryGyro> gyro_of(std::span<const std::uint8_t> feature, TurnOrder order) {
+  constexpr double kUsual_rad_s = 2048.0 / 32767.0 * kDegree;
+  if (feature.size() < kGyroBytes) return std::nullopt;
+  const auto number = [feature](std::size_t i) {
+    return static_cast<double>(
+        static_cast<std::int16_t>(feature[1 + 2 * i] | feature[2 + 2 * i] << 8));
+  };
+  FactoryGyro gyro;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const bool is_by_axis = order == TurnOrder::by_axis;
+    const double zero = number(i), plus = number(is_by_axis ? 3 + 2 * i : 3 + i),
+                 minus = number(is_by_axis ? 4 + 2 * i : 6 + i);
+    const double counts = std::fabs(plus - zero) + std::fabs(minus - zero);
+    gyro.rad_s_per_count[i] = (number(9) + number(10)) * kDegree / counts;
+    const double share = gyro.rad_s_per_count[i] / kUsual_rad_s;
+    if (!(share > 0.5 && share < 2.0)) return std::nullopt;
+  }
+  return gyro;
+}
+
 // Over Bluetooth both families send a short report 0x01 until a certain feature report is read,
 // then a full one with a checksum.
-class SonyModel : public PadModel {
+class SonyQuirks : public PadQuirks {
  public:
-  SonyModel(const DeviceInfo& device, std::uint8_t full_report)
+  SonyQuirks(const DeviceInfo& device, std::uint8_t full_report)
       : name_(device.name.empty() ? "this pad" : device.name),
         product_(device.product),
         is_bluetooth_(device.bus == BusType::bluetooth),
@@ -87,16 +114,19 @@ class SonyModel : public PadModel {
     return false;
   }
   std::int64_t lost() const noexcept final { return damaged_; }
+  std::optional<FactoryGyro> factory_gyro() const final { return gyro_; }
   std::vector<std::string> take_remarks() final { return std::exchange(remarks_, {}); }
 
  protected:
-  // Reading any of the features switches the pad over; the content (motion calibration) is not
-  // used.
-  void ask_for_full_reports(PadPort& port, std::span<const std::uint8_t> features) {
-    for (const std::uint8_t id : features) {
-      std::array<std::uint8_t, 64> bytes{};
-      if (port.feature(id, bytes) > 0) return;
-    }
+  // Reads the calibration of the gyroscope. Over Bluetooth that switches the pad over.
+  bool ask_for_gyro(PadPort& port, std::uint8_t id, TurnOrder order) {
+    std::array<std::uint8_t, 64> bytes{};
+    const std::size_t size = std::min(port.feature(id, bytes), bytes.size());
+    const auto feature = std::span<const std::uint8_t>(bytes).first(size);
+    if (!is_bluetooth_ || is_intact(Direction::feature, feature)) gyro_ = gyro_of(feature, order);
+    return size > 0;
+  }
+  void remark_short_reports() {
     remarks_.push_back(name_ + ": does not change to full reports; motion and touch are not sent");
   }
 
@@ -108,12 +138,13 @@ class SonyModel : public PadModel {
   std::uint8_t full_report_;
   bool is_plugged_ = true;
   std::int64_t damaged_ = 0;
+  std::optional<FactoryGyro> gyro_;
   std::vector<std::string> remarks_;
 };
 
 // On USB it sends nothing until two features were read: Linux's hid-sony.c
 // (sixaxis_set_operational_usb), whose third step some copies answer by rumbling for ever.
-class DualShock3 final : public PadModel {
+class DualShock3 final : public PadQuirks {
  public:
   explicit DualShock3(const DeviceInfo& device)
       : name_(device.name.empty() ? "this pad" : device.name),
@@ -135,16 +166,20 @@ class DualShock3 final : public PadModel {
   std::vector<std::string> remarks_;
 };
 
-class DualShock4 final : public SonyModel {
+class DualShock4 final : public SonyQuirks {
   static constexpr std::uint8_t kReportInterval_ms = 4;
 
  public:
-  explicit DualShock4(const DeviceInfo& device) : SonyModel(device, 0x11) {}
+  explicit DualShock4(const DeviceInfo& device) : SonyQuirks(device, 0x11) {}
 
-  // 0x05 works with every firmware that Linux knows, 0x02 with the first ones.
+  // Over Bluetooth 0x05 works with every firmware that Linux knows, 0x02 with the first ones.
   void start(PadPort& port, StartedBy started) final {
-    if (!is_bluetooth_ || started == StartedBy::kernel) return;
-    ask_for_full_reports(port, std::to_array<std::uint8_t>({0x05, 0x02}));
+    if (!is_bluetooth_) {
+      ask_for_gyro(port, 0x02, TurnOrder::by_axis);
+    } else if (!ask_for_gyro(port, 0x05, TurnOrder::by_way) && started == StartedBy::us &&
+               !ask_for_gyro(port, 0x02, TurnOrder::by_way)) {
+      remark_short_reports();
+    }
   }
 
   void rumble(const Rumble& rumble, OutPacket& packet) noexcept final {
@@ -165,7 +200,7 @@ class DualShock4 final : public SonyModel {
 // Of another maker, for the PlayStation 4: by USB alone, and not every one has motors. It tells
 // that in a feature which its descriptor must state: pads of the same makers that do not know it
 // hang when they are asked.
-class DualShock4OfOthers final : public PadModel {
+class DualShock4OfOthers final : public PadQuirks {
  public:
   static constexpr std::uint8_t kAbilities = 0x03, kEffects = 0x05;
   static constexpr std::size_t kAbilityBytes = 48, kEffectBytes = 32;
@@ -194,19 +229,19 @@ class DualShock4OfOthers final : public PadModel {
 bool is_dualshock4_of_others(const DeviceInfo& device) {
   if (device.bus != BusType::usb) return false;
   const auto d = parse_descriptor(device.descriptor);
-  using Model = DualShock4OfOthers;
-  return d && report_bytes(*d, FieldKind::feature, Model::kAbilities) == Model::kAbilityBytes &&
-         report_bytes(*d, FieldKind::output, Model::kEffects) == Model::kEffectBytes;
+  using Quirks = DualShock4OfOthers;
+  return d && report_bytes(*d, FieldKind::feature, Quirks::kAbilities) == Quirks::kAbilityBytes &&
+         report_bytes(*d, FieldKind::output, Quirks::kEffects) == Quirks::kEffectBytes;
 }
 
-class DualSense final : public SonyModel {
+class DualSense final : public SonyQuirks {
  public:
   explicit DualSense(const DeviceInfo& device)
-      : SonyModel(device, 0x31), has_new_motors_(device.product == kDualSenseEdge) {}
+      : SonyQuirks(device, 0x31), has_new_motors_(device.product == kDualSenseEdge) {}
 
   void start(PadPort& port, StartedBy started) final {
-    if (is_bluetooth_ && started == StartedBy::us)
-      ask_for_full_reports(port, std::to_array<std::uint8_t>({0x05}));
+    const bool has_answered = ask_for_gyro(port, 0x05, TurnOrder::by_axis);
+    if (!has_answered && is_bluetooth_ && started == StartedBy::us) remark_short_reports();
     if (product_ != kDualSenseEdge) has_new_motors_ = firmware(port) >= kFirstWithNewMotors;
   }
 
@@ -245,7 +280,7 @@ class DualSense final : public SonyModel {
 
 }  // namespace
 
-std::unique_ptr<PadModel> make_sony_model(const DeviceInfo& device) {
+std::unique_ptr<PadQuirks> make_sony_quirks(const DeviceInfo& device) {
   if (device.vendor != kSony)
     return is_dualshock4_of_others(device) ? std::make_unique<DualShock4OfOthers>() : nullptr;
   switch (device.product) {

@@ -6,7 +6,7 @@
 #include <initializer_list>
 #include <utility>
 
-#include "drivers/pads/pad_model.h"
+#include "drivers/pads/pad_quirks.h"
 #include "gaitpad/descriptor.h"
 
 namespace gaitpad {
@@ -70,9 +70,9 @@ struct Message {
   std::size_t size = 2;
 };
 
-class SteamModel final : public PadModel {
+class SteamQuirks final : public PadQuirks {
  public:
-  explicit SteamModel(const DeviceInfo& device)
+  explicit SteamQuirks(const DeviceInfo& device)
       : name_(name_of(device)),
         is_deck_(device.product == kDeck),
         is_receiver_(device.product == kWireless) {}
@@ -176,7 +176,7 @@ constexpr StatePart kStateParts[] = {{0x10, 3, 1},     // buttons
                                      {0x100, 4, 14},   // left pad
                                      {0x200, 4, 10}};  // right pad; motion follows
 
-class SteamBluetooth final : public PadModel {
+class SteamBluetooth final : public PadQuirks {
  public:
   explicit SteamBluetooth(const DeviceInfo& device) : name_(name_of(device)) {
     state_[0] = kSegmentId;
@@ -268,7 +268,7 @@ class SteamBluetooth final : public PadModel {
 }  // namespace
 
 // The interfaces of the mouse and the keyboard have the same ids.
-std::unique_ptr<PadModel> make_steam_model(const DeviceInfo& device) {
+std::unique_ptr<PadQuirks> make_steam_quirks(const DeviceInfo& device) {
   constexpr std::uint32_t kPads[] = {usage_of(0xff00, 1), usage_of(0xffff, 1)};
   const std::uint16_t product = device.product;
   if (device.vendor == kValve && (product == kBluetooth || product == kBluetooth + 1))
@@ -280,7 +280,7 @@ std::unique_ptr<PadModel> make_steam_model(const DeviceInfo& device) {
       std::find_first_of(parsed->applications.begin(), parsed->applications.end(),
                          std::begin(kPads), std::end(kPads)) == parsed->applications.end())
     return nullptr;
-  return std::make_unique<SteamModel>(device);
+  return std::make_unique<SteamQuirks>(device);
 }
 
 }  // namespace gaitpad

@@ -1,5 +1,5 @@
 // Wired Xbox 360 pads of Microsoft and others: vendor-class packets of 20 bytes, no HID.
-#include "drivers/pads/pad_model.h"
+#include "drivers/pads/pad_quirks.h"
 
 namespace gaitpad {
 
@@ -29,7 +29,7 @@ constexpr std::uint8_t kDescriptor[] = {
     0x06, 0x5d, 0xff, 0x09, 0x01, 0xa1, 0x01, 0xc0,              // ff5d:0001
 };
 
-class Xbox360Model final : public PadModel {
+class Xbox360Quirks final : public PadQuirks {
  public:
   void start(PadPort& port, StartedBy) override {
     constexpr std::uint8_t kLightOne[] = {0x01, 0x03, 0x06};  // the first quarter of the ring
@@ -72,7 +72,7 @@ VendorPad make_xbox_360_pad(const UsbInterfaceClass& interface, const DeviceInfo
       interface.protocol != 0x01) {
     return {};
   }
-  return {std::make_unique<Xbox360Model>(), {std::begin(kDescriptor), std::end(kDescriptor)}};
+  return {std::make_unique<Xbox360Quirks>(), {std::begin(kDescriptor), std::end(kDescriptor)}};
 }
 
 }  // namespace gaitpad

@@ -10,7 +10,7 @@
 #include <filesystem>
 #include <utility>
 
-#include "gaitpad/drivers.h"
+#include "gaitpad/driver_registry.h"
 #include "pads/unseen_pad.h"
 
 namespace gaitpad {

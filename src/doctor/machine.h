@@ -8,7 +8,7 @@
 
 #include "drivers/system_nodes.h"
 #include "drivers/usb_interfaces.h"
-#include "gaitpad/pad_map.h"
+#include "gaitpad/pad_overrides.h"
 #include "gaitpad/pad_stream.h"
 
 namespace gaitpad {

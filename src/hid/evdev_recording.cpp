@@ -3,6 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <utility>
+
+#include "base/text.h"
+#include "hid/evemu.h"
+#include "hid/libinput_record.h"
+#include "hid/umockdev_record.h"
 
 namespace gaitpad {
 namespace {
@@ -13,16 +19,17 @@ constexpr std::uint16_t kSynReport = 0x00;
 }  // namespace
 
 void EvdevRecording::add_key(std::uint16_t code) {
-  if (code <= evdev::kKeyMax) abilities_.keys.push_back(code);
+  if (code <= evdev::kKeyMax) keys_.push_back(code);
 }
 
-std::optional<std::string> EvdevRecording::add_axis(std::uint32_t code, std::int32_t min,
-                                                    std::int32_t max) {
-  const bool is_known =
-      std::ranges::any_of(abilities_.axes, [code](const EvdevAxis& a) { return a.code == code; });
-  if (is_known) return fmt::format("a second range for the axis {:02x}", code);
-  if (code <= evdev::kAbsMax)
-    abilities_.axes.push_back({static_cast<std::uint16_t>(code), min, max});
+const RecordedAxis* EvdevRecording::axis(std::uint32_t code) const {
+  const auto found = std::ranges::find(axes_, code, &RecordedAxis::code);
+  return found == axes_.end() ? nullptr : &*found;
+}
+
+std::optional<std::string> EvdevRecording::add_axis(const RecordedAxis& axis) {
+  if (this->axis(axis.code)) return fmt::format("a second range for the axis {:02x}", axis.code);
+  if (axis.code <= evdev::kAbsMax) axes_.push_back(axis);
   return std::nullopt;
 }
 
@@ -40,9 +47,18 @@ std::optional<std::string> EvdevRecording::add_event(const EvdevEvent& event,
   return std::nullopt;
 }
 
+EvdevAbilities EvdevRecording::abilities() const {
+  EvdevAbilities abilities{{axes_.begin(), axes_.end()}, keys_};
+  std::ranges::sort(abilities.axes, {}, &EvdevAxis::code);
+  std::ranges::sort(abilities.keys);
+  const auto repeated = std::ranges::unique(abilities.keys);
+  abilities.keys.erase(repeated.begin(), repeated.end());
+  return abilities;
+}
+
 EvdevState EvdevRecording::first_state() const {
   EvdevState state;
-  for (const EvdevAxis& a : abilities_.axes) {
+  for (const EvdevAxis& a : axes_) {
     const auto first = std::ranges::find_if(
         events_, [&a](const EvdevEvent& e) { return e.type == kAbs && e.code == a.code; });
     state.axis[a.code] = first != events_.end()
@@ -53,7 +69,7 @@ EvdevState EvdevRecording::first_state() const {
 }
 
 std::optional<Error> EvdevRecording::append_to(Trace& trace) const {
-  const EvdevLayout layout = evdev_layout(abilities_, {});
+  const EvdevLayout layout = evdev_layout(abilities(), {});
   const auto index = static_cast<std::uint16_t>(trace.devices.size());
   TraceDevice& device = trace.devices.emplace_back();
   device.info = info;
@@ -78,6 +94,56 @@ std::optional<Error> EvdevRecording::append_to(Trace& trace) const {
     trace.events.push_back(event);
   }
   return std::nullopt;
+}
+
+namespace {
+
+std::unique_ptr<EvdevReader> reader_of(std::string_view text) {
+  text = without_byte_order_mark(text);
+  if (is_umockdev_record(text)) return make_umockdev_reader();  // before evemu: its events' head
+  if (is_evemu(text)) return make_evemu_reader();
+  if (is_libinput_record(text)) return make_libinput_reader();
+  return nullptr;
+}
+
+}  // namespace
+
+bool is_evdev_recording(std::string_view text) noexcept {
+  text = without_byte_order_mark(text);
+  return is_umockdev_record(text) || is_evemu(text) || is_libinput_record(text);
+}
+
+Result<EvdevRecordings> evdev_recordings(std::string_view text, const std::string& name,
+                                         Damage damage) {
+  const std::unique_ptr<EvdevReader> reader = reader_of(text);
+  if (!reader) return Error{name + ": not a recording of evemu, libinput or umockdev"};
+  EvdevRecordings recordings;
+  while (!text.empty()) {
+    ++reader->line_number;
+    const auto cause = reader->add(take_line(text));
+    if (!cause) continue;
+    const std::string sentence = fmt::format("{}:{}: {}", name, reader->line_number, *cause);
+    if (damage == Damage::refuse) return Error{sentence};
+    if (recordings.skipped_lines++ == 0) recordings.first_damage = sentence;
+  }
+  recordings.nodes = std::move(reader->nodes);
+  std::erase_if(recordings.nodes, [](const EvdevRecording& n) { return !n.has_abilities(); });
+  if (recordings.nodes.empty()) return Error{name + ": " + reader->missing()};
+  return recordings;
+}
+
+Result<Trace> parse_evdev_recording(std::string_view text, const std::string& name, Damage damage) {
+  const auto recordings = evdev_recordings(text, name, damage);
+  if (!recordings) return recordings.error();
+  Trace trace;
+  trace.path = name;
+  trace.skipped_lines = recordings->skipped_lines;
+  trace.first_damage = recordings->first_damage;
+  for (const EvdevRecording& node : recordings->nodes) {
+    if (auto problem = node.append_to(trace)) return *problem;
+  }
+  std::ranges::stable_sort(trace.events, {}, &TraceEvent::time_us);
+  return trace;
 }
 
 }  // namespace gaitpad

@@ -1,9 +1,13 @@
-// What recordings of evdev nodes have in common, whichever tool wrote them: the node's abilities
-// and its events become a device of a trace.
+// Recordings of evdev nodes, as people attach them to reports of bugs: of evemu, `libinput record`
+// and umockdev. A node's abilities and its events become a device of a trace; its axes' ranges can
+// be imported as a calibration.
 #pragma once
 #include <cstdint>
+#include <memory>
 #include <optional>
+#include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "gaitpad/result.h"
@@ -18,16 +22,23 @@ struct EvdevEvent {
   std::int32_t value = 0;
 };
 
+struct RecordedAxis : EvdevAxis {
+  std::int32_t flat = 0;  // around its middle, as the kernel has it
+  std::int64_t line = 0;  // that states it
+};
+
 // One node. The add_ functions give why the line that they are called for is damaged.
 class EvdevRecording {
  public:
   DeviceInfo info;  // without driver and descriptor
 
   void add_key(std::uint16_t code);
-  std::optional<std::string> add_axis(std::uint32_t code, std::int32_t min, std::int32_t max);
+  std::optional<std::string> add_axis(const RecordedAxis& axis);
   // `time`: as it stands in the line.
   std::optional<std::string> add_event(const EvdevEvent& event, std::string_view time);
-  bool has_abilities() const { return !abilities_.axes.empty() || !abilities_.keys.empty(); }
+  bool has_abilities() const { return !axes_.empty() || !keys_.empty(); }
+  std::span<const RecordedAxis> axes() const { return axes_; }
+  const RecordedAxis* axis(std::uint32_t code) const;  // null: its range is not known
 
   // Appends the device and its reports. The tools keep no state from before the first event: an
   // axis has the value of its first event until then, or stands in its middle if it has none; no
@@ -35,10 +46,38 @@ class EvdevRecording {
   std::optional<Error> append_to(Trace& trace) const;
 
  private:
+  EvdevAbilities abilities() const;
   EvdevState first_state() const;
 
-  EvdevAbilities abilities_;
+  std::vector<RecordedAxis> axes_;
+  std::vector<std::uint16_t> keys_;
   std::vector<EvdevEvent> events_;
 };
+
+// Reads the recordings of one tool, line by line.
+class EvdevReader {
+ public:
+  std::vector<EvdevRecording> nodes;
+  std::int64_t line_number = 0;  // of the line that is added, from 1
+
+  virtual ~EvdevReader() = default;
+  // Why the line is damaged, without its place; none: it is not.
+  virtual std::optional<std::string> add(std::string_view line) = 0;
+  // What is missing if no node has an axis or a key.
+  virtual std::string missing() const { return "no device with an axis or a key"; }
+};
+
+bool is_evdev_recording(std::string_view text) noexcept;
+
+struct EvdevRecordings {
+  std::vector<EvdevRecording> nodes;  // at least one, each with an axis or a key
+  std::int64_t skipped_lines = 0;
+  std::string first_damage;
+};
+// `name` stands for the path in errors.
+Result<EvdevRecordings> evdev_recordings(std::string_view text, const std::string& name,
+                                         Damage damage);
+// Every node is a device of the trace, of the evdev driver; their events share one time.
+Result<Trace> parse_evdev_recording(std::string_view text, const std::string& name, Damage damage);
 
 }  // namespace gaitpad

@@ -27,26 +27,18 @@ constexpr std::uint16_t kSyn = 0x00, kKey = 0x01, kAbs = 0x03;  // event types
 constexpr std::uint16_t kSynReport = 0x00;
 constexpr std::size_t kMaskBytes = 8;  // of a B: or P: line
 
-class EvemuReader {
+class EvemuReader final : public EvdevReader {
  public:
-  explicit EvemuReader(const std::string& name) : name_(name) {}
-  Cause add(std::string_view line);
-  void skip(const std::string& sentence) {
-    if (skipped_++ == 0) first_damage_ = sentence;
-  }
-  Result<Trace> trace() const;
+  EvemuReader() { nodes.emplace_back(); }
+  Cause add(std::string_view line) override;
 
  private:
   Cause identity(Words words);
   Cause mask(Words words);
   Cause axis(Words words);
-  Cause event(Words words);
+  EvdevRecording& node() { return nodes.front(); }
 
-  std::string name_;
-  EvdevRecording recording_;
   std::map<std::uint16_t, std::size_t> mask_bytes_;  // read so far, by the type of event
-  std::int64_t skipped_ = 0;
-  std::string first_damage_;
 };
 
 Cause EvemuReader::add(std::string_view line) {
@@ -56,7 +48,7 @@ Cause EvemuReader::add(std::string_view line) {
     return fmt::format("{} is no line of evemu", in_quotes(line));
   std::string_view text = trimmed(line.substr(2));
   if (line.front() == 'N') {
-    recording_.info.name = text.substr(0, kMaxTraceTextBytes);
+    node().info.name = text.substr(0, kMaxTraceTextBytes);
     return std::nullopt;
   }
   const Words words(text.substr(0, text.find('#')));
@@ -68,7 +60,7 @@ Cause EvemuReader::add(std::string_view line) {
     case 'A':
       return axis(words);
     case 'E':
-      return event(words);
+      return add_evemu_event(words, node());
     default:
       return std::nullopt;  // properties, LEDs and switches
   }
@@ -83,10 +75,10 @@ Cause EvemuReader::identity(Words words) {
              "four digits";
     id = static_cast<std::uint16_t>(*value);
   }
-  recording_.info.bus = static_cast<BusType>(ids[0]);
-  recording_.info.vendor = ids[1];
-  recording_.info.product = ids[2];
-  recording_.info.version = ids[3];
+  node().info.bus = static_cast<BusType>(ids[0]);
+  node().info.vendor = ids[1];
+  node().info.product = ids[2];
+  node().info.version = ids[3];
   return std::nullopt;
 }
 
@@ -103,7 +95,7 @@ Cause EvemuReader::mask(Words words) {
   for (std::size_t i = 0; i < 8 * kMaskBytes && *type == kKey; ++i) {
     const std::size_t code = 8 * read + i;
     if (code <= evdev::kKeyMax && ((bytes[i / 8] >> (i % 8)) & 1u) != 0)
-      recording_.add_key(static_cast<std::uint16_t>(code));
+      node().add_key(static_cast<std::uint16_t>(code));
   }
   read = std::min<std::size_t>(read + kMaskBytes, evdev::kKeyMax);
   return std::nullopt;
@@ -114,48 +106,29 @@ Cause EvemuReader::axis(Words words) {
   const auto min = parse_number<std::int32_t>(words.next());
   const auto max = parse_number<std::int32_t>(words.next());
   if (!code || !min || !max) return "an A: line holds a code, a minimum and a maximum";
-  return recording_.add_axis(*code, *min, *max);
+  words.next();  // noise
+  const auto flat = parse_number<std::int32_t>(words.next());
+  return node().add_axis(
+      {{static_cast<std::uint16_t>(*code), *min, *max}, flat.value_or(0), line_number});
 }
 
-Cause EvemuReader::event(Words words) {
+}  // namespace
+
+bool is_evemu(std::string_view text) noexcept { return text.starts_with("# EVEMU "); }
+
+std::optional<std::string> add_evemu_event(Words words, EvdevRecording& node) {
   const std::string_view word = words.next();
   const auto time_us = microseconds(word);
   const auto type = hexadecimal(words.next(), 0xffff), code = hexadecimal(words.next(), 0xffff);
   const auto value = parse_number<std::int32_t>(words.next());
   if (!time_us || !type || !code || !value)
     return "an E: line holds SECONDS.MICROSECONDS, a type, a code and a value";
-  return recording_.add_event(
+  return node.add_event(
       {*time_us, static_cast<std::uint16_t>(*type), static_cast<std::uint16_t>(*code), *value},
       word);
 }
 
-Result<Trace> EvemuReader::trace() const {
-  if (!recording_.has_abilities()) return Error{name_ + ": no device: there is no A: or B: line"};
-  Trace trace;
-  trace.path = name_;
-  trace.skipped_lines = skipped_;
-  trace.first_damage = first_damage_;
-  if (auto problem = recording_.append_to(trace)) return *problem;
-  return trace;
-}
-
-}  // namespace
-
-bool is_evemu(std::string_view text) noexcept {
-  return without_byte_order_mark(text).starts_with("# EVEMU ");
-}
-
-Result<Trace> parse_evemu(std::string_view text, const std::string& name, Damage damage) {
-  EvemuReader reader(name);
-  for (std::int64_t number = 1; !text.empty(); ++number) {
-    const Cause cause = reader.add(take_line(text));
-    if (!cause) continue;
-    const std::string sentence = fmt::format("{}:{}: {}", name, number, *cause);
-    if (damage == Damage::refuse) return Error{sentence};
-    reader.skip(sentence);
-  }
-  return reader.trace();
-}
+std::unique_ptr<EvdevReader> make_evemu_reader() { return std::make_unique<EvemuReader>(); }
 
 // ---- Writing
 

@@ -2,18 +2,23 @@
 // node and its events. Reading one makes it a trace of the evdev driver; writing one gives the
 // events that the kernel makes of a pad's reports. The format: evemu's README and evemu-record(1).
 #pragma once
+#include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
 #include "gaitpad/result.h"
 #include "gaitpad/trace.h"
+#include "hid/evdev_recording.h"
+#include "hid/trace_lines.h"
 
 namespace gaitpad {
 
 bool is_evemu(std::string_view text) noexcept;
 
-// `name` stands for the path in errors.
-Result<Trace> parse_evemu(std::string_view text, const std::string& name, Damage damage);
+std::unique_ptr<EvdevReader> make_evemu_reader();
+// What an `E:` line holds, which umockdev writes, too. Returns why it is damaged.
+std::optional<std::string> add_evemu_event(Words words, EvdevRecording& node);
 
 // The first pad of the trace. Fields whose usages the kernel gives no code are left out, and so are
 // commands. An unplugged pad goes back to where its first report had it. Error: none of the devices

@@ -39,11 +39,9 @@ bool is_within(std::int64_t number, std::int64_t least, std::int64_t most) {
 bool is_word(std::int64_t number) { return is_within(number, 0, 0xffff); }
 bool is_value(std::int64_t number) { return is_within(number, INT32_MIN, INT32_MAX); }
 
-class Reader {
+class LibinputReader final : public EvdevReader {
  public:
-  Cause add(std::string_view line);
-  Result<Trace> trace(const std::string& name, std::int64_t skipped,
-                      const std::string& first_damage) const;
+  Cause add(std::string_view line) override;
 
  private:
   enum class Part { none, evdev, codes, ranges, events };
@@ -51,23 +49,22 @@ class Reader {
   Cause codes_of_type(std::string_view type, std::string_view text);
   Cause range(std::string_view code, std::string_view text);
   Cause event(std::string_view text);
-  EvdevRecording& node() { return nodes_.back(); }
+  EvdevRecording& node() { return nodes.back(); }
 
-  std::vector<EvdevRecording> nodes_;
   Part part_ = Part::none;
 };
 
-Cause Reader::add(std::string_view line) {
+Cause LibinputReader::add(std::string_view line) {
   line = trimmed(line);
   if (line.empty() || line.front() == '#') return std::nullopt;
   if (line.starts_with("- node:")) {
-    if (nodes_.size() >= kMaxTraceDevices)
+    if (nodes.size() >= kMaxTraceDevices)
       return fmt::format("more than {} devices", kMaxTraceDevices);
-    nodes_.emplace_back();
+    nodes.emplace_back();
     part_ = Part::none;
     return std::nullopt;
   }
-  if (nodes_.empty()) return std::nullopt;
+  if (nodes.empty()) return std::nullopt;
   if (line.starts_with("- evdev:")) {
     part_ = Part::events;
   } else if (line.starts_with("- [")) {
@@ -95,7 +92,7 @@ Cause Reader::add(std::string_view line) {
   return std::nullopt;
 }
 
-Cause Reader::identity(std::string_view text) {
+Cause LibinputReader::identity(std::string_view text) {
   const auto ids = numbers_of(text);
   if (!ids || ids->size() != 4 || !std::ranges::all_of(*ids, is_word))
     return "an id is a list of bus, vendor, product and version";
@@ -108,7 +105,7 @@ Cause Reader::identity(std::string_view text) {
 }
 
 // The axes are known by their ranges.
-Cause Reader::codes_of_type(std::string_view type, std::string_view text) {
+Cause LibinputReader::codes_of_type(std::string_view type, std::string_view text) {
   const auto codes = numbers_of(text);
   if (!codes || !std::ranges::all_of(*codes, is_word))
     return fmt::format("the codes of type {} are a list of numbers", type);
@@ -117,16 +114,19 @@ Cause Reader::codes_of_type(std::string_view type, std::string_view text) {
   return std::nullopt;
 }
 
-Cause Reader::range(std::string_view code, std::string_view text) {
+Cause LibinputReader::range(std::string_view code, std::string_view text) {
   const auto range = numbers_of(text);
   if (!range || range->size() < 2 || !std::ranges::all_of(*range, is_value))
     return "an axis' range is a list that begins with its minimum and maximum";
-  return node().add_axis(*parse_number<std::uint16_t>(code), static_cast<std::int32_t>((*range)[0]),
-                         static_cast<std::int32_t>((*range)[1]));
+  const auto number = [&range](std::size_t i) {  // minimum, maximum, noise, flat, resolution
+    return i < range->size() ? static_cast<std::int32_t>((*range)[i]) : 0;
+  };
+  return node().add_axis(
+      {{*parse_number<std::uint16_t>(code), number(0), number(1)}, number(3), line_number});
 }
 
 // `[seconds, microseconds, type, code, value]`
-Cause Reader::event(std::string_view text) {
+Cause LibinputReader::event(std::string_view text) {
   const auto e = numbers_of(text);
   const bool is_sound = e && e->size() == 5 && is_within((*e)[0], 0, INT32_MAX) &&
                         is_within((*e)[1], 0, kSecond_us - 1) && is_word((*e)[2]) &&
@@ -137,40 +137,12 @@ Cause Reader::event(std::string_view text) {
                           fmt::format("{}.{:06}", (*e)[0], (*e)[1]));
 }
 
-// The events stand node by node.
-Result<Trace> Reader::trace(const std::string& name, std::int64_t skipped,
-                            const std::string& first_damage) const {
-  Trace trace;
-  trace.path = name;
-  trace.skipped_lines = skipped;
-  trace.first_damage = first_damage;
-  for (const EvdevRecording& node : nodes_) {
-    if (!node.has_abilities()) continue;
-    if (auto problem = node.append_to(trace)) return *problem;
-  }
-  if (trace.devices.empty()) return Error{name + ": no device with an axis or a key"};
-  std::ranges::stable_sort(trace.events, {}, &TraceEvent::time_us);
-  return trace;
-}
-
 }  // namespace
 
 bool is_libinput_record(std::string_view text) noexcept {
-  return without_byte_order_mark(text).starts_with("# libinput record");
+  return text.starts_with("# libinput record");
 }
 
-Result<Trace> parse_libinput_record(std::string_view text, const std::string& name, Damage damage) {
-  Reader reader;
-  std::int64_t skipped = 0;
-  std::string first_damage;
-  for (std::int64_t number = 1; !text.empty(); ++number) {
-    const Cause cause = reader.add(take_line(text));
-    if (!cause) continue;
-    const std::string sentence = fmt::format("{}:{}: {}", name, number, *cause);
-    if (damage == Damage::refuse) return Error{sentence};
-    if (skipped++ == 0) first_damage = sentence;
-  }
-  return reader.trace(name, skipped, first_damage);
-}
+std::unique_ptr<EvdevReader> make_libinput_reader() { return std::make_unique<LibinputReader>(); }
 
 }  // namespace gaitpad

@@ -14,7 +14,7 @@
 
 #include "base/text.h"
 #include "gaitpad/descriptor.h"
-#include "gaitpad/pad_map.h"
+#include "gaitpad/pad_overrides.h"
 #include "gaitpad/trace.h"
 #include "hid/evdev_layout.h"
 #include "hid/trace_lines.h"

@@ -12,7 +12,7 @@
 
 #include "gaitpad/decode.h"
 #include "gaitpad/descriptor.h"
-#include "gaitpad/pad_map.h"
+#include "gaitpad/pad_overrides.h"
 #include "gaitpad/result.h"
 
 namespace gaitpad {

@@ -16,8 +16,7 @@
 #include "base/files.h"
 #include "base/text.h"
 #include "gaitpad/descriptor.h"
-#include "hid/evemu.h"
-#include "hid/libinput_record.h"
+#include "hid/evdev_recording.h"
 #include "hid/trace_lines.h"
 
 namespace gaitpad {
@@ -601,17 +600,10 @@ class LineFeed {
   std::int64_t number_ = 0;
 };
 
-// Recordings of event nodes, by other tools.
-bool is_of_nodes(std::string_view text) { return is_evemu(text) || is_libinput_record(text); }
-Result<Trace> parse_of_nodes(std::string_view text, const std::string& name, Damage damage) {
-  return is_evemu(text) ? parse_evemu(text, name, damage)
-                        : parse_libinput_record(text, name, damage);
-}
-
 }  // namespace
 
 Result<Trace> parse_trace(std::string_view text, const std::string& name, Damage damage) {
-  if (is_of_nodes(text)) return parse_of_nodes(text, name, damage);
+  if (is_evdev_recording(text)) return parse_evdev_recording(text, name, damage);
   LineFeed feed(name, damage);
   if (auto error = feed.add(text)) return *error;
   return feed.finish();
@@ -637,14 +629,14 @@ Result<Trace> read_trace(const std::string& path, Damage damage) {
     total += got;
     if (total > kMaxTraceBytes) return too_large();
     const std::string_view piece(buffer.data(), got);
-    if (!of_nodes.empty() || (total == got && is_of_nodes(piece))) {
+    if (!of_nodes.empty() || (total == got && is_evdev_recording(piece))) {
       of_nodes += piece;
     } else if (auto error = feed.add(piece)) {
       return *error;
     }
   }
   if (in.bad()) return Error{path + ": reading failed"};
-  if (!of_nodes.empty()) return parse_of_nodes(of_nodes, path, damage);
+  if (!of_nodes.empty()) return parse_evdev_recording(of_nodes, path, damage);
   return feed.finish();
 }
 

@@ -37,11 +37,13 @@ void GuidedCalibration::take_report(const Report& report) {
     info_ = stream_->device(device_).info;
     config_ = stream_->take_config(device_);
     guide_.emplace(*config_.layout);
+    gyro_ = {info_, config_.factory_gyro};
   }
   if (report.device != device_ || device_ == kNoDevice) return;
   if (report.kind == ReportKind::added) is_plugged_ = true;
   if (report.kind == ReportKind::removed) is_plugged_ = false;
   guide_->take_report(report);
+  if (report.kind == ReportKind::input) gyro_.take(report);
 }
 
 void GuidedCalibration::end_recording() {
@@ -71,6 +73,7 @@ GuidedPad GuidedCalibration::finish() {
   if (!guide_) return pad;
   pad.info = info_;
   pad.has_factory_sticks = config_.has_factory_sticks;
+  if (gyro_.rest()) pad.gyro_bias_rad_s = gyro_.rest()->bias_rad_s;
   pad.tracks = guide_->tracks();
   pad.frame = {guide_->frame(0), guide_->frame(1)};
   if (config_.layout) pad.layout = *config_.layout;
@@ -92,6 +95,10 @@ Result<std::string> calibration_target(const std::string& out, const Calibration
   return Error{"neither XDG_CONFIG_HOME nor HOME names a folder for the file: give --out FILE"};
 }
 
+void take_gyro_bias(const GuidedPad& pad, CalibrationFile& file) {
+  if (pad.gyro_bias_rad_s) file.gyro_bias_rad_s = pad.gyro_bias_rad_s;
+}
+
 void take_what_holds(const PadFiles& files, const DeviceInfo& info, const std::string& target,
                      CalibrationFile& file, std::vector<std::string>& remarks) {
   std::error_code error;
@@ -101,6 +108,7 @@ void take_what_holds(const PadFiles& files, const DeviceInfo& info, const std::s
       file.calibration = old->calibration;
       file.mapping = old->mapping;
       file.measured = old->measured;
+      file.gyro_bias_rad_s = old->gyro_bias_rad_s;
       file.measured_on = old->measured_on;
       return;
     }

@@ -10,6 +10,7 @@
 
 #include "gaitpad/pad_stream.h"
 #include "gaitpad/result.h"
+#include "pads/gyroscope.h"
 #include "stick/guide.h"
 #include "stick/pad_analysis.h"
 
@@ -20,8 +21,9 @@ struct GuidedPad {
   DeviceInfo info;
   PadLayout layout;
   bool has_factory_sticks = false;
-  PadTracks tracks;                 // raw, as the layout has them
-  std::array<StickFrame, 2> frame;  // left, right
+  std::optional<TurnRates> gyro_bias_rad_s;  // none: no gyroscope, or it never lay still
+  PadTracks tracks;                          // raw, as the layout has them
+  std::array<StickFrame, 2> frame;           // left, right
 };
 
 // From one thread.
@@ -53,6 +55,7 @@ class GuidedCalibration {
   PadConfig config_;  // the guide refers to its layout
   bool is_plugged_ = false, has_ended_ = false;
   std::optional<CalibrationGuide> guide_;
+  GyroMeter gyro_;
   std::vector<std::string> remarks_;
 };
 
@@ -68,6 +71,8 @@ Result<std::string> calibration_target(const std::string& out, const Calibration
 // about such pads. `remarks` receives a sentence if the old file is damaged.
 void take_what_holds(const PadFiles& files, const DeviceInfo& info, const std::string& target,
                      CalibrationFile& file, std::vector<std::string>& remarks);
+// The bias of the pad's gyroscope, if it was seen; else the old one stays.
+void take_gyro_bias(const GuidedPad& pad, CalibrationFile& file);
 // The comments at the top of the file.
 std::vector<std::string> calibration_comments(const PadAnalysis& analysis);
 std::string today();  // 2024-02-29, local

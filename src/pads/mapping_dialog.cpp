@@ -23,14 +23,14 @@ enum class Kind { stick, trigger, button };
 
 }  // namespace
 
-struct PadMapping::Step {
+struct MappingDialog::Step {
   const char* prompt;
   Kind kind;
   std::size_t control;   // PadAxis or PadButton
   bool is_down = false;  // of a stick: HID counts down in this direction
 };
 
-const std::vector<PadMapping::Step>& PadMapping::steps() noexcept {
+const std::vector<MappingDialog::Step>& MappingDialog::steps() noexcept {
   static const std::vector<Step> all = {
       {"push the left stick forward", Kind::stick, kLeftY, true},
       {"push the left stick to the right", Kind::stick, kLeftX},
@@ -52,18 +52,19 @@ const std::vector<PadMapping::Step>& PadMapping::steps() noexcept {
   return all;
 }
 
-std::size_t PadMapping::step_count() noexcept { return steps().size(); }
+std::size_t MappingDialog::step_count() noexcept { return steps().size(); }
 
-Result<std::unique_ptr<PadMapping>> PadMapping::start(const PadFiles& files, const PadWish& wish) {
+Result<std::unique_ptr<MappingDialog>> MappingDialog::start(const PadFiles& files,
+                                                            const PadWish& wish) {
   auto stream = PadStream::start({files, wish});
   if (!stream) return stream.error();
-  std::unique_ptr<PadMapping> mapping(new PadMapping());
+  std::unique_ptr<MappingDialog> mapping(new MappingDialog());
   mapping->stream_ = std::move(*stream);
   mapping->still_since_ns_ = now_ns();
   return mapping;
 }
 
-void PadMapping::take_values(const Report& report) {
+void MappingDialog::take_values(const Report& report) {
   const PadLayout& layout = stream_->layout(report.device);
   const std::size_t skip = layout.descriptor.numbered ? 1 : 0;
   if (report.size < skip) return;
@@ -81,7 +82,7 @@ void PadMapping::take_values(const Report& report) {
 
 // The field that the person moves; null: none yet. Of a trigger the axis counts before a button
 // that is pressed with it.
-PadMapping::PadField* PadMapping::moved_field(const Step& step) {
+MappingDialog::PadField* MappingDialog::moved_field(const Step& step) {
   PadField* moved = nullptr;
   for (PadField& f : fields_) {
     const bool is_fit = step.kind == Kind::trigger || f.is_button() == (step.kind == Kind::button);
@@ -94,12 +95,12 @@ PadMapping::PadField* PadMapping::moved_field(const Step& step) {
   return moved;
 }
 
-bool PadMapping::is_at_rest() const {
+bool MappingDialog::is_at_rest() const {
   return std::ranges::all_of(fields_,
                              [](const PadField& f) { return std::abs(f.moved()) < kReleased; });
 }
 
-void PadMapping::take(const Step& step, PadField& field) {
+void MappingDialog::take(const Step& step, PadField& field) {
   field.is_taken = true;
   ControlSource source{.usage = field.field->usage, .occurrence = field.occurrence};
   if (!field.is_button()) source.reversed = (field.moved() < 0.0) != step.is_down;
@@ -112,7 +113,7 @@ void PadMapping::take(const Step& step, PadField& field) {
                             source.reversed ? ", reversed" : "");
 }
 
-void PadMapping::take_report(const Report& report) {
+void MappingDialog::take_report(const Report& report) {
   if (device_ == kNoDevice && report.kind == ReportKind::added) {
     device_ = report.device;
     for (const Field& f : stream_->layout(device_).descriptor.fields) {
@@ -140,13 +141,13 @@ void PadMapping::take_report(const Report& report) {
   }
 }
 
-void PadMapping::prompt_when_still() {
+void MappingDialog::prompt_when_still() {
   if (is_prompted_ || !has_pad() || is_done() || now_ns() - still_since_ns_ <= kSettled_ns) return;
   is_prompted_ = true;
   for (PadField& f : fields_) f.rest = f.value;
 }
 
-void PadMapping::look(std::chrono::milliseconds timeout) {
+void MappingDialog::look(std::chrono::milliseconds timeout) {
   if (timeout.count() > 0) stream_->wait(timeout);
   const bool has_ended = stream_->has_ended();  // asked first: its last reports are read below
   for (; const Report* report = stream_->front(); stream_->pop()) take_report(*report);
@@ -154,21 +155,21 @@ void PadMapping::look(std::chrono::milliseconds timeout) {
   has_ended_ = has_ended;
 }
 
-const char* PadMapping::prompt() const noexcept {
+const char* MappingDialog::prompt() const noexcept {
   return is_prompted_ && !is_held_ && !is_done() ? steps()[step_].prompt : nullptr;
 }
 
-void PadMapping::skip() noexcept {
+void MappingDialog::skip() noexcept {
   if (!is_prompted_ || is_held_ || is_done()) return;
   is_prompted_ = false;
   ++step_;
 }
 
-bool PadMapping::has_left_stick() const noexcept {
+bool MappingDialog::has_left_stick() const noexcept {
   return found_.controls.axes[kLeftX] && found_.controls.axes[kLeftY];
 }
 
-Result<std::string> PadMapping::keep(const std::string& file) const {
+Result<std::string> MappingDialog::keep(const std::string& file) const {
   DeviceInfo info = pad();
   info.mapping.clear();  // what was known before
   const auto layout = pad_layout(info, {found_});

@@ -8,16 +8,16 @@
 #include <vector>
 
 #include "gaitpad/decode.h"
-#include "gaitpad/pad_setup.h"
+#include "gaitpad/pad_configuration.h"
 #include "gaitpad/pad_stream.h"
 #include "gaitpad/result.h"
 
 namespace gaitpad {
 
 // From one thread.
-class PadMapping {
+class MappingDialog {
  public:
-  static Result<std::unique_ptr<PadMapping>> start(const PadFiles& files, const PadWish& wish);
+  static Result<std::unique_ptr<MappingDialog>> start(const PadFiles& files, const PadWish& wish);
 
   // Takes in the reports that have come; if there are none, waits so long for one.
   void look(std::chrono::milliseconds timeout);
@@ -60,7 +60,7 @@ class PadMapping {
     double moved() const noexcept { return is_known ? value - rest : 0.0; }
   };
 
-  PadMapping() = default;
+  MappingDialog() = default;
   void take_report(const Report& report);
   void take_values(const Report& report);
   void prompt_when_still();

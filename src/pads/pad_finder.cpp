@@ -14,9 +14,9 @@
 #include <utility>
 
 #include "base/text.h"
-#include "drivers/driver_entries.h"
+#include "drivers/driver_rows.h"
 #include "drivers/virtual_pad.h"
-#include "gaitpad/drivers.h"
+#include "gaitpad/driver_registry.h"
 #include "gaitpad/pad_stream.h"
 
 namespace gaitpad {
@@ -682,6 +682,7 @@ std::optional<std::string> PadFinder::set_up(const PadSighting& sighting, Device
   if (!config->is_usable) return options_.wish.pad.empty() ? "" : name + ": no stick";
   config->is_present = false;  // until the reader sees `added`
   config->has_factory_sticks = factory.has_value();
+  config->factory_gyro = device.factory_gyro();
   pad = {std::move(recorded), std::move(*config), {}};
   pad.layout = pad.config.layout;
   return std::nullopt;

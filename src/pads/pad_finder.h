@@ -27,7 +27,7 @@
 #include "drivers/posix.h"
 #include "drivers/system_nodes.h"
 #include "gaitpad/driver.h"
-#include "gaitpad/pad_setup.h"
+#include "gaitpad/pad_configuration.h"
 #include "gaitpad/pad_stream.h"
 #include "gaitpad/result.h"
 

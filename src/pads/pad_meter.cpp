@@ -78,7 +78,10 @@ bool take_report(const Report& report, PadStream& stream, MonitoredPads& pads) {
   if (report.device == kNoDevice) return false;
   if (report.kind == ReportKind::added) {
     auto [pad, is_first] = pads.try_emplace(report.device);
-    if (is_first) pad->second.config = stream.take_config(report.device);
+    if (is_first) {
+      pad->second.config = stream.take_config(report.device);
+      pad->second.gyro = {stream.device(report.device).info, pad->second.config.factory_gyro};
+    }
     pad->second.is_plugged = true;
     return is_first;
   }
@@ -91,6 +94,7 @@ bool take_report(const Report& report, PadStream& stream, MonitoredPads& pads) {
     pad.filter = {};
     pad.new_values = {};
     pad.watch = {};
+    pad.gyro.cut();
     pad.last_ns = 0;
     return false;
   }
@@ -100,6 +104,7 @@ bool take_report(const Report& report, PadStream& stream, MonitoredPads& pads) {
   pad.last_ns = report.time_ns;
   keep(pad.unshown_ns, report.time_ns);
   ++pad.running.reports;
+  pad.gyro.take(report);
   if (!decode(*pad.config.layout, report, pad.state)) {
     ++pad.running.bad_reports;
   } else {

@@ -11,6 +11,7 @@
 #include "gaitpad/calibration.h"
 #include "gaitpad/pad_stream.h"
 #include "gaitpad/untouched.h"
+#include "pads/gyroscope.h"
 #include "stick/new_values.h"
 
 namespace gaitpad {
@@ -28,6 +29,7 @@ struct MonitoredPad {
   PadState state;
   JumpFilter filter;
   NewValueCount new_values;
+  GyroMeter gyro;
   std::array<UntouchedWatch, 2> watch;  // left, right
   int untouched = 0;                    // how often a stick moved by itself
   bool is_warned = false;               // of that

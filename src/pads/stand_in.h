@@ -14,7 +14,7 @@
 #include "drivers/event_node.h"
 #include "drivers/posix.h"
 #include "drivers/virtual_pad.h"
-#include "gaitpad/pad_setup.h"
+#include "gaitpad/pad_configuration.h"
 #include "gaitpad/pads.h"
 #include "pads/calibrated_copy.h"
 

@@ -48,14 +48,19 @@ Result<FoundPad> first_pad(const Trace& trace, const PadOverrides& overrides) {
 }
 
 // Tracks the reports of the device. Returns how many could not be decoded.
-std::int64_t take_reports(const Trace& trace, std::uint16_t device, PadTracker& tracker) {
+std::int64_t take_reports(const Trace& trace, std::uint16_t device, PadTracker& tracker,
+                          GyroMeter& gyro) {
   std::int64_t bad = 0;
   Report report;
   for (const TraceEvent& event : trace.events) {
     if (event.device != device) continue;
-    if (event.kind == ReportKind::removed) tracker.cut();
+    if (event.kind == ReportKind::removed) {
+      tracker.cut();
+      gyro.cut();
+    }
     if (event.kind != ReportKind::input) continue;
     copy_report(trace, event, report);
+    gyro.take(report);
     if (!tracker.add_report(report)) ++bad;
   }
   return bad;
@@ -67,6 +72,7 @@ Result<GuidedPad> traced_pad(const std::vector<std::string>& paths, Damage damag
                              const PadFiles& files, std::vector<std::string>& remarks) {
   GuidedPad pad;
   std::optional<PadTracker> tracker;
+  GyroMeter gyro;
   for (const std::string& path : paths) {
     auto trace = read_trace(path, damage);
     if (!trace) return trace.error();
@@ -79,6 +85,7 @@ Result<GuidedPad> traced_pad(const std::vector<std::string>& paths, Damage damag
       pad.info = info;
       pad.layout = std::move(found->layout);
       tracker.emplace(pad.layout);
+      gyro = {info, std::nullopt};
     } else if (!is_same_kind(info, pad.info)) {
       return Error{fmt::format("{}: {} ({:04x}:{:04x}) is not the pad of {}, {} ({:04x}:{:04x})",
                                path, info.name, info.vendor, info.product, paths.front(),
@@ -87,12 +94,13 @@ Result<GuidedPad> traced_pad(const std::vector<std::string>& paths, Damage damag
     if (found->others > 0)
       remarks.push_back(fmt::format("{}: further pads, left out: {}", path, found->others));
     tracker->cut();
-    if (const std::int64_t bad = take_reports(*trace, found->device, *tracker); bad > 0) {
+    if (const std::int64_t bad = take_reports(*trace, found->device, *tracker, gyro); bad > 0) {
       remarks.push_back(
           fmt::format("{}: reports that are too short or have an unknown id: {}", path, bad));
     }
   }
   pad.tracks = tracker->tracks();
+  if (gyro.rest()) pad.gyro_bias_rad_s = gyro.rest()->bias_rad_s;
   return pad;
 }
 

@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/files.h"
-#include "gaitpad/pad_map.h"
+#include "gaitpad/pad_overrides.h"
 #include "gaitpad/session_spec.h"
 #include "gaitpad/trace.h"
 #include "session/recording.h"

@@ -22,6 +22,7 @@ constexpr double kLeastZoneSpan = 0.05;  // from the inner to the outer zone
 constexpr std::size_t kMaxDevices = 256;
 constexpr std::size_t kMaxFolderFiles = 4096;
 constexpr double kLeastTriggerTravel = 0.1;  // raw
+constexpr double kMostGyroBias_rad_s = 1.0;  // no such chip is off by more
 constexpr double kMaxMeasured = 100.0;       // of any measured number; far beyond what sticks do
 constexpr std::string_view kShapeNames[] = {"radial", "axial", "both"};
 constexpr std::string_view kDirectionNames[] = {"x", "-x", "y", "-y"};  // by RawDirection
@@ -178,6 +179,11 @@ Result<CalibrationFile> calibration_in(TomlFile& toml) {
   if (auto stick = root.table("right")) read_stick(*stick, c.right, file.measured[1]);
   read_trigger(root, "left_trigger", c.left_trigger);
   read_trigger(root, "right_trigger", c.right_trigger);
+  if (auto gyro = root.table("gyro")) {
+    if (const auto bias =
+            gyro->numbers("bias_rad_s", 3, 3, -kMostGyroBias_rad_s, kMostGyroBias_rad_s))
+      file.gyro_bias_rad_s = {(*bias)[0], (*bias)[1], (*bias)[2]};
+  }
   if (auto problem = toml.problem()) return *problem;
   return file;
 }
@@ -224,6 +230,11 @@ std::string stick_text(std::string_view name, const StickCalibration& c) {
       "curve = {}\n{}",
       name, frame, axis(c.x), axis(c.y), kShapeNames[static_cast<int>(c.shape)], c.inner, c.outer,
       c.sideways, c.curve, c.filters_jumps ? "filters_jumps = true\n" : "");
+}
+
+std::string gyro_text(const std::optional<TurnRates>& bias_rad_s) {
+  if (!bias_rad_s) return "";
+  return fmt::format("\n[gyro]\nbias_rad_s = [{}]\n", fmt::join(*bias_rad_s, ", "));
 }
 
 std::string trigger_text(std::string_view name, const TriggerCalibration& c) {
@@ -280,7 +291,7 @@ std::string calibration_text(const CalibrationFile& file) {
     if (file.measured[side]) text += measured_text(kSideNames[side], *file.measured[side]);
   }
   return text + trigger_text("left_trigger", c.left_trigger) +
-         trigger_text("right_trigger", c.right_trigger);
+         trigger_text("right_trigger", c.right_trigger) + gyro_text(file.gyro_bias_rad_s);
 }
 
 int calibration_fit(const CalibrationFile& file, const DeviceIdentity& device) {

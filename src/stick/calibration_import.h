@@ -11,13 +11,12 @@
 
 namespace gaitpad {
 
-// `text` is one of these kinds (recognised by its lines; others are skipped):
-// - jscal's command line, as `jscal -p` prints it (with `jscal -u` before it where the axes were
-//   mapped): centre, ranges, the zone round the centre;
-// - ranges and `flat` of the kernel's axes: evemu's `A:` lines, `EVDEV_ABS_..=` of a hwdb file,
-//   what evtest prints;
-// - lines of SDL's controller data base: the pad's own line becomes `mapping`.
-// Errors begin with `source`: `old.js:3: ...`. Only the calibration and the mapping are filled;
+// `text` is of one of these kinds:
+// - a recording of evemu, libinput or umockdev: the ranges of the kernel's axes and their `flat`;
+//   of several nodes the pad's is read;
+// - lines of SDL's controller data base: the pad's own line becomes `mapping`; other lines are
+//   skipped.
+// Errors begin with `source`: `bug.yml:23: ...`. Only the calibration and the mapping are filled;
 // what the text does not state is as for an unknown stick. A range beyond what the pad can report
 // is cut to that; inner zones are at least 0.05.
 Result<CalibrationFile> calibration_import(std::string_view text, const std::string& source,

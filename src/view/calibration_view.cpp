@@ -137,6 +137,7 @@ void CalibrationView::finish(std::vector<std::string>& messages) {
     problem_ = target.error().message;
   }
   take_advice(*analysis_, file_);
+  take_gyro_bias(pad_, file_);
   file_.measured_on = today();
   upload_picture();
 }

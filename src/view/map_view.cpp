@@ -16,18 +16,18 @@ constexpr double kMapWidth = 760.0, kMapHeight = 320.0;  // at scale 1
 
 class MapView final : public PadDialog {
  public:
-  explicit MapView(std::unique_ptr<PadMapping> mapping) : mapping_(std::move(mapping)) {}
+  explicit MapView(std::unique_ptr<MappingDialog> mapping) : mapping_(std::move(mapping)) {}
   State draw(Ui& ui, const ImVec2& window_px, std::vector<std::string>& messages) override;
 
  private:
   void draw_prompt(Ui& ui);
   State keep(std::vector<std::string>& messages) const;
 
-  std::unique_ptr<PadMapping> mapping_;
+  std::unique_ptr<MappingDialog> mapping_;
 };
 
 void MapView::draw_prompt(Ui& ui) {
-  const std::size_t steps = PadMapping::step_count();
+  const std::size_t steps = MappingDialog::step_count();
   std::string request = "Plug a pad in.";
   if (const char* prompt = mapping_->prompt()) {
     request = std::string(prompt) + ".";
@@ -84,7 +84,7 @@ PadDialog::State MapView::draw(Ui& ui, const ImVec2& window_px,
 Result<std::unique_ptr<PadDialog>> start_mapping(const PadDialogOptions& options) {
   const auto files = load_pad_files(options.config_folders, options.map, "");
   if (!files) return files.error();
-  auto mapping = PadMapping::start(*files, options.wish);
+  auto mapping = MappingDialog::start(*files, options.wish);
   if (!mapping) return mapping.error();
   return std::unique_ptr<PadDialog>(new MapView(std::move(*mapping)));
 }

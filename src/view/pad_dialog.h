@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "gaitpad/pad_setup.h"
+#include "gaitpad/pad_configuration.h"
 #include "gaitpad/result.h"
 #include "selftest/self_test.h"
 #include "view/widgets.h"

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "gaitpad/drivers.h"
+#include "gaitpad/driver_registry.h"
 
 namespace gaitpad {
 namespace {

@@ -1,6 +1,6 @@
 #include <gtest/gtest.h>
 
-#include "gaitpad/drivers.h"
+#include "gaitpad/driver_registry.h"
 
 namespace gaitpad {
 namespace {

@@ -29,7 +29,7 @@
 #include <thread>
 #include <vector>
 
-#include "drivers/driver_entries.h"
+#include "drivers/driver_rows.h"
 #include "tests/comes_true.h"
 #include "tests/folders.h"
 #include "tests/value_of.h"
@@ -207,7 +207,7 @@ class HidrawDriver : public testing::Test {
     timeouts.clear();
     return device;
   }
-  // A model whose motors and firmware are known.
+  // A pad whose motors and firmware are known.
   void use(std::uint16_t vendor, std::uint16_t product) {
     listing_.info.vendor = vendor;
     listing_.info.product = product;

@@ -20,17 +20,17 @@ DeviceInfo switch_pad(std::uint16_t product, BusType bus) {
   device.name = product == 0x2009 ? "Pro Controller" : "A pad";
   return device;
 }
-std::unique_ptr<PadModel> model(BusType bus = BusType::usb) {
-  return make_switch_model(switch_pad(0x2009, bus));
+std::unique_ptr<PadQuirks> quirks(BusType bus = BusType::usb) {
+  return make_switch_quirks(switch_pad(0x2009, bus));
 }
 // A Pro Controller under a kernel driver: only its memory is read.
-std::unique_ptr<PadModel> asked(ScriptedPort& port) {
-  auto pad = model();
+std::unique_ptr<PadQuirks> asked(ScriptedPort& port) {
+  auto pad = quirks();
   pad->start(port, StartedBy::kernel);
   return pad;
 }
-std::unique_ptr<PadModel> started(std::uint16_t product, ScriptedPort& port) {
-  auto pad = make_switch_model(switch_pad(product, BusType::bluetooth));
+std::unique_ptr<PadQuirks> started(std::uint16_t product, ScriptedPort& port) {
+  auto pad = make_switch_quirks(switch_pad(product, BusType::bluetooth));
   pad->start(port, StartedBy::us);
   return pad;
 }
@@ -92,10 +92,10 @@ void expect_axis(const FactoryAxis& axis, int min, int centre, int max) {
 }
 
 TEST(SwitchPro, KnowsThePadsOfTheSwitchAlone) {
-  EXPECT_NE(model(), nullptr);
+  EXPECT_NE(quirks(), nullptr);
   for (const std::uint16_t product : {0x2006, 0x2007, 0x200e, 0x2017, 0x2019, 0x201e})
-    EXPECT_NE(make_switch_model(switch_pad(product, BusType::bluetooth)), nullptr);
-  EXPECT_EQ(make_switch_model(switch_pad(0x0306, BusType::bluetooth)), nullptr) << "Wii";
+    EXPECT_NE(make_switch_quirks(switch_pad(product, BusType::bluetooth)), nullptr);
+  EXPECT_EQ(make_switch_quirks(switch_pad(0x0306, BusType::bluetooth)), nullptr) << "Wii";
 }
 
 // A left stick of 0x200 .. 0x800 .. 0xd00 in x and 0x100 .. 0x7f0 .. 0xe00 in y.
@@ -132,7 +132,7 @@ TEST(SwitchPro, ANesControllerIsToldFromAJoyConByWhatItSays) {
   ScriptedPort port = pad_with({}, 9);
   DeviceInfo device = switch_pad(0x2006, BusType::bluetooth);
   device.descriptor = {0xc0};
-  const auto pad = make_switch_model(device);
+  const auto pad = make_switch_quirks(device);
   pad->start(port, StartedBy::us);
   pad->amend(device);
   EXPECT_EQ(device.name, "NES Controller (L)");
@@ -144,7 +144,7 @@ TEST(SwitchPro, ANesControllerIsToldFromAJoyConByWhatItSays) {
 TEST(SwitchPro, TheChargingGripTellsWhichJoyConIsInIt) {
   ScriptedPort port = pad_with({{0x603d, joined(kLeft, kRight)}}, 2);
   DeviceInfo device = switch_pad(0x200e, BusType::usb);
-  const auto pad = make_switch_model(device);
+  const auto pad = make_switch_quirks(device);
   pad->start(port, StartedBy::us);
   pad->amend(device);
   EXPECT_EQ(device.product, 0x2007);
@@ -163,33 +163,69 @@ TEST(SwitchPro, OnlyTheSticksOfAModelAreRead) {
 
 TEST(SwitchPro, StartsOverUsbAsTheConsoleDoes) {
   ScriptedPort port = pad_with({{0x603d, joined(kLeft, kRight)}});
-  const auto pad = model();
+  const auto pad = quirks();
   pad->start(port, StartedBy::us);
-  ASSERT_EQ(port.written.size(), 8u);
+  ASSERT_EQ(port.written.size(), 11u);
   EXPECT_EQ(port.written[0], (Packet{0x80, 0x02}));
   EXPECT_EQ(port.written[1], (Packet{0x80, 0x03}));
   EXPECT_EQ(port.written[2], (Packet{0x80, 0x02}));
   EXPECT_EQ(port.written[3], (Packet{0x80, 0x04}));
   const Packet still = {0x00, 0x01, 0x40, 0x40, 0x00, 0x01, 0x40, 0x40};
   EXPECT_EQ(port.written[4], joined(joined({0x01, 0x00}, still), {0x03, 0x30}));
-  EXPECT_EQ(port.written[5], joined(joined({0x01, 0x01}, still), {0x48, 0x01}));
-  EXPECT_EQ(port.written[6],
-            joined(joined({0x01, 0x02}, still), {0x10, 0x3d, 0x60, 0x00, 0x00, 18}));
+  EXPECT_EQ(port.written[5], joined(joined({0x01, 0x01}, still), {0x40, 0x01}));
+  EXPECT_EQ(port.written[6], joined(joined({0x01, 0x02}, still), {0x48, 0x01}));
   EXPECT_EQ(port.written[7],
-            joined(joined({0x01, 0x03}, still), {0x10, 0x10, 0x80, 0x00, 0x00, 22}));
+            joined(joined({0x01, 0x03}, still), {0x10, 0x3d, 0x60, 0x00, 0x00, 18}));
+  EXPECT_EQ(port.written[8],
+            joined(joined({0x01, 0x04}, still), {0x10, 0x10, 0x80, 0x00, 0x00, 22}));
+  EXPECT_EQ(port.written[9],
+            joined(joined({0x01, 0x05}, still), {0x10, 0x26, 0x80, 0x00, 0x00, 26}));
+  EXPECT_EQ(port.written[10],
+            joined(joined({0x01, 0x06}, still), {0x10, 0x20, 0x60, 0x00, 0x00, 24}));
   EXPECT_TRUE(pad->take_remarks().empty());
 }
 
 TEST(SwitchPro, OnBluetoothThereIsNoUsbHandshakeAndTheKernelsPadIsOnlyAskedForItsMemory) {
   ScriptedPort port = pad_with({{0x603d, joined(kLeft, kRight)}});
   started(0x2009, port);
-  ASSERT_EQ(port.written.size(), 4u);
+  ASSERT_EQ(port.written.size(), 7u);
   EXPECT_EQ(port.written[0][10], 0x03);
   port = pad_with({{0x603d, joined(kLeft, kRight)}});
   EXPECT_TRUE(asked(port)->factory_sticks());
-  ASSERT_EQ(port.written.size(), 2u);
-  EXPECT_EQ(port.written[0][10], 0x10);
-  EXPECT_EQ(port.written[1][10], 0x10);
+  ASSERT_EQ(port.written.size(), 4u);
+  for (const Packet& packet : port.written) EXPECT_EQ(packet[10], 0x10);
+}
+
+// Twelve numbers of 16 bits as the flash holds them: accelerometer, then the gyroscope's zeros and
+// its counts at 936 degrees a second.
+Packet motion(const std::array<int, 6>& gyro) {
+  Packet bytes(12, 0x11);
+  for (const int n : gyro) {
+    bytes.push_back(static_cast<std::uint8_t>(n & 0xff));
+    bytes.push_back(static_cast<std::uint8_t>((n >> 8) & 0xff));
+  }
+  return bytes;
+}
+
+TEST(SwitchPro, TheUsersCalibrationOfTheGyroscopeComesBeforeTheFactorys) {
+  const Packet factory = motion({10, -20, 30, 13381, 13351, 13401}),
+               own = joined({0xb2, 0xa1}, motion({0, 0, -7, 13371, 14000, 13364}));
+  std::map<std::uint32_t, Packet> flash = {{0x603d, joined(kLeft, kRight)}, {0x6020, factory}};
+  ScriptedPort port = pad_with(flash);
+  const auto from_factory = asked(port)->factory_gyro();
+  ASSERT_TRUE(from_factory);
+  EXPECT_EQ(from_factory->zero, (std::array<double, 3>{10.0, -20.0, 30.0}));
+  for (const double scale : from_factory->rad_s_per_count)
+    EXPECT_NEAR(scale, 936.0 / 13371.0 * 3.14159265358979 / 180.0, 1e-12);
+  flash[0x8026] = own;
+  port = pad_with(flash);
+  const auto from_user = asked(port)->factory_gyro();
+  ASSERT_TRUE(from_user);
+  EXPECT_EQ(from_user->zero, (std::array<double, 3>{0.0, 0.0, -7.0}));
+  EXPECT_NEAR(from_user->rad_s_per_count[1], 936.0 / 14000.0 * 3.14159265358979 / 180.0, 1e-12);
+  flash = {{0x603d, joined(kLeft, kRight)}};
+  port = pad_with(flash);
+  EXPECT_FALSE(asked(port)->factory_gyro()) << "blank";
 }
 
 TEST(SwitchPro, TheTwoSticksKeepTheirNumbersInDifferentOrder) {
@@ -309,12 +345,12 @@ TEST(SwitchPro, ALostAnswerIsAskedForAgain) {
   };
   const auto pad = asked(port);
   EXPECT_TRUE(pad->factory_sticks());
-  EXPECT_EQ(port.written.size(), 6u);
+  EXPECT_EQ(port.written.size(), 12u) << "four parts of the memory, the third time each";
 }
 
 TEST(SwitchPro, ASilentPadEndsTheStartAndIsNamed) {
   ScriptedPort port;
-  const auto pad = model();
+  const auto pad = quirks();
   pad->start(port, StartedBy::us);
   EXPECT_FALSE(pad->factory_sticks());
   EXPECT_LE(port.written.size(), 16u);
@@ -328,18 +364,18 @@ TEST(SwitchPro, APadThatTalksWithoutEverAnsweringEndsTheStart) {
   ScriptedPort port;
   port.is_endless = true;
   port.waiting.push_back(Packet(64, 0x30));
-  const auto pad = model();
+  const auto pad = quirks();
   pad->start(port, StartedBy::us);
   EXPECT_LT(port.reads, 16 * 512 + 1);
   EXPECT_FALSE(pad->factory_sticks());
   ScriptedPort gone;
   gone.is_gone = true;
-  model()->start(gone, StartedBy::us);
+  quirks()->start(gone, StartedBy::us);
   EXPECT_EQ(gone.reads, 0) << "a pad that has gone is left alone";
 }
 
 TEST(SwitchPro, OnlyInputReportsAreHandedOn) {
-  const auto pad = model();
+  const auto pad = quirks();
   OutPacket reply;
   EXPECT_TRUE(pad->accept(Packet(64, 0x30), reply));
   EXPECT_TRUE(pad->accept(Packet(12, 0x3f), reply));
@@ -350,7 +386,7 @@ TEST(SwitchPro, OnlyInputReportsAreHandedOn) {
 }
 
 TEST(SwitchPro, RestingMotorsAreTheDocumentedPacketAndTheCounterRunsTo15) {
-  const auto pad = model();
+  const auto pad = quirks();
   for (int i = 0; i < 18; ++i) {
     const auto count = static_cast<std::uint8_t>(i % 16);
     EXPECT_EQ(rumble_of(*pad, {}),
@@ -369,7 +405,7 @@ TEST(SwitchPro, AmplitudesFollowThePublishedTable) {
         Row{0.230, 0x40, 0x0050}, Row{1.003, 0xc8, 0x0072}}) {
     const auto strength =
         static_cast<std::uint16_t>(std::min(65535.0, row.amplitude / 1.003 * 65535 + 0.5));
-    const auto pad = model();
+    const auto pad = quirks();
     const Packet packet = rumble_of(*pad, {.strong = strength, .weak = strength});
     for (const std::size_t at : {2u, 6u}) {
       EXPECT_EQ(packet[at], 0x00);
@@ -381,7 +417,7 @@ TEST(SwitchPro, AmplitudesFollowThePublishedTable) {
 }
 
 TEST(SwitchPro, StrongerIsNeverWeakerInThePacket) {
-  const auto pad = model();
+  const auto pad = quirks();
   int before = -1;
   for (int strength = 0; strength <= 65535; strength += 13) {
     const Packet packet =
@@ -396,7 +432,7 @@ TEST(SwitchPro, StrongerIsNeverWeakerInThePacket) {
 }
 
 TEST(SwitchPro, RunningMotorsAreToBeToldAgain) {
-  const auto pad = model();
+  const auto pad = quirks();
   OutPacket packet;
   pad->rumble({.strong = 1, .weak = 0}, packet);
   EXPECT_EQ(packet.repeat, std::chrono::milliseconds(50));
@@ -425,7 +461,7 @@ TEST(Switch2Pro, IsStartedByCommandsAndTellsItsSticks) {
   const Packet factory = joined(Packet(0x28, 0), range);
   const Packet user = joined({0xb2, 0xa1}, packed({0x810, 0x800, 0x600, 0x600, 0x600, 0x600}));
   ScriptedPort port = switch_2_with({{0x013080, factory}, {0x0130c0, factory}, {0x1fc080, user}});
-  const auto pad = make_switch_model(switch_pad(0x2069, BusType::usb));
+  const auto pad = make_switch_quirks(switch_pad(0x2069, BusType::usb));
   pad->start(port, StartedBy::us);
   const auto sticks = pad->factory_sticks().value();
   EXPECT_DOUBLE_EQ(sticks.left_x.min, fraction(0x800 - 0x400));
@@ -442,7 +478,7 @@ TEST(Switch2Pro, IsStartedByCommandsAndTellsItsSticks) {
 
 TEST(Switch2Pro, SaysThatItWasNotStartedWhereTheDriverCannot) {
   ScriptedPort port;
-  const auto pad = make_switch_model(switch_pad(0x2069, BusType::usb));
+  const auto pad = make_switch_quirks(switch_pad(0x2069, BusType::usb));
   pad->start(port, StartedBy::us);
   EXPECT_FALSE(pad->factory_sticks());
   EXPECT_EQ(pad->take_remarks(),

@@ -49,17 +49,17 @@ TEST(SeveralPads, TwoPadCollectionsWithReportsOfTheirOwnAreTwoPads) {
     EXPECT_TRUE(is_one_of_several(pads[i].info.descriptor));
     const auto layout = value_of(pad_layout(pads[i].info, shipped_pads()));
     EXPECT_TRUE(layout.is_pad);
-    const auto model = make_pad_model(pads[i].info);
+    const auto quirks = make_pad_quirks(pads[i].info);
     OutPacket reply;
     for (const std::uint8_t id : {7, 8}) {
       const Packet report = {id, 0xff, 0x80, 0x01};
       const bool is_own = id == (i == 0 ? 7 : 8);
-      EXPECT_EQ(model->accept(report, reply), is_own);
+      EXPECT_EQ(quirks->accept(report, reply), is_own);
       PadState state;
       decode(layout, report_of(report), state);
       EXPECT_EQ(state.axis[kLeftX], is_own ? 1.0f : 0.0f);
     }
-    EXPECT_TRUE(model->accept(Packet{9, 1}, reply)) << "keys belong to both";
+    EXPECT_TRUE(quirks->accept(Packet{9, 1}, reply)) << "keys belong to both";
   }
 }
 
@@ -107,26 +107,26 @@ TEST(SeveralPads, TheGameCubeAdapterIsAPadForEachPlug) {
 TEST(SeveralPads, AnEmptyPlugIsAPadThatIsUnplugged) {
   const auto pads = adapter();
   ASSERT_EQ(pads.size(), 4u);
-  const auto model = make_pad_model(pads[1].info);
+  const auto quirks = make_pad_quirks(pads[1].info);
   ScriptedPort port;
-  model->start(port, StartedBy::us);
+  quirks->start(port, StartedBy::us);
   ASSERT_EQ(port.written.size(), 1u);
   EXPECT_EQ(port.written[0], (Packet{0x13, 0x00}));
   OutPacket reply;
-  EXPECT_TRUE(model->is_plugged());
-  EXPECT_FALSE(model->accept(adapter_report(1, 0x10, {}), reply)) << "another plug";
-  EXPECT_FALSE(model->is_plugged());
-  EXPECT_TRUE(model->accept(adapter_report(2, 0x22, {}), reply)) << "wireless";
-  EXPECT_TRUE(model->is_plugged());
-  EXPECT_FALSE(model->accept(Packet{0x21, 0x10}, reply)) << "too short";
-  EXPECT_TRUE(model->is_plugged());
-  ASSERT_TRUE(model->factory_sticks());
-  EXPECT_NEAR(model->factory_sticks()->left_x.max, 0.694, 0.001);
+  EXPECT_TRUE(quirks->is_plugged());
+  EXPECT_FALSE(quirks->accept(adapter_report(1, 0x10, {}), reply)) << "another plug";
+  EXPECT_FALSE(quirks->is_plugged());
+  EXPECT_TRUE(quirks->accept(adapter_report(2, 0x22, {}), reply)) << "wireless";
+  EXPECT_TRUE(quirks->is_plugged());
+  EXPECT_FALSE(quirks->accept(Packet{0x21, 0x10}, reply)) << "too short";
+  EXPECT_TRUE(quirks->is_plugged());
+  ASSERT_TRUE(quirks->factory_sticks());
+  EXPECT_NEAR(quirks->factory_sticks()->left_x.max, 0.694, 0.001);
 }
 
 TEST(SeveralPads, OnePacketSetsTheMotorsOfAllPlugs) {
   const auto pads = adapter();
-  const auto first = make_pad_model(pads[0].info), third = make_pad_model(pads[2].info);
+  const auto first = make_pad_quirks(pads[0].info), third = make_pad_quirks(pads[2].info);
   OutPacket reply;
   EXPECT_EQ(rumble_of(*first, {0xffff, 0}), (Packet{0x11, 0, 0, 0, 0})) << "power is not known";
   for (const std::uint8_t type : {0x10, 0x26}) {  // no second cable, wireless
@@ -140,7 +140,7 @@ TEST(SeveralPads, OnePacketSetsTheMotorsOfAllPlugs) {
   EXPECT_EQ(rumble_of(*first, {}), (Packet{0x11, 0, 0, 1, 0}));
   DeviceListing other = listed(0x057e, 0x0337, {});
   other.info.physical_path = "usb-2/input0";
-  const auto another = make_pad_model(split_pads(other)[1].info);
+  const auto another = make_pad_quirks(split_pads(other)[1].info);
   another->accept(adapter_report(2, 0x14, {}), reply);
   EXPECT_EQ(rumble_of(*another, {1, 1}), (Packet{0x11, 0, 1, 0, 0})) << "another adapter";
 }

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "drivers/driver_entries.h"
+#include "drivers/driver_rows.h"
 #include "tests/own_folder.h"
 #include "tests/value_of.h"
 

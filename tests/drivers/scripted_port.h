@@ -6,7 +6,7 @@
 #include <map>
 #include <vector>
 
-#include "drivers/pads/pad_model.h"
+#include "drivers/pads/pad_quirks.h"
 
 namespace gaitpad {
 
@@ -60,7 +60,7 @@ class ScriptedPort final : public PadPort {
 inline Packet bytes_of(const OutPacket& packet) {
   return Packet(packet.bytes.begin(), packet.bytes.begin() + static_cast<long>(packet.size));
 }
-inline Packet rumble_of(PadModel& pad, const Rumble& rumble) {
+inline Packet rumble_of(PadQuirks& pad, const Rumble& rumble) {
   OutPacket packet;
   pad.rumble(rumble, packet);
   return bytes_of(packet);

@@ -9,9 +9,9 @@
 #include <string>
 #include <thread>
 
-#include "drivers/driver_entries.h"
+#include "drivers/driver_rows.h"
 #include "gaitpad/decode.h"
-#include "gaitpad/drivers.h"
+#include "gaitpad/driver_registry.h"
 #include "hid/sdl_lines.h"
 #include "tests/value_of.h"
 

@@ -12,13 +12,13 @@ namespace {
 constexpr std::uint16_t kDualShock4 = 0x09cc, kDualSense = 0x0ce6, kEdge = 0x0df2;
 constexpr Rumble kRumble = {.strong = 0xc000, .weak = 0x4000};
 
-std::unique_ptr<PadModel> model(std::uint16_t product, BusType bus) {
+std::unique_ptr<PadQuirks> quirks(std::uint16_t product, BusType bus) {
   DeviceInfo device;
   device.bus = bus;
   device.vendor = 0x054c;
   device.product = product;
   device.name = "Pad";
-  return make_sony_model(device);
+  return make_sony_quirks(device);
 }
 
 // The definition, bit by bit: the reflected polynomial, start and end inverted.
@@ -43,7 +43,7 @@ Packet sealed(std::uint8_t seed, Packet report) {
   return report;
 }
 
-bool accepts(PadModel& pad, const Packet& packet) {
+bool accepts(PadQuirks& pad, const Packet& packet) {
   OutPacket reply;
   const bool is_input = pad.accept(packet, reply);
   EXPECT_EQ(reply.size, 0u);
@@ -58,13 +58,13 @@ TEST(DualShock3, IsStartedByReadingTwoFeaturesOnUsbWithoutTheKernel) {
         std::tuple(BusType::bluetooth, StartedBy::us, std::vector<std::uint8_t>{})}) {
     ScriptedPort port;
     port.features = {{0xf2, Packet(17, 1)}, {0xf5, Packet(8, 1)}};
-    const auto pad = model(0x0268, bus);
+    const auto pad = quirks(0x0268, bus);
     pad->start(port, started);
     EXPECT_EQ(port.features_asked, asked);
     EXPECT_TRUE(pad->take_remarks().empty());
   }
   ScriptedPort deaf;
-  const auto pad = model(0x0268, BusType::usb);
+  const auto pad = quirks(0x0268, BusType::usb);
   pad->start(deaf, StartedBy::us);
   EXPECT_EQ(pad->take_remarks(),
             std::vector<std::string>{"Pad: does not answer the start over USB"});
@@ -85,7 +85,7 @@ TEST(DualShock4OfOthers, RunsItsMotorsIfItTellsThatItHasAny) {
     port.features = {{0x03, Packet(48, 0)}};
     port.features[0x03][2] = 0x27;
     port.features[0x03][4] = static_cast<std::uint8_t>(abilities);
-    const auto pad = make_sony_model(device);
+    const auto pad = make_sony_quirks(device);
     ASSERT_NE(pad, nullptr);
     pad->start(port, StartedBy::kernel);
     OutPacket packet;
@@ -97,13 +97,13 @@ TEST(DualShock4OfOthers, RunsItsMotorsIfItTellsThatItHasAny) {
     EXPECT_EQ(packet.bytes[5], 0xc0) << "strong";
   }
   ScriptedPort silent;
-  const auto pad = make_sony_model(device);
+  const auto pad = make_sony_quirks(device);
   pad->start(silent, StartedBy::us);
   OutPacket packet;
   pad->rumble(kRumble, packet);
   EXPECT_EQ(packet.size, 0u);
   device.descriptor[39] = 0x2e;  // the feature is a byte shorter: an unknown pad
-  EXPECT_EQ(make_sony_model(device), nullptr);
+  EXPECT_EQ(make_sony_quirks(device), nullptr);
 }
 
 TEST(Crc32, IsTheBitwiseOneWithThePublishedCheckValueAndGoesOnInParts) {
@@ -121,16 +121,16 @@ TEST(Crc32, IsTheBitwiseOneWithThePublishedCheckValueAndGoesOnInParts) {
 
 TEST(Sony, KnowsItsPadsAndNoOthers) {
   for (const std::uint16_t product : {0x0268, 0x05c4, 0x09cc, 0x0ba0, 0x0ce6, 0x0df2})
-    EXPECT_NE(model(product, BusType::usb), nullptr);
-  EXPECT_EQ(model(0x0cda, BusType::usb), nullptr);  // PlayStation Classic: plain HID
+    EXPECT_NE(quirks(product, BusType::usb), nullptr);
+  EXPECT_EQ(quirks(0x0cda, BusType::usb), nullptr);  // PlayStation Classic: plain HID
   DeviceInfo other;
   other.vendor = 0x0f0d;
   other.product = kDualShock4;
-  EXPECT_EQ(make_sony_model(other), nullptr);
+  EXPECT_EQ(make_sony_quirks(other), nullptr);
 }
 
 TEST(DualShock4, RumblesOverUsbIn32BytesWithoutTouchingTheLight) {
-  const auto pad = model(kDualShock4, BusType::usb);
+  const auto pad = quirks(kDualShock4, BusType::usb);
   Packet expected(32, 0);
   expected[0] = 0x05;
   expected[1] = 0x01;
@@ -143,7 +143,7 @@ TEST(DualShock4, RumblesOverUsbIn32BytesWithoutTouchingTheLight) {
 
 // Bit 2 of the second status byte (hid-playstation.c, DS4_STATUS1_DONGLE_STATE).
 TEST(DualShock4, ItsAdapterTellsWhetherAPadIsConnected) {
-  const auto adapter = model(0x0ba0, BusType::usb);
+  const auto adapter = quirks(0x0ba0, BusType::usb);
   Packet report(64, 0x80);
   report[0] = 0x01;
   OutPacket reply;
@@ -154,13 +154,13 @@ TEST(DualShock4, ItsAdapterTellsWhetherAPadIsConnected) {
   EXPECT_TRUE(adapter->accept(report, reply));
   EXPECT_TRUE(adapter->is_plugged());
   report[31] = 0x04;
-  const auto cable = model(kDualShock4, BusType::usb);
+  const auto cable = quirks(kDualShock4, BusType::usb);
   EXPECT_TRUE(cable->accept(report, reply)) << "no adapter";
   EXPECT_TRUE(cable->is_plugged());
 }
 
 TEST(DualShock4, RumblesOverBluetoothIn78BytesWithChecksum) {
-  const auto pad = model(kDualShock4, BusType::bluetooth);
+  const auto pad = quirks(kDualShock4, BusType::bluetooth);
   Packet expected(78, 0);
   expected[0] = 0x11;
   expected[1] = 0xc4;  // checksum, HID, reports every 4 ms (hid-playstation.c, SDL_hidapi_ps4.c)
@@ -179,7 +179,7 @@ Packet firmware_of(int version) {
 }
 
 TEST(DualSense, RumblesOverUsbByItsFirmware) {
-  const auto pad = model(kDualSense, BusType::usb);
+  const auto pad = quirks(kDualSense, BusType::usb);
   Packet expected(48, 0);
   expected[0] = 0x02;
   expected[1] = 0x03;  // compatible vibration and haptics
@@ -200,7 +200,7 @@ TEST(DualSense, RumblesOverUsbByItsFirmware) {
 TEST(DualSense, TakesTheOldWayUntilFirmware2_20) {
   for (const auto& [product, version, flags] :
        {std::tuple(kDualSense, 0x0214, 0x03), {kDualSense, 0x0215, 0x02}, {kEdge, 0, 0x02}}) {
-    const auto pad = model(product, BusType::usb);
+    const auto pad = quirks(product, BusType::usb);
     ScriptedPort port;
     if (version != 0) port.features[0x20] = firmware_of(version);
     pad->start(port, StartedBy::us);
@@ -210,7 +210,7 @@ TEST(DualSense, TakesTheOldWayUntilFirmware2_20) {
 }
 
 TEST(DualSense, RumblesOverBluetoothWithSequenceTagAndChecksum) {
-  const auto pad = model(kDualSense, BusType::bluetooth);
+  const auto pad = quirks(kDualSense, BusType::bluetooth);
   for (int i = 0; i < 18; ++i) {
     Packet expected(78, 0);
     expected[0] = 0x31;
@@ -224,14 +224,14 @@ TEST(DualSense, RumblesOverBluetoothWithSequenceTagAndChecksum) {
 }
 
 TEST(Sony, AWeakBeatIsNotRoundedAway) {
-  const auto pad = model(kDualShock4, BusType::usb);
+  const auto pad = quirks(kDualShock4, BusType::usb);
   EXPECT_EQ(rumble_of(*pad, {.strong = 200, .weak = 0})[5], 1);
   EXPECT_EQ(rumble_of(*pad, {.strong = 0xffff, .weak = 0})[5], 0xff);
 }
 
 TEST(Sony, BluetoothFullReportsCountOnlyWithTheirChecksum) {
   for (const auto& [product, id] : {std::pair(kDualShock4, 0x11), std::pair(kDualSense, 0x31)}) {
-    const auto pad = model(product, BusType::bluetooth);
+    const auto pad = quirks(product, BusType::bluetooth);
     Packet report(78, 0x5a);
     report[0] = static_cast<std::uint8_t>(id);
     const Packet good = sealed(0xa1, report);
@@ -249,7 +249,7 @@ TEST(Sony, BluetoothFullReportsCountOnlyWithTheirChecksum) {
 }
 
 TEST(Sony, ShortLongAndEmptyBluetoothPacketsAreRefused) {
-  const auto pad = model(kDualSense, BusType::bluetooth);
+  const auto pad = quirks(kDualSense, BusType::bluetooth);
   for (std::size_t size = 1; size < 200; ++size) {
     Packet report(size, 0);
     report[0] = 0x31;
@@ -261,10 +261,10 @@ TEST(Sony, ShortLongAndEmptyBluetoothPacketsAreRefused) {
 }
 
 TEST(Sony, OtherReportsGoOnAsTheyAre) {
-  const auto usb = model(kDualSense, BusType::usb);
+  const auto usb = quirks(kDualSense, BusType::usb);
   EXPECT_TRUE(accepts(*usb, Packet(64, 0x01)));
   EXPECT_TRUE(accepts(*usb, {0x31})) << "has no checksum on USB";
-  const auto bluetooth = model(kDualSense, BusType::bluetooth);
+  const auto bluetooth = quirks(kDualSense, BusType::bluetooth);
   EXPECT_TRUE(accepts(*bluetooth, Packet(10, 0x01))) << "the short report before the change";
   EXPECT_EQ(usb->lost() + bluetooth->lost(), 0);
 }
@@ -272,23 +272,67 @@ TEST(Sony, OtherReportsGoOnAsTheyAre) {
 TEST(Sony, BluetoothPadsAreAskedForFullReportsOnlyIfTheKernelHasNot) {
   ScriptedPort port;
   port.features[0x05] = Packet(41, 0x05);
-  auto pad = model(kDualShock4, BusType::bluetooth);
+  auto pad = quirks(kDualShock4, BusType::bluetooth);
   pad->start(port, StartedBy::us);
   EXPECT_EQ(port.features_asked, (std::vector<std::uint8_t>{0x05}));
   EXPECT_TRUE(pad->take_remarks().empty());
 
   port.features_asked.clear();
-  pad = model(kDualShock4, BusType::bluetooth);
+  port.features.clear();
+  pad = quirks(kDualShock4, BusType::bluetooth);
   pad->start(port, StartedBy::kernel);
-  pad = model(kDualShock4, BusType::usb);
+  EXPECT_EQ(port.features_asked, (std::vector<std::uint8_t>{0x05})) << "for its gyroscope alone";
+  EXPECT_TRUE(pad->take_remarks().empty());
+}
+
+// A feature of these numbers of 16 bits.
+Packet gyro_feature(std::uint8_t id, std::size_t size, const std::array<int, 11>& numbers) {
+  Packet feature(size, 0);
+  feature[0] = id;
+  for (std::size_t i = 0; i < numbers.size(); ++i) {
+    feature[1 + 2 * i] = static_cast<std::uint8_t>(numbers[i] & 0xff);
+    feature[2 + 2 * i] = static_cast<std::uint8_t>((numbers[i] >> 8) & 0xff);
+  }
+  return feature;
+}
+// At 540 degrees a second each way: pitch counts 8640, yaw 8650 and 8630, roll 9000.
+void expect_scales(const std::optional<FactoryGyro>& gyro) {
+  ASSERT_TRUE(gyro);
+  EXPECT_EQ(gyro->zero, (std::array<double, 3>{})) << "the reports are without bias";
+  EXPECT_NEAR(gyro->rad_s_per_count[0], 540.0 / 8640.0 * 3.14159265358979 / 180.0, 1e-12);
+  EXPECT_NEAR(gyro->rad_s_per_count[1], 540.0 / 8640.0 * 3.14159265358979 / 180.0, 1e-12);
+  EXPECT_NEAR(gyro->rad_s_per_count[2], 540.0 / 9000.0 * 3.14159265358979 / 180.0, 1e-12);
+}
+
+TEST(Sony, TheGyroscopesCalibrationIsReadInItsOrder) {
+  const std::array<int, 11> by_axis = {5, -5, 0, 8645, -8635, 8645, -8635, 9000, -9000, 540, 540};
+  const std::array<int, 11> by_way = {5, -5, 0, 8645, 8645, 9000, -8635, -8635, -9000, 540, 540};
+  ScriptedPort port;
+  port.features[0x02] = gyro_feature(0x02, 37, by_axis);
+  auto pad = quirks(kDualShock4, BusType::usb);
+  pad->start(port, StartedBy::kernel);
+  expect_scales(pad->factory_gyro());
+  port.features[0x05] = sealed(0xa3, gyro_feature(0x05, 41, by_way));
+  pad = quirks(kDualShock4, BusType::bluetooth);
+  pad->start(port, StartedBy::kernel);
+  expect_scales(pad->factory_gyro());
+  port.features[0x05] = gyro_feature(0x05, 41, by_axis);
+  pad = quirks(kDualSense, BusType::usb);
+  pad->start(port, StartedBy::kernel);
+  expect_scales(pad->factory_gyro());
+  pad = quirks(kDualSense, BusType::bluetooth);
   pad->start(port, StartedBy::us);
-  EXPECT_TRUE(port.features_asked.empty());
+  EXPECT_FALSE(pad->factory_gyro()) << "no checksum";
+  port.features[0x05] = Packet(41, 0);
+  pad = quirks(kDualSense, BusType::usb);
+  pad->start(port, StartedBy::us);
+  EXPECT_FALSE(pad->factory_gyro()) << "empty";
 }
 
 TEST(Sony, APadThatRefusesFullReportsIsNamedOnce) {
   for (const std::uint16_t product : {kDualShock4, kDualSense}) {
     ScriptedPort port;
-    const auto pad = model(product, BusType::bluetooth);
+    const auto pad = quirks(product, BusType::bluetooth);
     pad->start(port, StartedBy::us);
     EXPECT_EQ(pad->take_remarks().size(), 1u);
     EXPECT_TRUE(pad->take_remarks().empty());
@@ -299,16 +343,16 @@ TEST(DualSense, AShortOrDamagedAnswerAboutTheFirmwareIsNone) {
   const Packet firmware = firmware_of(0x0300);
   ScriptedPort port;
   for (std::size_t size = 0; size < 64; ++size) {
-    const auto pad = model(kDualSense, BusType::usb);
+    const auto pad = quirks(kDualSense, BusType::usb);
     port.features[0x20] = Packet(firmware.begin(), firmware.begin() + static_cast<long>(size));
     pad->start(port, StartedBy::us);
     EXPECT_EQ(rumble_of(*pad, kRumble)[1], 0x03) << size;
   }
-  auto pad = model(kDualSense, BusType::bluetooth);
+  auto pad = quirks(kDualSense, BusType::bluetooth);
   port.features[0x20] = firmware;
   pad->start(port, StartedBy::kernel);
   EXPECT_EQ(rumble_of(*pad, kRumble)[3], 0x03) << "no checksum";
-  pad = model(kDualSense, BusType::bluetooth);
+  pad = quirks(kDualSense, BusType::bluetooth);
   port.features[0x20] = sealed(0xa3, firmware);
   pad->start(port, StartedBy::kernel);
   EXPECT_EQ(rumble_of(*pad, kRumble)[3], 0x02);

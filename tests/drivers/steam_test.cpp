@@ -39,7 +39,7 @@ Packet begin_of(const Packet& packet, std::size_t size) {
 
 TEST(Steam, LeavesLizardModeAndRestoresIt) {
   FeaturePort port;
-  const auto deck = make_steam_model(steam(0x1205, 0xff));
+  const auto deck = make_steam_quirks(steam(0x1205, 0xff));
   ASSERT_NE(deck, nullptr);
   deck->start(port, StartedBy::kernel);
   ASSERT_EQ(port.sent.size(), 2u);
@@ -54,7 +54,7 @@ TEST(Steam, LeavesLizardModeAndRestoresIt) {
   EXPECT_TRUE(deck->take_remarks().empty());
 
   FeaturePort other;
-  const auto controller = make_steam_model(steam(0x1102, 0x00));
+  const auto controller = make_steam_quirks(steam(0x1102, 0x00));
   ASSERT_NE(controller, nullptr);
   controller->start(other, StartedBy::us);
   controller->stop(other);
@@ -66,18 +66,18 @@ TEST(Steam, LeavesLizardModeAndRestoresIt) {
 TEST(Steam, APadThatRefusesIsToldOf) {
   FeaturePort port;
   port.is_there = false;
-  const auto deck = make_steam_model(steam(0x1205, 0xff));
+  const auto deck = make_steam_quirks(steam(0x1205, 0xff));
   deck->start(port, StartedBy::us);
   EXPECT_EQ(deck->take_remarks().size(), 1u);
 }
 
 TEST(Steam, OnlyStatesAreInput) {
   OutPacket reply;
-  const auto deck = make_steam_model(steam(0x1205, 0xff));
+  const auto deck = make_steam_quirks(steam(0x1205, 0xff));
   EXPECT_TRUE(deck->accept(Packet{1, 0, 9, 64}, reply));
   EXPECT_FALSE(deck->accept(Packet{1, 0, 1, 60}, reply));
   EXPECT_FALSE(deck->accept(Packet{1, 0}, reply));
-  const auto controller = make_steam_model(steam(0x1142, 0x00));
+  const auto controller = make_steam_quirks(steam(0x1142, 0x00));
   EXPECT_TRUE(controller->accept(Packet{1, 0, 1, 60}, reply));
   EXPECT_FALSE(controller->accept(Packet{1, 0, 4, 11}, reply)) << "battery";
 }
@@ -85,7 +85,7 @@ TEST(Steam, OnlyStatesAreInput) {
 TEST(Steam, ItsMouseAndKeyboardAreLeftAlone) {
   DeviceInfo mouse = steam(0x1205, 0xff);
   mouse.descriptor = {0x05, 0x01, 0x09, 0x02, 0xa1, 0x01, 0xc0};
-  EXPECT_EQ(make_steam_model(mouse), nullptr);
+  EXPECT_EQ(make_steam_quirks(mouse), nullptr);
 }
 
 // hid-steam.c: a message of 64 bytes is 1, 0, its type, its length; type 3: the pad behind the
@@ -100,7 +100,7 @@ Packet steam_message(std::uint8_t type, std::uint8_t first) {
 
 TEST(SteamReceiver, IsAskedWhetherAPadIsOnAndTellsWhenThatChanges) {
   FeaturePort port;
-  const auto receiver = make_steam_model(steam(0x1142, 0x00));
+  const auto receiver = make_steam_quirks(steam(0x1142, 0x00));
   ASSERT_NE(receiver, nullptr);
   receiver->start(port, StartedBy::us);
   EXPECT_EQ(begin_of(port.sent.back(), 3), (Packet{0, 0xb4, 0}));
@@ -118,7 +118,7 @@ TEST(SteamReceiver, IsAskedWhetherAPadIsOnAndTellsWhenThatChanges) {
 }
 
 TEST(SteamReceiver, APadThatIsSwitchedOnLeavesLizardModeAgain) {
-  const auto receiver = make_steam_model(steam(0x1142, 0x00));
+  const auto receiver = make_steam_quirks(steam(0x1142, 0x00));
   EXPECT_TRUE(receiver->replies());
   std::vector<Packet> sent;
   const auto take = [&](const Packet& packet) {
@@ -135,7 +135,7 @@ TEST(SteamReceiver, APadThatIsSwitchedOnLeavesLizardModeAgain) {
   for (int i = 0; i < 100; ++i) take(steam_message(1, 0));
   EXPECT_EQ(sent,
             (std::vector<Packet>{{0, 0x81, 0, 0, 0, 0, 0, 0, 0}, {0, 0x87, 6, 8, 7, 0, 24, 0, 0}}));
-  EXPECT_FALSE(make_steam_model(steam(0x1102, 0x00))->replies());
+  EXPECT_FALSE(make_steam_quirks(steam(0x1102, 0x00))->replies());
 }
 
 // A report of 20 bytes over Bluetooth: the id, this header, these bytes of a message.
@@ -144,7 +144,7 @@ Packet segment(std::uint8_t header, Packet message) {
   message.resize(20);
   return message;
 }
-Packet handed_on(PadModel& pad, const Packet& packet) {
+Packet handed_on(PadQuirks& pad, const Packet& packet) {
   OutPacket reply;
   if (!pad.accept(packet, reply)) return {};
   const auto report = pad.report_of(packet);
@@ -153,7 +153,7 @@ Packet handed_on(PadModel& pad, const Packet& packet) {
 
 TEST(SteamBluetooth, AStateIsPutTogetherFromWhatChanged) {
   for (const std::uint16_t product : {0x1105, 0x1106}) {
-    const auto pad = make_steam_model(steam(product, 0x00));
+    const auto pad = make_steam_quirks(steam(product, 0x00));
     ASSERT_NE(pad, nullptr);
     // Buttons, triggers and stick: bits 10, 20 and 80 of the first byte, whose lower half is 4.
     EXPECT_EQ(handed_on(*pad, segment(0xc0, {0xb4, 0, 0x80, 0, 0x40, 7, 9, 0xff, 0x7f, 0, 0x80})),
@@ -169,7 +169,7 @@ TEST(SteamBluetooth, AStateIsPutTogetherFromWhatChanged) {
 }
 
 TEST(SteamBluetooth, AMessageOfSeveralReportsIsReadOnlyWhole) {
-  const auto pad = make_steam_model(steam(0x1106, 0x00));
+  const auto pad = make_steam_quirks(steam(0x1106, 0x00));
   // All parts: two bytes, then 3 + 2 + 3 + 4 + 4 = 16, and the right pad in the second report.
   const Packet first = {0xf4, 3, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16};
   EXPECT_TRUE(handed_on(*pad, segment(0x80, first)).empty());
@@ -188,7 +188,7 @@ TEST(SteamBluetooth, AMessageOfSeveralReportsIsReadOnlyWhole) {
 
 TEST(SteamBluetooth, LeavesLizardModeInReportsOf20Bytes) {
   FeaturePort port;
-  const auto pad = make_steam_model(steam(0x1106, 0x00));
+  const auto pad = make_steam_quirks(steam(0x1106, 0x00));
   pad->start(port, StartedBy::us);
   ASSERT_EQ(port.sent.size(), 3u);
   EXPECT_EQ(port.sent[0], segment(0xc0, {0x81, 0}));
@@ -208,7 +208,7 @@ TEST(MotorPads, GetTheirOwnPackets) {
     DeviceInfo info;
     info.vendor = vendor;
     info.product = product;
-    return rumble_of(*make_pad_model(info), {0xc0ff, 0x4001});
+    return rumble_of(*make_pad_quirks(info), {0xc0ff, 0x4001});
   };
   EXPECT_EQ(rumble(0x18d1, 0x9400), (Packet{0x05, 0xff, 0xc0, 0x01, 0x40}));
   EXPECT_EQ(rumble(0x0171, 0x0419), (Packet{0x03, 0x0f, 0, 0, 75, 24, 0xff, 0, 0xeb}));

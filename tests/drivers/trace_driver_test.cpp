@@ -2,8 +2,8 @@
 
 #include <chrono>
 
-#include "drivers/driver_entries.h"
-#include "gaitpad/drivers.h"
+#include "drivers/driver_rows.h"
+#include "gaitpad/driver_registry.h"
 #include "tests/own_folder.h"
 
 namespace gaitpad {

@@ -11,7 +11,7 @@
 #include <filesystem>
 #include <fstream>
 
-#include "drivers/driver_entries.h"
+#include "drivers/driver_rows.h"
 #include "drivers/posix.h"
 #include "drivers/usb_interfaces.h"
 #include "drivers/usb_reattach.h"

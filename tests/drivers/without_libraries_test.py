@@ -13,7 +13,7 @@ import pytest
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 DEVICES = "libgaitpad_devices.a"  # the archive of the target gaitpad_devices, which holds the drivers
-REGISTRY = "CMakeFiles/gaitpad_devices.dir/drivers/registry.cpp.o"
+REGISTRY = "CMakeFiles/gaitpad_devices.dir/drivers/driver_registry.cpp.o"
 LIBRARIES = {"hidraw": "libhidapi-hidraw", "evdev": "libevdev", "sdl": "libSDL2", "usb": "libusb-1.0"}
 
 

@@ -1,5 +1,5 @@
 // Both Xbox protocols over USB, byte by byte after Linux's xpad (xpad360_process_packet,
-// xpadone_process_packet, xpad_play_effect), read by the descriptor that the model states and the
+// xpadone_process_packet, xpad_play_effect), read by the descriptor that the quirks state and the
 // shipped files.
 #include "drivers/scripted_port.h"
 #include "tests/hid/made_pads.h"
@@ -40,7 +40,7 @@ class XboxPad : public testing::Test {
     layout_ = value_of(pad_layout(info, shipped_pads()));
     EXPECT_TRUE(layout_.is_pad);
     EXPECT_TRUE(layout_.unnamed.empty());
-    model_ = std::move(pad.model);
+    quirks_ = std::move(pad.quirks);
     state_ = {};
   }
   void use_360() { use(false, kMicrosoft, kXbox360); }
@@ -48,11 +48,11 @@ class XboxPad : public testing::Test {
   // Decodes a packet like the driver.
   bool decodes(const Packet& packet) {
     OutPacket reply;
-    if (!model_->accept(packet, reply)) return false;
-    const std::span<const std::uint8_t> input = model_->report_of(packet);
+    if (!quirks_->accept(packet, reply)) return false;
+    const std::span<const std::uint8_t> input = quirks_->report_of(packet);
     return decode(layout_, report_of(Packet(input.begin(), input.end())), state_);
   }
-  bool accepts(const Packet& packet) { return model_->accept(packet, reply_); }
+  bool accepts(const Packet& packet) { return quirks_->accept(packet, reply_); }
   void expect_read(const Packet& packet, const std::string& words) {
     EXPECT_TRUE(decodes(packet)) << words;
     expect_state(state_, words);
@@ -66,7 +66,7 @@ class XboxPad : public testing::Test {
 
   PadLayout layout_;
   PadState state_;
-  std::unique_ptr<PadModel> model_;
+  std::unique_ptr<PadQuirks> quirks_;
   OutPacket reply_;
 };
 
@@ -162,7 +162,7 @@ TEST_F(XboxPad, ElitePadsHavePaddlesUnlessTheyMapThemThemselves) {
 TEST_F(XboxPad, GipIsSwitchedOnWithoutWaitingForAnAnnouncementAndAnswersOne) {
   use_gip();
   ScriptedPort port;
-  model_->start(port, StartedBy::us);
+  quirks_->start(port, StartedBy::us);
   EXPECT_EQ(port.written, (std::vector<Packet>{{0x05, 0x20, 1, 0x01, 0x00},
                                                {0x05, 0x20, 2, 0x0f, 0x06},
                                                {0x0a, 0x20, 3, 0x03, 0x00, 0x01, 0x14},
@@ -186,7 +186,7 @@ TEST_F(XboxPad, MessagesOfTheProtocolAreNoInput) {
   for (const Packet& state : {Packet{0x01, 0x03, 0x06}, {0x03, 0x03, 0x03}, {0x08, 0x03, 0x00}, {}})
     EXPECT_FALSE(accepts(state));
   EXPECT_EQ(reply_.size, 0u);
-  EXPECT_EQ(model_->lost(), 0);
+  EXPECT_EQ(quirks_->lost(), 0);
   use_gip();
   for (const std::uint8_t command : {0x01, 0x02, 0x03, 0x04, 0x05, 0x06, 0x08, 0x1e, 0x60}) {
     EXPECT_FALSE(accepts({command, 0x20, 0x01, 0x00})) << int{command};
@@ -199,9 +199,9 @@ TEST_F(XboxPad, PartsOfLongMessagesAreIgnored) {
   use_gip();
   EXPECT_FALSE(accepts({0x04, 0xf0, 0x01, 0xba, 0x10, 0x20}));
   EXPECT_EQ(reply_.size, 0u);
-  EXPECT_EQ(model_->lost(), 0);
+  EXPECT_EQ(quirks_->lost(), 0);
   EXPECT_FALSE(accepts(of_gip({{1, 0xa0}})));
-  EXPECT_EQ(model_->lost(), 1);
+  EXPECT_EQ(quirks_->lost(), 1);
 }
 
 TEST_F(XboxPad, ShortPacketsAreHandedOnAndChangeNothing) {
@@ -231,7 +231,7 @@ TEST_F(XboxPad, UnknownPacketsChangeNothing) {
   for (int id = 1; id < 256; ++id)
     EXPECT_FALSE(accepts(changed(Packet(20, 0xff), {{0, static_cast<std::uint8_t>(id)}}))) << id;
   EXPECT_FALSE(accepts({0x00, 0x15, 0x00}));
-  EXPECT_EQ(model_->lost(), 256);
+  EXPECT_EQ(quirks_->lost(), 256);
   use_gip();
   const Packet unknown = of_gip({{0, 0x77}, {1, 0xff}, {4, 0x10}});
   EXPECT_TRUE(accepts(unknown)) << "handed on";
@@ -243,30 +243,30 @@ TEST_F(XboxPad, UnknownPacketsChangeNothing) {
 TEST_F(XboxPad, TheLightOfA360IsSetAtTheStart) {
   use_360();
   ScriptedPort port;
-  model_->start(port, StartedBy::us);
+  quirks_->start(port, StartedBy::us);
   EXPECT_EQ(port.written, (std::vector<Packet>{{0x01, 0x03, 0x06}}));
 }
 
 TEST_F(XboxPad, RumbleIsScaledAsTheKernelDoesWithTheStrongMotorFirst) {
   constexpr Rumble kRumble{0xc000, 0x4000};
   use_360();
-  EXPECT_EQ(rumble_of(*model_, kRumble), (Packet{0x00, 0x08, 0x00, 0xc0, 0x40, 0x00, 0x00, 0x00}));
-  EXPECT_EQ(rumble_of(*model_, {}), (Packet{0x00, 0x08, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00}));
+  EXPECT_EQ(rumble_of(*quirks_, kRumble), (Packet{0x00, 0x08, 0x00, 0xc0, 0x40, 0x00, 0x00, 0x00}));
+  EXPECT_EQ(rumble_of(*quirks_, {}), (Packet{0x00, 0x08, 0x00, 0x00, 0x00, 0x00, 0x00, 0x00}));
   use_gip();
   const auto gip = [](std::uint8_t number, std::uint8_t strong, std::uint8_t weak) {
     return Packet{0x09, 0x00, number, 0x09, 0x00, 0x0f, 0x00, 0x00, strong, weak, 0xff, 0x00, 0xff};
   };
-  EXPECT_EQ(rumble_of(*model_, kRumble), gip(1, 0x60, 0x20));
-  EXPECT_EQ(rumble_of(*model_, {}), gip(2, 0, 0));
-  for (int i = 0; i < 600; ++i) EXPECT_NE(rumble_of(*model_, {})[2], 0) << "no number is zero";
+  EXPECT_EQ(rumble_of(*quirks_, kRumble), gip(1, 0x60, 0x20));
+  EXPECT_EQ(rumble_of(*quirks_, {}), gip(2, 0, 0));
+  for (int i = 0; i < 600; ++i) EXPECT_NE(rumble_of(*quirks_, {})[2], 0) << "no number is zero";
 }
 
 TEST(XboxPads, OtherInterfacesAreNone) {
-  EXPECT_EQ(make_xbox_360_pad({0xff, 0x5d, 0x03}, {}).model, nullptr);  // its headset
-  EXPECT_EQ(make_xbox_360_pad(kInterfaceGip, {}).model, nullptr);
-  EXPECT_EQ(make_xbox_360_pad({0x03, 0x00, 0x00}, {}).model, nullptr);
-  EXPECT_EQ(make_gip_pad(kInterface360, {}).model, nullptr);
-  EXPECT_EQ(make_gip_pad({0x03, 0x01, 0x01}, {}).model, nullptr);
+  EXPECT_EQ(make_xbox_360_pad({0xff, 0x5d, 0x03}, {}).quirks, nullptr);  // its headset
+  EXPECT_EQ(make_xbox_360_pad(kInterfaceGip, {}).quirks, nullptr);
+  EXPECT_EQ(make_xbox_360_pad({0x03, 0x00, 0x00}, {}).quirks, nullptr);
+  EXPECT_EQ(make_gip_pad(kInterface360, {}).quirks, nullptr);
+  EXPECT_EQ(make_gip_pad({0x03, 0x01, 0x01}, {}).quirks, nullptr);
 }
 
 }  // namespace

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-#include "gaitpad/pad_setup.h"
+#include "gaitpad/pad_configuration.h"
 #include "tests/own_folder.h"
 #include "tests/value_of.h"
 

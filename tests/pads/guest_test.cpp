@@ -9,7 +9,7 @@
 #include <chrono>
 #include <thread>
 
-#include "gaitpad/drivers.h"
+#include "gaitpad/driver_registry.h"
 #include "gaitpad/pad_stream.h"
 #include "tests/comes_true.h"
 #include "tests/pads/fake_drivers.h"

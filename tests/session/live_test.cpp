@@ -13,7 +13,7 @@
 
 #include "drivers/posix.h"
 #include "gaitpad/decode.h"
-#include "gaitpad/pad_setup.h"
+#include "gaitpad/pad_configuration.h"
 #include "tests/session/live_fixture.h"
 
 namespace gaitpad {

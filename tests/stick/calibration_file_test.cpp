@@ -71,6 +71,17 @@ TEST(CalibrationFile, WrittenTextReadsBackToTheSameBits) {
   }
 }
 
+TEST(CalibrationFile, TheBiasOfTheGyroscopeIsKept) {
+  CalibrationFile file;
+  EXPECT_EQ(calibration_text(file).find("gyro"), std::string::npos);
+  file.gyro_bias_rad_s = TurnRates{0.01, -0.02, 0.0};
+  EXPECT_NE(calibration_text(file).find("\n[gyro]\nbias_rad_s = [0.01, -0.02, 0]\n"),
+            std::string::npos);
+  EXPECT_EQ(parsed(calibration_text(file)).gyro_bias_rad_s, file.gyro_bias_rad_s);
+  EXPECT_EQ(cause_of(parse_calibration("[gyro]\nbias_rad_s = [0, 0]\n", "own.toml")).substr(0, 11),
+            "own.toml:2:");
+}
+
 TEST(CalibrationFile, WrittenNumbersUseTheFewestDigitsAndDefaultsAreLeftOut) {
   CalibrationFile file;
   file.calibration.left.x = {-0.98, 0.012, 1.0};

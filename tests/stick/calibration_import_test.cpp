@@ -1,5 +1,5 @@
-// Imports calibrations in the formats of jscal, evemu, hwdb, evtest and SDL. The expected values
-// are derived a second time: with the kernel's formula for jscal, by hand for the others.
+// Imports calibrations from recordings of event nodes and from lines of SDL. The expected values
+// are derived by hand.
 #include "stick/calibration_import.h"
 
 #include <gtest/gtest.h>
@@ -45,98 +45,15 @@ Pad pad_of(std::int32_t min, std::int32_t max) {
 }
 
 CalibrationFile imported(const std::string& text, const Pad& pad) {
-  return value_of(calibration_import(text, "old.js", pad.device, pad.layout));
+  return value_of(calibration_import(text, "bug.txt", pad.device, pad.layout));
 }
 std::string error_of(const std::string& text, const Pad& pad) {
-  return cause_of(calibration_import(text, "old.js", pad.device, pad.layout));
+  return cause_of(calibration_import(text, "bug.txt", pad.device, pad.layout));
 }
 
 // Checks that the calibration can be written to a file and read back.
 void expect_loadable(const CalibrationFile& file) {
   EXPECT_EQ(cause_of(parse_calibration(calibration_text(file), "back.toml")), "accepted");
-}
-
-// The broken line of Linux's drivers/input/joydev.c.
-double joydev(const int (&c)[4], int count) {
-  std::int64_t value = 0;
-  if (count <= c[0]) value = (std::int64_t{c[2]} * (count - c[0])) >> 14;
-  if (count >= c[1]) value = (std::int64_t{c[3]} * (count - c[1])) >> 14;
-  if (count > c[0] && count < c[1]) value = 0;
-  return static_cast<double>(std::clamp<std::int64_t>(value, -32767, 32767)) / 32767.0;
-}
-
-std::string jscal_line(const int (&x)[4], const int (&y)[4]) {
-  const auto axis = [](const int(&c)[4]) {
-    return ",1,0," + std::to_string(c[0]) + "," + std::to_string(c[1]) + "," +
-           std::to_string(c[2]) + "," + std::to_string(c[3]);
-  };
-  return "jscal -s 8" + axis(x) + axis(y) + ",0,0,0,0,0,0,0,0,0,0,0,0 /dev/input/js0\n";
-}
-// The slope that jscal writes: 2^29 divided by the counts from the zone to the end.
-int slope(int counts) { return (1 << 29) / counts; }
-
-// The raw position (-1 to 1) of a count.
-double raw(int count, int min, int max) { return (2.0 * count - min - max) / (max - min); }
-
-TEST(CalibrationImport, AJscalLineMovesTheStickAsTheKernelDid) {
-  const Pad pad = pad_of(0, 255);
-  // x: 20 .. 240 about 130, y: 13 .. 233 about 123; the zone is 10 to either side.
-  const int x[4] = {120, 140, slope(100), slope(100)}, y[4] = {113, 133, slope(100), slope(100)};
-  CalibrationFile file = imported(jscal_line(x, y), pad);
-  expect_loadable(file);
-  StickCalibration c = file.calibration.left;
-  EXPECT_NEAR(c.x.centre, raw(130, 0, 255), 1e-12);
-  EXPECT_NEAR(c.x.min, raw(20, 0, 255), 1e-3);
-  EXPECT_NEAR(c.x.max, raw(240, 0, 255), 1e-3);
-  EXPECT_NEAR(c.y.centre, -raw(123, 0, 255), 1e-12) << "forward is towards smaller counts";
-  EXPECT_NEAR(c.inner, 10.0 / 110.0, 1e-3);
-  c.shape = ZoneShape::axial;
-  for (int count = 0; count <= 255; ++count) {
-    const vec2 across = stick_position(c, {raw(count, 0, 255), c.y.centre});
-    EXPECT_NEAR(across.x, joydev(x, count), 2e-4) << count;
-    EXPECT_EQ(across.y, 0.0);
-    const vec2 along = stick_position(c, {c.x.centre, -raw(count, 0, 255)});
-    EXPECT_NEAR(along.y, -joydev(y, count), 2e-4) << count;
-  }
-  EXPECT_EQ(file.calibration.right.x.max, 1.0) << "jscal did not correct this stick";
-  EXPECT_EQ(file.calibration.right.inner, StickCalibration{}.inner);
-}
-
-// gaitpad has one zone for both sides and takes the wider one. Its output differs from the kernel's
-// by less than the two zones do.
-TEST(CalibrationImport, UnevenSidesMoveNearlyAsTheKernelDid) {
-  const Pad pad = pad_of(-32768, 32767);
-  const int x[4] = {-4500, 500, slope(20500), slope(28500)},
-            y[4] = {-3000, 3000, slope(27000), slope(27000)};
-  CalibrationFile file = imported("#!/bin/sh\n\n/usr/bin/" + jscal_line(x, y), pad);
-  expect_loadable(file);
-  StickCalibration c = file.calibration.left;
-  EXPECT_NEAR(c.inner, 2500.0 / 23000.0, 1e-3);
-  c.shape = ZoneShape::axial;
-  for (int count = -32768; count <= 32767; count += 97) {
-    const double ours = stick_position(c, {raw(count, -32768, 32767), c.y.centre}).x;
-    EXPECT_NEAR(ours, joydev(x, count), 0.0307) << count;
-    EXPECT_EQ(ours == 0.0 && count < -4500, false) << "the narrow side keeps its zone";
-  }
-}
-
-TEST(CalibrationImport, ANegativeSlopeReversesTheAxis) {
-  const Pad pad = pad_of(0, 255);
-  const int x[4] = {118, 138, -slope(100), -slope(100)}, y[4] = {118, 138, slope(90), slope(90)};
-  const CalibrationFile file = imported(jscal_line(x, y), pad);
-  StickCalibration c = file.calibration.left;
-  EXPECT_EQ(c.frame.right, RawDirection::minus_x);
-  EXPECT_EQ(c.frame.forward, RawDirection::plus_y);
-  c.shape = ZoneShape::axial;
-  for (int count = 0; count <= 255; count += 5) {
-    EXPECT_NEAR(stick_position(c, {raw(count, 0, 255), -raw(128, 0, 255)}).x, joydev(x, count),
-                0.012)
-        << count;
-  }
-  const StickAxes axes = stick_axes(file.calibration);
-  EXPECT_EQ(axes[kLeftX].axis, kLeftX);
-  EXPECT_TRUE(axes[kLeftX].reversed);
-  EXPECT_FALSE(axes[kLeftY].reversed);
 }
 
 TEST(CalibrationImport, FramesSayWhichAxisMovesAStick) {
@@ -151,44 +68,41 @@ TEST(CalibrationImport, FramesSayWhichAxisMovesAStick) {
 }
 
 // The map swaps codes 0 and 1, so the first correction belongs to Y.
-TEST(CalibrationImport, MappedAxesOfJscalAreFollowed) {
-  const Pad pad = pad_of(0, 255);
-  const int a[4] = {100, 120, slope(80), slope(80)}, b[4] = {118, 138, slope(100), slope(100)};
-  const std::string map = "jscal -u 8,1,0,2,5,9,10,16,17,4,304,305,307,308 /dev/input/js0\n";
-  const CalibrationFile file = imported(map + jscal_line(a, b), pad);
-  EXPECT_NEAR(file.calibration.left.y.centre, -raw(110, 0, 255), 1e-12);
-  EXPECT_NEAR(file.calibration.left.x.centre, raw(128, 0, 255), 1e-12);
+// As evemu-record writes a node, with these ranges.
+std::string evemu(const std::string& ranges) {
+  return "# EVEMU 1.3\nN: Node\nI: 0003 1209 0001 0111\nP: 00 00 00 00 00 00 00 00\n"
+         "B: 00 0b 00 00 00 00 00 00 00\n" +
+         ranges;
 }
 
 TEST(CalibrationImport, TriggersGetTheirEnds) {
-  const Pad pad = pad_of(0, 255);
-  // GAS is the fifth axis; it moves from 102 to 921 of 1023.
-  const std::string axis =
-      ",1,0,511,512," + std::to_string(slope(409)) + "," + std::to_string(slope(409));
   const CalibrationFile file = imported(
-      "jscal -s 8,1,0,118,138,5368709,5368709,0,0,0,0,0,0" + axis + ",0,0,0,0,0,0 /dev/input/js0",
-      pad);
+      evemu("A: 00 0 255 0 15 0\nA: 01 0 255 0 15 0\nA: 09 102 921 0 0 0\n"), pad_of(0, 255));
   EXPECT_NEAR(file.calibration.right_trigger.released, 102.0 / 1023.0, 1e-3);
   EXPECT_NEAR(file.calibration.right_trigger.pressed, 921.0 / 1023.0, 1e-3);
   EXPECT_EQ(file.calibration.left_trigger.pressed, 1.0);
 }
 
-TEST(CalibrationImport, EvemuHwdbAndEvtestSayTheSame) {
+// Of a pad of hid-playstation the recording has the motion sensors, too: the same ids, other
+// ranges.
+const std::string kLibinput =
+    "# libinput record\ndevices:\n"
+    "- node: /dev/input/event6\n  evdev:\n    name: \"Node Motion Sensors\"\n"
+    "    id: [3, 4617, 1, 273]\n    codes:\n      3: [0, 1] # EV_ABS\n    absinfo:\n"
+    "      0: [-32768, 32767, 16, 0, 8192]\n      1: [-32768, 32767, 16, 0, 8192]\n"
+    "- node: /dev/input/event5\n  evdev:\n    name: \"Node\"\n    id: [3, 4617, 1, 273]\n"
+    "    codes:\n      3: [0, 1] # EV_ABS\n    absinfo:\n"
+    "      0: [15, 240, 0, 15, 0]\n      1: [10, 235, 0, 10, 0]\n  events:\n";
+// 15, 240, 0, 15 and 10, 235, 0, 10 as umockdev has them.
+const std::string kUmockdev =
+    "@DEV /dev/input/event5\nEVIOCGID 0 0300091201001101\n"
+    "EVIOCGABS 0 800000000F000000F0000000000000000F00000000000000\n"
+    "EVIOCGABS(1) 0 800000000A000000EB000000000000000A00000000000000\n";
+
+TEST(CalibrationImport, RecordingsOfEveryToolSayTheSame) {
   const Pad pad = pad_of(0, 255);
-  const std::string evemu =
-      "# EVEMU 1.3\nN: Node\nI: 0003 1209 0001 0111\nP: 00 00 00 00 00 00 00 00\n"
-      "B: 00 0b 00 00 00 00 00 00 00\nA: 00 15 240 0 15 0\nA: 01 10 235 0 10 0\n"
-      "A: 10 -1 1 0 0 0\n";
-  const std::string hwdb =
-      "# a remark\nevdev:input:b0003v1209p0001*\n EVDEV_ABS_00=15:240:::15\n"
-      " EVDEV_ABS_01=10:235:0:0:10\n";
-  const std::string evtest =
-      "Input driver version is 1.0.1\nInput device ID: bus 0x3 vendor 0x1209\n"
-      "  Event type 3 (EV_ABS)\n    Event code 0 (ABS_X)\n      Value    128\n"
-      "      Min       15\n      Max      240\n      Flat      15\n"
-      "    Event code 1 (ABS_Y)\n      Value    128\n      Min        10\n      Max      235\n"
-      "      Fuzz        0\n      Flat      10\nProperties:\n";
-  for (const std::string& text : {evemu, hwdb, evtest}) {
+  const std::string ranges = "A: 00 15 240 0 15 0\nA: 01 10 235 0 10 0\nA: 10 -1 1 0 0 0\n";
+  for (const std::string& text : {evemu(ranges), kLibinput, kUmockdev}) {
     const CalibrationFile file = imported(text, pad);
     expect_loadable(file);
     const StickCalibration& c = file.calibration.left;
@@ -205,9 +119,11 @@ TEST(CalibrationImport, EvemuHwdbAndEvtestSayTheSame) {
 
 // Kernel drivers that do not know the zone report a flat of 0 (hid-playstation).
 TEST(CalibrationImport, AFlatOfZeroOrOneLeavesAnInnerZone) {
-  const CalibrationFile file = imported("A: 00 0 255 0 0 0\nA: 01 0 255 0 0 0\n", pad_of(0, 255));
+  const CalibrationFile file =
+      imported(evemu("A: 00 0 255 0 0 0\nA: 01 0 255 0 0 0\n"), pad_of(0, 255));
   EXPECT_EQ(file.calibration.left.inner, kInnerZoneUnknown);
-  const CalibrationFile narrow = imported("A: 00 0 255 0 1 0\nA: 01 0 255 0 1 0\n", pad_of(0, 255));
+  const CalibrationFile narrow =
+      imported(evemu("A: 00 0 255 0 1 0\nA: 01 0 255 0 1 0\n"), pad_of(0, 255));
   EXPECT_EQ(narrow.calibration.left.inner, 0.05);
 }
 
@@ -223,19 +139,19 @@ TEST(CalibrationImport, AnSdlMappingIsKeptWordForWord) {
   EXPECT_EQ(file.mapping, line);
   EXPECT_EQ(file.calibration.left.inner, StickCalibration{}.inner);
   EXPECT_EQ(error_of(other, pad),
-            "old.js:1: SDL mapping: it is for 045e:028e, the pad is 1209:0001");
+            "bug.txt:1: SDL mapping: it is for 045e:028e, the pad is 1209:0001");
   EXPECT_EQ(error_of(other + "\n" + other, pad),
-            "old.js: none of its 2 SDL mappings is for 1209:0001");
+            "bug.txt: none of its 2 SDL mappings is for 1209:0001");
   EXPECT_EQ(error_of("\n" + mac, pad),
-            "old.js:2: SDL mapping: it is for another platform, which counts otherwise");
+            "bug.txt:2: SDL mapping: it is for another platform, which counts otherwise");
   EXPECT_EQ(error_of("03000000091200000100000011010000,Node,a:q1,platform:Linux,", pad),
-            "old.js:1: SDL mapping: unknown source \"q1\"");
+            "bug.txt:1: SDL mapping: unknown source \"q1\"");
   EXPECT_EQ(error_of("03000000091200000100000011010000,No\001de,a:b1,platform:Linux,", pad),
-            "old.js:1: SDL mapping: it holds a control character");
+            "bug.txt:1: SDL mapping: it holds a control character");
   EXPECT_EQ(error_of("03000000091200000100000011010000,Node,a:b99,platform:Linux,", pad),
-            "old.js:1: SDL mapping: it names no control that the pad has");
+            "bug.txt:1: SDL mapping: it names no control that the pad has");
   EXPECT_EQ(error_of("03000000091200000100000011810000,Node,a:b1,platform:Linux,", pad),
-            "old.js:1: SDL mapping: it counts what the kernel's driver for that pad numbers; give "
+            "bug.txt:1: SDL mapping: it counts what the kernel's driver for that pad numbers; give "
             "its event node (/dev/input/event...)");
 }
 
@@ -251,63 +167,37 @@ TEST(CalibrationImport, ExportedLinesCanBeImported) {
 
 TEST(CalibrationImport, ErrorsNameTheDamagedLine) {
   const Pad pad = pad_of(0, 255);
-  const auto line = [](const std::string& list) {
-    return "\njscal -s " + list + " /dev/input/js0";
-  };
-  const std::string x = "1,0,118,138,5368709,5368709", rest = ",0,0,0,0,0,0,0,0,0,0,0,0,0,0";
-  EXPECT_EQ(error_of(line("8," + x + rest), pad), "accepted");
-  EXPECT_EQ(error_of(line("8," + x), pad), "old.js:2: jscal: axis 1: numbers are missing");
-  EXPECT_EQ(error_of(line("8," + x + rest + ",0"), pad),
-            "old.js:2: jscal: more numbers than its axes have");
-  EXPECT_EQ(error_of(line("2," + x + ",0,0"), pad), "old.js:2: jscal: 2 axes, the pad has 8");
-  EXPECT_EQ(error_of(line("8,2,0" + rest), pad), "old.js:2: jscal: axis 0: unknown type 2");
-  EXPECT_EQ(error_of(line("0"), pad), "old.js:2: jscal: 0 axes, 1 to 64 there may be");
-  EXPECT_EQ(error_of(line("8,nan"), pad), "old.js:2: jscal: \"nan\" is no number");
-  EXPECT_EQ(error_of(line("8,99999999999"), pad), "old.js:2: jscal: \"99999999999\" is no number");
-  EXPECT_EQ(error_of("jscal -s", pad), "old.js:1: jscal: no numbers");
-  EXPECT_EQ(error_of(line("8,0,0" + rest), pad),
-            "old.js:2: jscal: no axis of a stick is corrected");
-  EXPECT_EQ(error_of(line("8,1,0,138,118,5368709,5368709" + rest), pad),
-            "old.js:2: jscal: axis 0: its centre begins at 138 and ends at 118");
-  EXPECT_EQ(error_of(line("8,1,0,118,138,0,5368709" + rest), pad),
-            "old.js:2: jscal: axis 0: slopes 0 and 5368709 do not go one way");
-  EXPECT_EQ(error_of(line("8,1,0,2000,2100,53687,53687" + rest), pad),
-            "old.js:2: jscal: axis 0: its centre 2050 is outside of the pad's 0 to 255");
-  EXPECT_EQ(
-      error_of(line("8,1,0,127,129,536870912,536870912" + rest), pad),
-      "old.js:2: jscal: axis 0: 126 to 130 about 128 is next to nothing of the pad's 0 to 255");
-  EXPECT_EQ(error_of(line("8,1,0,20,230,53687091,53687091" + rest), pad),
-            "old.js:2: jscal: axis 0: hardly anything is left beside its zone from 20 to 230");
-  EXPECT_EQ(error_of(line("8," + x + rest) + line("8," + x + rest), pad),
-            "old.js:3: jscal: told a second time");
-  EXPECT_EQ(error_of("jscal -u 8,1,0,99,5,9,10,16,17,0", pad),
-            "old.js:1: jscal: 99 is no code of an axis");
-  EXPECT_EQ(error_of("A: 00 0 255 0 15 0\nA: 00 0 255 0 15 0", pad),
-            "old.js:2: axis 00: told a second time");
-  EXPECT_EQ(error_of("A: 00 0 x 0 15 0", pad), "old.js:1: axis 00: \"x\" is no number");
-  EXPECT_EQ(error_of("A: 00 255 0 0 15 0", pad), "old.js:1: axis 00: 255 to 0 is no range");
-  EXPECT_EQ(error_of("A: 00 -32768 32767 0 15 0", pad),
-            "old.js:1: axis 00: -32768 to 32767 is more than the pad's 0 to 255");
-  EXPECT_EQ(error_of("A: 10 -1 1 0 0 0", pad), "old.js: no axis of a stick of this pad");
-  EXPECT_EQ(error_of("EVDEV_ABS_00=0:255:0:0:15:1", pad),
-            "old.js:1: EVDEV_ABS_00: more than five numbers");
-  EXPECT_EQ(error_of("I: 0003 054c 0ce6 8111\nA: 00 0 255 0 15 0", pad),
-            "old.js: it is of 054c:0ce6, the pad is 1209:0001");
-  EXPECT_EQ(error_of("A: 00 0 255 0 15 0" + line("8," + x + rest), pad),
-            "old.js: of several tools; give one at a time");
-  for (const char* nothing : {"", "\n\n# only a remark\n", "hello", "jscal -p /dev/input/js0"}) {
+  const auto error = [&pad](const std::string& ranges) { return error_of(evemu(ranges), pad); };
+  EXPECT_EQ(error("A: 00 0 255 0 15 0"), "accepted");
+  EXPECT_EQ(error("A: 00 0 255 0 15 0\nA: 00 0 255 0 15 0"),
+            "bug.txt:7: a second range for the axis 00");
+  EXPECT_EQ(error("A: 00 0 x 0 15 0"),
+            "bug.txt:6: an A: line holds a code, a minimum and a maximum");
+  EXPECT_EQ(error("A: 00 255 0 0 15 0"), "bug.txt:6: axis 00: 255 to 0 is no range");
+  EXPECT_EQ(error("A: 00 -32768 32767 0 15 0"),
+            "bug.txt:6: axis 00: -32768 to 32767 is more than the pad's 0 to 255");
+  EXPECT_EQ(error("A: 00 126 130 0 0 0"),
+            "bug.txt:6: axis 00: 126 to 130 about 128 is next to nothing of the pad's 0 to 255");
+  EXPECT_EQ(error("A: 00 20 230 0 104 0"),
+            "bug.txt:6: axis 00: hardly anything is left beside its zone from 21 to 229");
+  EXPECT_EQ(error("A: 00 300 500 0 0 0"),
+            "bug.txt:6: axis 00: its centre 400 is outside of the pad's 0 to 255");
+  EXPECT_EQ(error("A: 10 -1 1 0 0 0"), "bug.txt: no axis of a stick of this pad");
+  EXPECT_EQ(error_of("# EVEMU 1.3\nI: 0003 054c 0ce6 8111\nA: 00 0 255 0 15 0", pad),
+            "bug.txt: it is of 054c:0ce6, the pad is 1209:0001");
+  for (const char* nothing : {"", "\n\n# only a remark\n", "hello", "A: 00 0 255 0 15 0"}) {
     EXPECT_EQ(error_of(nothing, pad),
-              "old.js: no line of jscal, no axis of evemu, evtest or a hwdb file, no SDL mapping");
+              "bug.txt: no SDL mapping, and not a recording of evemu, libinput or umockdev");
   }
   EXPECT_EQ(error_of(std::string((1 << 20) + 1, '#'), pad),
-            "old.js: 1048577 bytes, at most 1048576 are read");
+            "bug.txt: 1048577 bytes, at most 1048576 are read");
 }
 
 TEST(CalibrationImport, CountsOfAKernelDriverAreRefusedForAHidrawPad) {
   Pad pad = pad_of(0, 255);
   pad.device.driver = "hidraw";
   pad.device.version = 0x8111;
-  EXPECT_EQ(error_of("A: 00 0 255 0 15 0", pad),
+  EXPECT_EQ(error_of(evemu("A: 00 0 255 0 15 0"), pad),
             "Node: a kernel driver of its own numbers its controls; give its event node "
             "(/dev/input/event...)");
 }
@@ -317,12 +207,8 @@ TEST(CalibrationImport, CountsOfAKernelDriverAreRefusedForAHidrawPad) {
 TEST(CalibrationImport, DamagedTextsDoNotCrash) {
   const Pad pads[] = {pad_of(0, 255), pad_of(-32768, 32767)};
   const std::string seeds[] = {
-      "jscal -u 8,1,0,2,5,9,10,16,17,4,304,305,307,308 /dev/input/js0\n"
-      "jscal -s 8,1,0,118,138,5368709,5368709,1,0,118,138,5368709,5368709,0,0,0,0,0,0,0,0,0,0,0,0 "
-      "x",
-      "I: 0003 1209 0001 0111\nA: 00 15 240 0 15 0\nA: 01 10 235 0 10 0\nA: 02 10 235 0 10 0\n",
-      " EVDEV_ABS_00=15:240:::15\n EVDEV_ABS_01=10:235:0:0:10\n",
-      "Event type 3 (EV_ABS)\nEvent code 0 (ABS_X)\n Value 128\n Min 15\n Max 240\n Flat 15\n",
+      evemu("A: 00 15 240 0 15 0\nA: 01 10 235 0 10 0\nA: 02 10 235 0 10 0\n"), kLibinput,
+      kUmockdev,
       "03000000091200000100000011010000,Node,a:b1,b:b0,leftx:a0,lefty:a1,platform:Linux,\n"};
   constexpr std::string_view kBytes = "0123456789-,: \nabAE.~+\x00\xff(";
   std::mt19937 random(11);

@@ -230,10 +230,9 @@ def test_imports_and_exports_other_tools_words(user):
     trace = user.trace(serial=SERIAL)
     line = user.run("calibrate", "--trace", trace, "--export-sdl").stdout
     assert "leftx:a0," in line
-    (user.folder / "jscal").write_text(
-        "jscal -s 6,1,0,30000,35535,17895,17895,1,0,30000,35535,17895,17895,1,0,32767,32767,16384,16384,"
-        "1,0,32767,32767,16384,16384,1,0,127,127,4227201,4227201,1,0,127,127,4227201,4227201 /dev/input/js0\n")
-    user.run("calibrate", "--trace", trace, "--import", user.folder / "jscal")
+    (user.folder / "evemu").write_text(
+        "# EVEMU 1.3\n" + "".join(f"A: 0{axis} 0 65535 0 4096 0\n" for axis in (0, 1)))
+    user.run("calibrate", "--trace", trace, "--import", user.folder / "evemu")
     left = user.table()["left"]
     assert left["inner"] > 0.05
     # A mapping names controls and leaves the zones as they were.

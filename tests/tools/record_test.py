@@ -87,10 +87,33 @@ def test_monitor_prints_an_object_a_second_with_rate_and_latency(run):
     assert len(rows) >= 3
     for row in rows:
         assert {"device", "name", "rate_hz", "jitter_us", "longest_gap_us", "latency_us_median", "latency_us_max", "lost",
-                "axes", "sticks", "triggers", "buttons", "battery"} <= set(row)
+                "axes", "sticks", "triggers", "buttons", "battery", "gyro"} <= set(row)
         assert row["name"] == "Example Walk Pad"
     assert max(row["rate_hz"] for row in rows) > 15
     assert rows[-1]["sticks"]["left"][1] > 0.5  # forward, from the second second on
+
+
+def dualsense_at_rest(path, seconds=3):
+    """A DualSense Edge on Bluetooth that lies still: 16, -32, 0 counts of 2048 / 32767 degrees a second, 250 reports a second."""
+    head = [line for line in (ROOT / "tests/data/pads/054c_0df2.hid").read_text().splitlines() if line[0] in "RNI"]
+    report = bytearray(78)
+    report[0:12] = bytes.fromhex("311080808080000055080000")
+    for k, counts in enumerate((16, -32, 0)):
+        report[17 + 2 * k:19 + 2 * k] = counts.to_bytes(2, "little", signed=True)
+    path.write_text("\n".join(head) + "\n" + "".join(
+        f"E: {t // 1000:06}.{t % 1000 * 1000:06} 78 {report.hex(' ')}\n" for t in range(0, 1000 * seconds, 4)))
+    return path
+
+
+def test_monitor_shows_rate_bias_and_noise_of_a_gyroscope_at_rest(run, tmp_path):
+    pad = dualsense_at_rest(tmp_path / "still.hid")
+    rows = [json.loads(line) for line in run("monitor", pad, "--seconds", "3", "--json").stdout.splitlines()]
+    gyro = rows[-1]["gyro"]
+    assert abs(gyro["rate_hz"] - 250) < 25 and gyro["rest_s"] > 0.4 and gyro["factory_calibration"] is False
+    assert gyro["bias_deg_s"] == pytest.approx([1.0, -2.0, 0.0], abs=0.001) == gyro["deg_s"]
+    assert gyro["noise_deg_s"] == pytest.approx([0.0, 0.0, 0.0], abs=1e-9)
+    assert " Hz +1.00 -2.00 +0.00 noise 0.00 deg/s" in run("monitor", pad, "--seconds", "3").stdout
+    assert json.loads(run("monitor", ROUND, "--seconds", "1.2", "--json").stdout.splitlines()[0])["gyro"] is None
 
 
 def test_monitor_prints_a_line_a_second_where_there_is_no_terminal(run):

@@ -115,12 +115,13 @@ def write_calibrations(out):
 
 def write_imports(out):
     """One of each kind that is imported."""
-    broken = "1,0,118,138,5368709,5368709"
     texts = {
-        "jscal": f"jscal -u 5,1,0,2,5,9,4,304,305,307,308 js0\njscal -s 5,{broken},{broken},0,0,0,0,0,0 js0\n",
-        "evemu": "I: 0003 1209 0001 0111\nA: 00 15 240 0 15 0\nA: 01 10 235 0 10 0\n",
-        "hwdb": " EVDEV_ABS_00=15:240:::15\n EVDEV_ABS_01=10:235:0:0:10\n",
-        "evtest": "Event type 3 (EV_ABS)\nEvent code 0 (ABS_X)\n Value 128\n Min 15\n Max 240\n Flat 15\n",
+        "evemu": "# EVEMU 1.3\nI: 0003 1209 0001 0111\nA: 00 15 240 0 15 0\nA: 01 10 235 0 10 0\n",
+        "libinput": "# libinput record\ndevices:\n- node: /dev/input/event5\n  evdev:\n    id: [3, 4617, 1, 273]\n"
+                    "    absinfo:\n      0: [15, 240, 0, 15, 0]\n      1: [10, 235, 0, 10, 0]\n",
+        "umockdev": "@DEV /dev/input/event5\nEVIOCGID 0 0300091201001101\n"
+                    "EVIOCGABS 0 800000000F000000F0000000000000000F00000000000000\n"
+                    "EVIOCGABS(1) 0 800000000A000000EB000000000000000A00000000000000\n",
         "sdl": "03000000091200000100000011010000,Node,a:b1,b:b0,leftx:a0,lefty:a1~,platform:Linux,\n",
     }
     for name, text in texts.items():

@@ -507,6 +507,7 @@ int keep(const CalibrateArguments& arguments, const PadFiles& files, const Guide
   take_what_holds(files, pad.info, *target, file, remarks);
   print_remarks(kCalibrateCommand, remarks);
   take_advice(analysis, file);
+  take_gyro_bias(pad, file);
   file.measured_on = today();
   if (const auto problem = show(arguments, pad, analysis, std::nullopt))
     return fail(kCalibrateCommand, problem->message);
@@ -597,10 +598,12 @@ void add_measuring(CLI::App& command, CalibrateArguments& arguments) {
 
 // Options that convert instead of measuring.
 void add_conversions(CLI::App& command, CalibrateArguments& arguments) {
-  auto* import = command.add_option("--import", arguments.import,
-                                    "takes over a jscal line, evdev's absinfo or an SDL mapping; "
-                                    "without PAD all Linux lines of a gamecontrollerdb.txt; "
-                                    "- for standard input");
+  auto* import =
+      command.add_option("--import", arguments.import,
+                         "takes over the axes of a recording of evemu, libinput or umockdev, "
+                         "or an SDL mapping; "
+                         "without PAD all Linux lines of a gamecontrollerdb.txt; "
+                         "- for standard input");
   auto* export_sdl = command.add_flag("--export-sdl", arguments.exports_sdl,
                                       "prints the pad as SDL's mapping line");
   export_sdl->excludes(import)->excludes(command.get_option("--out"));

@@ -18,7 +18,7 @@
 #include "base/suggestion.h"
 #include "base/text.h"
 #include "draw/sanitizer_hooks.h"
-#include "gaitpad/drivers.h"
+#include "gaitpad/driver_registry.h"
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/options.h"
 #include "tools/gaitpad/print.h"

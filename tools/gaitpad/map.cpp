@@ -20,7 +20,7 @@ constexpr std::chrono::milliseconds kMapWait{20};
 
 // Asks for one control after the other until all are done or the recording ends. False: the user
 // gave up.
-bool ask(PadMapping& mapping, const PadWish& wish, RunEnd& end) {
+bool ask(MappingDialog& mapping, const PadWish& wish, RunEnd& end) {
   InputLines input;
   StatusLine line(2);
   MissingPad missing(kMapCommand, wish);
@@ -47,7 +47,7 @@ bool ask(PadMapping& mapping, const PadWish& wish, RunEnd& end) {
     const char* prompt = mapping.prompt();
     if (prompt != nullptr && prompt != told) {
       print_remarks(kMapCommand, {fmt::format("{} of {}: {}", mapping.step() + 1,
-                                              PadMapping::step_count(), prompt)});
+                                              MappingDialog::step_count(), prompt)});
     }
     told = prompt;
   }
@@ -59,7 +59,7 @@ int run(const PadWish& wish, const std::string& out) {
   RunEnd end;
   const auto files = pad_files("", "");
   if (!files) return fail(kMapCommand, files.error().message);
-  const auto mapping = PadMapping::start(*files, wish);
+  const auto mapping = MappingDialog::start(*files, wish);
   if (!mapping) return fail(kMapCommand, mapping.error().message);
   if (!ask(**mapping, wish, end)) {
     const int status = fail(kMapCommand, "given up; nothing is kept");

@@ -46,6 +46,23 @@ ordered_json movement_json(const NewValueCount& new_values) {
           {"repeats", rate->repeats()}};
 }
 
+ordered_json gyro_json(const GyroMeter& gyro) {
+  if (!gyro.has_gyro()) return nullptr;
+  ordered_json json = {{"rate_hz", gyro.sample_rate_hz()},
+                       {"factory_calibration", gyro.has_factory_calibration()},
+                       {"deg_s", nullptr},
+                       {"bias_deg_s", nullptr},
+                       {"noise_deg_s", nullptr},
+                       {"rest_s", nullptr}};
+  if (gyro.rates()) json["deg_s"] = in_degrees(*gyro.rates());
+  if (const auto& rest = gyro.rest()) {
+    json["bias_deg_s"] = in_degrees(rest->bias_rad_s);
+    json["noise_deg_s"] = in_degrees(rest->noise_rad_s);
+    json["rest_s"] = rest->duration_s;
+  }
+  return json;
+}
+
 ordered_json pad_json(std::uint16_t index, const MonitoredPad& pad, const PadStream& stream,
                       double time_s) {
   const DeviceInfo& info = stream.device(index).info;
@@ -73,6 +90,7 @@ ordered_json pad_json(std::uint16_t index, const MonitoredPad& pad, const PadStr
           {"untouched", pad.untouched},
           {"triggers", {{"left", triggers.left}, {"right", triggers.right}}},
           {"buttons", button_names(pad.state)},
+          {"gyro", gyro_json(pad.gyro)},
           {"battery", battery_json(pad.battery)}};
 }
 
@@ -104,6 +122,17 @@ std::string movement_text(const NewValueCount& new_values) {
   return fmt::format("{:>5.0f} {:>3.0f} %", rate->new_value_hz, 100.0 * rate->repeats());
 }
 
+// Samples a second; pitch, yaw and roll while the pad lay still, and their noise.
+std::string gyro_text(const GyroMeter& gyro) {
+  if (gyro.sample_rate_hz() == 0.0) return "";
+  std::string text = fmt::format(", gyro {:.0f} Hz", gyro.sample_rate_hz());
+  const auto& rest = gyro.rest();
+  if (!rest) return text;
+  const TurnRates bias = in_degrees(rest->bias_rad_s), noise = in_degrees(rest->noise_rad_s);
+  return text + fmt::format(" {:+.2f} {:+.2f} {:+.2f} noise {:.2f} deg/s", bias[0], bias[1],
+                            bias[2], *std::ranges::max_element(noise));
+}
+
 PadLine pad_text(std::uint16_t index, const MonitoredPad& pad, const PadStream& stream) {
   const std::string who = pad_name(stream.device(index).info);
   if (!pad.is_plugged) return {"unplugged:", "", who};
@@ -123,7 +152,7 @@ PadLine pad_text(std::uint16_t index, const MonitoredPad& pad, const PadStream& 
           fmt::format("{} {:>7.0f} {:>6.0f} {:>5} {:>6} {:>4}", movement_text(pad.new_values),
                       median(w.latency_us), greatest(w.latency_us), frame_text(w, 50),
                       frame_text(w, 99), stream.counts().lost),
-          buttons + who + battery};
+          buttons + who + battery + gyro_text(pad.gyro)};
 }
 
 constexpr std::int64_t kSecondNs = 1'000'000'000;

@@ -8,7 +8,7 @@
 
 #include "drivers/system_nodes.h"
 #include "gaitpad/config_files.h"
-#include "gaitpad/drivers.h"
+#include "gaitpad/driver_registry.h"
 #include "tools/gaitpad/print.h"
 
 namespace gaitpad {

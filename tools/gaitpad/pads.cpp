@@ -5,7 +5,7 @@
 #include <memory>
 
 #include "gaitpad/descriptor.h"
-#include "gaitpad/drivers.h"
+#include "gaitpad/driver_registry.h"
 #include "gaitpad/pad_stream.h"
 #include "hid/usage_names.h"
 #include "tools/gaitpad/commands.h"

@@ -13,7 +13,7 @@
 #include "base/files.h"
 #include "drivers/uhid_device.h"
 #include "drivers/virtual_pad.h"
-#include "gaitpad/pad_setup.h"
+#include "gaitpad/pad_configuration.h"
 #include "gaitpad/trace.h"
 #include "hid/evemu.h"
 #include "session/pad_forward.h"

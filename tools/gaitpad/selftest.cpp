@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "gaitpad/pad_setup.h"
+#include "gaitpad/pad_configuration.h"
 #include "selftest/self_test.h"
 #include "terminal/terminal.h"
 #include "tools/gaitpad/commands.h"

@@ -22,7 +22,7 @@
 
 #include "drivers/system_nodes.h"
 #include "gaitpad/decode.h"
-#include "gaitpad/drivers.h"
+#include "gaitpad/driver_registry.h"
 
 namespace gaitpad {
 namespace {

@@ -139,6 +139,7 @@ struct CalibrationFile {
   std::string mapping;                 // a line of SDL's controller data base, or empty
   Calibration calibration;
   std::array<std::optional<StickMeasured>, 2> measured;  // left, right
+  std::optional<TurnRates> gyro_bias_rad_s;  // what the gyroscope shows while the pad lies still
   bool operator==(const CalibrationFile&) const = default;
 };
 

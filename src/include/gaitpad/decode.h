@@ -8,15 +8,15 @@
 //   if (gaitpad::decode(*layout, report, pad)) ...      // pad.axis, pad.buttons
 //
 // How controls are found: fields of the first game-pad, joystick or multi-axis collection with X
-// and Y are bound by their usages and neighbours; a [[pad]] entry of config/pads (pad_map.h) or a
-// line of SDL's data base (DeviceInfo::mapping) replaces what usages do not tell.
+// and Y are bound by their usages and neighbours; a [[pad]] entry of config/pads (pad_overrides.h)
+// or a line of SDL's data base (DeviceInfo::mapping) replaces what usages do not tell.
 #pragma once
 #include <cstdint>
 #include <string>
 #include <vector>
 
 #include "gaitpad/descriptor.h"
-#include "gaitpad/pad_map.h"
+#include "gaitpad/pad_overrides.h"
 #include "gaitpad/report.h"
 #include "gaitpad/result.h"
 

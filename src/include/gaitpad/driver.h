@@ -77,6 +77,7 @@ class Device {
   virtual bool rumble(const Rumble&) noexcept { return false; }
   // None: the pad stores no calibration, or it was not read.
   virtual std::optional<FactorySticks> factory_sticks() const { return std::nullopt; }
+  virtual std::optional<FactoryGyro> factory_gyro() const { return std::nullopt; }
   // Reports known to be lost or refused since the device was opened (SYN_DROPPED, overruns, a wrong
   // checksum, a stalled endpoint).
   virtual std::int64_t lost() const noexcept { return 0; }

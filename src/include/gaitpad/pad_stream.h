@@ -11,9 +11,9 @@
 #include <vector>
 
 #include "gaitpad/driver.h"
-#include "gaitpad/drivers.h"
+#include "gaitpad/driver_registry.h"
 #include "gaitpad/keyboard.h"
-#include "gaitpad/pad_setup.h"
+#include "gaitpad/pad_configuration.h"
 #include "gaitpad/report.h"
 #include "gaitpad/result.h"
 

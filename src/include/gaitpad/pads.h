@@ -27,6 +27,7 @@ struct PadConfig {
   bool streams = false;             // it reports while at rest too: silence means that it is gone
   bool is_fallback = false;         // the keyboard: it drives only while no other pad is plugged in
   bool has_factory_sticks = false;  // live pads: it told its own calibration when it was opened
+  std::optional<FactoryGyro> factory_gyro;  // the same of its gyroscope
 };
 
 // For users.

@@ -36,6 +36,14 @@ struct DeviceInfo {
   bool operator==(const DeviceInfo&) const = default;
 };
 
+// Rates of turn about a pad's axes, rad/s: pitch (nose up), yaw and roll (to the left).
+using TurnRates = std::array<double, 3>;
+// The calibration of its gyroscope that a pad stores itself, by the numbers of its reports.
+struct FactoryGyro {
+  std::array<double, 3> zero{};  // counts at rest
+  std::array<double, 3> rad_s_per_count{};
+};
+
 enum class ReportKind : std::uint8_t {
   input,    // bytes as read; they begin with the report id if the descriptor has ids
   command,  // the bytes are text, for instance `style limp_left`; no device

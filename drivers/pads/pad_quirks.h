@@ -1,6 +1,6 @@
-// What a model of pad needs in addition to its report descriptor: packets that start it, packets
-// that are no input, rumble. Bytes only; the drivers that carry packets (hidraw, usb) share the
-// models.
+// Quirks: what a kind of pad needs in addition to its report descriptor: packets that start it,
+// packets that are no input, rumble. Bytes only; the drivers that carry packets (hidraw, usb) share
+// the quirks.
 #pragma once
 #include <array>
 #include <chrono>
@@ -49,9 +49,9 @@ struct OutPacket {
 // Who started the pad: some start-up packets are only for a pad without a kernel driver.
 enum class StartedBy { kernel, us };
 
-class PadModel {
+class PadQuirks {
  public:
-  virtual ~PadModel() = default;
+  virtual ~PadQuirks() = default;
   // Talks to the pad right after it was opened, for at most two seconds. A pad that does not answer
   // still works; take_remarks() tells what is missing.
   virtual void start(PadPort&, StartedBy) {}
@@ -77,13 +77,14 @@ class PadModel {
   // The packet that sets the motors; size 0: the pad has none.
   virtual void rumble(const Rumble&, OutPacket& packet) noexcept { packet.size = 0; }
   virtual std::optional<FactorySticks> factory_sticks() const { return std::nullopt; }
+  virtual std::optional<FactoryGyro> factory_gyro() const { return std::nullopt; }
   // Input reports that accept() refused because they are damaged (wrong checksum).
   virtual std::int64_t lost() const noexcept { return 0; }
   virtual std::vector<std::string> take_remarks() { return {}; }
 };
 
-// The model by ids and bus; a plain one for pads that need nothing.
-std::unique_ptr<PadModel> make_pad_model(const DeviceInfo& device);
+// The quirks by ids and bus; plain ones for pads that need nothing.
+std::unique_ptr<PadQuirks> make_pad_quirks(const DeviceInfo& device);
 
 // The first packet of a HID pad that was just opened, and its size: what it sends within 30 ms,
 // else its answer when it is asked for a report with its stick; 0: none. A pad that reports changes
@@ -93,19 +94,19 @@ std::size_t first_packet(PadPort& port, const std::vector<std::uint8_t>& descrip
                          std::span<std::uint8_t> packet) noexcept;
 
 // One file for each family; null: the device is of another family.
-std::unique_ptr<PadModel> make_sony_model(const DeviceInfo& device);
-std::unique_ptr<PadModel> make_switch_model(const DeviceInfo& device);
-std::unique_ptr<PadModel> make_steam_model(const DeviceInfo& device);
-std::unique_ptr<PadModel> make_motor_model(const DeviceInfo& device);
-std::unique_ptr<PadModel> make_one_of_several_model(const DeviceInfo& device);
+std::unique_ptr<PadQuirks> make_sony_quirks(const DeviceInfo& device);
+std::unique_ptr<PadQuirks> make_switch_quirks(const DeviceInfo& device);
+std::unique_ptr<PadQuirks> make_steam_quirks(const DeviceInfo& device);
+std::unique_ptr<PadQuirks> make_motor_quirks(const DeviceInfo& device);
+std::unique_ptr<PadQuirks> make_one_of_several_quirks(const DeviceInfo& device);
 
 // Vendor-class USB pads (no HID): by the interface's class, subclass and protocol.
 struct UsbInterfaceClass {
   std::uint8_t interface_class = 0, subclass = 0, protocol = 0;
 };
-// The pad's model and the descriptor that states its packets; null: another kind of interface.
+// The pad's quirks and the descriptor that states its packets; null: another kind of interface.
 struct VendorPad {
-  std::unique_ptr<PadModel> model;
+  std::unique_ptr<PadQuirks> quirks;
   std::vector<std::uint8_t> descriptor;
 };
 VendorPad make_xbox_360_pad(const UsbInterfaceClass& interface, const DeviceInfo&);  // ff/5d/01

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "gaitpad/driver.h"
-#include "gaitpad/pad_map.h"
+#include "gaitpad/pad_overrides.h"
 #include "gaitpad/pads.h"
 #include "gaitpad/result.h"
 #include "gaitpad/trace.h"

@@ -1,4 +1,4 @@
-#include "gaitpad/pad_map.h"
+#include "gaitpad/pad_overrides.h"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,4 @@
-#include "gaitpad/pad_setup.h"
+#include "gaitpad/pad_configuration.h"
 
 #include <gtest/gtest.h>
 
@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-class PadSetup : public testing::Test {
+class PadConfiguration : public testing::Test {
  protected:
   void SetUp() override {
     fs::create_directories(folder_ + "/calibration");
@@ -74,7 +74,7 @@ constexpr FactorySticks kFactory = {.left_x = {-0.7123456789012345, 1.0 / 30, 0.
                                     .right_x = {-0.75, 0.01, 0.75},
                                     .right_y = {-0.75, -0.0, 0.75}};
 
-TEST_F(PadSetup, AReplayHasTheCalibrationOfTheLiveSessionBitByBit) {
+TEST_F(PadConfiguration, AReplayHasTheCalibrationOfTheLiveSessionBitByBit) {
   write("calibration/a.toml", "devices = ['*:*']\n[left]\ninner = 0.1234567890123456789\n");
   const std::string by_hand =
       write("own.toml",
@@ -97,7 +97,7 @@ TEST_F(PadSetup, AReplayHasTheCalibrationOfTheLiveSessionBitByBit) {
   }
 }
 
-TEST_F(PadSetup, TheKeyboardIsAFallbackLiveAndInAReplay) {
+TEST_F(PadConfiguration, TheKeyboardIsAFallbackLiveAndInAReplay) {
   const PadFiles all = files();
   DeviceInfo info = made_pad();
   info.driver = "keyboard";
@@ -113,7 +113,7 @@ TEST_F(PadSetup, TheKeyboardIsAFallbackLiveAndInAReplay) {
 // Factory sticks take precedence over the model's file, whose zones they keep, but not if axes are
 // turned, because the pad reports unturned ones. A file for this device or one given by hand takes
 // precedence over them.
-TEST_F(PadSetup, FactorySticksComeBeforeWhatIsNotForThisOneDevice) {
+TEST_F(PadConfiguration, FactorySticksComeBeforeWhatIsNotForThisOneDevice) {
   DeviceInfo info = made_pad();
   info.unique_id = "A1";
   info.physical_path = "usb-1";
@@ -137,7 +137,7 @@ TEST_F(PadSetup, FactorySticksComeBeforeWhatIsNotForThisOneDevice) {
   EXPECT_EQ(hand.left.x.centre, 0.0);
 }
 
-TEST_F(PadSetup, TheUsersFileComesBeforeAnEquallyGoodOneOfConfig) {
+TEST_F(PadConfiguration, TheUsersFileComesBeforeAnEquallyGoodOneOfConfig) {
   write("calibration/a.toml", "devices = ['1209:0001']\n[left]\ninner = 0.3\n");
   write("user/z.toml", "devices = ['1209:0001']\n[left]\ninner = 0.25\n");
   EXPECT_EQ(replayed(files(), recorded(files(), made_pad())).left.inner, 0.25);
@@ -146,7 +146,7 @@ TEST_F(PadSetup, TheUsersFileComesBeforeAnEquallyGoodOneOfConfig) {
   EXPECT_EQ(replayed(files(), recorded(files("", by_hand), made_pad())).left.inner, 0.4);
 }
 
-TEST_F(PadSetup, AReplayDoesNotSeeTheUsersFiles) {
+TEST_F(PadConfiguration, AReplayDoesNotSeeTheUsersFiles) {
   write("user/a.toml", "devices = ['*:*']\n[left]\ninner = 0.3\n");
   TraceDevice foreign;
   foreign.info = made_pad();
@@ -155,7 +155,7 @@ TEST_F(PadSetup, AReplayDoesNotSeeTheUsersFiles) {
   EXPECT_TRUE(pad_config(files(), foreign, "x"));
 }
 
-TEST_F(PadSetup, AFileForAnotherDriverIsNotTaken) {
+TEST_F(PadConfiguration, AFileForAnotherDriverIsNotTaken) {
   write("user/a.toml", "devices = ['*:*']\ndrivers = ['evdev', 'sdl']\n[left]\ninner = 0.3\n");
   DeviceInfo info = made_pad();
   info.driver = "hidraw";
@@ -165,7 +165,7 @@ TEST_F(PadSetup, AFileForAnotherDriverIsNotTaken) {
 }
 
 // It may belong to another pad, which cannot be known.
-TEST_F(PadSetup, ADamagedFileOfTheUsersIsARemarkAndThePadPlaysOn) {
+TEST_F(PadConfiguration, ADamagedFileOfTheUsersIsARemarkAndThePadPlaysOn) {
   const std::string damaged = write("user/a.toml", "[left]\ninner = 7\n");
   write("user/b.toml", "devices = ['1209:0001']\n[left]\ninner = 0.25\n");
   EXPECT_EQ(replayed(files(), recorded(files(), made_pad())).left.inner, 0.25);
@@ -176,7 +176,7 @@ TEST_F(PadSetup, ADamagedFileOfTheUsersIsARemarkAndThePadPlaysOn) {
 }
 
 // Other data of a calibration would only identify the pad's owner.
-TEST_F(PadSetup, ARecordingHoldsWhatSteersAndNothingElse) {
+TEST_F(PadConfiguration, ARecordingHoldsWhatSteersAndNothingElse) {
   write("user/a.toml",
         "name = 'mine'\nunique_id = 'A1'\nmeasured_on = '2026-11-21'\n[left.measured]\nsigma = "
         "0.5\n");
@@ -199,7 +199,7 @@ PadState decoded(const PadConfig& pad) {
   return state;
 }
 
-TEST_F(PadSetup, AFilesMappingComesBeforeConfigPadsAndAReplayHasItToo) {
+TEST_F(PadConfiguration, AFilesMappingComesBeforeConfigPadsAndAReplayHasItToo) {
   write("user/a.toml", "devices = ['*:*']\n");  // without one config/pads names the controls
   write("pads/a.toml", "[[pad]]\nvendor = 0x1209\n[pad.axes]\nright_x = '0001:0030'\n");
   EXPECT_EQ(decoded(replayed_pad(files(), recorded(files(), made_pad()))).axis[kRightX], 1.0f);
@@ -228,7 +228,7 @@ TEST_F(PadSetup, AFilesMappingComesBeforeConfigPadsAndAReplayHasItToo) {
 }
 
 // SDL numbers the kernel's controls, which an untrue descriptor does not describe.
-TEST_F(PadSetup, AReplacedDescriptorKeepsItsControls) {
+TEST_F(PadConfiguration, AReplacedDescriptorKeepsItsControls) {
   write("user/a.toml", std::string("devices = ['*:*']\nmapping = '") + kSwapped + "'\n");
   write(
       "pads/a.toml",
@@ -238,7 +238,7 @@ TEST_F(PadSetup, AReplacedDescriptorKeepsItsControls) {
   EXPECT_EQ(decoded(pad).axis[kLeftX], 1.0f);
 }
 
-TEST_F(PadSetup, FactoryNumbersThatNoStickHasAreNotTaken) {
+TEST_F(PadConfiguration, FactoryNumbersThatNoStickHasAreNotTaken) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   FactorySticks odd;
   odd.left_x = {-1.0, nan, 1.0};
@@ -254,7 +254,7 @@ TEST_F(PadSetup, FactoryNumbersThatNoStickHasAreNotTaken) {
   EXPECT_EQ(calibration.right.y.max, 1.0);
 }
 
-TEST_F(PadSetup, ARecordingsOwnCalibrationComesBeforeTheFiles) {
+TEST_F(PadConfiguration, ARecordingsOwnCalibrationComesBeforeTheFiles) {
   write("calibration/a.toml", "devices = ['*:*']\n[left]\ninner = 0.3\n");
   TraceDevice device;
   device.info = made_pad();
@@ -268,7 +268,7 @@ TEST_F(PadSetup, ARecordingsOwnCalibrationComesBeforeTheFiles) {
       << damaged.error().message;
 }
 
-TEST_F(PadSetup, AMapGivenByHandComesBeforeConfigPads) {
+TEST_F(PadConfiguration, AMapGivenByHandComesBeforeConfigPads) {
   write("pads/a.toml", "[[pad]]\nvendor = 0x1209\npad = true\n");
   const std::string map = write("map.toml", "[[pad]]\nvendor = 0x1209\npad = false\n");
   TraceDevice device;
@@ -277,7 +277,7 @@ TEST_F(PadSetup, AMapGivenByHandComesBeforeConfigPads) {
   EXPECT_FALSE(pad_config(files(map), device, "x")->is_usable);
 }
 
-TEST_F(PadSetup, TextsOfAHostileDeviceFitIntoARecording) {
+TEST_F(PadConfiguration, TextsOfAHostileDeviceFitIntoARecording) {
   DeviceInfo info = made_pad();
   info.name = std::string(100'000, 'n');
   info.unique_id = std::string(100'000, 'u');
@@ -289,7 +289,7 @@ TEST_F(PadSetup, TextsOfAHostileDeviceFitIntoARecording) {
   static_cast<void>(replayed(files(), device));
 }
 
-TEST_F(PadSetup, DamagedFilesAreErrorsThatNameThem) {
+TEST_F(PadConfiguration, DamagedFilesAreErrorsThatNameThem) {
   const std::string damaged = write("damaged.toml", "unknown = 1\n");
   auto by_hand = load_pad_files({folder_}, "", damaged);
   ASSERT_FALSE(by_hand);
@@ -298,7 +298,7 @@ TEST_F(PadSetup, DamagedFilesAreErrorsThatNameThem) {
   EXPECT_FALSE(load_pad_files({folder_}, "/nonexistent.toml", ""));
 }
 
-TEST_F(PadSetup, TheUsersDataBaseNamesTheControlsOfLivePadsOnEveryDriver) {
+TEST_F(PadConfiguration, TheUsersDataBaseNamesTheControlsOfLivePadsOnEveryDriver) {
   const std::string guid = "03000000091200000100000000000000,Mine,";
   const std::string in_file = guid + "leftx:a2,lefty:a3,platform:Linux,",
                     in_line = guid + "leftx:a1,lefty:a0,platform:Linux,";
@@ -317,7 +317,7 @@ TEST_F(PadSetup, TheUsersDataBaseNamesTheControlsOfLivePadsOnEveryDriver) {
   EXPECT_TRUE(recorded(mapped, made_pad()).info.mapping.empty());
 }
 
-TEST_F(PadSetup, ADataBaseThatCannotBeReadIsToldOf) {
+TEST_F(PadConfiguration, ADataBaseThatCannotBeReadIsToldOf) {
   // Do not set SDL's variable: SDL would try to load the folder as a file of 2^63 bytes.
   const Environment config("XDG_CONFIG_HOME", folder_.c_str());
   fs::create_directories(user_mapping_file());

@@ -1,4 +1,4 @@
-#include "gaitpad/pad_setup.h"
+#include "gaitpad/pad_configuration.h"
 
 #include <fmt/format.h>
 
@@ -11,7 +11,7 @@
 
 #include "base/files.h"
 #include "gaitpad/config_files.h"
-#include "gaitpad/drivers.h"
+#include "gaitpad/driver_registry.h"
 #include "hid/sdl_lines.h"
 #include "pads/calibration_store.h"
 

@@ -1,4 +1,4 @@
-#include "drivers/pads/pad_model.h"
+#include "drivers/pads/pad_quirks.h"
 
 #include <algorithm>
 
@@ -6,12 +6,12 @@
 
 namespace gaitpad {
 
-std::unique_ptr<PadModel> make_pad_model(const DeviceInfo& device) {
-  for (const auto make : {make_one_of_several_model, make_sony_model, make_switch_model,
-                          make_steam_model, make_motor_model}) {
-    if (auto model = make(device)) return model;
+std::unique_ptr<PadQuirks> make_pad_quirks(const DeviceInfo& device) {
+  for (const auto make : {make_one_of_several_quirks, make_sony_quirks, make_switch_quirks,
+                          make_steam_quirks, make_motor_quirks}) {
+    if (auto quirks = make(device)) return quirks;
   }
-  return std::make_unique<PadModel>();
+  return std::make_unique<PadQuirks>();
 }
 
 std::size_t first_packet(PadPort& port, const std::vector<std::uint8_t>& descriptor,

@@ -1,7 +1,8 @@
-#include "drivers/driver_entries.h"
+#include "gaitpad/driver_registry.h"
+
+#include "drivers/driver_rows.h"
 #include "drivers/event_node.h"
 #include "drivers/virtual_pad.h"
-#include "gaitpad/drivers.h"
 #include "hid/sdl_lines.h"
 
 namespace gaitpad {

@@ -398,15 +398,21 @@ TEST(WalkTerrain, ARiserTooHighForTheLegsIsNotClimbed) {
 }
 
 TEST(WalkTerrain, NothingFailsWhereverTheStickLeadsOnStairs) {
-  for (const double ratio : {0.8, 1.0}) {
+  struct Walk {
+    double ratio;
+    unsigned seed;
+  };
+  // The last three begin to walk from a stand on two treads that bends an ankle to its limit.
+  for (const auto& [ratio, seed] :
+       {Walk{0.8, 11}, Walk{1.0, 11}, Walk{0.8, 27}, Walk{0.8, 29}, Walk{0.8, 31}}) {
     std::vector<SectionShape> sections = {FlatSection{0.3}};
     for (int k = 0; k < 6; ++k) {
-      sections.push_back(StairsSection{k % 2 ? -0.17 : 0.17, 0.28, 5});
-      sections.push_back(FlatSection{0.8});
+      sections.emplace_back(StairsSection{k % 2 ? -0.17 : 0.17, 0.28, 5});
+      sections.emplace_back(FlatSection{0.8});
     }
     const WalkModel model = model_on(ratio, ground_of(sections));
     Hiker hiker(model);
-    std::mt19937 chance(11);
+    std::mt19937 chance(seed);
     const auto in = [&chance](double low, double high) {
       return low + (high - low) * (chance() >> 8) / double(1 << 24);
     };
@@ -418,7 +424,9 @@ TEST(WalkTerrain, NothingFailsWhereverTheStickLeadsOnStairs) {
     }
     // Now and then a foot lands hard that was sent somewhere else in mid-flight, and the corner of
     // a heel passes an edge by half a millimetre less.
-    expect_sound(hiker.worst(), "random sticks, leg " + std::to_string(ratio), 1.1, 1.5);
+    const std::string what =
+        "random sticks, leg " + std::to_string(ratio) + " seed " + std::to_string(seed);
+    expect_sound(hiker.worst(), what, 1.1, 1.5);
   }
 }
 

@@ -120,7 +120,11 @@ Result<EvdevRecordings> evdev_recordings(std::string_view text, const std::strin
   EvdevRecordings recordings;
   while (!text.empty()) {
     ++reader->line_number;
-    const auto cause = reader->add(take_line(text));
+    std::string_view line = take_line(text);
+    if (line.ends_with('\r')) line.remove_suffix(1);
+    const bool is_broken = !line.starts_with('#') && line.find('\r') != line.npos;
+    const auto cause = is_broken ? std::optional<std::string>("a carriage return inside the line")
+                                 : reader->add(line);
     if (!cause) continue;
     const std::string sentence = fmt::format("{}:{}: {}", name, reader->line_number, *cause);
     if (damage == Damage::refuse) return Error{sentence};

@@ -126,6 +126,7 @@ TEST(Evemu, DamageIsOneSentenceWithItsLine) {
   EXPECT_EQ(cause(kHeader + "A: 00 0 255 0 15 0\n"),
             "ds4.evemu:20: a second range for the axis 00");
   EXPECT_EQ(cause("# EVEMU 1.3\nN: x\n"), "ds4.evemu: no device with an axis or a key");
+  EXPECT_EQ(cause("# EVEMU 1.3\nN: a\rb\n"), "ds4.evemu:2: a carriage return inside the line");
   const Trace lenient = value_of(parse_trace(kHeader + "x\n" + syn("0.000001"), "t", Damage::skip));
   EXPECT_EQ(lenient.skipped_lines, 1);
   EXPECT_EQ(lenient.events.size(), 1u);

@@ -7,8 +7,8 @@ import pytest
 
 from support.program import ROOT, has_sanitizers
 
-BODIES = ("gaitpad::solve_legs<", "gaitpad::advance_lanes<", "gaitpad::blend_rows<", "gaitpad::fade_rows<",
-          "gaitpad::sum_rows<", "gaitpad::sum_group<")
+BODIES = ("gaitpad::solve_legs<", "gaitpad::close_legs<", "gaitpad::advance_lanes<", "gaitpad::blend_rows<",
+          "gaitpad::fade_rows<", "gaitpad::sum_rows<", "gaitpad::sum_group<")
 
 
 def test_wide_objects_hold_their_own_functions_alone(program):

@@ -51,8 +51,8 @@ EvdevAbilities EvdevRecording::abilities() const {
   EvdevAbilities abilities{{axes_.begin(), axes_.end()}, keys_};
   std::ranges::sort(abilities.axes, {}, &EvdevAxis::code);
   std::ranges::sort(abilities.keys);
-  const auto repeated = std::ranges::unique(abilities.keys);
-  abilities.keys.erase(repeated.begin(), repeated.end());
+  abilities.keys.erase(std::unique(abilities.keys.begin(), abilities.keys.end()),
+                       abilities.keys.end());
   return abilities;
 }
 

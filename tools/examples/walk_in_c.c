@@ -1,4 +1,5 @@
-/* A character on a skeleton of your own walks over waves, without a file. Prints its heel strikes. */
+/* A character on a skeleton of your own walks over waves, without a file. Prints its heel strikes.
+ */
 #include <gaitpad.h>
 #include <math.h>
 #include <stdio.h>
@@ -9,12 +10,14 @@ static double waves(const void* game, double x_m, double z_m) {
 }
 
 int main(void) {
-  static const gaitpad_bone bones[] = {/* standing: +x left, +y up, +z ahead */
-      {"Hips", -1, 0, {0, 0, 0}},
-      {"LeftUpLeg", 0, 0, {0.1, 0, 0}},    {"LeftLeg", 1, 0, {0, -0.44, 0}},  {"LeftFoot", 2, 0, {0, -0.4, 0}},
+  static const gaitpad_bone bones[] = {
+      /* standing: +x left, +y up, +z ahead */
+      {"Hips", -1, 0, {0, 0, 0}},          {"LeftUpLeg", 0, 0, {0.1, 0, 0}},
+      {"LeftLeg", 1, 0, {0, -0.44, 0}},    {"LeftFoot", 2, 0, {0, -0.4, 0}},
       {"LeftToe", 3, 0, {0, -0.07, 0.14}}, {"LeftTip", 4, 1, {0, 0, 0.06}},
-      {"RightUpLeg", 0, 0, {-0.1, 0, 0}},  {"RightLeg", 6, 0, {0, -0.44, 0}}, {"RightFoot", 7, 0, {0, -0.4, 0}},
-      {"RightToe", 8, 0, {0, -0.07, 0.14}}, {"RightTip", 9, 1, {0, 0, 0.06}}};
+      {"RightUpLeg", 0, 0, {-0.1, 0, 0}},  {"RightLeg", 6, 0, {0, -0.44, 0}},
+      {"RightFoot", 7, 0, {0, -0.4, 0}},   {"RightToe", 8, 0, {0, -0.07, 0.14}},
+      {"RightTip", 9, 1, {0, 0, 0.06}}};
   char error[256];
   gaitpad_model_options options;
   gaitpad_model_defaults(&options);
@@ -35,11 +38,13 @@ int main(void) {
     gaitpad_walk_frame(walk, &frame);
     for (int side = 0; side < 2; ++side)
       if (frame.heel_struck[side])
-        printf("%.3f s: %s heel at %.2f %.2f %.2f m\n", (tick + 1) / 60.0, side == GAITPAD_LEFT ? "left" : "right",
-               frame.heel_m[side][0], frame.heel_m[side][1], frame.heel_m[side][2]);
+        printf("%.3f s: %s heel at %.2f %.2f %.2f m\n", (tick + 1) / 60.0,
+               side == GAITPAD_LEFT ? "left" : "right", frame.heel_m[side][0],
+               frame.heel_m[side][1], frame.heel_m[side][2]);
   }
   float matrices[16 * 11]; /* of all joints, to draw the character with */
-  printf("%d joints, the last one at %.2f m\n", (int)gaitpad_pose_world(walk, matrices, 11), matrices[16 * 10 + 14]);
+  printf("%d joints, the last one at %.2f m\n", (int)gaitpad_pose_world(walk, matrices, 11),
+         matrices[16 * 10 + 14]);
   gaitpad_walk_destroy(walk);
   gaitpad_model_destroy(model);
   return 0;

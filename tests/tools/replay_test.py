@@ -1,4 +1,5 @@
 """gaitpad replay for users: its files, the tick of an event, and its errors."""
+import contextlib
 import csv
 import json
 import os
@@ -341,8 +342,9 @@ def test_a_link_in_the_way_is_not_followed(program, made):
 def has_begun(process, out):
     """It has written to a file there, which has no name yet."""
     for fd in pathlib.Path(f"/proc/{process.pid}/fd").iterdir():
-        if os.readlink(fd).startswith(str(out)) and fd.stat().st_size > 100_000:
-            return True
+        with contextlib.suppress(FileNotFoundError):  # it was closed meanwhile
+            if os.readlink(fd).startswith(str(out)) and fd.stat().st_size > 100_000:
+                return True
     return False
 
 

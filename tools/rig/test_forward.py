@@ -288,7 +288,9 @@ shape = "axial"
 inner = 0.0
 outer = 1.0
 """
-MOST_OVER_BARE_US = 300
+# The goal on a quiet machine is 300; the remark tells the figure. Here the emulator shares the cores. A program that
+# looked a thousand times a second would exceed 700.
+MOST_OVER_BARE_US = 500
 # Other load on the host delays blocks by half a millisecond for seconds, and never makes one early: the quickest block
 # of each reader is compared.
 FORWARD_ATTEMPTS = 6

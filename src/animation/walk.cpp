@@ -471,6 +471,7 @@ WalkState standing(const WalkModel& model, const vec3& place_m, double heading_r
   state.path.heading_rad = state.path.landing_heading_rad = state.path.last_heading_rad = yaw_rad;
   state.path.hips_m = vec3(mended_place(place_m.x, state), 0.0, mended_place(place_m.z, state));
   state.path.pelvis_m.x = state.path.last_pelvis_m = state.path.hips_m;
+  state.path.wider_m = model.rest_wider_m;
   state.gait.flight_height = {Damped<double>{1.0, 0.0}, Damped<double>{1.0, 0.0}};
   state.gait.bounce.x = state.gait.sway.x = state.gait.ground_share.x = 1.0;
   state.gait.step_time_s.x = 0.5;
@@ -481,7 +482,8 @@ WalkState standing(const WalkModel& model, const vec3& place_m, double heading_r
     state.gait.time_s[side] = 0.5;
     foot.lift_yaw_rad = yaw_rad;
     foot.pose.yaw = yaw;
-    foot.heel_anchor_m = state.path.hips_m + yaw * vec3(leg.track_m, 0.0, -model.rest_lead_m);
+    foot.heel_anchor_m =
+        state.path.hips_m + yaw * vec3(standing_track_m(model, side), 0.0, -model.rest_lead_m);
     if (!is_flat(*model.terrain)) {
       foot.plane = standing_plane(model, side, foot.heel_anchor_m, yaw_rad);
       foot.heel_anchor_m = foot.plane.place_m;

@@ -11,6 +11,7 @@ namespace {
 
 // A quintic to rest brakes with about kNeed v^2 / way. Times are in seconds at the reference leg.
 constexpr double kNeed = 0.72, kBrake_m_s2 = 3.0, kCloseBrake_m_s2 = 3.3, kMostBrake_m_s2 = 3.9;
+constexpr double kSpeedsUp_s = 0.04;  // so long do hips go on speeding up before they brake
 constexpr double kLeastRest_s = 0.25, kMostRest_s = 1.6;
 constexpr double kShortestStep = 0.25, kFurtherStep = 0.3;  // of the foot's own step
 constexpr double kToClose_s = 0.40, kWayWhileClosing = 0.44;
@@ -37,28 +38,29 @@ struct Behind {
 };
 
 // The time in which hips come to rest most softly, neither beyond their place nor back, and not
-// before their feet. Hips that move away from it turn round soon.
-double best_rest_s(double way_m, double speed_m_s, double bend_m_s2, double scale,
+// before their feet. Hips that move away from it turn round soon. Along the way x, across it z.
+double best_rest_s(const vec3& way, const vec3& speed_m_s, const vec3& bend_m_s2, double scale,
                    std::span<const Behind> landings) noexcept {
+  const double way_m = way.x;
   constexpr int kTimes = 20, kPoints = 40;
   constexpr double kLeastShare = 0.30, kShare = 0.02;  // of speed and time: the way
   constexpr double kOver = 200.0, kBack = 50.0, kLate = 0.8, kAhead = 40.0;  // costs, in m/s2
   double best_s = kLeastRest_s * scale, least = std::numeric_limits<double>::infinity();
   for (int k = 0; k < kTimes; ++k) {
     const double share = kLeastShare + kShare * k;
-    const double time_s = std::clamp(way_m / (share * std::max(std::abs(speed_m_s), 0.05)),
+    const double time_s = std::clamp(way_m / (share * std::max(std::abs(speed_m_s.x), 0.05)),
                                      kLeastRest_s * scale, kMostRest_s * scale);
     const double point_s = time_s / kPoints;
-    SmoothFade<double> off{-way_m, speed_m_s * point_s, bend_m_s2 * point_s * point_s};
+    SmoothFade<vec3> off{-way, speed_m_s * point_s, bend_m_s2 * (point_s * point_s)};
     double brakes = 0.0, over = 0.0, back = 0.0, ahead = 0.0;
     for (int n = kPoints; n > 1; --n) {
       off.move(static_cast<double>(n));
-      brakes = std::max(brakes, std::abs(off.a) / (point_s * point_s));
-      over = std::max({over, off.x, -way_m - off.x});
-      back = std::max(back, -off.v / point_s);
+      brakes = std::max(brakes, glm::length(off.a) / (point_s * point_s));
+      over = std::max({over, off.x.x, -way_m - off.x.x});
+      back = std::max(back, -off.v.x / point_s);
       const double now_s = (kPoints - n + 1) * point_s;
       for (const Behind& landing : landings) {
-        if (now_s <= landing.time_s) ahead = std::max(ahead, off.x + landing.way_m);
+        if (now_s <= landing.time_s) ahead = std::max(ahead, off.x.x + landing.way_m);
       }
     }
     for (const Behind& landing : landings) {
@@ -174,7 +176,7 @@ void plan_rest_place(const Tick& tick, WalkState& state) noexcept {
   const FootState& foot = state.foot[stands];
   state.path.rest_m = foot.heel_anchor_m +
                       heading_direction(foot.lift_yaw_rad) * model.rest_lead_m -
-                      left_of(foot.lift_yaw_rad) * model.leg[stands].track_m;
+                      left_of(foot.lift_yaw_rad) * standing_track_m(model, stands);
   state.path.rest_m.y = 0.0;
 }
 
@@ -187,12 +189,16 @@ void plan_rest(const Tick& tick, WalkState& state) noexcept {
   const vec3 forward = heading_direction(path.landing_heading_rad), ahead = forward * sign,
              left = left_of(path.landing_heading_rad);
   const auto along = [&](const vec3& v) { return glm::dot(v, ahead); };
-  const double speed = along(path.pelvis_m.v) / tick.dt_s,
-               bend = along(path.pelvis_m.a) / (tick.dt_s * tick.dt_s);
+  const auto both = [&](const vec3& v) { return vec3(along(v), 0.0, glm::dot(v, left)); };
+  const vec3 velocity = path.pelvis_m.v / tick.dt_s,
+             bend = path.pelvis_m.a / (tick.dt_s * tick.dt_s);
+  const double speed = along(velocity);
   const vec3& standing = state.foot[stands].heel_anchor_m;
   const double from = along(standing) + sign * model.rest_lead_m - along(path.pelvis_m.x);
-  const auto to_rest = [&](double way_m, std::span<const Behind> landings) {
-    double time_s = best_rest_s(way_m, speed, bend, scale, landings);
+  // `beside_m`: the place of rest to the left of the hips.
+  const auto to_rest = [&](double way_m, double beside_m, std::span<const Behind> landings) {
+    double time_s =
+        best_rest_s({way_m, 0.0, beside_m}, both(velocity), both(bend), scale, landings);
     if (path.foothold.next_rise > 0.0)
       time_s = std::max(time_s, tick.dt_s * moment_of(model, state).ticks_to_strike());
     clock.rest_ticks = std::max(2, static_cast<int>(time_s / tick.dt_s + 0.5));
@@ -215,7 +221,7 @@ void plan_rest(const Tick& tick, WalkState& state) noexcept {
     path.rest_m = 0.5 * (standing + state.foot[swing].heel_anchor_m) + forward * model.rest_lead_m -
                   left * (0.5 * (model.leg[0].track_m + model.leg[1].track_m));
     path.rest_m.y = 0.0;
-    to_rest(0.0, {});
+    to_rest(0.0, 0.0, {});
     clock.rest_ticks = clock.closing_ticks =
         static_cast<int>(kStandAgain_s * scale / tick.dt_s + 0.5);
     clock.starting = clock.started = false;
@@ -228,7 +234,8 @@ void plan_rest(const Tick& tick, WalkState& state) noexcept {
   }
   const double own_m = model.own_step_m[clock.backward ? stands : swing],
                other_own_m = model.own_step_m[clock.backward ? swing : stands];
-  const double need = kNeed * speed * speed;
+  const double soon = speed + kSpeedsUp_s * scale * std::max(along(bend), 0.0),
+               need = kNeed * soon * soon;
   const bool is_new =
       usual < running && clock.tick < kNewFlight * (flies ? clock.stage_ticks : 1e9);
   const auto time_again = [&] {
@@ -246,9 +253,9 @@ void plan_rest(const Tick& tick, WalkState& state) noexcept {
   if (may_close && !clock.starting) {
     change_step(tick, state, [&] {
       time_again();
-      to_rest(std::max(from, 0.0), {});
-      clock.closing = true;
       plan_rest_place(tick, state);
+      to_rest(std::max(from, 0.0), glm::dot(path.rest_m - path.pelvis_m.x, left), {});
+      clock.closing = true;
       if (!flies) time_closing_step(tick, state);
     });
     return;
@@ -268,15 +275,19 @@ void plan_rest(const Tick& tick, WalkState& state) noexcept {
   const std::array<Behind, 2> landings = {
       {{left_s, kLandsAhead * step + lead_m + further},
        {left_s + state.gait.time_s[stands], kLandsAhead * further + lead_m}}};
+  // Beside the foot that stands while the last one closes.
+  const double aside_m = further > 0.0 ? model.leg[swing].track_m - model.leg[stands].track_m +
+                                             standing_track_m(model, stands)
+                                       : standing_track_m(model, swing);
   change_step(tick, state, [&] {
     time_again();
-    to_rest(from + step + further, std::span(landings).first(further > 0.0 ? 2 : 1));
+    to_rest(from + step + further, glm::dot(path.landing_m - path.pelvis_m.x, left) - aside_m,
+            std::span(landings).first(further > 0.0 ? 2 : 1));
     clock.further_steps = further > 0.0 ? 1 : 0;
     state.gait.length_m[swing] = {step, 0.0};
     if (further > 0.0) state.gait.length_m[stands] = {further, 0.0};
   });
-  path.rest_m = path.landing_m + ahead * further + forward * model.rest_lead_m -
-                left * model.leg[swing].track_m;
+  path.rest_m = path.landing_m + ahead * further + forward * model.rest_lead_m - left * aside_m;
   path.rest_m.y = 0.0;
 }
 

@@ -479,8 +479,11 @@ void plan_landing(const Tick& tick, const MomentOf<V>& at, StateOf<V>& state) no
                 min_of(round, all_of<V>(1.0)),
             in_place);
     const auto steps_on = not_of(at.closing);
-    const V asides_m = lands_m + (steps_on ? outwards * max_of(wider, V{}) : V{});
-    const V stood_m = stands_m - (steps_on ? outwards * state.path.wider_m : V{});
+    // A foot that closes makes it a stand.
+    const V rests = all_of<V>(tick.model.rest_wider_m),
+            next_wider = steps_on ? max_of(wider, V{}) : rests;
+    const V asides_m = lands_m + outwards * next_wider;
+    const V stood_m = stands_m - outwards * (steps_on ? state.path.wider_m : rests);
     const V lands_rad =
         heading + (steps_on ? in_place * kFootAhead * turn_ahead<V>(tick, state, at) : V{});
     const Vec<V> along = direction_of<V>(V(stands_rad + kWayTurns * turn)),
@@ -490,7 +493,7 @@ void plan_landing(const Tick& tick, const MomentOf<V>& at, StateOf<V>& state) no
         side_of<V>(to) * asides_m - side_of<V>(from) * stood_m + (from - to) * lead_m;
     path.landing_heading_rad = open ? lands_rad : path.landing_heading_rad;
     path.landing_m = chosen(open, standing + along * length_m + across, path.landing_m);
-    path.next_wider_m = open ? (steps_on ? max_of(wider, V{}) : V{}) : path.next_wider_m;
+    path.next_wider_m = open ? next_wider : path.next_wider_m;
     if constexpr (kAlone<V>) {
       if (!tick.flat) choose_foothold(tick, state, along, across);
     }

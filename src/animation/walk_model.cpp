@@ -436,6 +436,10 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
   for (const LegBuild& leg : model.leg) {
     model.rest_lead_m += 0.5 * (-leg.model.heel_m.z - leg.model.hip_m.z);
   }
+  const auto width = [&](double left, double right) { return 0.5 * (left - right); };
+  model.rest_wider_m =
+      std::max(0.0, width(model.leg[kLeftSide].model.hip_m.x, model.leg[kRightSide].model.hip_m.x) -
+                        width(model.leg[kLeftSide].track_m, model.leg[kRightSide].track_m));
   model.stride_scale = stride_scale(cycle, character.scale, ratio);
   const double knee = std::min(strides.stand_rad[0][kKneeX], strides.stand_rad[1][kKneeX]);
   const Stand stand = standing_legs({model.leg[0].model, model.leg[1].model}, knee);

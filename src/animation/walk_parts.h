@@ -160,6 +160,11 @@ bool walks_on(const GaitParams& params, const WalkState& state) noexcept;
 // Signed length of that foot's step on level ground: negative backwards, 0 when closing a walk.
 double step_length(const WalkState& state, Side side) noexcept;
 
+// Where a foot stands beside the hips at rest, to the left positive.
+inline double standing_track_m(const WalkModel& model, Side side) noexcept {
+  return model.leg[side].track_m + (side == kLeftSide ? model.rest_wider_m : -model.rest_wider_m);
+}
+
 // The share of the cycle that a stage takes: of the roll of `swing`, or of its flight.
 double stage_share(const WalkModel& model, Stage stage, Side swing) noexcept;
 

@@ -117,6 +117,7 @@ struct WalkModel {
   double leg_length_m = 0, source_leg_length_m = 0;
   double source_step_m = 0;              // retargeted: mean step of the data on this character
   double rest_lead_m = 0;                // hips before the heels when standing
+  double rest_wider_m = 0;               // each foot further out than in a walk: below its hip
   double stand_m = 0;                    // pelvis height when standing,
   double stand_roll_rad = 0;             // its roll, left side up positive,
   std::array<LegAngles, 2> stand_rad{};  // and the legs' angles

@@ -106,6 +106,13 @@ void point_foot_down(const LegBuild& leg, double more_rad, double flight_progres
   pose.toe_m.y += lift_m;
 }
 
+// A start begins in the middle of a step, where heels of a walk rise already: from a stand that the
+// ground bends far they begin to.
+double share_of_start(const StepClock& clock) noexcept {
+  if (!clock.starting || clock.stage != Stage::roll) return 1.0;
+  return smoothstep(0.0, 1.0, double(clock.tick) / clock.stage_ticks);
+}
+
 // Eases an ankle that bends up too far: in flight the foot points down, in late support the heel
 // rises. A foot that has to stand still does neither. Near its limit the ankle is held. False if
 // nothing was to be done.
@@ -118,7 +125,8 @@ bool ease_ankle(const Tick& tick, WalkState& state, Side side, const Pelvis& pel
       soft_positive(kMostDorsiflexion - angles[kAnkleX], flies ? kSoftFlying : kSoftAnkle);
   if (!flies)
     excess *= foot.mode == FootMode::support
-                  ? heel_rise<double>(tick.model, moment_of(tick.model, state), side)
+                  ? heel_rise<double>(tick.model, moment_of(tick.model, state), side) *
+                        share_of_start(state.clock)
                   : 0.0;
   double over = soft_positive(kHeldDorsiflexion - angles[kAnkleX], kSoftHeld);
   if (excess == 0.0 && over == 0.0) return false;

@@ -17,8 +17,9 @@ void copy_walker(const Walker& walker, WalkerFrame& frame) noexcept {
   frame.angles_rad = state.legs.angles_rad;
   frame.phase = state.clock.phase;
   frame.presence = presence(state);
-  for (const Side side : {kLeftSide, kRightSide}) frame.lift_m[side] = state.foot[side].lift_m;
-  frame.landing_m = state.path.landing_m;
+  for (const Side side : {kLeftSide, kRightSide})
+    frame.lift_m[side] = to_world(state.placed, state.foot[side].lift_m);
+  frame.landing_m = to_world(state.placed, state.path.landing_m);
   frame.ik_failures = walker.ik_failures;
 }
 

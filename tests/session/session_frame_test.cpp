@@ -86,6 +86,25 @@ TEST_F(SessionFrameTest, LiftAndLandingAreWhereTheHeelLeavesAndComesDown) {
   EXPECT_GT(landings, 6);
 }
 
+// A walk counts in coordinates of its own; a frame is in the world.
+TEST_F(SessionFrameTest, LiftAndLandingOfAMovedWalkAreInTheWorld) {
+  start(1);
+  step({made_report(0x60, 0x10)});
+  // No session moves its walkers yet: the test reaches into its own simulation.
+  auto& walker = const_cast<Walker&>(simulation_->walkers().front());
+  const Placement by{vec3(30.0, 0.0, -20.0), 1.2};
+  for (int tick = 1; tick < 600; ++tick) step();
+  const WalkerFrame before = frame_.walkers[0];
+  move_walk(by, walker.state, walker.pose);
+  copy_frame(*simulation_, frame_);
+  const WalkerFrame& after = frame_.walkers[0];
+  EXPECT_LT(glm::distance(after.landing_m, to_world(by, before.landing_m)), 1e-9);
+  for (const Side side : {kLeftSide, kRightSide}) {
+    EXPECT_LT(glm::distance(after.lift_m[side], to_world(by, before.lift_m[side])), 1e-9);
+    EXPECT_LT(glm::distance(after.walk.heel_m[side], to_world(by, before.walk.heel_m[side])), 1e-9);
+  }
+}
+
 TEST_F(SessionFrameTest, ThePhaseStartsAtTheRightHeelStrike) {
   start(1);
   step({made_report(0x80, 0x00)});

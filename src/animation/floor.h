@@ -1,6 +1,8 @@
 // The ground as a walk meets it, in the walk's own coordinates: sections lie in them, and a game's
 // ground is asked for by its place in the world.
 #pragma once
+#include <array>
+
 #include "gaitpad/terrain.h"
 #include "gaitpad/walk.h"
 
@@ -19,6 +21,25 @@ inline Ground ground_at(const Floor& floor, double x_m, double z_m) noexcept {
   ground.height_m -= placed.place_m.y;
   ground.normal = from_world({vec3(0.0), placed.heading_rad}, ground.normal);
   return ground;
+}
+// Heights of the ground at several places, at most kMostAsked.
+template <std::size_t kPlaces>
+std::array<double, kPlaces> heights_at(const Floor& floor,
+                                       const std::array<vec3, kPlaces>& places) noexcept {
+  static_assert(kPlaces <= kMostAsked);
+  const Placement& placed = floor.placed;
+  const bool moves = floor.terrain.asked.ask != nullptr && !(placed == Placement{});
+  std::array<GroundPlace, kPlaces> asked;
+  for (std::size_t i = 0; i < kPlaces; ++i) {
+    const vec3 at = moves ? to_world(placed, vec3(places[i].x, 0.0, places[i].z)) : places[i];
+    asked[i] = {at.x, at.z};
+  }
+  std::array<Ground, kPlaces> grounds;
+  grounds_at(floor.terrain, asked, grounds);
+  std::array<double, kPlaces> heights;
+  for (std::size_t i = 0; i < kPlaces; ++i)
+    heights[i] = moves ? grounds[i].height_m - placed.place_m.y : grounds[i].height_m;
+  return heights;
 }
 inline Stretch piece_at(const Floor& floor, double z_m) noexcept {
   return piece_at(floor.terrain, z_m);

@@ -346,13 +346,100 @@ double random_share(std::uint32_t seed) noexcept {
   return static_cast<double>(x ^ (x >> 15)) / 4294967296.0;
 }
 
+// --- The ground of a game ------------------------------------------------------------------------
+
+Ground finite_or_floor(const Ground& ground) noexcept {
+  return std::isfinite(ground.height_m) ? ground : Ground{};
+}
+
+constexpr int kMaxGridSide = 16'384;
+constexpr double kLeastSpacing_m = 0.01, kMostSpacing_m = 100.0;
+
+double grid_sample(const GroundGrid& grid, int column, int row) noexcept {
+  return grid.height_m[static_cast<std::size_t>(row) * static_cast<std::size_t>(grid.columns) +
+                       static_cast<std::size_t>(column)];
+}
+
+// A coordinate in samples: the sample before it, and the share of the way to the next one.
+struct GridPlace {
+  int cell = 0;
+  double share = 0.0;
+};
+GridPlace grid_place(double from_m, double spacing_m, int samples) noexcept {
+  const double at = from_m / spacing_m, last = samples - 1;
+  if (!(at > 0.0)) return {};
+  if (at >= last) return {samples - 2, 1.0};
+  const int cell = static_cast<int>(at);
+  return {cell, at - cell};
+}
+
+Ground ask_grid(const void* grid, double x_m, double z_m) noexcept {
+  return ground_at(*static_cast<const GroundGrid*>(grid), x_m, z_m);
+}
+void ask_grid_several(const void* grid, std::span<const GroundPlace> places,
+                      std::span<Ground> grounds) noexcept {
+  for (std::size_t i = 0; i < places.size(); ++i)
+    grounds[i] = ask_grid(grid, places[i].x_m, places[i].z_m);
+}
+
 }  // namespace
 
-Ground ground_at(const Terrain& terrain, double x_m, double z_m) noexcept {
-  if (terrain.asked.ask != nullptr) {
-    const Ground ground = terrain.asked.ask(terrain.asked.game, x_m, z_m);
-    return std::isfinite(ground.height_m) ? ground : Ground{};
+std::optional<Error> check(const GroundGrid& grid) {
+  if (!is_within(grid.spacing_m, kLeastSpacing_m, kMostSpacing_m))
+    return Error{"GroundGrid: spacing_m is " + number(grid.spacing_m) + ", outside [" +
+                 number(kLeastSpacing_m) + ", " + number(kMostSpacing_m) + "]"};
+  if (!std::isfinite(grid.x_m) || !std::isfinite(grid.z_m))
+    return Error{"GroundGrid: x_m or z_m is not finite"};
+  const int columns = grid.columns, rows = grid.rows;
+  if (columns < 2 || rows < 2 || columns > kMaxGridSide || rows > kMaxGridSide ||
+      grid.height_m.size() != static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows))
+    return Error{"GroundGrid: " + std::to_string(grid.height_m.size()) + " heights are not " +
+                 std::to_string(columns) + " x " + std::to_string(rows) + " samples, 2 to " +
+                 std::to_string(kMaxGridSide) + " a side"};
+  double step_m = 0.0, bend_m = 0.0;
+  for (int r = 0; r < rows; ++r) {
+    for (int c = 0; c < columns; ++c) {
+      const double h = grid_sample(grid, c, r);
+      if (!std::isfinite(h))
+        return Error{"GroundGrid: height_m of column " + std::to_string(c) + ", row " +
+                     std::to_string(r) + " is not finite"};
+      const auto compare = [&](bool has_before, bool has_next, int dc, int dr) {
+        if (has_next) step_m = std::max(step_m, std::abs(grid_sample(grid, c + dc, r + dr) - h));
+        if (has_next && has_before)
+          bend_m = std::max(bend_m, std::abs(grid_sample(grid, c + dc, r + dr) - 2.0 * h +
+                                             grid_sample(grid, c - dc, r - dr)));
+      };
+      compare(c > 0, c + 1 < columns, 1, 0);
+      compare(r > 0, r + 1 < rows, 0, 1);
+    }
   }
+  if (auto problem =
+          shape_problem(bend_m / (grid.spacing_m * grid.spacing_m), step_m / grid.spacing_m))
+    return Error{"GroundGrid: " + problem->message};
+  return std::nullopt;
+}
+
+Ground ground_at(const GroundGrid& grid, double x_m, double z_m) noexcept {
+  const GridPlace x = grid_place(x_m - grid.x_m, grid.spacing_m, grid.columns),
+                  z = grid_place(z_m - grid.z_m, grid.spacing_m, grid.rows);
+  const double near = grid_sample(grid, x.cell, z.cell),
+               left = grid_sample(grid, x.cell + 1, z.cell),
+               ahead = grid_sample(grid, x.cell, z.cell + 1),
+               far = grid_sample(grid, x.cell + 1, z.cell + 1);
+  const double twist = near - left - ahead + far;
+  const double dx = (left - near + twist * z.share) / grid.spacing_m,
+               dz = (ahead - near + twist * x.share) / grid.spacing_m;
+  return {near + (left - near) * x.share + (ahead - near) * z.share + twist * x.share * z.share,
+          vec3(-dx, 1.0, -dz) / std::sqrt(1.0 + dx * dx + dz * dz), 0};
+}
+
+AskedGround asked_ground(const GroundGrid& grid) noexcept {
+  return {&ask_grid, &grid, &ask_grid_several};
+}
+
+Ground ground_at(const Terrain& terrain, double x_m, double z_m) noexcept {
+  if (terrain.asked.ask != nullptr)
+    return finite_or_floor(terrain.asked.ask(terrain.asked.game, x_m, z_m));
   const double z = bounded_place(z_m);
   const TerrainSection* s = section_at(terrain, z);
   if (!s) return {};
@@ -366,6 +453,17 @@ Ground ground_at(const Terrain& terrain, double x_m, double z_m) noexcept {
           ? kUp
           : vec3(-at.dx, 1.0, -at.dz) / std::sqrt(1.0 + at.dx * at.dx + at.dz * at.dz);
   return {s->base_m + at.height_m, normal, s->piece + at.risers};
+}
+
+void grounds_at(const Terrain& terrain, std::span<const GroundPlace> places,
+                std::span<Ground> grounds) noexcept {
+  if (terrain.asked.ask == nullptr || terrain.asked.ask_several == nullptr) {
+    for (std::size_t i = 0; i < places.size(); ++i)
+      grounds[i] = ground_at(terrain, places[i].x_m, places[i].z_m);
+    return;
+  }
+  terrain.asked.ask_several(terrain.asked.game, places, grounds);
+  for (Ground& ground : grounds) ground = finite_or_floor(ground);
 }
 
 Stretch piece_at(const Terrain& terrain, double z_m) noexcept {

@@ -421,11 +421,10 @@ namespace {
 void report_ground(const Tick& tick, WalkFrame& frame) noexcept {
   if (tick.flat) return;
   const Floor terrain{*tick.model.terrain, tick.placed};
-  for (int side : {0, 1}) {
-    const vec3 &heel = frame.heel_m[side], &toe = frame.toe_m[side];
-    frame.heel_ground_m[side] = ground_at(terrain, heel.x, heel.z).height_m;
-    frame.toe_ground_m[side] = ground_at(terrain, toe.x, toe.z).height_m;
-  }
+  const std::array<double, 4> ground =
+      heights_at<4>(terrain, {frame.heel_m[0], frame.heel_m[1], frame.toe_m[0], frame.toe_m[1]});
+  frame.heel_ground_m = {ground[0], ground[1]};
+  frame.toe_ground_m = {ground[2], ground[3]};
 }
 
 void fill_report(const vec3& pelvis_m, double dt_s, WalkState& state) noexcept {

@@ -211,10 +211,39 @@ double slope_share(const Floor& terrain, const Step& step, const Stretch& stands
   return 1.0 / (1.0 + kSlopeShortens * std::abs(rise) / length);
 }
 
+// The plane on which heel and ball of a sole lie on the ground of a game exactly: a game draws its
+// ground, and a foot is seen beside it. Across, the plane is the best fit under heel and tip.
+FootPlane plane_through(const Floor& floor, const LegBuild& leg, const vec3& heel_m,
+                        double yaw_rad) noexcept {
+  constexpr int kRounds =
+      3;  // the ball moves as the plane tilts; each leaves a tenth of it or less
+  const quat yaw = rotation_y(yaw_rad);
+  const vec3 ball = yaw * (leg.ball_m - leg.model.heel_m),
+             tip = yaw * (leg.tip_m - leg.model.heel_m), across = yaw * leg.side;
+  const double length = horizontal_length(ball), half = leg.half_width_m;
+  const vec3 along = vec3(ball.x, 0.0, ball.z) / length, side = across * half;
+  const std::array<double, 6> ground =
+      heights_at<6>(floor, {heel_m, heel_m + ball, heel_m + side, heel_m - side,
+                            heel_m + tip + side, heel_m + tip - side});
+  const double bank = (ground[2] - ground[3] + ground[4] - ground[5]) / (4.0 * half);
+  double grade = (ground[1] - ground[0]) / length;
+  FootPlane plane;
+  plane.place_m = vec3(heel_m.x, ground[0], heel_m.z);
+  for (int round = 0; round <= kRounds; ++round) {
+    plane.normal = glm::normalize(kUp - along * grade - across * bank);
+    plane.tilt = rotation_between(kUp, plane.normal);
+    if (round == kRounds) break;
+    const vec3 lies = plane.place_m + plane.tilt * ball;
+    grade += (ground_at(floor, lies.x, lies.z).height_m - lies.y) / length;
+  }
+  return plane;
+}
+
 // The best fit to the ground under a sole: the ground is as far above the plane as below it. Ground
 // beyond the risers around `piece` does not count.
 FootPlane plane_under(const Floor& terrain, const LegBuild& leg, const vec3& heel_m, double yaw_rad,
                       const Stretch& piece) noexcept {
+  if (terrain.terrain.asked.ask != nullptr) return plane_through(terrain, leg, heel_m, yaw_rad);
   const quat yaw = rotation_y(yaw_rad);
   const vec3 sole = yaw * (leg.tip_m - leg.model.heel_m), across = yaw * leg.side;
   const double length = horizontal_length(sole), half = leg.half_width_m;
@@ -768,12 +797,15 @@ Wanted wanted_raise(const Tick& tick, const Flight& flight, bool crosses_riser,
   for (int i = 0; i <= kProbes; ++i) {
     const double u = static_cast<double>(i) / kProbes, moved = spline_at(shift, 0.0, u);
     double over = -tick.model.leg_length_m;
-    for (const vec3& p : flight.sole[i]) {
-      double z = p.z + moved;
+    Sole sole = flight.sole[i];
+    for (vec3& p : sole) {
+      p.z += moved;
       if (flight.stays())
-        z = std::clamp(z, flight.begin.from_m + kBeside_m, flight.begin.to_m - kBeside_m);
-      over = std::max(over, ground_at(terrain, p.x, z).height_m - base_under(flight.point[i], p));
+        p.z = std::clamp(p.z, flight.begin.from_m + kBeside_m, flight.begin.to_m - kBeside_m);
     }
+    const auto ground = heights_at(terrain, sole);
+    for (std::size_t k = 0; k < sole.size(); ++k)
+      over = std::max(over, ground[k] - base_under(flight.point[i], flight.sole[i][k]));
     above[i] = crosses_riser ? over + above_m * in_flight(u)
                              : std::max(0.0, over) + std::clamp(over, 0.0, above_m);
   }

@@ -75,6 +75,7 @@ def test_minimal_walk_refuses_a_missing_motion_in_one_sentence(examples):
 def test_own_ground_keeps_planted_feet_in_place(examples):
     words = call(examples / "own_ground").split()
     assert float(words[2]) < 0.1 and words[6] == "0", words  # millimetres; poses that are not finite
+    assert float(words[13]) < 0.1, words  # millimetres off the ground, heels and toes
 
 
 def test_solve_leg_reaches_its_goal_with_stiff_and_free_hips(examples):

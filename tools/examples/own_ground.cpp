@@ -1,5 +1,6 @@
 // Three characters on skeletons of your own walk in circles on a ground of your own, without a
-// file. Each second one is teleported by a wave of the ground. Prints how far planted feet slide.
+// file. Each second one is teleported by a wave of the ground. Prints how far planted feet slide,
+// and how far they are off the ground.
 #include <gaitpad/anatomy.h>
 #include <gaitpad/clean_strides.h>
 #include <gaitpad/control.h>
@@ -30,7 +31,7 @@ static Ground ask(const void*, double x_m, double z_m) noexcept {  // waves of 2
 
 int main() {
   int not_finite = 0;
-  double slide_m = 0.0;
+  double slide_m = 0.0, off_m = 0.0;
   for (const double leg_m : {0.7, 0.84, 1.0}) {
     Motion body = bones(leg_m);
     const auto legs = find_legs(body);
@@ -49,10 +50,18 @@ int main() {
       const WalkFrame before = state.frame;
       advance(*model, circle, IkMode::robust, 1.0 / 60.0, state, pose);
       not_finite += !std::isfinite(pose.root_m.x + pose.local[3].w);
-      for (const std::size_t side : {0u, 1u})
-        if (before.toe_planted[side] && state.frame.toe_planted[side])
-          slide_m = std::max(slide_m, glm::distance(before.toe_m[side], state.frame.toe_m[side]));
+      const WalkFrame& now = state.frame;
+      for (const std::size_t side : {0u, 1u}) {
+        if (now.heel_planted[side])
+          off_m = std::max(off_m, std::abs(now.heel_m[side].y - now.heel_ground_m[side]));
+        if (!now.toe_planted[side]) continue;
+        off_m = std::max(off_m, std::abs(now.toe_m[side].y - now.toe_ground_m[side]));
+        if (before.toe_planted[side])
+          slide_m = std::max(slide_m, glm::distance(before.toe_m[side], now.toe_m[side]));
+      }
     }
   }
-  std::printf("feet slide %.4f mm at most, %d poses are not finite\n", 1e3 * slide_m, not_finite);
+  std::printf(
+      "feet slide %.4f mm at most, %d poses are not finite, feet are %.4f mm off the ground\n",
+      1e3 * slide_m, not_finite, 1e3 * off_m);
 }

@@ -12,6 +12,7 @@
 #include <limits>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <variant>
 #include <vector>
@@ -91,14 +92,39 @@ struct TerrainZone {
   std::string where;  // "course.toml:12", for error sentences
 };
 
-// The ground of a game, of any slope in any direction, asked for by place in the world. It bends as
-// little as sections do (kMaxBend_1_m, kMaxGrade) and has no edges: Ground::piece is not looked at.
-// A tick asks for up to some hundred places; no heap, lock or exception may come of it, and for a
-// crowd several threads may ask at once. A height that is not finite counts as 0.
+struct GroundPlace {
+  double x_m = 0.0, z_m = 0.0;  // world
+};
+// The ground of a game, of any slope in any direction, asked for by place in the world. The game
+// fills all of it. It bends as little as sections do (kMaxBend_1_m, kMaxGrade) and has no edges:
+// only Ground::height_m is looked at. A tick asks for some places, at most some hundred where a
+// flight is planned; no heap, lock or exception may come of it, and for a crowd several threads may
+// ask at once. A height that is not finite counts as 0.
 struct AskedGround {
   Ground (*ask)(const void* game, double x_m, double z_m) noexcept = nullptr;
-  const void* game = nullptr;  // handed to it; lives as long as the terrain
+  const void* game = nullptr;  // handed to both; lives as long as the terrain
+  // The same for several places in one call: writes grounds[i] for each places[i]. May be null:
+  // then ask() is called for each. The walk asks for at most kMostAsked at a time.
+  void (*ask_several)(const void* game, std::span<const GroundPlace> places,
+                      std::span<Ground> grounds) noexcept = nullptr;
 };
+inline constexpr int kMostAsked = 6;
+
+// A height field in the world: samples on a square grid, straight between neighbours (bilinear).
+// Beyond its border the ground is as at the border.
+struct GroundGrid {
+  double x_m = 0.0, z_m = 0.0;  // of the first sample, world: the corner of least x and z
+  double spacing_m = 1.0;       // from one sample to the next, 0.01 to 100
+  int columns = 0, rows = 0;    // along +x, along +z: 2 to 16,384 each
+  std::vector<float> height_m;  // world, row by row: column + row * columns
+};
+// Whether its numbers are in their ranges, and it bends and climbs little enough for a sole:
+// neighbouring cells differ in grade by at most kMaxBend_1_m * spacing_m, grades are at most
+// kMaxGrade.
+std::optional<Error> check(const GroundGrid& grid);
+Ground ground_at(const GroundGrid& grid, double x_m, double z_m) noexcept;
+// The grid as a ground that is asked for. It must live as long as the terrain.
+AskedGround asked_ground(const GroundGrid& grid) noexcept;
 
 // Immutable after load. In the world frame: characters start at z = 0 and walk along +z.
 struct Terrain {
@@ -113,6 +139,9 @@ std::optional<Error> check(const Terrain& terrain);
 // The ground at a place. Every place has one, NaN too. The line of a riser belongs to the upper
 // tread. No heap.
 Ground ground_at(const Terrain& terrain, double x_m, double z_m) noexcept;
+// The same at several places, in one call of a game that answers several. `grounds` is as long.
+void grounds_at(const Terrain& terrain, std::span<const GroundPlace> places,
+                std::span<Ground> grounds) noexcept;
 
 // A stretch along z between two risers; infinite on a side without one.
 struct Stretch {

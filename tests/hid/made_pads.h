@@ -42,6 +42,29 @@ inline RecordedPad recorded_pad(const std::string& path, const PadOverrides& ove
   return pad;
 }
 
+// A foreign recording of a made DualShock 4 on hid-playstation, through the evdev driver: a state
+// at rest, which is handed back, and 1.5 s later the left stick right and the south button.
+inline void expect_push_of_dualshock(const Trace& trace, const std::string& name, PadState& rest) {
+  ASSERT_EQ(trace.devices.size(), 1u);
+  const DeviceInfo& info = trace.devices[0].info;
+  EXPECT_EQ(info.name, name);
+  EXPECT_EQ(info.bus, BusType::usb);
+  EXPECT_EQ(info.vendor, 0x054c);
+  EXPECT_EQ(info.product, 0x09cc);
+  EXPECT_EQ(info.version, 0x8111);
+  EXPECT_EQ(info.driver, "evdev");
+  ASSERT_EQ(trace.events.size(), 2u);
+  EXPECT_EQ(trace.events[1].time_us - trace.events[0].time_us, 1'500'000);
+  const PadLayout layout = value_of(pad_layout(info, shipped_pads()));
+  ASSERT_TRUE(decode(layout, report_of(trace, trace.events[0]), rest));
+  EXPECT_NEAR(rest.axis[kLeftX], 1.0 / 255.0, 1e-6);
+  EXPECT_EQ(rest.buttons, 0u);
+  PadState state = rest;
+  ASSERT_TRUE(decode(layout, report_of(trace, trace.events[1]), state));
+  EXPECT_EQ(state.axis[kLeftX], 1.0f);
+  EXPECT_TRUE(pressed(state, kButtonA));
+}
+
 // Names separated by blanks.
 inline std::string names_of(std::uint32_t buttons) {
   std::string names;

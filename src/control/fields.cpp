@@ -61,19 +61,32 @@ constexpr StyleField arm_weight(std::string_view name) {
 }
 
 constexpr StyleField kWholeFields[] = {
-    {"fatigue", "", 0.0, 1.0, &of_whole<&StyleValues::fatigue>},
-    {"hip_sway", "x", 0.0, kMostFactor, &of_whole<&StyleValues::hip_sway>},
-    {"hip_bounce", "x", 0.0, kMostFactor, &of_whole<&StyleValues::hip_bounce>},
-    {"idle", "", 0.0, 1.0, &of_idle},
-    {"blend_s", "s", 0.0, 10.0, &of_whole<&StyleValues::blend_s>},
-    {"fatigue_model.per_100_m", "", 0.0, 10.0, &of_whole<&StyleValues::fatigue_per_100_m>},
+    {"fatigue", "", 0.0, 1.0, &of_whole<&StyleValues::fatigue>, "fatigue",
+     "0 fresh, 1 exhausted: shortens and slows each step."},
+    {"hip_sway", "x", 0.0, kMostFactor, &of_whole<&StyleValues::hip_sway>, "hip sway",
+     "How far the hips move sideways; 1 as in the motion."},
+    {"hip_bounce", "x", 0.0, kMostFactor, &of_whole<&StyleValues::hip_bounce>, "hip bounce",
+     "How far the hips move up and down; 1 as in the motion."},
+};
+// The window shows these only when it is asked for them.
+constexpr StyleField kRareFields[] = {
+    {"idle", "", 0.0, 1.0, &of_idle, "life in a stand",
+     "How much breath, sway and glances a stand shows; 0 none, 1 all."},
+    {"blend_s", "s", 0.0, 10.0, &of_whole<&StyleValues::blend_s>, "blending, s",
+     "How long a change of style takes, in seconds."},
+    {"fatigue_model.per_100_m", "", 0.0, 10.0, &of_whole<&StyleValues::fatigue_per_100_m>,
+     "tiring per 100 m", "How much fatigue 100 metres add."},
     {"fatigue_model.recovery_per_s", "1/s", 0.0, 1.0,
-     &of_whole<&StyleValues::fatigue_recovery_per_s>},
+     &of_whole<&StyleValues::fatigue_recovery_per_s>, "recovery per s",
+     "How much fatigue a second of rest takes."},
 };
 constexpr StyleField kLegFields[] = {
-    {"stride_length", "x", 0.0, 1.5, &of_stride<&StrideFactors::length>},
-    {"stride_speed", "x", 0.5, 2.0, &of_stride<&StrideFactors::speed>},
-    {"flight_height", "x", 0.0, kMostFactor, &of_stride<&StrideFactors::flight_height>},
+    {"stride_length", "x", 0.0, 1.5, &of_stride<&StrideFactors::length>, "stride length",
+     "Factor on the length of this foot's step."},
+    {"stride_speed", "x", 0.5, 2.0, &of_stride<&StrideFactors::speed>, "stride speed",
+     "Factor on the speed of this foot's step."},
+    {"flight_height", "x", 0.0, kMostFactor, &of_stride<&StrideFactors::flight_height>,
+     "flight height", "Factor on the height of this foot's step."},
     leg_weight<kHipX, kHipY>("weight.hip"),
     leg_weight<kKneeX>("weight.knee"),
     leg_weight<kAnkleX, kAnkleY>("weight.ankle"),
@@ -129,18 +142,19 @@ constexpr StyleField kHeadFields[] = {
 
 constexpr StyleSection kSections[] = {
     {"", kLeftSide, kLeftSide, kWholeFields, nullptr, ""},
+    {"", kLeftSide, kLeftSide, kRareFields, nullptr, "", true},
     {"legs", kLeftSide, kRightSide, kLegFields, &leg_weights, "leg"},
     {"left_leg", kLeftSide, kLeftSide, kLegFields, &leg_weights, "leg"},
     {"right_leg", kRightSide, kRightSide, kLegFields, &leg_weights, "leg"},
-    {"arms", kLeftSide, kRightSide, kArmFields, &arm_weights, "arm"},
-    {"left_arm", kLeftSide, kLeftSide, kArmFields, &arm_weights, "arm"},
-    {"right_arm", kRightSide, kRightSide, kArmFields, &arm_weights, "arm"},
-    {"hands", kLeftSide, kRightSide, kHandFields, nullptr, ""},
-    {"left_hand", kLeftSide, kLeftSide, kHandFields, nullptr, ""},
-    {"right_hand", kRightSide, kRightSide, kHandFields, nullptr, ""},
+    {"arms", kLeftSide, kRightSide, kArmFields, &arm_weights, "arm", true},
+    {"left_arm", kLeftSide, kLeftSide, kArmFields, &arm_weights, "arm", true},
+    {"right_arm", kRightSide, kRightSide, kArmFields, &arm_weights, "arm", true},
+    {"hands", kLeftSide, kRightSide, kHandFields, nullptr, "", true},
+    {"left_hand", kLeftSide, kLeftSide, kHandFields, nullptr, "", true},
+    {"right_hand", kRightSide, kRightSide, kHandFields, nullptr, "", true},
     {"trunk", kLeftSide, kLeftSide, kTrunkFields, nullptr, ""},
-    {"spine", kLeftSide, kLeftSide, kSpineFields, &spine_weights, "spine"},
-    {"head", kLeftSide, kLeftSide, kHeadFields, nullptr, ""},
+    {"spine", kLeftSide, kLeftSide, kSpineFields, &spine_weights, "spine", true},
+    {"head", kLeftSide, kLeftSide, kHeadFields, nullptr, "", true},
 };
 
 double speed_of(const GaitParams& params) noexcept {
@@ -185,11 +199,24 @@ std::optional<FoundField> field_of(std::string_view key) noexcept {
     const auto at = std::ranges::find(section.fields, name, &StyleField::name);
     return at == section.fields.end() ? std::nullopt : std::optional(FoundField{&section, &*at});
   };
-  if (const auto whole = in_section(kSections[0], key)) return whole;
+  for (const StyleSection& section : kSections) {
+    if (!section.name.empty()) break;
+    if (const auto whole = in_section(section, key)) return whole;
+  }
   const std::string_view table = take_part(key, '.');
   const auto section = std::ranges::find(kSections, table, &StyleSection::name);
   if (table.empty() || section == std::end(kSections)) return std::nullopt;
   return in_section(*section, key);
+}
+
+// Its words in the table, or its name: `weight.hip_x` is "hip x weight".
+std::string words_of(const StyleField& field) {
+  if (!field.words.empty()) return std::string(field.words);
+  constexpr std::string_view kWeight = "weight.";
+  std::string words(field.is_weight() ? field.name.substr(kWeight.size()) : field.name);
+  if (field.is_weight()) words += " weight";
+  std::ranges::replace(words, '_', ' ');
+  return words;
 }
 
 std::vector<StyleKey> all_style_keys() {
@@ -197,7 +224,8 @@ std::vector<StyleKey> all_style_keys() {
   for (const StyleSection& section : kSections) {
     const std::string table = section.name.empty() ? "" : std::string(section.name) + ".";
     for (const StyleField& f : section.fields)
-      keys.push_back({table + std::string(f.name), f.unit, f.min, f.max});
+      keys.push_back({table + std::string(f.name), f.unit, f.min, f.max, section.name, words_of(f),
+                      f.effect, section.is_rare});
   }
   return keys;
 }

@@ -18,7 +18,7 @@ constexpr std::string_view kSession = "Session", kStyles = "Styles and character
                            kWindow = "Window";
 
 // No key next to the walking keys ends a session, a recording or the program.
-constexpr ActionInfo kActions[] = {
+constexpr ActionInfo kBeforePanels[] = {
     {Action::pause, SDLK_SPACE, SDLK_p, kButtonStart, "pause", kSession, "pause or continue"},
     {Action::step, SDLK_PERIOD, kNoKey, kButtonDpadRight, "step", kSession,
      "one tick; pauses first"},
@@ -61,15 +61,8 @@ constexpr ActionInfo kActions[] = {
     {Action::trails, SDLK_t, kNoKey, kButtonDpadLeft, "trails", kView, "trails of the feet"},
     {Action::source, SDLK_g, kNoKey, kNoButton, "source", kView,
      "stick figure of the source motion"},
-    {Action::panel_pad, SDLK_F2, kNoKey, kNoButton, "pad panel", kPanelGroup, "panel: pad"},
-    {Action::panel_control, SDLK_F3, kNoKey, kNoButton, "control panel", kPanelGroup,
-     "panel: control"},
-    {Action::panel_style, SDLK_F4, kNoKey, kNoButton, "style panel", kPanelGroup, "panel: style"},
-    {Action::panel_graphs, SDLK_F5, kNoKey, kNoButton, "graphs panel", kPanelGroup,
-     "panel: graphs"},
-    {Action::panel_solver, SDLK_F6, kNoKey, kNoButton, "solver panel", kPanelGroup,
-     "panel: solver"},
-    {Action::panel_loop, SDLK_F7, kNoKey, kNoButton, "loop panel", kPanelGroup, "panel: loop"},
+};
+constexpr ActionInfo kAfterPanels[] = {
     {Action::navigate, SDLK_RETURN, SDLK_KP_ENTER, kButtonGuide, "navigate", kWindow,
      "keys to the panels: arrows, Enter"},
     {Action::help, SDLK_F1, SDLK_h, kButtonBack, "help", kWindow, "this page"},
@@ -78,6 +71,16 @@ constexpr ActionInfo kActions[] = {
     {Action::quit, SDLK_F10, kNoKey, kNoButton, "quit", kWindow, "end the program"},
     {Action::back, SDLK_ESCAPE, kNoKey, kButtonB, "back", kWindow, "close what is open"},
 };
+constexpr auto kActions = [] {
+  std::array<ActionInfo, std::size(kBeforePanels) + kPanels + std::size(kAfterPanels)> all{};
+  auto* end = std::copy(std::begin(kBeforePanels), std::end(kBeforePanels), all.begin());
+  for (std::size_t i = 0; i < kPanels; ++i) {
+    const PanelInfo& panel = kPanelTable[i];
+    *end++ = {action_of(i), panel.key, kNoKey, kNoButton, panel.id, kPanelGroup, panel.id};
+  }
+  std::copy(std::begin(kAfterPanels), std::end(kAfterPanels), end);
+  return all;
+}();
 
 constexpr Chord kChords[] = {
     {SDLK_z, false, Action::undo, "Ctrl+Z"},

@@ -14,6 +14,7 @@
 #include "gaitpad/math.h"
 #include "gaitpad/report.h"
 #include "gaitpad/session_frame.h"
+#include "view/panels.h"
 
 namespace gaitpad {
 
@@ -46,19 +47,18 @@ enum class Action : std::uint8_t {
   reset_camera,
   theme,
   trails,
-  source,  // shows the source motion as a stick figure
-  panel_pad,
-  panel_control,
-  panel_style,
-  panel_graphs,
-  panel_solver,
-  panel_loop,
-  navigate,  // keys and pad move between buttons and sliders
+  source,       // shows the source motion as a stick figure
+  first_panel,  // opens and closes the first panel; the other panels' actions follow it
+  navigate = first_panel + kPanels,  // keys and pad move between buttons and sliders
   help,
   fullscreen,
   quit,
   back,  // closes the open help, browser or dialog
 };
+
+constexpr Action action_of(std::size_t panel) noexcept {
+  return static_cast<Action>(static_cast<std::size_t>(Action::first_panel) + panel);
+}
 
 struct ActionInfo {
   Action action;

@@ -8,6 +8,7 @@
 #include "session/script.h"
 #include "view/history_plots.h"
 #include "view/panels.h"
+#include "view/widgets.h"
 
 namespace gaitpad {
 namespace {

@@ -9,6 +9,7 @@
 
 #include "view/panels.h"
 #include "view/tooltips.h"
+#include "view/widgets.h"
 
 namespace gaitpad {
 namespace {
@@ -180,9 +181,6 @@ bool is_any_set(const Ui& ui) {
 
 constexpr std::string_view kLeftOf = "left_", kRightOf = "right_";
 constexpr std::string_view kOfBoth[] = {"legs.", "arms.", "hands."};
-// Keys behind the button below: the upper body, and keys that are rarely changed.
-constexpr std::string_view kRare[] = {"arm.", "hand.",   "spine.",        "head.",
-                                      "idle", "blend_s", "fatigue_model."};
 
 // A row: one key, or the same key of both sides.
 struct StyleRow {
@@ -201,12 +199,12 @@ bool is_axis_weight(std::string_view key) {
          (key.ends_with("_x") || key.ends_with("_y") || key.ends_with("_z"));
 }
 
-// Rows of legs and arms need no prefix; others begin with their table.
-std::string row_label(std::string_view name) {
-  for (const std::string_view plain : {"leg.", "arm."}) {
-    if (name.starts_with(plain)) return words_of_key(name.substr(plain.size()));
-  }
-  return words_of_key(name);
+// Rows of legs and arms need no prefix; others begin with their limb, without its side.
+std::string row_label(const StyleKey& key) {
+  std::string_view limb = key.limb;
+  if (limb.starts_with(kLeftOf)) limb.remove_prefix(kLeftOf.size());
+  if (limb.empty() || limb == "leg" || limb == "arm") return key.words;
+  return fmt::format("{} {}", limb, key.words);
 }
 
 std::vector<StyleRow> rows_of(const UiMemory& memory) {
@@ -218,13 +216,13 @@ std::vector<StyleRow> rows_of(const UiMemory& memory) {
     if (!memory.has_axis_weights && is_axis_weight(name)) continue;
     const bool is_paired = name.starts_with(kLeftOf);
     const std::string_view part = is_paired ? name.substr(kLeftOf.size()) : name;
-    if (!memory.has_body_keys && begins_with_one(kRare, part)) continue;
+    if (!memory.has_body_keys && key.is_rare) continue;
     const auto right = std::find_if(keys.begin(), keys.end(), [part](const StyleKey& k) {
       const std::string_view other = k.name;
       return other.starts_with(kRightOf) && other.substr(kRightOf.size()) == part;
     });
     const bool has_right = is_paired && right != keys.end();
-    rows.push_back({row_label(part), &key, has_right ? &*right : nullptr});
+    rows.push_back({row_label(key), &key, has_right ? &*right : nullptr});
   }
   return rows;
 }

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <iterator>
 
-#include "base/text.h"
+#include "gaitpad/style.h"
 #include "view/controls.h"
 
 namespace gaitpad {
@@ -96,6 +96,7 @@ constexpr Tip kTips[] = {
 
 // Tips by the beginning of an item's name.
 constexpr Tip kBeginnings[] = {
+    {"panel ", "Open or close this panel."},
     {"close ", "Close this panel."},
     {"walker ", "Select this character: styles and sliders then change it alone."},
     {"give back ", "Let the stick and the style set this value again."},
@@ -113,11 +114,11 @@ constexpr Tip kBeginnings[] = {
     {"help ", "What this key does."},
 };
 
-// Words for keys that are not self-explanatory, and the effect of their sliders.
+// Labels and tips of gait parameters. Those of style keys stand in the table of control/fields.cpp.
 struct KeyWords {
   std::string_view key, words, text;
 };
-constexpr KeyWords kKeys[] = {
+constexpr KeyWords kGaitKeyWords[] = {
     {"speed_m_s", "speed", "How fast it is to walk, in m/s. Does: over the cycle that runs."},
     {"stride_left_m", "stride",
      "Length of the left foot's step, in metres. Does: its last or running step."},
@@ -127,28 +128,30 @@ constexpr KeyWords kKeys[] = {
     {"flight_right", "flight height", "How high the right foot is lifted; 1 as in the motion."},
     {"turn_rate_rad_s", "turn rate",
      "How fast it is to turn, to the left above 0. Does: in this moment."},
-    {"hip_sway", "hip sway", "How far the hips move sideways; 1 as in the motion."},
-    {"hip_bounce", "hip bounce", "How far the hips move up and down; 1 as in the motion."},
-    {"fatigue", "fatigue", "0 fresh, 1 exhausted: shortens and slows each step."},
-    {"idle", "life in a stand", "How much breath, sway and glances a stand shows; 0 none, 1 all."},
-    {"blend_s", "blending, s", "How long a change of style takes, in seconds."},
-    {"fatigue_model.per_100_m", "tiring per 100 m", "How much fatigue 100 metres add."},
-    {"fatigue_model.recovery_per_s", "recovery per s", "How much fatigue a second of rest takes."},
-    {"stride_length", "stride length", "Factor on the length of this foot's step."},
-    {"stride_speed", "stride speed", "Factor on the speed of this foot's step."},
-    {"flight_height", "flight height", "Factor on the height of this foot's step."},
 };
 
-const KeyWords* find_key(std::string_view key) {
-  const auto found = std::ranges::find(kKeys, key, &KeyWords::key);
-  return found == std::end(kKeys) ? nullptr : &*found;
+template <class Table, class Member>
+auto* row_of(const Table& table, std::string_view name, Member member) {
+  const auto row = std::ranges::find(table, name, member);
+  return row == std::end(table) ? nullptr : &*row;
 }
 
 std::string tip_of_key(std::string_view key) {
-  if (const KeyWords* known = find_key(key)) return std::string(known->text);
-  const std::string words = words_of_key(key);
+  if (const KeyWords* gait = row_of(kGaitKeyWords, key, &KeyWords::key))
+    return std::string(gait->text);
+  const StyleKey* style = row_of(style_keys(), key, &StyleKey::name);
+  if (style != nullptr && !style->effect.empty()) return std::string(style->effect);
   const bool is_weight = key.find("weight.") != std::string_view::npos;
-  return words + (is_weight ? ": 1 moves freely, 0 is locked." : ".");
+  return words_of_key(key) + (is_weight ? ": 1 moves freely, 0 is locked." : ".");
+}
+
+std::string text_of_item(std::string_view item) {
+  if (const Tip* tip = row_of(kTips, item, &Tip::name)) return std::string(tip->text);
+  for (const Tip& tip : kBeginnings) {
+    if (!item.starts_with(tip.name)) continue;
+    return tip.text.empty() ? tip_of_key(item.substr(tip.name.size())) : std::string(tip.text);
+  }
+  return {};
 }
 
 // Appends the key of an action that has both a button and a key.
@@ -163,38 +166,21 @@ std::string with_key(std::string text, const ActionInfo& info) {
 }  // namespace
 
 std::string words_of_key(std::string_view key) {
-  if (const KeyWords* known = find_key(key)) return std::string(known->words);
-  std::string_view rest = key;
-  std::string_view table = key.find('.') == std::string_view::npos ? "" : take_part(rest, '.');
-  constexpr std::string_view kWeight = "weight.";
-  const bool is_weight = rest.starts_with(kWeight);
-  if (is_weight) rest.remove_prefix(kWeight.size());
-  const KeyWords* part = find_key(rest);
-  std::string words = table.empty() ? "" : std::string(table) + " ";
-  words += part != nullptr ? std::string(part->words) : std::string(rest);
-  if (is_weight) words += " weight";
+  if (const KeyWords* gait = row_of(kGaitKeyWords, key, &KeyWords::key))
+    return std::string(gait->words);
+  const StyleKey* style = row_of(style_keys(), key, &StyleKey::name);
+  if (style == nullptr) return std::string(key);
+  std::string words(style->limb);
+  if (!words.empty()) words += ' ';
+  words += style->words;
   std::ranges::replace(words, '_', ' ');
-  std::ranges::replace(words, '.', ' ');
   return words;
 }
 
 std::string tooltip_of(std::string_view item) {
-  for (const ActionInfo& info : actions()) {
-    // A panel's button, or one with the name of its action.
-    const bool is_panel = item.starts_with("panel ") && info.name.ends_with(" panel") &&
-                          item.substr(6) == info.name.substr(0, info.name.size() - 6);
-    if (is_panel) return with_key(fmt::format("Open or close the panel {}.", item.substr(6)), info);
-    if (item != info.name) continue;
-    const auto known = std::ranges::find(kTips, item, &Tip::name);
-    if (known != std::end(kTips)) return with_key(std::string(known->text), info);
-  }
-  if (const auto known = std::ranges::find(kTips, item, &Tip::name); known != std::end(kTips))
-    return std::string(known->text);
-  for (const Tip& tip : kBeginnings) {
-    if (!item.starts_with(tip.name)) continue;
-    return tip.text.empty() ? tip_of_key(item.substr(tip.name.size())) : std::string(tip.text);
-  }
-  return {};
+  const std::string text = text_of_item(item);
+  const auto action = std::ranges::find(actions(), item, &ActionInfo::name);
+  return text.empty() || action == actions().end() ? text : with_key(text, *action);
 }
 
 }  // namespace gaitpad

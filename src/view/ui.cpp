@@ -240,31 +240,15 @@ void draw_hint(Ui& ui, const UiRect& scene) {
   }
 }
 
-struct PanelPart {
-  Panel panel;
-  std::string_view id, title;  // of its button
-  Action action;               // opens and closes it
-  void (*draw)(Ui& ui);
-};
-constexpr PanelPart kParts[] = {
-    {Panel::pad, "panel pad", "Pad", Action::panel_pad, &draw_pad_panel},
-    {Panel::control, "panel control", "Control", Action::panel_control, &draw_control_panel},
-    {Panel::style, "panel style", "Style", Action::panel_style, &draw_style_panel},
-    {Panel::graphs, "panel graphs", "Graphs", Action::panel_graphs, &draw_graphs_panel},
-    {Panel::solver, "panel solver", "Solver", Action::panel_solver, &draw_solver_panel},
-    {Panel::loop, "panel loop", "Loop", Action::panel_loop, &draw_loop_panel},
-};
-
-bool has_walker(Panel panel) { return panel != Panel::pad && panel != Panel::loop; }
-
-void draw_heading(Ui& ui, const PanelPart& part) {
+void draw_heading(Ui& ui, std::size_t index) {
+  const PanelInfo& panel = kPanelTable[index];
   const ImVec2 at = ImGui::GetCursorScreenPos();
   const float width = ImGui::GetContentRegionAvail().x, close = std::round(ui.px(20));
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  put_text(list, ui.fonts.heading, ui.theme.text, at, part.title, width - close);
-  if (has_walker(part.panel)) {
-    const float x = text_width(ui.fonts.heading, part.title) + ui.px(10);
-    const bool changes = part.panel == Panel::control || part.panel == Panel::style;
+  put_text(list, ui.fonts.heading, ui.theme.text, at, panel.title, width - close);
+  if (panel.subject != PanelSubject::session) {
+    const float x = text_width(ui.fonts.heading, panel.title) + ui.px(10);
+    const bool changes = panel.subject == PanelSubject::changed_walker;
     const bool is_for_all =
         ui.state.walker < 0 && ui.in.frame.walker_count > 1 && changes && ui.is_live();
     put_text(list, ui.fonts.small, is_for_all ? ui.theme.left : ui.theme.secondary,
@@ -277,9 +261,8 @@ void draw_heading(Ui& ui, const PanelPart& part) {
   ButtonLook look;
   look.icon = Icon::close;
   look.width = look.height = close;
-  if (button(ui, fmt::format("close {}", kPanelNames[static_cast<std::size_t>(part.panel)]), "",
-             look)) {
-    ui.out.actions.push_back(part.action);
+  if (button(ui, fmt::format("close {}", panel.name()), "", look)) {
+    ui.out.actions.push_back(action_of(index));
   }
   ImGui::SetCursorScreenPos({at.x, at.y + std::round(ui.px(23))});
 }
@@ -327,13 +310,12 @@ void draw_cast(Ui& ui, const UiRect& rect) {
   end_area();
 }
 
-void draw_panel(Ui& ui, const PanelPart& part, bool has_just_opened) {
+void draw_panel(Ui& ui, std::size_t index, bool has_just_opened) {
   const ImVec2 begin = ImGui::GetCursorScreenPos();
   const float width = ImGui::GetContentRegionAvail().x;
-  const auto index = static_cast<std::size_t>(part.panel);
   ImGui::PushID(static_cast<int>(index));
-  draw_heading(ui, part);
-  part.draw(ui);
+  draw_heading(ui, index);
+  kPanelTable[index].draw(ui);
   ImGui::PopID();
   const float end = ImGui::GetCursorScreenPos().y;
   keep_area(fmt::format("area {}", kPanelNames[index]), begin, {begin.x + width, end});
@@ -344,10 +326,8 @@ void draw_panel(Ui& ui, const PanelPart& part, bool has_just_opened) {
   if (hidden > 0.0f) ImGui::SetScrollY(ImGui::GetScrollY() + hidden);
 }
 
-enum class Column { left, right };
-
-void draw_column(Ui& ui, const UiLayout& layout, Column column) {
-  const bool is_left_one = column == Column::left;
+void draw_column(Ui& ui, const UiLayout& layout, PanelColumn column) {
+  const bool is_left_one = column == PanelColumn::left;
   UiRect rect = is_left_one ? layout.left : layout.right;
   if (rect.is_empty()) return;
   const bool has_both = !layout.left.is_empty() && !layout.right.is_empty();
@@ -362,13 +342,12 @@ void draw_column(Ui& ui, const UiLayout& layout, Column column) {
   begin_area(ui, id, rect, ui.theme.panel, {14.0f, 10.0f});
   ImGui::PushStyleVar(ImGuiStyleVar_ItemSpacing, ImVec2{ui.px(8), std::round(ui.px(5))});
   bool is_first = true;
-  for (const PanelPart& part : kParts) {
-    const auto index = static_cast<std::size_t>(part.panel);
-    const bool is_mine = !has_both || is_left(part.panel) == is_left_one;
+  for (std::size_t index = 0; index < kPanels; ++index) {
+    const bool is_mine = !has_both || kPanelTable[index].column == column;
     if (!ui.state.is_open[index] || !is_mine) continue;
     if (!is_first) draw_separator(ui);
     is_first = false;
-    draw_panel(ui, part, !ui.state.memory.was_open[index]);
+    draw_panel(ui, index, !ui.state.memory.was_open[index]);
   }
   ImGui::PopStyleVar();
   end_area();
@@ -377,8 +356,8 @@ void draw_column(Ui& ui, const UiLayout& layout, Column column) {
 void draw_columns(Ui& ui, const UiLayout& layout) {
   if (!ui.state.memory.has_drawn) ui.state.memory.was_open = ui.state.is_open;
   ui.state.memory.has_drawn = true;
-  draw_column(ui, layout, Column::left);
-  draw_column(ui, layout, Column::right);
+  draw_column(ui, layout, PanelColumn::left);
+  draw_column(ui, layout, PanelColumn::right);
   ui.state.memory.was_open = ui.state.is_open;
 }
 
@@ -415,9 +394,9 @@ std::vector<Entry> entries(const Ui& ui) {
       {"help", "Help", Action::help, look_of(Icon::none, ui.state.is_help_open)},
       {"view", "View", std::nullopt, {}},
   };
-  for (const PanelPart& part : kParts) {
-    const bool is_open = ui.state.is_open[static_cast<std::size_t>(part.panel)];
-    all.push_back({part.id, part.title, part.action, look_of(Icon::none, is_open)});
+  for (std::size_t i = 0; i < kPanels; ++i) {
+    const PanelInfo& panel = kPanelTable[i];
+    all.push_back({panel.id, panel.title, action_of(i), look_of(Icon::none, ui.state.is_open[i])});
   }
   return all;
 }
@@ -961,7 +940,7 @@ void keep_sound(const UiInput& input, UiState& state) {
 }  // namespace
 
 bool is_left(Panel panel) noexcept {
-  return panel == Panel::pad || panel == Panel::control || panel == Panel::style;
+  return kPanelTable[static_cast<std::size_t>(panel)].column == PanelColumn::left;
 }
 
 UiLayout ui_layout(const UiState& state, bool has_timeline, int width_px, int height_px,

@@ -23,11 +23,6 @@ namespace gaitpad {
 
 struct Fonts;  // view/gui.h
 
-enum class Panel : std::uint8_t { pad, control, style, graphs, solver, loop };
-inline constexpr int kPanels = 6;
-inline constexpr std::array<std::string_view, kPanels> kPanelNames = {"pad",    "control", "style",
-                                                                      "graphs", "solver",  "loop"};
-
 // State of draw_ui() between frames.
 struct UiMemory {
   // A moved slider shows the user's value until the session has applied it.

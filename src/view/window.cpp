@@ -789,8 +789,8 @@ void WindowLoop::run_action(Action action) {
   };
   if (action >= Action::style_1 && action <= Action::style_9)
     return choose_style_number(number_from(Action::style_1));
-  if (action >= Action::panel_pad && action <= Action::panel_loop) {
-    bool& is_open = state_.is_open[number_from(Action::panel_pad)];
+  if (action >= Action::first_panel && action < action_of(kPanels)) {
+    bool& is_open = state_.is_open[number_from(Action::first_panel)];
     is_open = !is_open;
     return;
   }

@@ -17,17 +17,12 @@ const ImVec2 kSizes[] = {{1280, 720}, {1920, 1080}, {640, 480}, {900, 500}, {320
 TEST_F(UiTest, EachButtonOfTheBarGivesItsAction) {
   walk();
   const std::pair<std::string, Action> buttons[] = {
-      {"play", Action::pause},
-      {"record", Action::record},
-      {"open", Action::open_file},
-      {"calibrate", Action::calibrate},
-      {"help", Action::help},
-      {"panel pad", Action::panel_pad},
-      {"panel control", Action::panel_control},
-      {"panel style", Action::panel_style},
-      {"panel graphs", Action::panel_graphs},
-      {"panel solver", Action::panel_solver},
-      {"panel loop", Action::panel_loop},
+      {"play", Action::pause},         {"record", Action::record},
+      {"open", Action::open_file},     {"calibrate", Action::calibrate},
+      {"help", Action::help},          {"panel pad", action_of(0)},
+      {"panel control", action_of(1)}, {"panel style", action_of(2)},
+      {"panel graphs", action_of(3)},  {"panel solver", action_of(4)},
+      {"panel loop", action_of(5)},
   };
   for (const auto& [name, action] : buttons)
     EXPECT_EQ(click(name).actions, Actions{action}) << name;
@@ -39,7 +34,7 @@ TEST_F(UiTest, EachPanelAsksToBeClosedByItsButtonAndIsGoneWhenItIs) {
     state.is_open.fill(false);
     state.is_open[i] = true;
     const std::string name(kPanelNames[i]);
-    const auto action = static_cast<Action>(static_cast<std::size_t>(Action::panel_pad) + i);
+    const auto action = action_of(i);
     EXPECT_EQ(click("close " + name).actions, Actions{action}) << name;
     EXPECT_NE(find("area " + name), nullptr);
     state.is_open[i] = false;
@@ -65,7 +60,7 @@ TEST_F(UiTest, WhatABarIsTooNarrowForStandsInItsMenu) {
   EXPECT_EQ(find("panel loop"), nullptr);
   click("menu");
   ASSERT_NE(find("panel loop"), nullptr);
-  EXPECT_EQ(click("panel loop").actions, Actions{Action::panel_loop});
+  EXPECT_EQ(click("panel loop").actions, Actions{action_of(5)});
 }
 
 TEST_F(UiTest, TheViewMenuSwitchesWhatHasNoKeyAndAsksForWhatHas) {

@@ -350,7 +350,7 @@ TEST_F(Window, EveryActionsKeyDoesWhatTheTableSays) {
   script.turn(Action::trails, [](const Glance& g) { return g.ui.has_trails; });
   script.turn(Action::source, [](const Glance& g) { return g.ui.has_source; });
   for (std::size_t i = 0; i < kPanels; ++i)
-    script.turn(after(Action::panel_pad, i), [i](const Glance& g) { return g.ui.is_open[i]; });
+    script.turn(action_of(i), [i](const Glance& g) { return g.ui.is_open[i]; });
   script.turn(Action::navigate, Action::back,
               [](const Glance& g) { return !g.ui.memory.focus.empty(); });
   script.turn(Action::help, [](const Glance& g) { return g.ui.is_help_open; });

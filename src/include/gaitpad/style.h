@@ -56,6 +56,11 @@ struct StyleKey {
   std::string name;
   std::string_view unit;  // "m", "s", "1/s", "deg"; "x": a factor; "": a share or a weight
   double min = 0.0, max = 1.0;
+  // For a user interface.
+  std::string_view limb{};    // `left_leg`; empty: the whole character
+  std::string words{};        // label within the limb: "stride length", "hip weight"
+  std::string_view effect{};  // a sentence; empty if the label says all
+  bool is_rare = false;       // few users need it
 };
 // All keys: the whole character's first, then legs, arms, hands, spine and head.
 const std::vector<StyleKey>& style_keys();

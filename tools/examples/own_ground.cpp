@@ -1,6 +1,5 @@
-// Three characters on skeletons of your own walk in circles on a ground of your own, without a
-// file. Each second one is teleported by a wave of the ground. Prints how far planted feet slide,
-// and how far they are off the ground.
+// Three skeletons of your own walk in circles on a ground of your own, without a file; one of them
+// is teleported each second. Prints how far planted feet slide and are off the ground.
 #include <gaitpad/anatomy.h>
 #include <gaitpad/clean_strides.h>
 #include <gaitpad/control.h>
@@ -8,11 +7,9 @@
 
 #include <cstdio>
 using namespace gaitpad;
-
 static Motion bones(double leg_m) {  // standing: +x left, +y up, +z ahead
   Motion body;
-  body.name = "bones";
-  std::vector<Joint>& joints = body.skeleton.joints;
+  auto& joints = body.skeleton.joints;
   joints.push_back({"Hips", -1});
   for (const std::string side : {"Left", "Right"}) {
     const int hip = static_cast<int>(joints.size());
@@ -28,10 +25,8 @@ static Motion bones(double leg_m) {  // standing: +x left, +y up, +z ahead
 static Ground ask(const void*, double x_m, double z_m) noexcept {  // waves of 2.5 pi, two slopes
   return {0.2 * sin_cos(0.8 * x_m).sin + 0.15 * sin_cos(0.8 * z_m).sin, kUp, 0};
 }
-
 int main() {
-  int not_finite = 0;
-  double slide_m = 0.0, off_m = 0.0;
+  double slide_m = 0.0, off_m = 0.0, not_finite = 0.0;
   for (const double leg_m : {0.7, 0.84, 1.0}) {
     Motion body = bones(leg_m);
     const auto legs = find_legs(body);
@@ -52,16 +47,14 @@ int main() {
       not_finite += !std::isfinite(pose.root_m.x + pose.local[3].w);
       const WalkFrame& now = state.frame;
       for (const std::size_t side : {0u, 1u}) {
-        if (now.heel_planted[side])
-          off_m = std::max(off_m, std::abs(now.heel_m[side].y - now.heel_ground_m[side]));
-        if (!now.toe_planted[side]) continue;
-        off_m = std::max(off_m, std::abs(now.toe_m[side].y - now.toe_ground_m[side]));
-        if (before.toe_planted[side])
+        const double heel_m = std::abs(now.heel_m[side].y - now.heel_ground_m[side]);
+        const double toe_m = std::abs(now.toe_m[side].y - now.toe_ground_m[side]);
+        off_m = std::max({off_m, now.heel_planted[side] * heel_m, now.toe_planted[side] * toe_m});
+        if (now.toe_planted[side] && before.toe_planted[side])
           slide_m = std::max(slide_m, glm::distance(before.toe_m[side], now.toe_m[side]));
       }
     }
   }
-  std::printf(
-      "feet slide %.4f mm at most, %d poses are not finite, feet are %.4f mm off the ground\n",
-      1e3 * slide_m, not_finite, 1e3 * off_m);
+  std::printf("feet slide %.4f mm, are %.4f mm off the ground, %.0f poses are not finite\n",
+              1e3 * slide_m, 1e3 * off_m, not_finite);
 }

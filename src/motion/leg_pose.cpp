@@ -20,6 +20,11 @@ LegPose leg_pose(const LegModel& model, const vec3& pelvis_m, const quat& pelvis
   return p;
 }
 
+LegPose pose_of(const GaitCycle& cycle, int side, const CycleSample& at) noexcept {
+  const LegSample& leg = at.leg[side];
+  return leg_pose(cycle.leg[side], at.pelvis_m, at.pelvis, leg.angles, leg.toe_x);
+}
+
 vec3 foot_forward(const LegModel& leg) noexcept {
   const vec3 line = leg.toe_m - leg.heel_m;
   return glm::normalize(vec3(line.x, 0.0, line.z));

@@ -14,6 +14,8 @@ struct LegPose {
 };
 LegPose leg_pose(const LegModel& model, const vec3& pelvis_m, const quat& pelvis,
                  const LegAngles& angles, double toe_x) noexcept;
+// A leg of a cycle at one of its samples, in the travel frame.
+LegPose pose_of(const GaitCycle& cycle, int side, const CycleSample& at) noexcept;
 
 // q = Rx(x) Rz(z) Ry(y), the order of LegDof; z in [-pi/2, pi/2].
 struct AnglesXzy {

@@ -39,6 +39,11 @@ constexpr double kSoftKnee = 2.0 * kDegree;
 constexpr double kToeClearance_m = 0.01;  // in the middle of the flight
 constexpr double kMostStep = 0.25;        // radians or metres per iteration
 
+constexpr std::array<double, 3> kBend = {1.0, -2.0, 1.0};  // a second difference
+
+// Slope of soft_positive().
+double soft_slope(double x, double width) { return std::min(1.0, 0.5 * (x + width) / width); }
+
 int leg_unknown(int side) { return kPelvis + side * kLegDofs; }
 
 // The unknown that mirrors another one across the walker's middle plane, and its sign.
@@ -222,7 +227,6 @@ struct StrideSolver::System {
   void add_bend(int sample, int side, const std::vector<PointRows>& point,
                 const std::vector<double>& path_m, double stride_m, double weight) {
     if (sample >= solved) return;
-    constexpr std::array<double, 3> kBend = {1.0, -2.0, 1.0};
     for (int axis = 0; axis < 3; ++axis) {
       std::array<double, 3 * (kPelvis + kLegDofs)> row{};
       std::array<int, 3 * (kPelvis + kLegDofs)> where{};
@@ -270,7 +274,7 @@ struct StrideSolver::System {
     for (int d : {0, 1, 2}) bend += slope_of[d] * place[d];
     const double over = std::abs(bend) - most_m;
     if (over <= -soft_m) return;
-    const double share = std::min(1.0, 0.5 * (over + soft_m) / soft_m);
+    const double share = soft_slope(over, soft_m);
     const double error = std::copysign(soft_positive(over, soft_m), bend);
     for (int d : {0, 1, 2}) {
       const double slope = share * slope_of[d];
@@ -284,7 +288,7 @@ struct StrideSolver::System {
   void add_floor(int sample, int side, const PointRows& point, double least_m, double soft_m) {
     const double low = least_m - point.place_m.y;
     if (low <= -soft_m) return;
-    const double slope = std::min(1.0, 0.5 * (low + soft_m) / soft_m);
+    const double slope = soft_slope(low, soft_m);
     add_row(sample, side, point, kUp * slope, -soft_positive(low, soft_m), kFloor);
   }
 };
@@ -359,7 +363,6 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
       }
       s.at(at, at) += weight;
       s.gradient[at] += weight * change[1];
-      constexpr std::array<double, 3> kBend = {1.0, -2.0, 1.0};
       const double bend = change[0] - 2.0 * change[1] + change[2];
       for (int d : {0, 1, 2}) {
         const double slope = smooth * kBend[d] * where[d].factor;
@@ -472,7 +475,7 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
       const double bend = problem.least_knee_rad - x[i].leg[side][kKneeX];
       if (bend > -kSoftKnee) {
         const int at = i * kUnknowns + leg_unknown(side) + kKneeX;
-        const double slope = std::min(1.0, 0.5 * (bend + kSoftKnee) / kSoftKnee);
+        const double slope = soft_slope(bend, kSoftKnee);
         s.at(at, at) += kKnee * slope * slope;
         s.gradient[at] -= kKnee * slope * soft_positive(bend, kSoftKnee);
       }

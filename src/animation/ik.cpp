@@ -316,7 +316,7 @@ constexpr double kWorthAJump = 0.99;  // a later try replaces an earlier one onl
 
 using IkDofValues = std::array<double, kMaxIkDofs>;
 
-// What stays the same during a solve.
+// The input of a solve, and each DOF's weight and limits.
 struct Problem {
   const IkChain& chain;
   std::span<const IkRow> rows;

@@ -203,7 +203,7 @@ inline constexpr double kSharedNear_rad = 0.05 * kDegree, kSharedNear_m = 0.001;
 inline constexpr int kMostShareSteps = 8;
 inline constexpr double kExactRow_m2 = 1e-13;
 inline constexpr double kKneeSpring = 100.0;
-// Of the room of a foot's pitch: from here on it gives way no more.
+// Share of the room of a foot's pitch beyond which it gives way no further.
 inline constexpr double kRoomUsed = 0.8;
 
 // Makes a step of legs whose weights differ one towards the least sum of (angle - reference)^2 / W

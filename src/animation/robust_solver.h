@@ -48,10 +48,10 @@ using AnglesIn = std::array<typename System::V, System::kDofs>;
 template <class System>
 using ColumnsIn = std::array<RowsIn<System>, System::kDofs>;
 
-// What one step closes.
+// The linear system of one step.
 template <class System>
 struct StepIn {
-  AnglesIn<System> weight, first_rad;  // and what it turns by itself
+  AnglesIn<System> weight, first_rad;  // first_rad: a turn before the rows are closed
   RowsIn<System> give, error;          // how far the rows give way, and what is left to close
 };
 

@@ -197,6 +197,19 @@ struct StrideSolver::System {
     return {(i - solved) * kUnknowns + m.unknown, m.factor};
   }
 
+  // Adds weight * error^2; `row` holds the error's derivatives by the unknowns `where`.
+  template <std::size_t kCount>
+  void add_square(const std::array<double, kCount>& row, const std::array<int, kCount>& where,
+                  double error, double weight) {
+    for (std::size_t p = 0; p < kCount; ++p) {
+      if (row[p] == 0.0) continue;
+      gradient[where[p]] += weight * row[p] * error;
+      for (std::size_t q = 0; q <= p; ++q) {
+        if (row[q] != 0.0) at(where[p], where[q]) += weight * row[p] * row[q];
+      }
+    }
+  }
+
   // Adds weight * (direction . (place - goal))^2.
   void add_row(int sample, int side, const PointRows& point, const vec3& direction, double error_m,
                double weight) {
@@ -208,10 +221,7 @@ struct StrideSolver::System {
       row[kPelvis + j] = glm::dot(direction, point.by_angle[j]);
       where[kPelvis + j] = leg + j;
     }
-    for (std::size_t p = 0; p < row.size(); ++p) {
-      gradient[where[p]] += weight * row[p] * error_m;
-      for (std::size_t q = 0; q <= p; ++q) at(where[p], where[q]) += weight * row[p] * row[q];
-    }
+    add_square(row, where, error_m, weight);
   }
 
   // Adds weight * |place - goal|^2.
@@ -245,13 +255,7 @@ struct StrideSolver::System {
         for (int a = 0; a < kPelvis; ++a) add(a, a == axis ? 1.0 : 0.0);
         for (int k = 0; k < kLegDofs; ++k) add(leg_unknown(side) + k, point[j].by_angle[k][axis]);
       }
-      for (int p = 0; p < m; ++p) {
-        if (row[p] == 0.0) continue;
-        gradient[where[p]] += weight * row[p] * error;
-        for (int q = 0; q <= p; ++q) {
-          if (row[q] != 0.0) at(where[p], where[q]) += weight * row[p] * row[q];
-        }
-      }
+      add_square(row, where, error, weight);
     }
   }
 
@@ -458,18 +462,15 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
           across.by_angle[j] -= heel.by_angle[j];
           along.by_angle[j] -= heel.by_angle[j];
         }
-        // These two do not depend on the pelvis: add by hand.
-        const int base = i * kUnknowns + leg_unknown(side);
+        // Neither depends on the pelvis.
+        std::array<int, kLegDofs> where;
+        for (int j = 0; j < kLegDofs; ++j) where[j] = i * kUnknowns + leg_unknown(side) + j;
         const double want_x = (leg.toe_m - leg.heel_m).x;
         for (const auto& [point, axis, error] : {std::tuple{&across, 1, across.place_m.y},
                                                  std::tuple{&along, 0, along.place_m.x - want_x}}) {
-          for (int p = 0; p < kLegDofs; ++p) {
-            s.gradient[base + p] += kLevel * point->by_angle[p][axis] * error;
-            for (int q = 0; q <= p; ++q) {
-              s.at(base + p, base + q) +=
-                  kLevel * point->by_angle[p][axis] * point->by_angle[q][axis];
-            }
-          }
+          std::array<double, kLegDofs> row;
+          for (int j = 0; j < kLegDofs; ++j) row[j] = point->by_angle[j][axis];
+          s.add_square(row, where, error, kLevel);
         }
       }
       const double bend = problem.least_knee_rad - x[i].leg[side][kKneeX];

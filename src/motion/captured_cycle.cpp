@@ -593,12 +593,8 @@ namespace {
 // Knee flexion that puts the ankle at distance `reach_m` from the hip. A nearly straight knee keeps
 // the captured angle, because there the distance hardly depends on it.
 double knee_angle(const LegModel& leg, double captured_rad, double reach_m) {
-  const double cosine =
-      (reach_m * reach_m - leg.thigh_m * leg.thigh_m - leg.shank_m * leg.shank_m) /
-      (2.0 * leg.thigh_m * leg.shank_m);
-  const double by_reach = gaitpad::acos(cosine);
   const double share = smoothstep(4.0 * kDegree, 12.0 * kDegree, captured_rad);
-  const double knee = mix(captured_rad, by_reach, share);
+  const double knee = mix(captured_rad, knee_at_span(leg, reach_m), share);
   // A knee straightens at 300 degrees/s, so it is slowed over kWidth instead of stopped at once.
   constexpr double kLeast = 1.5 * kDegree, kWidth = 5.0 * kDegree;
   return kLeast + soft_positive(knee - kLeast, kWidth);

@@ -30,6 +30,8 @@ inline constexpr double kHalfFoot = 0.054;  // in legs: half a foot's breadth, 4
 
 // Distance from hip to ankle at that knee flexion.
 double span_m(const LegModel& leg, double knee_rad) noexcept;
+// The knee flexion, in radians, at that distance from hip to ankle; 0 if the leg is too short.
+double knee_at_span(const LegModel& leg, double span_m) noexcept;
 
 // Both legs standing upright with flat feet. If one is longer, the pelvis rolls, by 10 degrees at
 // most, as a person's does; the longer leg bends by the rest.

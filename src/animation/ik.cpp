@@ -28,20 +28,13 @@ struct Axes {
   vec3 x{1.0, 0.0, 0.0}, y{0.0, 1.0, 0.0}, z{0.0, 0.0, 1.0};
 };
 
-// Turns a frame about its own first axis: (y, z) are the other two, in cyclic order.
-void turn(vec3& y, vec3& z, const SinCos& s) noexcept {
-  const vec3 old = y;
-  y = s.cos * old + s.sin * z;
-  z = s.cos * z - s.sin * old;
-}
-
 // Turns about a unit axis that is given in the frame itself, by Rodrigues' formula; returns the
 // axis in the base frame. The usual axes cost a third of it.
 vec3 turn_about(const vec3& a, const SinCos& s, Axes& f) noexcept {
   vec3 axis;
-  if (a.x == 1.0) return axis = f.x, turn(f.y, f.z, s), axis;
-  if (a.y == 1.0) return axis = f.y, turn(f.z, f.x, s), axis;
-  if (a.z == 1.0) return axis = f.z, turn(f.x, f.y, s), axis;
+  if (a.x == 1.0) return axis = f.x, turn(f.y, f.z, s.sin, s.cos), axis;
+  if (a.y == 1.0) return axis = f.y, turn(f.z, f.x, s.sin, s.cos), axis;
+  if (a.z == 1.0) return axis = f.z, turn(f.x, f.y, s.sin, s.cos), axis;
   axis = a.x * f.x + a.y * f.y + a.z * f.z;
   const double versine = 1.0 - s.cos;
   f.x = s.cos * f.x + s.sin * glm::cross(axis, f.x) + (versine * a.x) * axis;
@@ -323,7 +316,7 @@ constexpr double kWorthAJump = 0.99;  // a later try replaces an earlier one onl
 
 using IkDofValues = std::array<double, kMaxIkDofs>;
 
-// What stays the same during a solve.
+// The input of a solve, and each DOF's weight and limits.
 struct Problem {
   const IkChain& chain;
   std::span<const IkRow> rows;
@@ -360,8 +353,6 @@ struct ChainSystem {
     measure_errors(place.pose, p.rows, place);
     for (std::size_t r = p.rows.size(); r < kRows; ++r) place.dx[r] = 0.0;
   }
-  // An entry is d . (a x (p - q)) for direction d, point p and an axis a through q, which is
-  // a . (p x d) + d . (q x a).
   void set_columns(const Place& place, ColumnsIn<ChainSystem>& column) const noexcept {
     std::array<vec3, kRows> direction{}, moment{};
     for (std::size_t r = 0; r < p.rows.size(); ++r) {
@@ -371,10 +362,7 @@ struct ChainSystem {
     for (int j = 0; j < dofs; ++j) {
       const vec3& a = place.pose.axis[j];
       const vec3 n = glm::cross(place.pose.pivot_m[j], a);
-      for (int r = 0; r < kRows; ++r) {
-        const vec3 &d = direction[r], &m = moment[r];
-        column[j][r] = (a.x * m.x + a.y * m.y) + (a.z * m.z + n.x * d.x) + (n.y * d.y + n.z * d.z);
-      }
+      for (int r = 0; r < kRows; ++r) column[j][r] = jacobian_entry(a, n, direction[r], moment[r]);
     }
   }
   static void keep(bool, const Place& place, Place& best) noexcept { best = place; }

@@ -25,14 +25,6 @@ struct LegPlace {
   V squares;
 };
 
-// Turns a frame about its own first axis: (y, z) are the other two, in cyclic order.
-template <class V>
-inline void turn_lanes(Vec3Of<V>& y, Vec3Of<V>& z, const V& sine, const V& cosine) noexcept {
-  const Vec3Of<V> old = y;
-  y = cosine * old + sine * z;
-  z = cosine * z - sine * old;
-}
-
 template <class V>
 inline void place_legs(const LegGoals<V>& goals, const LegValues<V>& angles_rad,
                        LegPlace<V>& place) noexcept {
@@ -46,17 +38,17 @@ inline void place_legs(const LegGoals<V>& goals, const LegValues<V>& angles_rad,
   x = {c[1], s[1] * y.y, s[1] * y.z};
   y = {-s[1], c[1] * y.y, c[1] * y.z};
   place.axis[2] = y;
-  turn_lanes(z, x, s[2], c[2]);
+  turn(z, x, s[2], c[2]);
   place.knee_m = -goals.thigh_m * y;
   place.axis[3] = x;
-  turn_lanes(y, z, s[3], c[3]);
+  turn(y, z, s[3], c[3]);
   place.ankle_m = place.knee_m + -goals.shank_m * y;
   place.axis[4] = x;
-  turn_lanes(y, z, s[4], c[4]);
+  turn(y, z, s[4], c[4]);
   place.axis[5] = z;
-  turn_lanes(x, y, s[5], c[5]);
+  turn(x, y, s[5], c[5]);
   place.axis[6] = y;
-  turn_lanes(z, x, s[6], c[6]);
+  turn(z, x, s[6], c[6]);
   for (int p = 0; p < 3; ++p) {
     const Vec3Of<V>& in_foot = goals.point_m[p];
     place.point_m[p] = place.ankle_m + in_foot.x * x + in_foot.y * y + in_foot.z * z;
@@ -70,8 +62,7 @@ inline void place_legs(const LegGoals<V>& goals, const LegValues<V>& angles_rad,
   }
 }
 
-// Columns of the Jacobian. An entry is d . (a x (p - q)) for direction d, point p and an axis a
-// through q, which is a . (p x d) + d . (q x a).
+// Columns of the Jacobian. The hip's axes go through the origin.
 template <class V>
 using LegColumns = std::array<LegRows<V>, kLegDofs>;
 template <class V>
@@ -90,11 +81,7 @@ inline void set_columns(const LegGoals<V>& goals, const LegPlace<V>& place,
   for (int j = 3; j < kLegDofs; ++j) {
     const Vec3Of<V>& a = place.axis[j];
     const Vec3Of<V> n = cross_of(j == 3 ? place.knee_m : place.ankle_m, a);
-    for (int r = 0; r < 6; ++r) {
-      const Vec3Of<V>& d = *direction[r];
-      column[j][r] = (a.x * moment[r].x + a.y * moment[r].y) + (a.z * moment[r].z + n.x * d.x) +
-                     (n.y * d.y + n.z * d.z);
-    }
+    for (int r = 0; r < 6; ++r) column[j][r] = jacobian_entry(a, n, *direction[r], moment[r]);
   }
 }
 
@@ -142,15 +129,15 @@ inline MaskOf<V> close_lanes(const PlannedLeg<V>& planned, LegValues<V>& angles_
       hip_y{-s[1], c[1] * c[0], c[1] * s[0]};
   Vec3Of<V> x = hip_x, z = hip_z;
   const Vec3Of<V>& y = hip_y;
-  turn_lanes(z, x, s[2], c[2]);
+  turn(z, x, s[2], c[2]);
   Vec3Of<V> shank_y = y, shank_z = z;
-  turn_lanes(shank_y, shank_z, s[3], c[3]);
+  turn(shank_y, shank_z, s[3], c[3]);
   Vec3Of<V> foot_x = x, foot_y = shank_y, ankle_z = shank_z;
-  turn_lanes(foot_y, ankle_z, s[4], c[4]);
-  turn_lanes(foot_x, foot_y, s[5], c[5]);
+  turn(foot_y, ankle_z, s[4], c[4]);
+  turn(foot_x, foot_y, s[5], c[5]);
   const Vec3Of<V> ankle_x = foot_x;
   Vec3Of<V> foot_z = ankle_z;
-  turn_lanes(foot_z, foot_x, s[6], c[6]);
+  turn(foot_z, foot_x, s[6], c[6]);
 
   // The knee, then the least turn of the hip that brings the ankle to its place.
   const Vec3Of<V>& ankle = planned.ankle_m;
@@ -182,10 +169,11 @@ inline MaskOf<V> close_lanes(const PlannedLeg<V>& planned, LegValues<V>& angles_
   const Vec3Of<V> vector = axis + swivel * w + cross_of(swivel, axis);
   w = w - dot_of(swivel, axis);
   const V norm = 1.0 / sqrt_of(V(w * w + dot_of(vector, vector)));
-  const QuatOf<V> turn{w * norm, vector.x * norm, vector.y * norm, vector.z * norm};
+  const QuatOf<V> hip_turn{w * norm, vector.x * norm, vector.y * norm, vector.z * norm};
 
   // The angles of that pose.
-  const Vec3Of<V> thigh_x = turn * x, thigh_y = turn * y, thigh_z = cross_of(thigh_x, thigh_y);
+  const Vec3Of<V> thigh_x = hip_turn * x, thigh_y = hip_turn * y,
+                  thigh_z = cross_of(thigh_x, thigh_y);
   next[kHipX] = angle_near(thigh_y.z, thigh_y.y, angles_rad[kHipX], s[0], c[0], good);
   next[kHipZ] = angle_near(V(-thigh_y.x), sqrt_of(V(thigh_y.y * thigh_y.y + thigh_y.z * thigh_y.z)),
                            angles_rad[kHipZ], s[1], c[1], good);
@@ -215,7 +203,7 @@ inline constexpr double kSharedNear_rad = 0.05 * kDegree, kSharedNear_m = 0.001;
 inline constexpr int kMostShareSteps = 8;
 inline constexpr double kExactRow_m2 = 1e-13;
 inline constexpr double kKneeSpring = 100.0;
-// Of the room of a foot's pitch: from here on it gives way no more.
+// Share of the room of a foot's pitch beyond which it gives way no further.
 inline constexpr double kRoomUsed = 0.8;
 
 // Makes a step of legs whose weights differ one towards the least sum of (angle - reference)^2 / W

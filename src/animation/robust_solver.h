@@ -23,6 +23,21 @@ inline constexpr int kPatience = 6;
 inline constexpr double kLeastGain = 0.001;
 inline constexpr double kGainFrom = 0.1;
 
+// Turns a frame about its own first axis: (y, z) are the other two, in cyclic order.
+template <class Axis, class V>
+inline void turn(Axis& y, Axis& z, const V& sine, const V& cosine) noexcept {
+  const Axis old = y;
+  y = cosine * old + sine * z;
+  z = cosine * z - sine * old;
+}
+
+// An entry of the Jacobian is d . (a x (p - q)), for direction d, point p and an axis a through q.
+// It equals a . m + n . d with the moments m = p x d and n = q x a.
+template <class Axis>
+inline auto jacobian_entry(const Axis& a, const Axis& n, const Axis& d, const Axis& m) noexcept {
+  return (a.x * m.x + a.y * m.y) + (a.z * m.z + n.x * d.x) + (n.y * d.y + n.z * d.z);
+}
+
 // A System has kRows, kDofs (at most) and `dofs`; weight, min_rad and max_rad of each DOF; a Place
 // with dx, how far each row is from its goal, and the sum of their squares; place(), set_columns(),
 // keep() and trace(). kWeighted: lanes that are `shared` make steps of their own, by share_step().
@@ -33,10 +48,10 @@ using AnglesIn = std::array<typename System::V, System::kDofs>;
 template <class System>
 using ColumnsIn = std::array<RowsIn<System>, System::kDofs>;
 
-// What one step closes.
+// The linear system of one step.
 template <class System>
 struct StepIn {
-  AnglesIn<System> weight, first_rad;  // and what it turns by itself
+  AnglesIn<System> weight, first_rad;  // first_rad: a turn before the rows are closed
   RowsIn<System> give, error;          // how far the rows give way, and what is left to close
 };
 

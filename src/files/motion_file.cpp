@@ -364,7 +364,7 @@ double metres_per_unit(double leg_length_units) noexcept {
     const double leg_m = leg_length_units * unit_m;
     if (leg_m >= kMinLegM && leg_m <= kMaxLegM) return unit_m;
   }
-  return kAdultLegM / leg_length_units;
+  return kReferenceLeg_m / leg_length_units;
 }
 
 double metres_per_unit(double leg_length_units, double stated_unit_m) noexcept {

@@ -6,6 +6,7 @@
 #include "gaitpad/curve.h"
 #include "gaitpad/motion.h"
 #include "motion/leg_pose.h"
+#include "motion/sole.h"
 
 namespace gaitpad {
 namespace {
@@ -43,15 +44,15 @@ Spline spline(std::vector<double> value) {
 }
 
 // The frames that are read: the window and a margin for fading the seam.
-struct Stretch {
+struct StrideFrames {
   int first = 0, count = 0;
   double start = 0.0, period = 0.0;  // frames from `first`
   double before = 0.0, after = 0.0;  // margins for fading, share of the period
   double place(double phase) const { return start + phase * period; }
 };
 
-Stretch stretch_of(const StrideWindow& w) {
-  Stretch s;
+StrideFrames frames_of(const StrideWindow& w) {
+  StrideFrames s;
   const double margin = kFade * w.period + 4.0;
   s.first = std::max(w.first, static_cast<int>(std::floor(w.start - margin)));
   const int last = std::min(w.last, static_cast<int>(std::ceil(w.start + w.period + margin)));
@@ -68,8 +69,8 @@ Stretch stretch_of(const StrideWindow& w) {
 // the seam do not change.
 class Closer {
  public:
-  explicit Closer(const Stretch& stretch)
-      : s_(stretch), fades_(s_.before + s_.after >= kLeastFade) {}
+  explicit Closer(const StrideFrames& frames)
+      : s_(frames), fades_(s_.before + s_.after >= kLeastFade) {}
 
   std::array<double, kPoints> closed(const Spline& x) const {
     std::array<double, kPoints> y;
@@ -106,7 +107,7 @@ class Closer {
            half * from_seam * rest * rest;
   }
 
-  Stretch s_;
+  StrideFrames s_;
   bool fades_;
 };
 
@@ -148,7 +149,7 @@ double value_at(const Fourier& f, const std::array<SinCos, kHarmonics>& wave) {
 
 // The pelvis' path with its turning removed frame by frame, then rotated about y so that the stride
 // goes along +z. Returns the heading that was removed at each frame.
-std::vector<double> straighten(const Motion& motion, const Stretch& s, double turn_rad,
+std::vector<double> straighten(const Motion& motion, const StrideFrames& s, double turn_rad,
                                std::array<std::vector<double>, 3>& path_m) {
   const auto world = std::make_unique<JointFrames>();
   std::vector<double> heading(s.count);
@@ -178,7 +179,7 @@ std::vector<double> straighten(const Motion& motion, const Stretch& s, double tu
 }
 
 // A joint's local rotation, for joint 0 without the heading.
-quat local_at(const Motion& motion, const Stretch& s, int frame, int joint,
+quat local_at(const Motion& motion, const StrideFrames& s, int frame, int joint,
               const std::vector<double>& heading) {
   const quat& q = motion.frames[s.first + frame].local[joint];
   return joint == 0 ? rotation_y(-heading[frame]) * q : q;
@@ -195,7 +196,7 @@ quat mean_rotation(const std::vector<quat>& all) {
 }  // namespace
 
 PeriodicMotion periodic_motion(const Motion& motion, const StrideWindow& window) {
-  const Stretch s = stretch_of(window);
+  const StrideFrames s = frames_of(window);
   const Closer closer(s);
   const auto waves = std::make_unique<Waves>();
   PeriodicMotion out;
@@ -361,7 +362,6 @@ std::vector<double> ground_speed(const CapturedCycle& cycle, const std::vector<v
 }
 
 FlatFoot flat_foot(const CapturedCycle& cycle, int side) {
-  constexpr double kRatePerS = 14.0;  // score: 1 m of height counts as 14 m/s of speed
   const CapturedLeg& leg = cycle.leg[side];
   const std::vector<double> ankle = ground_speed(cycle, leg.ankle_m);
   const std::vector<double> toe = ground_speed(cycle, leg.toe_m);
@@ -371,7 +371,7 @@ FlatFoot flat_foot(const CapturedCycle& cycle, int side) {
     double sum = 0.0;
     for (int k = -2 * FlatFoot::reach; k <= 2 * FlatFoot::reach; ++k) {
       const int at = wrapped_index(i + k);
-      sum += ankle[at] + toe[at] + kRatePerS * (leg.ankle_m[at].y + leg.toe_m[at].y);
+      sum += ankle[at] + toe[at] + kFlatRate_per_s * (leg.ankle_m[at].y + leg.toe_m[at].y);
     }
     if (i == 0 || sum < least) {
       least = sum;
@@ -404,12 +404,8 @@ namespace {
 
 // --- The standing pose ---------------------------------------------------------------------------
 
-constexpr double kHeelShare = 0.3;       // heel behind the ankle, share of ankle to toe
-constexpr double kOwnToe_legs = 0.155;   // if the skeleton has no toe: ball before the ankle
-constexpr double kOwnAnkle_legs = 0.08;  // and ankle above the floor
-constexpr double kShortestFoot_legs = 0.04;
-constexpr double kLowestToe_legs = 0.16;  // a foot point deeper under the ankle is no sole
-constexpr double kLeastAnkle_legs = 0.02;
+constexpr double kOwnAnkle_legs = 0.08;      // if the skeleton has no toe: ankle above the floor
+constexpr double kLowestToe_legs = 0.16;     // a foot point deeper under the ankle is no sole
 constexpr double kMostToe = 70.0 * kDegree;  // toes bend no further; some clips turn them all round
 
 // Joints strictly between `from` and `to`, topmost first.
@@ -597,12 +593,8 @@ namespace {
 // Knee flexion that puts the ankle at distance `reach_m` from the hip. A nearly straight knee keeps
 // the captured angle, because there the distance hardly depends on it.
 double knee_angle(const LegModel& leg, double captured_rad, double reach_m) {
-  const double cosine =
-      (reach_m * reach_m - leg.thigh_m * leg.thigh_m - leg.shank_m * leg.shank_m) /
-      (2.0 * leg.thigh_m * leg.shank_m);
-  const double by_reach = gaitpad::acos(cosine);
   const double share = smoothstep(4.0 * kDegree, 12.0 * kDegree, captured_rad);
-  const double knee = mix(captured_rad, by_reach, share);
+  const double knee = mix(captured_rad, knee_at_span(leg, reach_m), share);
   // A knee straightens at 300 degrees/s, so it is slowed over kWidth instead of stopped at once.
   constexpr double kLeast = 1.5 * kDegree, kWidth = 5.0 * kDegree;
   return kLeast + soft_positive(knee - kLeast, kWidth);
@@ -695,8 +687,7 @@ void build_samples(const CapturedCycle& c, double floor_m, GaitCycle& out) {
            {std::pair{c.pelvis, j.hip}, {j.hip, j.knee}, {j.knee, j.ankle}, {j.ankle, j.toe}}) {
         for (const int k : joints_between(c.skeleton, from, to)) local[k] = out.standing_local[k];
       }
-      const LegPose pose = leg_pose(model, at.pelvis_m, at.pelvis, leg.angles, leg.toe_x);
-      set_leg_locals(out.skeleton, model, pose, local);
+      set_leg_locals(out.skeleton, model, pose_of(out, side, at), local);
     }
   }
   make_continuous(out);

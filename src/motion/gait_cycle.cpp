@@ -73,11 +73,7 @@ constexpr double kInAir_legs = 0.024;  // 20 mm of an adult's leg: captured floo
 // A foot point's track over the samples, in the travel frame.
 std::vector<vec3> foot_track(const GaitCycle& cycle, int side, const vec3 LegPose::*point) {
   std::vector<vec3> track;
-  for (const CycleSample& at : cycle.samples) {
-    const LegSample& leg = at.leg[side];
-    const LegPose pose = leg_pose(cycle.leg[side], at.pelvis_m, at.pelvis, leg.angles, leg.toe_x);
-    track.push_back(pose.*point);
-  }
+  for (const CycleSample& at : cycle.samples) track.push_back(pose_of(cycle, side, at).*point);
   return track;
 }
 
@@ -126,8 +122,7 @@ void wait_for_other_toe(GaitCycle& cycle) {
   for (const Side side : {kLeftSide, kRightSide}) {
     const Side lands = other(side);
     const auto toe_at = [&](Side foot, double phase) {
-      const CycleSample at = sample_at(cycle, phase);
-      vec3 toe = leg_pose(cycle.leg[foot], at.pelvis_m, at.pelvis, at.leg[foot].angles, 0.0).toe_m;
+      vec3 toe = pose_of(cycle, foot, sample_at(cycle, phase)).toe_m;
       toe.z += cycle.stride_m * phase;
       return toe;
     };
@@ -188,7 +183,7 @@ double walk_ratio_m_min(const GaitCycle& cycle) {
 std::string why_no_pace(const GaitCycle& cycle) {
   constexpr double kFastest_m_s = 3.0, kMostSteps_min = 200.0, kMostRatio_m_min = 0.015,
                    kRunsFrom_min = 140.0;
-  const double legs = mean_leg_m(cycle) / kAdultLeg_m, root = std::sqrt(legs);
+  const double legs = mean_leg_m(cycle) / kReferenceLeg_m, root = std::sqrt(legs);
   const double speed_m_s = cycle.stride_m / cycle.duration_s;
   const double steps_min = 120.0 / cycle.duration_s;
   if (speed_m_s <= kFastest_m_s * root && steps_min <= kMostSteps_min / root &&

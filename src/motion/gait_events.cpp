@@ -6,6 +6,7 @@
 #include "base/numeric.h"
 #include "base/text.h"
 #include "gaitpad/limbs.h"
+#include "motion/sole.h"
 
 namespace gaitpad {
 namespace {
@@ -13,12 +14,7 @@ namespace {
 // --- Tracks of a motion's feet -------------------------------------------------------------------
 
 constexpr double kFastest_legs_s = 14.0;  // faster than any sprinter's foot: a jump in the data
-constexpr double kFlatRate_per_s = 14.0;  // score: 1 m of height counts as 14 m/s of speed
 constexpr std::size_t kFlatPercent = 10;  // of all frames: in these a walker's foot is flat
-constexpr double kHeelShare = 0.3;        // heel behind the ankle, share of ankle to toe
-constexpr double kShortestFoot_legs = 0.04;
-constexpr double kOwnToe_legs = 0.155;     // if the skeleton has no toe: ball before the ankle
-constexpr double kLeastAnkle_legs = 0.02;  // ankle above the sole
 
 bool is_jump(const vec3& a, const vec3& b, double most_m) {
   return !(glm::distance(a, b) <= most_m);
@@ -303,8 +299,9 @@ double share_above(double above, double next, double limit) {
   return above > limit && above > next ? std::min((above - limit) / (above - next), 1.0) : 0.0;
 }
 
-// A swing and the inputs of its two events, which may be evaluated for several limits.
-struct Swing {
+// The samples between which a swing's two events are searched. The events may be evaluated for
+// several limits.
+struct SwingSearch {
   Run run;
   double scale = 1.0;          // of the leg, 1: an adult's
   int fastest_heel = 0;        // the search for the strike begins here
@@ -314,11 +311,11 @@ struct Swing {
   int pushing = 0;             // and ends here: the toe is slowest while the heel rises
 };
 
-Swing swing_of(const FeetTracks& tracks, const Run& run, double limit_m_s) {
+SwingSearch search_of(const FeetTracks& tracks, const Run& run, double limit_m_s) {
   const Reader r = reader(tracks, run);
-  Swing s;
+  SwingSearch s;
   s.run = run;
-  s.scale = tracks.leg_m / kAdultLeg_m;
+  s.scale = tracks.leg_m / kReferenceLeg_m;
   s.fastest_heel = r.fastest(r.foot.heel_m, run.first, run.last);
   s.flat = r.flattest(std::min(run.last + 1, run.rest_last), run.rest_last);
   s.standing_heel_m = r.mean(r.foot.heel_m, s.flat, r.half(kFlat_s)).y;
@@ -333,7 +330,7 @@ Swing swing_of(const FeetTracks& tracks, const Run& run, double limit_m_s) {
   return s;
 }
 
-std::optional<double> strike_of(const FeetTracks& tracks, const Swing& s, double slide) {
+std::optional<double> strike_of(const FeetTracks& tracks, const SwingSearch& s, double slide) {
   if (s.run.last == tracks.ranges[s.run.range].last) return std::nullopt;
   const Reader r = reader(tracks, s.run);
   const std::vector<vec3>& heel = r.foot.heel_m;
@@ -358,7 +355,7 @@ std::optional<double> strike_of(const FeetTracks& tracks, const Swing& s, double
                   share_above(r.speed(heel, rest - 1), r.speed(heel, rest), still_m_s));
 }
 
-std::optional<double> toe_off_of(const FeetTracks& tracks, const Swing& s, double slide) {
+std::optional<double> toe_off_of(const FeetTracks& tracks, const SwingSearch& s, double slide) {
   if (s.run.first == tracks.ranges[s.run.range].first) return std::nullopt;
   const Reader r = reader(tracks, s.run);
   const double most_m_s = slide * s.scale * kLeaving_m_s;
@@ -369,7 +366,7 @@ std::optional<double> toe_off_of(const FeetTracks& tracks, const Swing& s, doubl
 }
 
 // The next swing in the same range if it is the other foot's, otherwise -1.
-int rival_after(const std::vector<Swing>& swings, std::size_t i) {
+int rival_after(const std::vector<SwingSearch>& swings, std::size_t i) {
   for (std::size_t k = i + 1; k < swings.size(); ++k) {
     if (swings[k].run.range != swings[i].run.range) continue;
     return swings[k].run.side == swings[i].run.side ? -1 : static_cast<int>(k);
@@ -416,12 +413,12 @@ FeetTracks feet_tracks(const Motion& motion) {
 
 std::vector<FootSwing> foot_swings(const FeetTracks& tracks, double moving_share) {
   double limit_m_s = 0.0;
-  std::vector<Swing> all;
+  std::vector<SwingSearch> all;
   for (const Run& run : swing_runs(tracks, moving_share, limit_m_s)) {
-    all.push_back(swing_of(tracks, run, limit_m_s));
+    all.push_back(search_of(tracks, run, limit_m_s));
   }
   std::vector<FootSwing> found;
-  for (const Swing& s : all) {
+  for (const SwingSearch& s : all) {
     FootSwing swing{s.run.side, s.run.range, {}, {}, {}, {}};
     swing.toe_off = toe_off_of(tracks, s, 1.0);
     swing.strike = strike_of(tracks, s, 1.0);

@@ -4,9 +4,10 @@
 // A foot *strikes* when its heel is down and still: at 0.3 m/s or less and at most 5 mm above where
 // it then rests. Its *toe is off* when it begins to leave: when it last was at 0.2 m/s before it
 // swings. (A toe that pushes creeps by 10 to 30 mm in most captures, so its distance is no
-// criterion.) Both are found between samples. Lengths and speeds are an adult's; they scale with
-// the leg. If the feet of a capture slide so far that a toe would leave before the other heel has
-// struck, the limits of these two events grow together, at most to kMostSlide times.
+// criterion.) Both are found between samples. Lengths and speeds are those of an adult
+// (kReferenceLeg_m); they scale with the leg. If the feet of a capture slide so far that a toe
+// would leave before the other heel has struck, the limits of these two events grow together, at
+// most to kMostSlide times.
 #pragma once
 #include <array>
 #include <optional>
@@ -17,8 +18,7 @@
 
 namespace gaitpad {
 
-inline constexpr double kAdultLeg_m = 0.84;  // thigh + shank
-inline constexpr double kMostSlide = 4.0;    // a heel 20 mm up or at 1.2 m/s does not stand
+inline constexpr double kMostSlide = 4.0;  // a heel 20 mm up or at 1.2 m/s does not stand
 
 struct FootTrack {  // over the ground, y up
   std::vector<vec3> ankle_m, heel_m, toe_m;

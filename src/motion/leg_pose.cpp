@@ -20,6 +20,11 @@ LegPose leg_pose(const LegModel& model, const vec3& pelvis_m, const quat& pelvis
   return p;
 }
 
+LegPose pose_of(const GaitCycle& cycle, int side, const CycleSample& at) noexcept {
+  const LegSample& leg = at.leg[side];
+  return leg_pose(cycle.leg[side], at.pelvis_m, at.pelvis, leg.angles, leg.toe_x);
+}
+
 vec3 foot_forward(const LegModel& leg) noexcept {
   const vec3 line = leg.toe_m - leg.heel_m;
   return glm::normalize(vec3(line.x, 0.0, line.z));
@@ -28,6 +33,11 @@ vec3 foot_forward(const LegModel& leg) noexcept {
 double span_m(const LegModel& leg, double knee_rad) noexcept {
   const double a = leg.thigh_m, b = leg.shank_m;
   return std::sqrt(a * a + b * b + 2.0 * a * b * sin_cos(knee_rad).cos);
+}
+
+double knee_at_span(const LegModel& leg, double span_m) noexcept {
+  const double a = leg.thigh_m, b = leg.shank_m;
+  return gaitpad::acos((span_m * span_m - a * a - b * b) / (2.0 * a * b));
 }
 
 Stand standing_legs(const std::array<LegModel, 2>& legs, double knee_rad) noexcept {
@@ -44,8 +54,7 @@ Stand standing_legs(const std::array<LegModel, 2>& legs, double knee_rad) noexce
     const LegModel& leg = legs[side];
     const double a = leg.thigh_m, b = leg.shank_m;
     const double span = stand.pelvis_m + (roll * leg.hip_m).y + leg.heel_m.y;
-    const double knee =
-        gaitpad::acos(std::clamp((span * span - a * a - b * b) / (2.0 * a * b), -1.0, 1.0));
+    const double knee = knee_at_span(leg, span);
     const SinCos bent = sin_cos(knee);
     LegAngles& angles = stand.angles[side];
     angles[kHipX] = -gaitpad::atan2(b * bent.sin, a + b * bent.cos);

@@ -14,6 +14,8 @@ struct LegPose {
 };
 LegPose leg_pose(const LegModel& model, const vec3& pelvis_m, const quat& pelvis,
                  const LegAngles& angles, double toe_x) noexcept;
+// A leg of a cycle at one of its samples, in the travel frame.
+LegPose pose_of(const GaitCycle& cycle, int side, const CycleSample& at) noexcept;
 
 // q = Rx(x) Rz(z) Ry(y), the order of LegDof; z in [-pi/2, pi/2].
 struct AnglesXzy {
@@ -28,6 +30,8 @@ inline constexpr double kHalfFoot = 0.054;  // in legs: half a foot's breadth, 4
 
 // Distance from hip to ankle at that knee flexion.
 double span_m(const LegModel& leg, double knee_rad) noexcept;
+// The knee flexion, in radians, at that distance from hip to ankle; 0 if the leg is too short.
+double knee_at_span(const LegModel& leg, double span_m) noexcept;
 
 // Both legs standing upright with flat feet. If one is longer, the pelvis rolls, by 10 degrees at
 // most, as a person's does; the longer leg bends by the rest.

@@ -9,10 +9,9 @@ namespace {
 
 // Segment lengths as fractions of the stature H (Drillis & Contini, in Winter's tables). The hip
 // joints stand closer than Winter's .0955 H, which is half the pelvis' outer breadth.
-constexpr double kLeg = 0.84;              // thigh + shank, metres
-constexpr double kStature = kLeg / 0.491;  // .245 + .246
-constexpr double kThigh = kLeg * 0.245 / 0.491;
-constexpr double kShank = kLeg - kThigh;
+constexpr double kStature = kReferenceLeg_m / 0.491;  // .245 + .246
+constexpr double kThigh = kReferenceLeg_m * 0.245 / 0.491;
+constexpr double kShank = kReferenceLeg_m - kThigh;
 constexpr double kHipHalf = 0.052 * kStature;
 constexpr double kHipDrop = 0.03 * kStature;  // hip joints under the pelvis joint
 constexpr double kAnkleHeight = 0.039 * kStature;
@@ -115,11 +114,6 @@ CycleSample mirrored_pelvis(const CycleSample& body) {
   m.pelvis_m = mirrored(body.pelvis_m);
   m.pelvis = mirrored(body.pelvis);
   return m;
-}
-
-LegPose pose_of(const GaitCycle& cycle, int side, const CycleSample& at) {
-  const LegSample& leg = at.leg[side];
-  return leg_pose(cycle.leg[side], at.pelvis_m, at.pelvis, leg.angles, leg.toe_x);
 }
 
 double foot_clearance(const GaitCycle& cycle, int side, const CycleSample& at) {

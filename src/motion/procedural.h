@@ -26,7 +26,6 @@ LegSample right_leg_in_plane(const LegModel& model, const CycleSample& body,
 LegSample mirrored(const LegSample& leg);              // angles and toe
 CycleSample mirrored_pelvis(const CycleSample& body);  // pelvis alone, legs untouched
 
-LegPose pose_of(const GaitCycle& cycle, int side, const CycleSample& at);
 // Height of the foot's lowest point above its height at rest.
 double foot_clearance(const GaitCycle& cycle, int side, const CycleSample& at);
 

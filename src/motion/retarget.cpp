@@ -49,13 +49,13 @@ std::vector<vec3> standing_places(const GaitCycle& cycle) {
   return {at.begin(), at.begin() + static_cast<std::ptrdiff_t>(cycle.skeleton.joints.size())};
 }
 
-// One skeleton: its anatomy, and its joints' places in the standing pose.
-struct Walker {
+// The anatomy of one cycle's skeleton, and its joints' places in the standing pose.
+struct BodyPlan {
   const GaitCycle& cycle;
   std::vector<vec3> at;
   UpperBodyJoints joints;
   std::vector<int> neck;  // the head is its last
-  explicit Walker(const GaitCycle& c)
+  explicit BodyPlan(const GaitCycle& c)
       : cycle(c),
         at(standing_places(c)),
         joints(find_upper_body(c.skeleton, {c.leg[0].joints, c.leg[1].joints}, c.pelvis, at)),
@@ -85,7 +85,7 @@ struct Walker {
 };
 
 // The only child of a joint; -1 if there are none or several.
-int only_child(const Walker& part, int joint) {
+int only_child(const BodyPlan& part, int joint) {
   int child = -1;
   for (std::size_t j = 1; j < part.at.size(); ++j) {
     if (part.cycle.skeleton.joints[j].parent != joint) continue;
@@ -177,7 +177,7 @@ class Matcher {
     if (from_child >= 0 && to_child >= 0) aim(from, from_child, to, to_child);
   }
 
-  static bool is_part(const Walker& part, int joint) {
+  static bool is_part(const BodyPlan& part, int joint) {
     const auto has = [joint](const std::vector<int>& list) {
       return std::ranges::find(list, joint) != list.end();
     };
@@ -204,7 +204,7 @@ class Matcher {
     }
   }
 
-  Walker from_, to_;
+  BodyPlan from_, to_;
   UpperBodyMatch match_;
 };
 
@@ -413,9 +413,7 @@ void pose_sample(const UpperBodyTurn& turn, int i, GaitCycle& out) {
     local[j] = glm::normalize(glm::conjugate(above) * world[j]);
   }
   for (int side = 0; side < 2; ++side) {
-    const LegSample& leg = at.leg[side];
-    const LegPose pose = leg_pose(out.leg[side], at.pelvis_m, at.pelvis, leg.angles, leg.toe_x);
-    set_leg_locals(out.skeleton, out.leg[side], pose, local);
+    set_leg_locals(out.skeleton, out.leg[side], pose_of(out, side, at), local);
   }
   if (i == 0) return;
   const quat* before = local - joints;

@@ -88,7 +88,7 @@ struct Builder {
         const double own = fraction(double(i) / kCycleSamples - cycle.strike[side]);
         if (own < roll || own > roll + kFlat) continue;
         const CycleSample& s = cycle.samples[i];
-        sum += leg_pose(cycle.leg[side], s.pelvis_m, s.pelvis, s.leg[side].angles, 0.0).heel_m;
+        sum += pose_of(cycle, side, s).heel_m;
         sum.z += cycle.stride_m * (cycle.strike[side] + own);
         ++count;
       }

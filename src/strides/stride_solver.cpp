@@ -39,6 +39,11 @@ constexpr double kSoftKnee = 2.0 * kDegree;
 constexpr double kToeClearance_m = 0.01;  // in the middle of the flight
 constexpr double kMostStep = 0.25;        // radians or metres per iteration
 
+constexpr std::array<double, 3> kBend = {1.0, -2.0, 1.0};  // a second difference
+
+// Slope of soft_positive().
+double soft_slope(double x, double width) { return std::min(1.0, 0.5 * (x + width) / width); }
+
 int leg_unknown(int side) { return kPelvis + side * kLegDofs; }
 
 // The unknown that mirrors another one across the walker's middle plane, and its sign.
@@ -192,6 +197,19 @@ struct StrideSolver::System {
     return {(i - solved) * kUnknowns + m.unknown, m.factor};
   }
 
+  // Adds weight * error^2; `row` holds the error's derivatives by the unknowns `where`.
+  template <std::size_t kCount>
+  void add_square(const std::array<double, kCount>& row, const std::array<int, kCount>& where,
+                  double error, double weight) {
+    for (std::size_t p = 0; p < kCount; ++p) {
+      if (row[p] == 0.0) continue;
+      gradient[where[p]] += weight * row[p] * error;
+      for (std::size_t q = 0; q <= p; ++q) {
+        if (row[q] != 0.0) at(where[p], where[q]) += weight * row[p] * row[q];
+      }
+    }
+  }
+
   // Adds weight * (direction . (place - goal))^2.
   void add_row(int sample, int side, const PointRows& point, const vec3& direction, double error_m,
                double weight) {
@@ -203,10 +221,7 @@ struct StrideSolver::System {
       row[kPelvis + j] = glm::dot(direction, point.by_angle[j]);
       where[kPelvis + j] = leg + j;
     }
-    for (std::size_t p = 0; p < row.size(); ++p) {
-      gradient[where[p]] += weight * row[p] * error_m;
-      for (std::size_t q = 0; q <= p; ++q) at(where[p], where[q]) += weight * row[p] * row[q];
-    }
+    add_square(row, where, error_m, weight);
   }
 
   // Adds weight * |place - goal|^2.
@@ -222,7 +237,6 @@ struct StrideSolver::System {
   void add_bend(int sample, int side, const std::vector<PointRows>& point,
                 const std::vector<double>& path_m, double stride_m, double weight) {
     if (sample >= solved) return;
-    constexpr std::array<double, 3> kBend = {1.0, -2.0, 1.0};
     for (int axis = 0; axis < 3; ++axis) {
       std::array<double, 3 * (kPelvis + kLegDofs)> row{};
       std::array<int, 3 * (kPelvis + kLegDofs)> where{};
@@ -241,13 +255,7 @@ struct StrideSolver::System {
         for (int a = 0; a < kPelvis; ++a) add(a, a == axis ? 1.0 : 0.0);
         for (int k = 0; k < kLegDofs; ++k) add(leg_unknown(side) + k, point[j].by_angle[k][axis]);
       }
-      for (int p = 0; p < m; ++p) {
-        if (row[p] == 0.0) continue;
-        gradient[where[p]] += weight * row[p] * error;
-        for (int q = 0; q <= p; ++q) {
-          if (row[q] != 0.0) at(where[p], where[q]) += weight * row[p] * row[q];
-        }
-      }
+      add_square(row, where, error, weight);
     }
   }
 
@@ -270,7 +278,7 @@ struct StrideSolver::System {
     for (int d : {0, 1, 2}) bend += slope_of[d] * place[d];
     const double over = std::abs(bend) - most_m;
     if (over <= -soft_m) return;
-    const double share = std::min(1.0, 0.5 * (over + soft_m) / soft_m);
+    const double share = soft_slope(over, soft_m);
     const double error = std::copysign(soft_positive(over, soft_m), bend);
     for (int d : {0, 1, 2}) {
       const double slope = share * slope_of[d];
@@ -284,7 +292,7 @@ struct StrideSolver::System {
   void add_floor(int sample, int side, const PointRows& point, double least_m, double soft_m) {
     const double low = least_m - point.place_m.y;
     if (low <= -soft_m) return;
-    const double slope = std::min(1.0, 0.5 * (low + soft_m) / soft_m);
+    const double slope = soft_slope(low, soft_m);
     add_row(sample, side, point, kUp * slope, -soft_positive(low, soft_m), kFloor);
   }
 };
@@ -359,7 +367,6 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
       }
       s.at(at, at) += weight;
       s.gradient[at] += weight * change[1];
-      constexpr std::array<double, 3> kBend = {1.0, -2.0, 1.0};
       const double bend = change[0] - 2.0 * change[1] + change[2];
       for (int d : {0, 1, 2}) {
         const double slope = smooth * kBend[d] * where[d].factor;
@@ -455,24 +462,21 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
           across.by_angle[j] -= heel.by_angle[j];
           along.by_angle[j] -= heel.by_angle[j];
         }
-        // These two do not depend on the pelvis: add by hand.
-        const int base = i * kUnknowns + leg_unknown(side);
+        // Neither depends on the pelvis.
+        std::array<int, kLegDofs> where;
+        for (int j = 0; j < kLegDofs; ++j) where[j] = i * kUnknowns + leg_unknown(side) + j;
         const double want_x = (leg.toe_m - leg.heel_m).x;
         for (const auto& [point, axis, error] : {std::tuple{&across, 1, across.place_m.y},
                                                  std::tuple{&along, 0, along.place_m.x - want_x}}) {
-          for (int p = 0; p < kLegDofs; ++p) {
-            s.gradient[base + p] += kLevel * point->by_angle[p][axis] * error;
-            for (int q = 0; q <= p; ++q) {
-              s.at(base + p, base + q) +=
-                  kLevel * point->by_angle[p][axis] * point->by_angle[q][axis];
-            }
-          }
+          std::array<double, kLegDofs> row;
+          for (int j = 0; j < kLegDofs; ++j) row[j] = point->by_angle[j][axis];
+          s.add_square(row, where, error, kLevel);
         }
       }
       const double bend = problem.least_knee_rad - x[i].leg[side][kKneeX];
       if (bend > -kSoftKnee) {
         const int at = i * kUnknowns + leg_unknown(side) + kKneeX;
-        const double slope = std::min(1.0, 0.5 * (bend + kSoftKnee) / kSoftKnee);
+        const double slope = soft_slope(bend, kSoftKnee);
         s.at(at, at) += kKnee * slope * slope;
         s.gradient[at] -= kKnee * slope * soft_positive(bend, kSoftKnee);
       }

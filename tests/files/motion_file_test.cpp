@@ -29,8 +29,8 @@ TEST(Units, AnAdultsLegTellsTheUnit) {
 }
 
 TEST(Units, WhereNoUnitFitsTheLegBecomesAnAdults) {
-  EXPECT_DOUBLE_EQ(metres_per_unit(50.0) * 50.0, kAdultLegM);
-  EXPECT_DOUBLE_EQ(metres_per_unit(0.01) * 0.01, kAdultLegM);
+  EXPECT_DOUBLE_EQ(metres_per_unit(50.0) * 50.0, kReferenceLeg_m);
+  EXPECT_DOUBLE_EQ(metres_per_unit(0.01) * 0.01, kReferenceLeg_m);
 }
 
 TEST(Units, NoLegFitsTwoUnits) {

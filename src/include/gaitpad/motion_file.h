@@ -58,12 +58,10 @@ struct NamedText {
 Result<Motion> motion_from_acclaim(const NamedText& asf, const NamedText& amc,
                                    const LoadOptions& options = {});
 
-// Hip to ankle of the adult to whom unknown units are scaled.
-inline constexpr double kAdultLegM = 0.84;
-
 // The length of a file's unit, from the length of its legs. BVH does not state it, and ASF not
 // reliably. Of m, dm, cm, mm, inch, foot and the CMU data base's unit (1 inch / 0.45) the one that
-// makes the leg 0.65 to 1.05 m long (at most one does); if none does, the leg is kAdultLegM long.
+// makes the leg 0.65 to 1.05 m long (at most one does); if none does, the leg is kReferenceLeg_m
+// long.
 double metres_per_unit(double leg_length_units) noexcept;
 // The same for a file that states its unit: that one if it makes the leg 0.4 to 1.3 m long, as of
 // children and giants; else the file is wrong, as endorphin's are.

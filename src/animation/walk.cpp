@@ -267,7 +267,7 @@ void begin_walk(const Tick& tick, WalkState& state) noexcept {
 
 void begin_idle(WalkState& state) noexcept {
   begin_stage(Stage::idle, state.clock.swing, 1, state);
-  state.clock.started = state.clock.stopping = state.clock.led = false;
+  state.clock.started = state.clock.stopping = state.clock.led = state.clock.was_led = false;
   state.clock.roll_ticks = state.clock.flight_ticks = 0;
   state.path.foothold.next_rise = 0.0;
 }

@@ -242,7 +242,8 @@ void raise_limping_heel(const Tick& tick, const MomentOf<V>& at, const StateOf<V
       smoothstep(kEvenSteps, kUnevenSteps, V(1.0 - max_of(evenness(asked), evenness(length_m)))) *
       smootherstep(V(at.flight_progress() / 0.2)) *
       (1.0 - smootherstep(V((at.flight_progress() - 0.5) / 0.4)));
-  const auto is_limping = at.flies & (limps != V{});
+  // A stop shortens one step, too, but does not limp.
+  const auto is_limping = at.flies & not_of(at.stopping) & (limps != V{});
   if (!any(is_limping)) return;
   const V own = at.right_steps ? asked[kRightSide] : asked[kLeftSide];
   const Vec<V> heel_m =

@@ -137,6 +137,15 @@ TEST(NaturalWalk, StandingKneesAreNearlyStraight) {
   }
 }
 
+TEST(NaturalWalk, KneesAreNearlyStraightAfterAStopAtAnyMoment) {
+  for (int moment = 0; moment < 240; moment += 24) {
+    Posed walk;
+    walk.walk(0, 1.0, 3 * kRate + moment);
+    walk.walk(0, 0, 2 * kRate);
+    for (const Side side : {kLeftSide, kRightSide}) EXPECT_LE(walk.knee_deg(side), 7.0) << moment;
+  }
+}
+
 struct Manner {
   double both_feet = 0.0;       // share of the time that both feet stand
   double swing_knee_deg = 0.0;  // the most that a swinging knee bends

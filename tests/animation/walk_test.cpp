@@ -158,6 +158,27 @@ TEST(Walk, AChildThatStepsHighAtFullSpeedIsSmooth) {
   EXPECT_LT(walker.sharpest_turn_rad(), 1.5 * kDegree);
 }
 
+// The last step is shorter than the one before, but it is no limp, whose heels fly high.
+TEST(Walk, AStopRaisesHighHeelsNoHigherThanTheWalkDoes) {
+  const WalkModel child = model_of(0.6);
+  const auto highest_m = [](const MadeWalker& walker, std::size_t from) {
+    double highest = 0.0;
+    for (std::size_t k = from; k < walker.frames().size(); ++k) {
+      for (const vec3& heel_m : walker.frames()[k].heel_m) highest = std::max(highest, heel_m.y);
+    }
+    return highest;
+  };
+  for (int moment = 0; moment < 120; moment += 3) {
+    MadeWalker walker(child);
+    walker.walk(0, 1.0, 2 * kRate + moment, high_steps());
+    const double walks_m = highest_m(walker, 0);
+    const std::size_t released = walker.frames().size();
+    walker.walk(0, 0, kRate, high_steps());
+    EXPECT_LT(highest_m(walker, released), walks_m + 0.01) << moment;
+    for (const WalkFrame& f : walker.frames()) ASSERT_FALSE(f.ik_failed[0] || f.ik_failed[1]);
+  }
+}
+
 TEST(Walk, PaperModeStaysBoundedAndFinite) {
   for (const StyleValues& style : {StyleValues{}, limp(), with_hip_weight(0.2)}) {
     MadeWalker walker(adult(), IkMode::paper);

@@ -5,14 +5,17 @@
 #include <cstring>
 #include <exception>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
+#include "base/ranges.h"
 #include "gaitpad.h"
 #include "gaitpad/anatomy.h"
 #include "gaitpad/clean_strides.h"
 #include "gaitpad/control.h"
 #include "gaitpad/walk.h"
+#include "gaitpad/walk_output.h"
 
 // C functions stand in no namespace.
 using namespace gaitpad;  // NOLINT(google-build-using-namespace)
@@ -33,10 +36,10 @@ struct gaitpad_walk {
   std::shared_ptr<const SharedModel> shared;
   GaitLimits limits;
   StyleValues style;
-  vec2 stick{0.0};     // that was taken last
-  int bad_sticks = 0;  // numbers that were not taken
+  vec2 stick{0.0};      // that was taken last
+  int bad_numbers = 0;  // of the sticks and moves, that were not taken
   WalkState state;
-  WalkFrame before;  // of the tick before the last
+  WalkEvents events;  // of the last tick
   Pose pose;
 };
 
@@ -108,8 +111,11 @@ Result<GaitCycle> cycle_of(const gaitpad_model_options& options) {
 }
 
 Result<std::unique_ptr<gaitpad_model>> model_of(const gaitpad_model_options* options) {
-  if (!options || options->size < sizeof *options)
-    return Error{"gaitpad_model_options: size is not that of the struct"};
+  if (!options) return Error{"gaitpad_model_create: options is null"};
+  if (options->size < sizeof *options)
+    return Error{"gaitpad_model_options: size is " + std::to_string(options->size) +
+                 ", but the struct has " + std::to_string(sizeof *options) +
+                 " bytes; gaitpad_model_defaults() sets it"};
   auto cycle = cycle_of(*options);
   if (!cycle) return cycle.error();
   cycle = with_clean_strides(std::move(*cycle));
@@ -149,12 +155,36 @@ void write_matrix(const vec3& place, const quat& q, float* m) noexcept {
 const Skeleton& skeleton_of(const SharedModel& shared) { return shared.model.cycle.skeleton; }
 
 const Joint* joint_of(const gaitpad_model* model, int32_t joint) noexcept {
+  if (!model) return nullptr;
   const auto& joints = skeleton_of(*model->shared).joints;
   return joint >= 0 && joint < static_cast<int32_t>(joints.size()) ? &joints[joint] : nullptr;
 }
 
-bool is_down(const WalkFrame& frame, std::size_t side) noexcept {
-  return frame.heel_planted[side] || frame.toe_planted[side];
+std::optional<Error> start_problem(const gaitpad_model* model, const double* place_m,
+                                   double heading_rad) {
+  const std::string what = "gaitpad_walk_create: ";
+  if (!model) return Error{what + "model is null"};
+  if (!place_m) return Error{what + "place_m is null"};
+  for (const int i : {0, 2}) {
+    if (auto problem = range_problem(what + "place_m[" + std::to_string(i) + "]", place_m[i],
+                                     -kFarthest_m, kFarthest_m))
+      return problem;
+  }
+  return range_problem(what + "heading_rad", heading_rad, -kFarthest_m, kFarthest_m);
+}
+
+// Whether a walk can be moved so; a null pointer and each number that is none count as bad.
+bool is_sound_move(const double* place_m, double turn_rad, int& bad) noexcept {
+  const auto is_bad = [](double value) { return !(std::abs(value) <= kFarthest_m); };
+  const auto found =
+      (place_m ? std::count_if(place_m, place_m + 3, is_bad) : 1) + (is_bad(turn_rad) ? 1 : 0);
+  bad += static_cast<int>(found);
+  return found == 0;
+}
+
+// How many of the first `count` joints can be written to `out`.
+int32_t joints_for(const gaitpad_walk* walk, const float* out, int32_t count) noexcept {
+  return walk && out ? std::clamp(count, 0, walk->pose.joint_count) : 0;
 }
 
 gaitpad_frame frame_of(const gaitpad_walk& walk) noexcept {
@@ -173,10 +203,12 @@ gaitpad_frame frame_of(const gaitpad_walk& walk) noexcept {
     out.heel_planted[side] = f.heel_planted[side];
     out.toe_planted[side] = f.toe_planted[side];
     out.landings[side] = f.steps[side];
-    out.heel_struck[side] = f.steps[side] != walk.before.steps[side];
-    out.toe_off[side] = is_down(walk.before, side) && !is_down(f, side);
   }
-  out.bad_inputs = f.bad_inputs + walk.bad_sticks;
+  for (const WalkEvent& event : walk.events) {
+    if (event.kind == WalkEventKind::heel_strike) out.heel_struck[event.side] = 1;
+    if (event.kind == WalkEventKind::toe_off) out.toe_off[event.side] = 1;
+  }
+  out.bad_inputs = f.bad_inputs + walk.bad_numbers;
   return out;
 }
 
@@ -185,6 +217,7 @@ gaitpad_frame frame_of(const gaitpad_walk& walk) noexcept {
 uint32_t gaitpad_api_version(void) { return GAITPAD_API_VERSION; }
 
 void gaitpad_model_defaults(gaitpad_model_options* options) {
+  if (!options) return;
   *options = {};
   options->size = sizeof *options;
   options->scale = options->leg_ratio = 1.0;
@@ -197,7 +230,7 @@ gaitpad_model* gaitpad_model_create(const gaitpad_model_options* options, char* 
 void gaitpad_model_destroy(gaitpad_model* model) { delete model; }
 
 int32_t gaitpad_joint_count(const gaitpad_model* model) {
-  return static_cast<int32_t>(skeleton_of(*model->shared).joints.size());
+  return model ? static_cast<int32_t>(skeleton_of(*model->shared).joints.size()) : 0;
 }
 const char* gaitpad_joint_name(const gaitpad_model* model, int32_t joint) {
   const Joint* found = joint_of(model, joint);
@@ -211,40 +244,44 @@ int32_t gaitpad_joint_parent(const gaitpad_model* model, int32_t joint) {
 gaitpad_walk* gaitpad_walk_create(const gaitpad_model* model, const double place_m[3],
                                   double heading_rad, char* error, size_t error_size) {
   const auto make = [&]() -> Result<std::unique_ptr<gaitpad_walk>> {
+    if (auto problem = start_problem(model, place_m, heading_rad)) return *problem;
     auto walk = std::make_unique<gaitpad_walk>();
     walk->shared = model->shared;
     walk->limits = gait_limits(model->shared->model);
-    walk->state = standing(model->shared->model, vector_of(place_m), heading_rad, walk->pose);
-    walk->before = walk->state.frame;
-    if (walk->state.frame.bad_inputs == 0) return walk;
-    return Error{"gaitpad_walk_create: place_m or heading_rad is no number, or too far away"};
+    const vec3 start_m(place_m[0], 0.0, place_m[2]);
+    walk->state = standing(model->shared->model, start_m, heading_rad, walk->pose);
+    return walk;
   };
   return made_or_null<gaitpad_walk>(make, error, error_size);
 }
 void gaitpad_walk_destroy(gaitpad_walk* walk) { delete walk; }
 
 int32_t gaitpad_walk_set(gaitpad_walk* walk, const char* key, double value) {
-  return set_value(walk->style, key, value);
+  return walk && key && set_value(walk->style, key, value);
 }
 
 void gaitpad_walk_step(gaitpad_walk* walk, double stick_right, double stick_forward, double dt_s) {
-  walk->stick.x = sound_axis(stick_right, walk->stick.x, walk->bad_sticks);
-  walk->stick.y = sound_axis(stick_forward, walk->stick.y, walk->bad_sticks);
-  walk->before = walk->state.frame;
+  if (!walk) return;
+  walk->stick.x = sound_axis(stick_right, walk->stick.x, walk->bad_numbers);
+  walk->stick.y = sound_axis(stick_forward, walk->stick.y, walk->bad_numbers);
+  const WalkFrame before = walk->state.frame;
   const GaitParams params = gait_params({.left = walk->stick}, walk->style, walk->limits);
   advance(walk->shared->model, params, IkMode::robust, dt_s, walk->state, walk->pose);
+  walk->events = walk_events(before, walk->state);
 }
 
 void gaitpad_walk_move(gaitpad_walk* walk, const double shift_m[3], double turn_rad) {
+  if (!walk || !is_sound_move(shift_m, turn_rad, walk->bad_numbers)) return;
   move_walk({vector_of(shift_m), turn_rad}, walk->state, walk->pose);
 }
 void gaitpad_walk_put(gaitpad_walk* walk, const double place_m[3], double heading_rad) {
+  if (!walk || !is_sound_move(place_m, heading_rad, walk->bad_numbers)) return;
   put_walk(vector_of(place_m), heading_rad, walk->state, walk->pose);
 }
 
 int32_t gaitpad_walk_frame(const gaitpad_walk* walk, gaitpad_frame* frame) {
   // The struct of version 1 is the smallest there is.
-  if (frame->size < sizeof(gaitpad_frame)) return 0;
+  if (!walk || !frame || frame->size < sizeof(gaitpad_frame)) return 0;
   const size_t size = frame->size;
   const gaitpad_frame filled = frame_of(*walk);
   std::memcpy(frame, &filled, sizeof filled);
@@ -253,20 +290,21 @@ int32_t gaitpad_walk_frame(const gaitpad_walk* walk, gaitpad_frame* frame) {
 }
 
 int32_t gaitpad_pose_local(const gaitpad_walk* walk, float* xyzw, int32_t count, float* root_m) {
-  const int32_t joints = std::clamp(count, 0, walk->pose.joint_count);
+  const int32_t joints = joints_for(walk, xyzw, count);
   for (int32_t j = 0; j < joints; ++j) {
     const quat& q = walk->pose.local[j];
     const double parts[] = {q.x, q.y, q.z, q.w};
     for (int i = 0; i < 4; ++i) xyzw[4 * j + i] = static_cast<float>(parts[i]);
   }
-  if (root_m) {
+  if (walk && root_m) {
     for (int i = 0; i < 3; ++i) root_m[i] = static_cast<float>(walk->pose.root_m[i]);
   }
   return joints;
 }
 
 int32_t gaitpad_pose_world(const gaitpad_walk* walk, float* matrices, int32_t count) {
-  const int32_t joints = std::clamp(count, 0, walk->pose.joint_count);
+  const int32_t joints = joints_for(walk, matrices, count);
+  if (joints == 0) return 0;
   JointFrames frames;
   forward_kinematics(skeleton_of(*walk->shared), walk->pose, frames);
   for (int32_t j = 0; j < joints; ++j)

@@ -9,8 +9,9 @@
  * The caller sets `size` of a struct to sizeof the struct before each call: a later version may add
  * members at the end, and fills or reads only those that the caller's version has. A call that
  * fails returns null or 0 and writes one sentence to `error`, cut to `error_size` bytes with the
- * final 0; `error` may be null. No C++ exception leaves a call. Several threads may use walks of
- * one model at a time; a walk belongs to one thread at a time. */
+ * final 0; `error` may be null. A null handle, or a null pointer where none is allowed, fails too; a
+ * call that returns nothing then changes nothing. No C++ exception leaves a call. Several threads
+ * may use walks of one model at a time; a walk belongs to one thread at a time. */
 #ifndef GAITPAD_H
 #define GAITPAD_H
 /* NOLINTBEGIN(modernize-*): C */
@@ -94,7 +95,7 @@ GAITPAD_API void gaitpad_walk_step(gaitpad_walk* walk, double stick_right, doubl
                                    double dt_s);
 
 /* Turns the walk about the world's vertical through the origin, then shifts it. Planted feet move
- * along. */
+ * along. A number beyond 1e6 or not finite moves nothing and is counted. */
 GAITPAD_API void gaitpad_walk_move(gaitpad_walk* walk, const double shift_m[3], double turn_rad);
 /* The same, so that the hips come to be over a place and face a heading. */
 GAITPAD_API void gaitpad_walk_put(gaitpad_walk* walk, const double place_m[3], double heading_rad);

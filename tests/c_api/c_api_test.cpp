@@ -29,6 +29,14 @@ std::string refusal(const gaitpad_model_options& options) {
   return error.data();
 }
 
+std::string refused_start(const gaitpad_model* model, const double* place_m, double heading_rad) {
+  std::array<char, 256> error = {};
+  gaitpad_walk* walk = gaitpad_walk_create(model, place_m, heading_rad, error.data(), error.size());
+  EXPECT_EQ(walk, nullptr);
+  gaitpad_walk_destroy(walk);
+  return error.data();
+}
+
 class CApi : public testing::Test {
  protected:
   CApi() { make(defaults()); }
@@ -95,6 +103,24 @@ TEST_F(CApi, StrikesAndRootMotionOfAllTicksAddUp) {
   EXPECT_NEAR(x, f.root_m[0], 1e-6);
   EXPECT_NEAR(z, f.root_m[2], 1e-6);
   EXPECT_NEAR(heading, f.heading_rad, 1e-9);
+}
+
+TEST_F(CApi, TheToeLeavesTheGroundInTheTickInWhichAFlightBegins) {
+  for (const double tick_s : {1.0 / 240.0, kTick_s, 0.1}) {
+    gaitpad_frame before = frame();
+    for (double time_s = 0.0; time_s < 20.0; time_s += tick_s) {
+      const bool goes = std::fmod(time_s, 5.0) < 3.0;
+      gaitpad_walk_step(walk_, 0.0, goes ? 0.9 : 0.0, tick_s);
+      const gaitpad_frame now = frame();
+      for (int side = 0; side < 2; ++side) {
+        const bool flies = now.stage == GAITPAD_FLIGHT && now.swing == side;
+        const bool flew = before.stage == GAITPAD_FLIGHT && before.swing == side;
+        EXPECT_EQ(now.toe_off[side], flies && !flew) << tick_s << " at " << time_s;
+        EXPECT_EQ(now.heel_struck[side], now.landings[side] - before.landings[side]);
+      }
+      before = now;
+    }
+  }
 }
 
 TEST_F(CApi, MatricesAreTheLocalRotationsFromTheRootOn) {
@@ -180,13 +206,69 @@ TEST_F(CApi, AWalkOutlivesItsModelsHandle) {
   EXPECT_GT(frame().speed_m_s, 0.5);
 }
 
+TEST_F(CApi, AMoveThatIsNoneIsCountedAndMovesNothing) {
+  const std::vector<float> before = matrices();
+  const double nowhere_m[3] = {0.0, kNan, 1e7}, here_m[3] = {};
+  gaitpad_walk_move(walk_, nowhere_m, 0.0);
+  gaitpad_walk_put(walk_, here_m, kNan);
+  gaitpad_walk_move(walk_, nullptr, 0.0);
+  gaitpad_walk_put(walk_, nullptr, 0.0);
+  EXPECT_EQ(frame().bad_inputs, 5);
+  EXPECT_EQ(matrices(), before);
+}
+
+TEST_F(CApi, ANullHandleOrPointerIsRefused) {
+  std::array<float, 16> room = {};
+  gaitpad_frame f = {};
+  f.size = sizeof f;
+  gaitpad_model_defaults(nullptr);
+  gaitpad_model_destroy(nullptr);
+  gaitpad_walk_destroy(nullptr);
+  gaitpad_walk_step(nullptr, 0.0, 1.0, kTick_s);
+  gaitpad_walk_move(nullptr, kStart_m, 0.0);
+  gaitpad_walk_put(nullptr, kStart_m, 0.0);
+  EXPECT_EQ(gaitpad_joint_count(nullptr), 0);
+  EXPECT_EQ(gaitpad_joint_name(nullptr, 0), nullptr);
+  EXPECT_EQ(gaitpad_joint_parent(nullptr, 0), -1);
+  EXPECT_FALSE(gaitpad_walk_set(nullptr, "hip_sway", 1.0));
+  EXPECT_FALSE(gaitpad_walk_set(walk_, nullptr, 1.0));
+  EXPECT_FALSE(gaitpad_walk_frame(nullptr, &f));
+  EXPECT_FALSE(gaitpad_walk_frame(walk_, nullptr));
+  EXPECT_EQ(gaitpad_pose_local(nullptr, room.data(), 1, room.data()), 0);
+  EXPECT_EQ(gaitpad_pose_local(walk_, nullptr, 1, nullptr), 0);
+  EXPECT_EQ(gaitpad_pose_world(nullptr, room.data(), 1), 0);
+  EXPECT_EQ(gaitpad_pose_world(walk_, nullptr, 1), 0);
+  EXPECT_EQ(gaitpad_model_create(nullptr, error_.data(), error_.size()), nullptr);
+  EXPECT_STREQ(error_.data(), "gaitpad_model_create: options is null");
+}
+
+TEST_F(CApi, AStartThatIsRefusedNamesTheArgumentAndItsValue) {
+  struct Case {
+    const gaitpad_model* model;
+    const double* place_m;
+    double heading_rad;
+    const char* sentence;
+  };
+  const double nan_m[] = {kNan, 0.0, 0.0}, far_m[] = {0.0, 0.0, -2e6};
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const Case& c : {
+           Case{nullptr, kStart_m, 0.0, "model is null"},
+           Case{model_, nullptr, 0.0, "place_m is null"},
+           Case{model_, nan_m, 0.0, "place_m[0] is nan, outside [-1e+06, 1e+06]"},
+           Case{model_, far_m, 0.0, "place_m[2] is -2e+06, outside [-1e+06, 1e+06]"},
+           Case{model_, kStart_m, infinity, "heading_rad is inf, outside [-1e+06, 1e+06]"},
+       })
+    EXPECT_EQ(refused_start(c.model, c.place_m, c.heading_rad),
+              std::string("gaitpad_walk_create: ") + c.sentence);
+}
+
 TEST(CApiRefusals, NameTheFieldInOneSentence) {
   gaitpad_model_options options = defaults();
   options.scale = 0.0;
   EXPECT_NE(refusal(options).find("scale is 0"), std::string::npos) << refusal(options);
   options = defaults();
   options.size = 8;
-  EXPECT_NE(refusal(options).find("size"), std::string::npos);
+  EXPECT_NE(refusal(options).find("size is 8, but the struct has "), std::string::npos);
   const gaitpad_bone hips = {"Hips", -1, 0, {0, 0, 0}};
   options = defaults();
   options.bones = &hips;
@@ -221,8 +303,6 @@ TEST(CApiRefusals, AFrameOfAnUnknownSizeIsNotWritten) {
   gaitpad_walk* walk = gaitpad_walk_create(model, kStart_m, 0.0, nullptr, 0);
   EXPECT_FALSE(gaitpad_walk_frame(walk, &frame));
   EXPECT_EQ(frame.landings[0], 0);
-  const double nowhere_m[3] = {kNan, 0.0, 0.0};
-  EXPECT_EQ(gaitpad_walk_create(model, nowhere_m, 0.0, nullptr, 0), nullptr);
   gaitpad_walk_destroy(walk);
   gaitpad_model_destroy(model);
 }

@@ -8,6 +8,7 @@ import time
 import pytest
 
 from cells import some
+from more_kinds import MORE
 from nodes import ABS, EventNode
 from pads import PATIENCE, Pad
 from session import IDS, Session, remark
@@ -41,8 +42,10 @@ PADS = {  # kind: (axes, buttons)
                                 15: "rightstick", 13: "guide"})
              | {"back": (KEY_BACK, "back"), "home": (KEY_HOMEPAGE, "start")}),
     "ds4": (SONY_AXES, SONY), "dualsense": (SONY_AXES, SONY),
+    "ds3": (SONY_AXES, SONY | {name: (0x220 + i, name) for i, name in enumerate(("dpup", "dpdown", "dpleft", "dpright"))}),
     "ds4_bt": (SONY_AXES, SONY | SWITCHES), "dualsense_bt": (SONY_AXES, SONY | SWITCHES),
 }
+
 
 def plug(kind):
     return UhidPad(kind) if kind in KINDS else Pad(kind)
@@ -50,7 +53,8 @@ def plug(kind):
 
 def states(kind):
     axes, buttons = PADS[kind]
-    rest = {field: 127 if field in STICKS else 0 for field in axes} | dict.fromkeys(buttons, 0) | {"hat": 8}
+    hats = () if "dpup" in buttons else HATS
+    rest = {field: 127 if field in STICKS else 0 for field in axes} | dict.fromkeys(buttons, 0) | ({"hat": 8} if hats else {})
     first, second = list(buttons)[:2]
     for button in buttons:
         yield {**rest, button: 1}
@@ -61,14 +65,14 @@ def states(kind):
     for axis in axes:
         for value in (63, 0, 191, 255):
             yield {**rest, axis: value}
-    for hat in HATS:
+    for hat in hats:
         yield {**rest, "hat": hat}
     yield rest
 
 
 def expected_of_node(kind, state):
     axes, buttons = PADS[kind]
-    return ({code: state[field] for field, code in axes.items()} | dict(zip(("HAT0X", "HAT0Y"), HATS.get(state["hat"], (0, 0)))),
+    return ({code: state[field] for field, code in axes.items()} | dict(zip(("HAT0X", "HAT0Y"), HATS.get(state.get("hat"), (0, 0)))),
             {code for field, (code, _) in buttons.items() if state[field]})
 
 
@@ -79,7 +83,7 @@ def expected_of_program(kind, state):
     down = {name for field, (_, name) in buttons.items() if state[field] and name}
     triggers = down & {"left_trigger", "right_trigger"}
     values |= dict.fromkeys(triggers, 1.0)
-    return values, (down - triggers) | (directions(state["hat"]) if state["hat"] in HATS else set())
+    return values, (down - triggers) | (directions(state["hat"]) if state.get("hat") in HATS else set())
 
 
 def check_node(node, kind, state):
@@ -99,7 +103,7 @@ def is_decoded(row, axes, buttons):
 @pytest.mark.timeout(120)
 @pytest.mark.parametrize("kind", ["saitek", "asus", *some(list(PADS)[2:], 4)])
 def test_event_node_and_hidraw_agree(kind):
-    ids = "%04x:%04x" % KINDS[kind].ids if kind in KINDS else IDS[kind]
+    ids = "%04x:%04x" % KINDS[kind].ids if kind in KINDS else IDS.get(kind) or MORE[kind].ids
     sent = list(states(kind))
     with plug(kind) as pad, EventNode(pad.joystick) as node:
         with Session(ids, "--driver", "hidraw", name=f"kernel-{kind}") as session:

@@ -282,7 +282,7 @@ enum : std::uint16_t { kLeft = 0x2006, kRight = 0x2007, kPair = 0x2008, kGrip = 
 // buttons of the right one, shared, of the left one; then three bytes for each stick.
 constexpr std::uint8_t kFull = 0x30;
 constexpr std::size_t kRightButtons = 3, kSharedButtons = 4, kLeftButtons = 5, kLeftStick = 6,
-                      kRightStick = 9, kStickBytes = 3, kPairBytes = 12;
+                      kRightStick = 9, kStickBytes = 3, kPairBytes = kPairSideByte;
 constexpr std::uint8_t kSharedLeft = 0x29, kSharedRight = 0x16;  // minus, stick, capture; plus ...
 constexpr std::array<std::uint8_t, kStickBytes> kCentred = {0x00, 0x08, 0x80};
 constexpr int kMaxSkippedInARow = 64;  // other reports, before other pads get their turn
@@ -349,6 +349,8 @@ class JoyConPair final : public Device {
     }
     return both;
   }
+  // Each side has a gyroscope; a pair's is the right one's.
+  std::optional<FactoryGyro> factory_gyro() const override { return sides_[1]->factory_gyro(); }
   std::int64_t lost() const noexcept override { return sides_[0]->lost() + sides_[1]->lost(); }
   std::vector<std::string> take_remarks() override {
     std::vector<std::string> remarks = sides_[0]->take_remarks(), more = sides_[1]->take_remarks();
@@ -378,6 +380,7 @@ class JoyConPair final : public Device {
                                                        (report.bytes[kSharedButtons] & own));
     std::copy_n(report.bytes.begin() + stick, kStickBytes, state_.begin() + stick);
     std::copy(state_.begin() + kRightButtons, state_.end(), report.bytes.begin() + kRightButtons);
+    report.bytes[kPairSideByte] = is_left ? kPairLeft : kPairRight;
     return true;
   }
 

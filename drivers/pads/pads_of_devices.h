@@ -5,6 +5,7 @@
 // several pad collections with report ids of their own (adapters for two pads, the two halves of a
 // Legion Go).
 #pragma once
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -35,6 +36,11 @@ std::vector<DeviceListing> joy_con_pairs(const std::vector<DeviceListing>& singl
 // Joins two open Joy-Cons, in any order. Error: they are not a left and a right one.
 Result<std::unique_ptr<Device>> join_joy_cons(std::unique_ptr<Device> one,
                                               std::unique_ptr<Device> other);
+
+// A pair's reports have one side's sensors, 13 to 48. This byte says whose: the motors' answer in a
+// single one's report, which no layout reads.
+inline constexpr std::size_t kPairSideByte = 12;
+inline constexpr std::uint8_t kPairLeft = 'L', kPairRight = 'R';
 
 // Whether a pad came to a receiver, or went, since the last packet.
 class PlugWatch {

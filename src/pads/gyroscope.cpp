@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "drivers/pads/pads_of_devices.h"
 #include "gaitpad/math.h"
 
 namespace gaitpad {
@@ -39,6 +40,14 @@ GyroLayout nintendo(double sign) {
           .axes = {{{1, -sign}, {2, sign}, {0, -1.0}}}};
 }
 
+// Reports of both Joy-Cons come in turns.
+GyroLayout pair_of_joy_cons() {
+  GyroLayout layout = nintendo(-1.0);
+  layout.mark_at = kPairSideByte;
+  layout.mark = kPairRight;
+  return layout;
+}
+
 }  // namespace
 
 std::optional<GyroLayout> gyro_layout(const DeviceInfo& device) {
@@ -57,6 +66,8 @@ std::optional<GyroLayout> gyro_layout(const DeviceInfo& device) {
       return nintendo(1.0);
     case kNintendo << 16 | 0x2007:
       return nintendo(-1.0);
+    case kNintendo << 16 | 0x2008:
+      return pair_of_joy_cons();
     case kValve << 16 | 0x1205:
       return GyroLayout{.report_id = 0x01,
                         .report_bytes = 64,
@@ -126,6 +137,7 @@ void GyroMeter::take(const Report& report) noexcept {
   constexpr std::int64_t kWindow_ns = 500'000'000, kSilence_ns = 1'000'000'000;
   if (!layout_ || report.size < layout_->report_bytes || report.bytes[0] != layout_->report_id)
     return;
+  if (layout_->mark_at != 0 && report.bytes[layout_->mark_at] != layout_->mark) return;
   if (last_ns_ != 0 && (report.time_ns < last_ns_ || report.time_ns - last_ns_ > kSilence_ns))
     cut();
   if (window_ns_ == 0) window_ns_ = report.time_ns;

@@ -20,6 +20,8 @@ struct GyroLayout {
   };
   std::uint8_t report_id = 0;    // the first byte
   std::size_t report_bytes = 0;  // shorter reports have no sensors
+  std::size_t mark_at = 0;       // byte that says whose the sensors are; 0: there is only one
+  std::uint8_t mark = 0;         // its value in the reports that count
   std::size_t first = 0;         // byte of the first sample
   std::size_t samples = 1, sample_bytes = 0;
   double rad_s_per_count = 0.0;  // of a pad that stores no calibration

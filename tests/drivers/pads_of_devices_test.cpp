@@ -172,10 +172,12 @@ class OneSide final : public Device {
     return true;
   }
   std::optional<FactorySticks> factory_sticks() const override { return sticks_; }
+  std::optional<FactoryGyro> factory_gyro() const override { return gyro; }
 
   std::deque<std::vector<std::uint8_t>> reports;
   bool is_gone = false;
   std::uint16_t strong = 0;
+  std::optional<FactoryGyro> gyro;
 
  private:
   DeviceInfo info_;
@@ -201,11 +203,13 @@ class JoyCons : public testing::Test {
   std::vector<std::uint8_t> next() {
     Report report;
     if (pair_->read(report) != Device::Status::report) return {};
+    side_ = report.bytes[12];
     return {report.bytes.begin(), report.bytes.begin() + 12};
   }
   OneSide* left_;
   OneSide* right_;
   std::unique_ptr<Device> pair_;
+  std::uint8_t side_ = 0;  // byte 12 of the last report
 };
 
 TEST_F(JoyCons, EachReportHasTheNewestOfBothSides) {
@@ -234,6 +238,20 @@ TEST_F(JoyCons, OtherReportsAreLeftOutBothRumbleAndOneThatIsGoneEndsThePair) {
   right_->is_gone = true;
   Report report;
   EXPECT_EQ(pair_->read(report), Device::Status::gone);
+}
+
+TEST_F(JoyCons, AReportSaysWhoseSensorsItHasAndTheFactorysAreTheRightOnes) {
+  // Both answer 0x0b for their motors.
+  left_->reports.push_back({0x30, 1, 0x8e, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0x0b, 0x77});
+  EXPECT_FALSE(next().empty());
+  EXPECT_EQ(side_, 'L');
+  right_->reports.push_back({0x30, 1, 0x8e, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0x0b, 0x55});
+  EXPECT_FALSE(next().empty());
+  EXPECT_EQ(side_, 'R');
+  left_->gyro = FactoryGyro{{1.0, 2.0, 3.0}, {}};
+  EXPECT_FALSE(pair_->factory_gyro());
+  right_->gyro = FactoryGyro{{4.0, 5.0, 6.0}, {}};
+  EXPECT_EQ(pair_->factory_gyro().value().zero, (std::array<double, 3>{4.0, 5.0, 6.0}));
 }
 
 TEST_F(JoyCons, TheSticksAreThoseOfJoyConsHeldUpright) {

@@ -80,6 +80,28 @@ TEST(Gyroscope, SwitchPadsHaveThreeSamplesInAReport) {
   EXPECT_NEAR(meter.sample_rate_hz(), 200.0, 1.0) << "a report each 15 ms";
 }
 
+// Byte 12 of a pair's report is L or R; its gyroscope is the right one's.
+TEST(Gyroscope, APairOfJoyConsHasTheRightOnes) {
+  Report left = report_with(0x30, 49, 13 + 6, {9, 9, 9});
+  put(left, 37 + 6, {4000, 4000, 4000});
+  left.bytes[12] = 'L';
+  Report right = report_with(0x30, 64, 13 + 6, {1, 2, 3}, 2 * kMillisecond);
+  put(right, 37 + 6, {1337, 2674, -4011});
+  right.bytes[12] = 'R';
+  GyroMeter meter(pad(0x057e, 0x2008, BusType::bluetooth), {});
+  meter.take(left);
+  EXPECT_FALSE(meter.rates());
+  for (int i = 0; i <= 40; ++i) {
+    right.time_ns = (1 + 15 * i) * kMillisecond;
+    left.time_ns = right.time_ns + 7 * kMillisecond;
+    meter.take(right);
+    meter.take(left);
+  }
+  ASSERT_TRUE(meter.rates());
+  expect_near(in_degrees(*meter.rates()), {187.19, 280.78, -93.59}, 0.01);
+  EXPECT_NEAR(meter.sample_rate_hz(), 200.0, 1.0) << "three samples each 15 ms";
+}
+
 TEST(Gyroscope, TheSteamDecksYawAndRollAreExchanged) {
   expect_near(rates_of(pad(0x28de, 0x1205), report_with(0x01, 64, 30, {164, -328, 1638})),
               {10.01, 99.98, 20.02}, 0.01);

@@ -12,7 +12,7 @@ from pads import PATIENCE
 EV_SYN, EV_KEY, EV_ABS, EV_FF = 0, 1, 3, 0x15
 SYN_DROPPED = 3
 FF_RUMBLE = 0x50
-ABS = {"X": 0, "Y": 1, "Z": 2, "RX": 3, "RY": 4, "RZ": 5, "GAS": 9, "BRAKE": 10, "HAT0X": 16, "HAT0Y": 17}
+ABS = {"X": 0, "Y": 1, "Z": 2, "RX": 3, "RY": 4, "RZ": 5, "THROTTLE": 6, "RUDDER": 7, "GAS": 9, "BRAKE": 10, "HAT0X": 16, "HAT0Y": 17}
 
 _EVENT = struct.Struct("llHHi")
 _EFFECT = struct.Struct("=HhHHHHH2xHH28x")  # ff_effect with ff_rumble_effect, 48 bytes
@@ -84,6 +84,11 @@ class EventNode(Node):
     def absolute(self, code):
         info = fcntl.ioctl(self.fd, ioctl_number(2, "E", 0x40 + code, 24), bytes(24))
         return AbsInfo(*struct.unpack("6i", info))
+
+    def keys(self):
+        """Codes of the keys that are down."""
+        bits = int.from_bytes(fcntl.ioctl(self.fd, ioctl_number(2, "E", 0x18, 96), bytes(96)), "little")
+        return {code for code in range(8 * 96) if bits >> code & 1}
 
     def name(self):
         return fcntl.ioctl(self.fd, ioctl_number(2, "E", 0x06, 256), bytes(256)).split(b"\0")[0].decode()

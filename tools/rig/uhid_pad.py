@@ -69,6 +69,21 @@ _GAMECUBE = (bytes([0x06, 0, 0xff, 0x09, 1, 0xa1, 1]) + _vendor(0x21, 36, 0x80) 
              + _vendor(0x11, 4, 0x90) + b"\xc0")
 EMPTY_PLUG, FULL_PLUG = 0x04, 0x14
 
+# The pads of Linux's own test_gamepad.py (tools/testing/selftests/hid/tests): the order and width of their fields. The
+# first has a field of no bits, a second report with effects; the second numbers its buttons with gaps, and states X
+# before and a brake after a change of the usage page.
+_SAITEK = (bytes([0x05, 1, 0x09, 4, 0xa1, 1, 0x09, 1, 0xa1, 0, 0x85, 1]) + _fields(1, 8, _usages(1, 0x30))
+           + _fields(1, 8, _usages(1, 0x31)) + _fields(1, 8, _usages(2, 0xba)) + _fields(1, 8, _usages(2, 0xbb))
+           + _buttons(12) + _fields(1, 0, flags=3) + _HAT + b"\xc0" + bytes([0x05, 0x0f, 0x09, 0x92, 0xa1, 2, 0x85, 2])
+           + _fields(2, 1, _usages(0x0f, 0xa0, 0x9f)) + _fields(1, 6, flags=3) + _fields(1, 7, _usages(0x0f, 0x22))
+           + _fields(1, 1, _usages(0x0f, 0x94)) + b"\xc0\xc0")
+_ASUS_BUTTONS = (1, 2, 4, 5, 7, 8, 14, 15, 13)
+_ASUS = (_GAMEPAD + bytes([0x85, 1])
+         + _fields(11, 1, _usages(9, *_ASUS_BUTTONS) + bytes([0x05, 0x0c, 0x0a, 0x24, 2, 0x0a, 0x23, 2]))
+         + _fields(1, 1, flags=3) + _HAT + bytes([0x09, 1, 0xa1, 0])
+         + _fields(6, 8, _usages(1, 0x30, 0x31, 0x32, 0x35) + _usages(2, 0xc5, 0xc4)) + b"\xc0"
+         + bytes([0x85, 2]) + _fields(4, 1, _usages(8, 1, 2, 3, 4), tag=0x90) + _fields(1, 4, tag=0x90, flags=3) + b"\xc0")
+
 
 def _motion_calibration(report, size):
     values = (0, 0, 0, 8000, -8000, 8000, -8000, 8000, -8000, 500, 500) + 3 * (8192, -8192)
@@ -125,14 +140,30 @@ def _sony_fields(start, triggers, buttons):
     """`start`: byte of the left stick's X."""
     axes = {name: (8 * (start + i), 8) for i, name in enumerate(("lx", "ly", "rx", "ry"))}
     first = 8 * buttons
-    return axes | {"lt": (8 * triggers, 8), "rt": (8 * triggers + 8, 8), "hat": (first, 4), "x": (first + 4, 1),
-                   "a": (first + 5, 1), "b": (first + 6, 1), "y": (first + 7, 1), "buttons": (first + 4, 14)}
+    return axes | {"lt": (8 * triggers, 8), "rt": (8 * triggers + 8, 8), "hat": (first, 4), "buttons": (first + 4, 14)} | \
+        _bits(first + 4, ("x", "a", "b", "y", "leftshoulder", "rightshoulder", "l2", "r2", "back", "start", "leftstick",
+                          "rightstick", "guide"))
+
+
+def _bits(first, names):
+    return {name: (first + i, 1) for i, name in enumerate(names)}
+
+
+def _numbered(*numbers):
+    return [f"button {number}" for number in numbers]
 
 
 KINDS = {
     "plain": Kind(
         "Rig plain pad", (0x1209, 0x0001), _GAMEPAD + bytes([0x85, 1]) + _fields(4, 8, _STICKS) + _buttons(8) + b"\xc0",
         _neutral(6, b"\x01\x80\x80\x80\x80"), {"lx": (8, 8), "ly": (16, 8), "buttons": (40, 8)}, bus=BUS_USB),
+    "saitek": Kind(
+        "Rig Saitek", (0x06a3, 0xff0d), _SAITEK, _neutral(7, b"\x01\x7f\x7f\x7f\x7f\0\xf0"),
+        {"lx": (8, 8), "ly": (16, 8), "rx": (24, 8), "ry": (32, 8), "hat": (52, 4)} | _bits(40, _numbered(*range(1, 13))), bus=BUS_USB),
+    "asus": Kind(
+        "Rig Asus", (0x18d1, 0x2c40), _ASUS, _neutral(9, b"\x01\0\xf0\x7f\x7f\x7f\x7f"),
+        {"lx": (24, 8), "ly": (32, 8), "rx": (40, 8), "ry": (48, 8), "lt": (56, 8), "rt": (64, 8), "hat": (20, 4)}
+        | _bits(8, [*_numbered(*_ASUS_BUTTONS), "back", "home"]), bus=BUS_USB),
     "gamecube_adapter": Kind(
         "Rig adapter", (0x057e, 0x0337), _GAMECUBE,
         _neutral(37, b"\x21", **{f"b{1 + 9 * plug + byte}": value for plug in range(4)

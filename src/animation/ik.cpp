@@ -2,9 +2,11 @@
 
 #include <cassert>
 #include <limits>
+#include <string>
 #include <utility>
 
 #include "animation/robust_solver.h"
+#include "base/ranges.h"
 
 namespace gaitpad {
 namespace {
@@ -77,6 +79,11 @@ void measure_errors(const IkPose& pose, std::span<const IkRow> rows, IkErrors& e
     errors.dx[r] = rows[r].goal_m - glm::dot(rows[r].direction, errors.point_m[r]);
     errors.squares += errors.dx[r] * errors.dx[r];
   }
+}
+
+// Whether the arrays have room for the chain and the rows.
+bool do_fit(const IkChain& chain, std::span<const IkRow> rows) noexcept {
+  return chain.dofs >= 0 && chain.dofs <= kMaxIkDofs && rows.size() <= kMaxIkRows;
 }
 
 // Angles and weights are finite, limits in order (they may be infinite). A bad link, axis, point or
@@ -278,11 +285,13 @@ double pose_error(const IkChain& chain, std::span<const IkRow> rows,
 
 double paper_iteration(const IkChain& chain, std::span<const IkRow> rows,
                        const PaperOptions& options, IkAngles& angles_rad) noexcept {
+  if (!do_fit(chain, rows)) return refused().error_m;
   return one_pass(chain, rows, options, angles_rad).error_m;
 }
 
 IkResult solve_paper(const IkChain& chain, std::span<const IkRow> rows, const PaperOptions& options,
                      IkAngles& angles_rad, IkTrace* trace) noexcept {
+  if (!do_fit(chain, rows)) return refused();
   IkResult result;
   result.error_m = pose_error(chain, rows, angles_rad);
   if (!are_inputs_finite(chain, angles_rad) || !std::isfinite(result.error_m)) {
@@ -465,8 +474,7 @@ IkResult best_of_tries(const Problem& p, const IkAngles& start, IkAngles& angles
 
 IkResult solve_robust(const IkChain& chain, std::span<const IkRow> rows,
                       const RobustOptions& options, IkAngles& angles_rad, IkTrace* trace) noexcept {
-  assert(rows.size() <= kMaxIkRows);
-  if (!are_inputs_finite(chain, angles_rad)) return refused();
+  if (!do_fit(chain, rows) || !are_inputs_finite(chain, angles_rad)) return refused();
   Problem p{chain, rows, options, trace, relative_weights(chain), {}, {}};
   IkAngles start = angles_rad;
   for (int j = 0; j < chain.dofs; ++j) {
@@ -480,6 +488,55 @@ IkResult solve_robust(const IkChain& chain, std::span<const IkRow> rows,
   if (!std::isfinite(result.error_m)) return refused();
   angles_rad = answer;
   return result;
+}
+
+namespace {
+
+constexpr double kLongest_m = 1e6;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kUnitTolerance = 1e-6;
+
+std::optional<Error> vector_problem(const std::string& what, const vec3& v) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (auto problem = range_problem(what + "." + "xyz"[axis], v[axis], -kLongest_m, kLongest_m))
+      return problem;
+  }
+  return std::nullopt;
+}
+std::optional<Error> unit_problem(const std::string& what, const vec3& v) {
+  return range_problem(what + ", its length,", std::sqrt(glm::dot(v, v)), 1.0 - kUnitTolerance,
+                       1.0 + kUnitTolerance);
+}
+
+}  // namespace
+
+std::optional<Error> check(const IkChain& chain) {
+  if (auto problem = range_problem("IkChain: dofs", chain.dofs, 1, kMaxIkDofs)) return problem;
+  for (int i = 0; i < chain.dofs; ++i) {
+    const IkDof& dof = chain.dof[i];
+    const std::string what = "IkChain: dof[" + std::to_string(i) + "].";
+    if (auto problem = unit_problem(what + "axis", dof.axis)) return problem;
+    if (auto problem = vector_problem(what + "link_m", dof.link_m)) return problem;
+    if (auto problem = range_problem(what + "min_rad", dof.min_rad, -kInfinity, kInfinity))
+      return problem;
+    if (auto problem = range_problem(what + "max_rad", dof.max_rad, dof.min_rad, kInfinity))
+      return problem;
+    if (auto problem = range_problem(what + "weight", dof.weight, 0.0, 1.0)) return problem;
+  }
+  return std::nullopt;
+}
+
+std::optional<Error> check(std::span<const IkRow> rows) {
+  if (auto problem = range_problem("the number of IkRow", double(rows.size()), 1, kMaxIkRows))
+    return problem;
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const std::string what = "IkRow " + std::to_string(i) + ": ";
+    if (auto problem = vector_problem(what + "point_m", rows[i].point_m)) return problem;
+    if (auto problem = unit_problem(what + "direction", rows[i].direction)) return problem;
+    if (auto problem = range_problem(what + "goal_m", rows[i].goal_m, -kLongest_m, kLongest_m))
+      return problem;
+  }
+  return std::nullopt;
 }
 
 }  // namespace gaitpad

@@ -9,8 +9,8 @@
  * The caller sets `size` of a struct to sizeof the struct before each call: a later version may add
  * members at the end, and fills or reads only those that the caller's version has. A call that
  * fails returns null or 0 and writes one sentence to `error`, cut to `error_size` bytes with the
- * final 0; `error` may be null. A null handle, or a null pointer where none is allowed, fails too; a
- * call that returns nothing then changes nothing. No C++ exception leaves a call. Several threads
+ * final 0; `error` may be null. A null handle, or a null pointer where none is allowed, fails too;
+ * a call that returns nothing then changes nothing. No C++ exception leaves a call. Several threads
  * may use walks of one model at a time; a walk belongs to one thread at a time. */
 #ifndef GAITPAD_H
 #define GAITPAD_H

@@ -623,6 +623,66 @@ TEST(IkRobust, NotFiniteInputsLeaveTheAnglesUntouched) {
   }
 }
 
+// Beyond the arrays there is nothing to read.
+TEST(IkChecks, MoreDofsOrRowsThanThereIsRoomForAreRefused) {
+  const auto three = point_goal(kHeel, vec3(0.0, -0.7, 0.1));
+  const std::vector<IkRow> seven(kMaxIkRows + 1, three[0]);
+  for (const int dofs : {-1, kMaxIkDofs + 1, 1 << 30, 7}) {
+    IkChain c = human_leg();
+    c.dofs = dofs;
+    const std::span<const IkRow> rows = dofs == 7 ? std::span<const IkRow>(seven) : three;
+    IkAngles q = standing();
+    EXPECT_EQ(solve_paper(c, rows, {}, q).status, IkStatus::not_finite) << dofs;
+    EXPECT_EQ(solve_robust(c, rows, {}, q).status, IkStatus::not_finite) << dofs;
+    EXPECT_EQ(paper_iteration(c, rows, {}, q), kInfinity) << dofs;
+    EXPECT_EQ(q, standing());
+  }
+}
+
+TEST(IkChecks, AChainThatIsNoneIsNamedByItsField) {
+  const auto said_of = [](const auto& spoil) {
+    IkChain c = human_leg();
+    spoil(c);
+    const auto problem = check(c);
+    return problem ? problem->message : "";
+  };
+  using Chain = IkChain;
+  EXPECT_EQ(said_of([](Chain&) {}), "");
+  EXPECT_EQ(said_of([](Chain& c) { c.dof[1].min_rad = -kInfinity; }), "");
+  EXPECT_EQ(said_of([](Chain& c) { c.dofs = 17; }), "IkChain: dofs is 17, outside [1, 16]");
+  EXPECT_EQ(said_of([](Chain& c) { c.dofs = 0; }), "IkChain: dofs is 0, outside [1, 16]");
+  EXPECT_EQ(said_of([](Chain& c) { c.dof[2].weight = std::nan(""); }),
+            "IkChain: dof[2].weight is nan, outside [0, 1]");
+  EXPECT_EQ(said_of([](Chain& c) { c.dof[2].link_m.y = kInfinity; }),
+            "IkChain: dof[2].link_m.y is inf, outside [-1e+06, 1e+06]");
+  EXPECT_EQ(said_of([](Chain& c) { c.dof[0].axis *= 2.0; }),
+            "IkChain: dof[0].axis, its length, is 2, outside [0.999999, 1]");
+  EXPECT_EQ(said_of([](Chain& c) { c.dof[3].min_rad = std::nan(""); }),
+            "IkChain: dof[3].min_rad is nan, outside [-inf, inf]");
+  EXPECT_EQ(said_of([](Chain& c) { c.dof[3].min_rad = 1.5, c.dof[3].max_rad = 1.0; }),
+            "IkChain: dof[3].max_rad is 1, outside [1.5, inf]");
+}
+
+TEST(IkChecks, RowsThatAreNoneAreNamedByTheirField) {
+  const auto said_of = [](const auto& spoil) {
+    const auto three = point_goal(kHeel, vec3(0.0, -0.7, 0.1));
+    std::vector<IkRow> rows(three.begin(), three.end());
+    spoil(rows);
+    const auto problem = check(std::span<const IkRow>(rows));
+    return problem ? problem->message : "";
+  };
+  using Rows = std::vector<IkRow>;
+  EXPECT_EQ(said_of([](Rows&) {}), "");
+  EXPECT_EQ(said_of([](Rows& r) { r.clear(); }), "the number of IkRow is 0, outside [1, 6]");
+  EXPECT_EQ(said_of([](Rows& r) { r.resize(7); }), "the number of IkRow is 7, outside [1, 6]");
+  EXPECT_EQ(said_of([](Rows& r) { r[1].goal_m = std::nan(""); }),
+            "IkRow 1: goal_m is nan, outside [-1e+06, 1e+06]");
+  EXPECT_EQ(said_of([](Rows& r) { r[2].point_m.x = 1e7; }),
+            "IkRow 2: point_m.x is 1e+07, outside [-1e+06, 1e+06]");
+  EXPECT_EQ(said_of([](Rows& r) { r[0].direction *= 0.5; }),
+            "IkRow 0: direction, its length, is 0.5, outside [0.999999, 1]");
+}
+
 TEST(IkRobust, AnglesOutsideTheirLimitsComeBackInside) {
   Random random(28);
   const IkChain c = human_leg();

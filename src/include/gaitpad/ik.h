@@ -7,12 +7,15 @@
 // half Jacobian (3 x n). A second point (the toe beside the heel) adds rows; there are no rows for
 // orientations.
 //
-// Everything here is noexcept, uses no heap and no libm trigonometry, and may be called in a tick.
+// Everything here but check() is noexcept, uses no heap and no libm trigonometry, and may be called
+// in a tick.
 #pragma once
 #include <array>
+#include <optional>
 #include <span>
 
 #include "gaitpad/math.h"
+#include "gaitpad/result.h"
 
 namespace gaitpad {
 
@@ -34,6 +37,10 @@ struct IkRow {
   vec3 direction{1.0, 0.0, 0.0};  // unit, base frame
   double goal_m = 0.0;            // wanted value of dot(direction, point in the base frame)
 };
+// `IkChain: dof[2].weight is nan, outside [0, 1]`. For set-up code: they allocate their sentence.
+std::optional<Error> check(const IkChain& chain);
+std::optional<Error> check(std::span<const IkRow> rows);
+
 using IkAngles = std::array<double, kMaxIkDofs>;  // radians, by DOF
 
 enum class IkStatus : unsigned char {
@@ -41,7 +48,8 @@ enum class IkStatus : unsigned char {
   unreachable,  // not within the tolerance: error_m says how far off the returned pose is
   singular,     // paper mode: J J^T had no inverse; the last pose before it is returned
   not_finite,   // the input has a NaN, an infinity, a goal too far to square or crossed limits:
-                // the angles are untouched
+                // the angles are untouched; also where `dofs` or the rows are more than there is
+                // room for
 };
 struct IkResult {
   IkStatus status = IkStatus::converged;
@@ -70,7 +78,8 @@ struct PaperOptions {
 };
 IkResult solve_paper(const IkChain& chain, std::span<const IkRow> rows, const PaperOptions& options,
                      IkAngles& angles_rad, IkTrace* trace = nullptr) noexcept;
-// One pass of steps 1-6, for traces and tests. Returns the error before it.
+// One pass of steps 1-6, for traces and tests. Returns the error before it; infinite, and nothing
+// is done, where `dofs` or the rows are more than there is room for.
 double paper_iteration(const IkChain& chain, std::span<const IkRow> rows,
                        const PaperOptions& options, IkAngles& angles_rad) noexcept;
 

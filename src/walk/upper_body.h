@@ -1,0 +1,70 @@
+// Sixth: the joints that the legs do not set, from the data at this phase.
+#pragma once
+#include "gaitpad/math.h"
+#include "walk/leg_solve.h"
+
+namespace gaitpad::anew {
+namespace {
+
+inline Four unit(const Four& q) noexcept {
+  const Four square = q * q, pairs = square + __builtin_shufflevector(square, square, 1, 0, 3, 2),
+             sum = pairs + __builtin_shufflevector(pairs, pairs, 2, 3, 0, 1);
+  return q / root(sum);
+}
+inline void store(const Four& q, quat& to) noexcept {
+  using Doubles __attribute__((vector_size(32))) = double;
+  const Doubles wide = __builtin_convertvector(q, Doubles);
+  std::memcpy(&to, &wide, sizeof wide);
+}
+
+// The factor on the data's arm swing: proportional to speed (Boulic et al. 1990), 1 at the data's
+// own pace, at most 1.4 by pace alone; below half the data's step the whole posture fades instead.
+template <class V>
+V arm_swing(const Tables& tables, const State<V>& state) noexcept {
+  constexpr float kMostExtra = 0.4f, kLeastPace = 0.5f;
+  const V quicker =
+      tables.own_step_s / most(state.step_time_s.x, all<V>(0.25f * tables.own_step_s));
+  const V extra = most(state.pace.x, all<V>(kLeastPace)) * quicker - 1.0f;
+  return 1.0f + (extra > V{} ? V(extra / (1.0f + extra * (1.0f / kMostExtra))) : extra);
+}
+
+// `local`: of each walk, its local rotations by joint.
+template <class V>
+void write_upper_body(const Tables& tables, const State<V>& state, quat* const* local,
+                      int walks) noexcept {
+  constexpr float kSoftElbow = 0.1f;
+  const Knots<V> knots = knots_at(state.phase);
+  const V swing = arm_swing(tables, state), shown = within(state.posture.x, 0.0f, 1.0f);
+  V elbow[2];
+  for (int side : {0, 1})
+    elbow[side] = soft_least(swing, all<V>(tables.most_elbow_swing[side]), all<V>(kSoftElbow));
+  const std::size_t count = tables.upper.size();
+  for (int w = 0; w < walks; ++w) {
+    const float* row =
+        tables.upper_rows.data() + static_cast<int>(lane(knots.first, w)) * count * 4;
+    const float k0 = lane(knots.weight[0], w), k1 = lane(knots.weight[1], w),
+                k2 = lane(knots.weight[2], w), k3 = lane(knots.weight[3], w),
+                shows = lane(shown, w);
+    const float swings[5] = {1.0f, lane(swing, w), lane(elbow[0], w), lane(swing, w),
+                             lane(elbow[1], w)};
+    for (std::size_t i = 0; i < count; ++i) {
+      const UpperJoint& joint = tables.upper[i];
+      const float* from = row + 4 * i;
+      Four q = part<Four>(from) * k0 + part<Four>(from + 4 * count) * k1 +
+               part<Four>(from + 8 * count) * k2 + part<Four>(from + 12 * count) * k3;
+      if (joint.swings != 0) {
+        const Four middle = part<Four>(joint.middle.data());
+        q = middle + (q - middle) * swings[joint.swings];
+      }
+      q = unit(q);
+      if (shows < 1.0f) {
+        const Four stand = part<Four>(joint.standing.data());
+        q = unit(stand + (q - stand) * shows);
+      }
+      store(q, local[w][joint.joint]);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace gaitpad::anew

@@ -80,9 +80,10 @@ struct Origin {
   double x_m = 0.0, z_m = 0.0, heading_rad = 0.0;
 };
 
-// A block of walks of one build.
+// A block of walks of one build. Aligned here, for g++ 12 forgets that of registers in a template's
+// arguments.
 template <int kWidth>
-struct Block {
+struct alignas(64) Block {
   State<Floats<kWidth>> state;
   Origin origin[kWidth];
 };

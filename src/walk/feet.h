@@ -242,8 +242,8 @@ void change_feet(const Landing<V>& landing, const Mask<V>& strikes, const Feet<V
   set(state.next_wider_m, state.wider_m);
   set(landing.ratio, state.ratio_behind);
   set(V(feet.foot[0].pitch_rad - stride.foot[0].pitch_rad), state.stand_pitch_rad);
-  for (int j = 0; j < 4; ++j) {
-    const auto swap = [&](V(&of)[2][4]) {
+  for (int j = 0; j < kLegAngles; ++j) {
+    const auto swap = [&](V(&of)[2][kLegAngles]) {
       const V swing = of[0][j], stand = of[1][j];
       of[0][j] = strikes ? stand : swing;
       of[1][j] = strikes ? swing : stand;

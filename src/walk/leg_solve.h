@@ -1,6 +1,8 @@
-// Fifth: the legs. One step of the paper's weighted half Jacobian (three rows of the ankle, four
-// rotations) chooses what the foot leaves free, the knee's swivel; the knee then follows from the
-// distance, and the least turn of the hip and the ankle close the rest exactly.
+// Fifth: the legs. The knee follows from the distance to the ankle. Of the poses that are left,
+// which differ by the knee's swivel about the line from hip to ankle, a leg takes the one nearest
+// to its start: the least sum of squares of its seven angles' changes, which is what the
+// pseudoinverse of the paper's equation (4) gives, to first order. The foot is exactly where it is
+// planned.
 #pragma once
 #include "walk/feet.h"
 
@@ -13,67 +15,99 @@ struct Leg {
   Mask<V> short_of{};  // the ankle is out of the leg's reach
 };
 
-inline constexpr float kLeastKnee_rad = 0.017453293f, kLeak_per_s = 4.0f, kMostStep_rad = 0.3f;
+// What is added to the tables' angles leaks away at this rate.
+inline constexpr float kLeastKnee_rad = 0.017453293f, kLeak_per_s = 4.0f;
 inline constexpr float kStraightCosine = 0.99984770f, kFoldedCosine = -0.9f;  // 1 and 154 degrees
-inline constexpr float kDamping_m2 = 1e-8f;
+inline constexpr float kMostSwivel_rad = 0.3f;  // in a tick: farther away it is not first order
 
-// `ankle_m`, `foot`: seen from the hip joint in the pelvis' frame. `table_rad`: where it starts.
+// Turns two axes of a frame about the third; (a, b) in cyclic order.
+template <class V>
+void turn_axes(Vec<V>& a, Vec<V>& b, const V& sine, const V& cosine) noexcept {
+  const Vec<V> old = a;
+  a = old * cosine + b * sine;
+  b = b * cosine - old * sine;
+}
+
+// How much three joint axes have to turn for a rotation vector: x, z and y of Rx Rz Ry. `x` and `y`
+// are the axes before the last turn, `z` is the second one.
+template <class V>
+void turns_xzy(const Vec<V>& vector, const Vec<V>& x, const Vec<V>& y, const Vec<V>& z,
+               const V& sine_z, const V& cosine_z, V (&turns)[3]) noexcept {
+  turns[0] = dot(vector, x) / cosine_z;
+  turns[1] = dot(vector, z);
+  turns[2] = dot(vector, y) + sine_z * turns[0];
+}
+
+// `ankle_m`, `foot`: seen from the hip joint in the pelvis' frame. `table_rad`: where it starts,
+// with `off_rad`, to which the turns are added to first order.
 template <class V>
 Leg<V> solve_leg(const V& thigh_m, const V& shank_m, const Vec<V>& ankle_m, const Turn<V>& foot,
-                 const V (&table_rad)[4], V (&off_rad)[4]) noexcept {
-  V half_sine[4], half_cosine[4], s[4], c[4];
-  for (int j = 0; j < 4; ++j) {
-    sin_cos_small(V(0.5f * (table_rad[j] + off_rad[j])), half_sine[j], half_cosine[j]);
-    s[j] = 2.0f * half_sine[j] * half_cosine[j];
-    c[j] = 1.0f - 2.0f * half_sine[j] * half_sine[j];
+                 const V (&table_rad)[kLegAngles], V (&off_rad)[kLegAngles]) noexcept {
+  V hs[kLegAngles], hc[kLegAngles], s[kLegAngles], c[kLegAngles];
+  for (int j = 0; j < kLegAngles; ++j) {
+    sin_cos_small(V(0.5f * (table_rad[j] + off_rad[j])), hs[j], hc[j]);
+    s[j] = 2.0f * hs[j] * hc[j];
+    c[j] = 1.0f - 2.0f * hs[j] * hs[j];
   }
-  // Axes of the hip's second and third turn, of the knee, and along the shank.
-  const Vec<V> hip_z{V{}, -s[0], c[0]}, thigh{-s[1], c[1] * c[0], c[1] * s[0]},
-      x{c[1], s[1] * c[0], s[1] * s[0]};
-  const Vec<V> hinge = x * c[2] - hip_z * s[2], ahead = hip_z * c[2] + x * s[2];
-  const Vec<V> shank = (thigh * c[3] + ahead * s[3]) * (-shank_m), p = thigh * (-thigh_m) + shank;
-  const Vec<V> error = ankle_m - p;
-  const Vec<V> column[4] = {
-      {V{}, -p.z, p.y}, cross(hip_z, p), cross(thigh, p), cross(hinge, shank)};
-  // J J^T + l^2 I, its Cholesky factors, and J^T of what they give.
-  V m00 = all<V>(kDamping_m2), m11 = m00, m22 = m00, m01{}, m02{}, m12{};
-  for (const Vec<V>& a : column) {
-    m00 = m00 + a.x * a.x, m01 = m01 + a.x * a.y, m02 = m02 + a.x * a.z;
-    m11 = m11 + a.y * a.y, m12 = m12 + a.y * a.z, m22 = m22 + a.z * a.z;
-  }
-  const V r0 = 1.0f / m00, l1 = m01 * r0, l2 = m02 * r0, d1 = m11 - l1 * m01, t = m12 - l1 * m02,
-          r1 = 1.0f / d1, l3 = t * r1, r2 = 1.0f / ((m22 - l2 * m02) - l3 * t);
-  const V b1 = error.y - l1 * error.x, b2 = (error.z - l2 * error.x) - l3 * b1, z2 = b2 * r2,
-          z1 = b1 * r1 - l3 * z2, z0 = (error.x * r0 - l1 * z1) - l2 * z2;
-  V step[4];
-  for (int j = 0; j < 4; ++j) {
-    step[j] = within(V(column[j].x * z0 + column[j].y * z1 + column[j].z * z2), -kMostStep_rad,
-                     kMostStep_rad);
-    off_rad[j] = off_rad[j] + step[j];
-  }
-  // The hip after the step: its half angles turned on by the step, Rx Rz Ry.
-  V hs[3], hc[3];
-  for (int j = 0; j < 3; ++j) {
-    V ds, dc;
-    sin_cos_small(V(0.5f * step[j]), ds, dc);
-    hs[j] = half_sine[j] * dc + half_cosine[j] * ds;
-    hc[j] = half_cosine[j] * dc - half_sine[j] * ds;
-  }
-  const V w = hc[0] * hc[1], i = hs[0] * hc[1], j = -hs[0] * hs[1], k = hc[0] * hs[1];
-  const Turn<V> hip{w * hc[2] - j * hs[2], i * hc[2] - k * hs[2], w * hs[2] + j * hc[2],
-                    k * hc[2] + i * hs[2]};
+  // Axes at the start: of the hip, the thigh, the shank, the ankle and the foot.
+  const Vec<V> hip_z{V{}, -s[0], c[0]}, hip_x{c[1], s[1] * c[0], s[1] * s[0]},
+      hip_y{-s[1], c[1] * c[0], c[1] * s[0]};
+  Vec<V> x = hip_x, z = hip_z;
+  turn_axes(z, x, s[2], c[2]);
+  Vec<V> foot_x = x, foot_y = hip_y, ankle_z = z;
+  turn_axes(foot_y, ankle_z, s[3], c[3]);
+  turn_axes(foot_y, ankle_z, s[4], c[4]);
+  turn_axes(foot_x, foot_y, s[5], c[5]);
+  const Vec<V> ankle_x = foot_x;
+  Vec<V> foot_z = ankle_z;
+  turn_axes(foot_z, foot_x, s[6], c[6]);
+
   const V square = dot(ankle_m, ankle_m),
           bends = (square - (thigh_m * thigh_m + shank_m * shank_m)) / (2.0f * thigh_m * shank_m);
   Leg<V> leg;
   leg.short_of = either(bends > all<V>(kStraightCosine), bends < all<V>(kFoldedCosine));
   const V knee_c = within(bends, kFoldedCosine, kStraightCosine),
-          knee_hc = root(V(0.5f + 0.5f * knee_c)), knee_hs = root(V(0.5f - 0.5f * knee_c));
-  const Vec<V> from = hip * Vec<V>{V{}, -(thigh_m + shank_m * knee_c),
-                                   -(shank_m * 2.0f * knee_hc * knee_hs)},
+          knee_hc = root(V(0.5f + 0.5f * knee_c)), knee_hs = root(V(0.5f - 0.5f * knee_c)),
+          knee_s = 2.0f * knee_hc * knee_hs, knee_turns = knee_s * c[3] - knee_c * s[3];
+  // The least turn of the hip that brings the ankle to its place, and what is left of the foot's
+  // turn for the ankle.
+  const Vec<V> from = hip_y * -(thigh_m + shank_m * knee_c) - z * (shank_m * knee_s),
                axis = cross(from, ankle_m);
-  const Turn<V> least_turn =
-      unit(Turn<V>{root(V(dot(from, from) * square)) + dot(from, ankle_m), axis.x, axis.y, axis.z});
-  leg.hip = unit(least_turn * hip);
+  const V w = root(V(dot(from, from) * square)) + dot(from, ankle_m);
+  const Vec<V> goal_x{1.0f - 2.0f * (foot.y * foot.y + foot.z * foot.z),
+                      2.0f * (foot.x * foot.y + foot.w * foot.z),
+                      2.0f * (foot.x * foot.z - foot.w * foot.y)},
+      goal_y{2.0f * (foot.x * foot.y - foot.w * foot.z),
+             1.0f - 2.0f * (foot.x * foot.x + foot.z * foot.z),
+             2.0f * (foot.y * foot.z + foot.w * foot.x)},
+      goal_z = cross(goal_x, goal_y);
+  const Vec<V> of_hip = axis * V(2.0f / w),
+               of_foot =
+                   (cross(foot_x, goal_x) + cross(foot_y, goal_y) + cross(foot_z, goal_z)) * 0.5f,
+               of_ankle = of_foot - of_hip - x * knee_turns,
+               line = ankle_m * V(1.0f / root(square));
+  V hip[3], ankle[3], hip_swivels[3], ankle_swivels[3];
+  turns_xzy(of_hip, hip_x, hip_y, hip_z, s[1], c[1], hip);
+  turns_xzy(of_ankle, ankle_x, foot_y, ankle_z, s[5], c[5], ankle);
+  turns_xzy(line, hip_x, hip_y, hip_z, s[1], c[1], hip_swivels);
+  turns_xzy(line, ankle_x, foot_y, ankle_z, s[5], c[5], ankle_swivels);
+  V along{}, squares{};
+  for (int i = 0; i < 3; ++i) {
+    along = along + (ankle_swivels[i] * ankle[i] - hip_swivels[i] * hip[i]);
+    squares = squares + (hip_swivels[i] * hip_swivels[i] + ankle_swivels[i] * ankle_swivels[i]);
+  }
+  const V swivel_rad = within(V(along / squares), -kMostSwivel_rad, kMostSwivel_rad);
+  for (int i = 0; i < 3; ++i) {
+    off_rad[i] = off_rad[i] + (hip[i] + swivel_rad * hip_swivels[i]);
+    off_rad[4 + i] = off_rad[4 + i] + (ankle[i] - swivel_rad * ankle_swivels[i]);
+  }
+  off_rad[3] = off_rad[3] + knee_turns;
+
+  const V i0 = hc[0] * hc[1], i1 = hs[0] * hc[1], i2 = -hs[0] * hs[1], i3 = hc[0] * hs[1];
+  const Turn<V> start{i0 * hc[2] - i2 * hs[2], i1 * hc[2] - i3 * hs[2], i0 * hs[2] + i2 * hc[2],
+                      i3 * hc[2] + i1 * hs[2]};
+  const Vec<V> half = line * V(0.5f * swivel_rad), vector = axis + half * w + cross(half, axis);
+  leg.hip = unit(Turn<V>{V(w - dot(half, axis)), vector.x, vector.y, vector.z} * start);
   leg.knee = {knee_hc, knee_hs, V{}, V{}};
   leg.ankle = back(leg.hip * leg.knee) * foot;
   return leg;
@@ -92,8 +126,8 @@ void solve_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stri
   for (int k : {0, 1}) {
     const auto right = k == 0 ? time.right : no(time.right);
     const LegBones &l = tables.leg[0], &r = tables.leg[1];
-    V table_rad[4];
-    for (int j = 0; j < 4; ++j) {
+    V table_rad[kLegAngles];
+    for (int j = 0; j < kLegAngles; ++j) {
       table_rad[j] = stride.leg_rad[k][j] + chosen<V>(right, r.stand_rad[j], l.stand_rad[j]);
       const V off = state.leg_rad[k][j];
       state.leg_rad[k][j] = keep * off + ahead * (off - state.last_leg_rad[k][j]);

@@ -10,6 +10,8 @@
 
 namespace gaitpad::anew {
 
+inline constexpr int kLegAngles = 7;  // hip x, z, y; knee; ankle x, z, y
+
 // A value and its rate, per second.
 template <class V>
 struct Smoothed {
@@ -65,8 +67,8 @@ struct State {
   V swing_pitch_rad{}, swing_pitch_rate{}, stand_pitch_rad{};
   V last_pitch_rad[2]{};
 
-  // Legs, swing and stand: hip x, z, y and knee less the tables', now and a tick ago.
-  V leg_rad[2][4]{}, last_leg_rad[2][4]{};
+  // Legs, swing and stand: their angles less the tables', now and a tick ago.
+  V leg_rad[2][kLegAngles]{}, last_leg_rad[2][kLegAngles]{};
 
   // Turn of the step frame in the world, half of it.
   V frame_sine{}, frame_cosine{};

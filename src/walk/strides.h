@@ -10,9 +10,7 @@ namespace {
 
 // As many numbers of a row as a register holds. The sums go across rows, never along them, so their
 // bits do not depend on it.
-#if defined(__AVX512F__)
-using RowPart = Floats<16>;
-#elif defined(__AVX2__)
+#if defined(__AVX2__)
 using RowPart = Floats<8>;
 #else
 using RowPart = Floats<4>;
@@ -94,7 +92,7 @@ struct Stride {
   StrideFoot<V> foot[2];
   Vec<V> pelvis_m, pelvis_tilt_rad;
   V pelvis_yaw_rad{}, pelvis_low_m{}, pelvis_high_m{};
-  V leg_rad[2][4]{};
+  V leg_rad[2][kLegAngles]{};
   V ratio_ahead{};
 };
 
@@ -174,10 +172,10 @@ Stride<V> read_stride(const Tables& tables, const Time<V>& time, const V& phase,
   stride.pelvis_m = {n[12], n[13], n[14]};
   stride.pelvis_yaw_rad = n[15];
   stride.pelvis_tilt_rad = {n[16], n[17], n[18]};
-  for (int j = 0; j < 4; ++j)
-    by_foot(time.right, n[19 + j], n[23 + j], stride.leg_rad[0][j], stride.leg_rad[1][j]);
-  stride.pelvis_low_m = n[27];
-  stride.pelvis_high_m = n[28];
+  for (int j = 0; j < kLegAngles; ++j)
+    by_foot(time.right, n[19 + j], n[26 + j], stride.leg_rad[0][j], stride.leg_rad[1][j]);
+  stride.pelvis_low_m = n[33];
+  stride.pelvis_high_m = n[34];
   stride.ratio_ahead = ahead;
   return stride;
 }

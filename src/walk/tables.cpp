@@ -55,7 +55,7 @@ std::array<double, kRowNumbers> numbers_of(const StridePlace& place) {
   for (const StrideFoot& foot : cell.foot) add({foot.twist_rad, foot.roll_rad});
   add({cell.pelvis_m.x, cell.pelvis_m.y, cell.pelvis_m.z, cell.pelvis_yaw_rad, cell.pelvis_tilt.x,
        cell.pelvis_tilt.y, cell.pelvis_tilt.z});
-  for (const auto& leg : cell.leg_rad) add({leg[0], leg[1], leg[2], leg[3]});
+  for (const auto& leg : cell.leg_rad) to = std::copy(leg.begin(), leg.end(), to);
   add({place.track.low_m, place.track.high_m});
   return all;
 }
@@ -102,8 +102,9 @@ void fill_legs(const WalkModel& model, Tables& tables) {
     to.half_width_m = static_cast<float>(from.half_width_m);
     to.track_m = static_cast<float>(from.track_m);
     to.own_step_m = static_cast<float>(model.own_step_m[side]);
-    for (int j = 0; j < 4; ++j) {
+    for (int j = 0; j < kLegAngles; ++j)
       to.stand_rad[j] = static_cast<float>(model.stand_rad[side][j]);
+    for (int j = 0; j < 4; ++j) {
       to.joint[j] = from.joint[j].joint;
       to.before[j] = wxyz(from.joint[j].before);
       to.after[j] = wxyz(from.joint[j].after);

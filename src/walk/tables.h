@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "gaitpad/walk_model.h"
+#include "walk/state.h"
 
 namespace gaitpad::anew {
 
@@ -19,12 +20,12 @@ struct StrideRow {
   std::array<float, 3> pelvis_m;
   float pelvis_yaw_rad;
   std::array<float, 3> pelvis_tilt_rad;
-  std::array<std::array<float, 4>, 2> leg_rad;  // hip x, z, y and knee; the ankle follows
-  std::array<float, 2> pelvis_span_m;           // its lowest and highest place in the stride
-  std::array<float, 3> none;
+  std::array<std::array<float, kLegAngles>, 2> leg_rad;
+  std::array<float, 2> pelvis_span_m;  // its lowest and highest place in the stride
+  std::array<float, 5> none;
 };
 inline constexpr int kRowNumbers = sizeof(StrideRow) / sizeof(float), kHeelNumbers = 8;
-static_assert(kRowNumbers == 32);
+static_assert(kRowNumbers == 40);
 
 // As many as a StrideFamily has: half of them are off by 0.17 degrees RMS of a knee, at the
 // lift-off.
@@ -45,7 +46,7 @@ struct Filter {
 struct LegBones {
   std::array<float, 3> hip_m, heel_m, toe_m, forward, side;  // LegBuild
   float thigh_m, shank_m, elevation_rad, foot_m, toe_rest_m, half_width_m, track_m;
-  std::array<float, 4> stand_rad;  // hip x, z, y and knee
+  std::array<float, kLegAngles> stand_rad;
   float own_step_m;
   std::array<int, 4> joint;                           // hip, knee, ankle, toe; -1: none
   std::array<std::array<float, 4>, 4> before, after;  // w, x, y, z

@@ -70,7 +70,7 @@ inline Block<1> taken_over(const WalkState& old, const GaitParams& params) {
   to.stand_pitch_rad = static_cast<float>(stands.pitch_fade.value);
   for (int k : {0, 1}) {
     const int side = k == 0 ? swing : stand;
-    for (int j = 0; j < 4; ++j) {
+    for (int j = 0; j < kLegAngles; ++j) {
       to.leg_rad[k][j] =
           static_cast<float>(old.legs.even_rad[side][j] - old.legs.data_rad[side][j]);
       to.last_leg_rad[k][j] = static_cast<float>(old.legs.last_off_rad[side][j]);

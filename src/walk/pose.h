@@ -9,10 +9,7 @@ namespace {
 
 template <class V>
 void write_joint(const Turn<V>& q, int joint, const Poses& poses) noexcept {
-  for (int w = 0; w < poses.walks; ++w) {
-    const Four one = {lane(q.x, w), lane(q.y, w), lane(q.z, w), lane(q.w, w)};
-    store(one, poses.local[w][joint]);
-  }
+  for (int w = 0; w < poses.walks; ++w) write_joint(q, joint, w, poses);
 }
 
 template <class V>

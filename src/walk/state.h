@@ -39,6 +39,9 @@ struct State {
   Smoothed<V> length_m[2], lift[2], turn_goal_rad_s, turn_rad_s, bounce, sway;
   Smoothed<V> pace, posture, lean_rad, step_time_s;
 
+  // How far chest and head are turned ahead of the pelvis.
+  Smoothed<V> chest_ahead_rad, head_ahead_rad;
+
   // Clock.
   V right_swings{}, flies{};       // 1 or 0
   V tick{};                        // in the roll or the flight

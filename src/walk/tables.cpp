@@ -124,12 +124,43 @@ int swing_of(const WalkModel& model, int joint) {
   return 0;
 }
 
+// Chest and head turn ahead: the spine's joints share the chest's turn, and neck and head what the
+// head is ahead of the chest, the neck by its share.
+constexpr double kNeckShare = 0.45;  // of what the head turns beside the chest
+void fill_path(const WalkModel& model, Tables& tables) {
+  const UpperBodyModel& body = model.body;
+  const std::vector<int>&spine = body.joints.spine, &head = body.head_path;
+  const int joints = static_cast<int>(head.size()), necks = joints - 1 - body.neck_at;
+  for (int i = 0; i < joints; ++i) {
+    if (head[i] == model.cycle.pelvis) tables.path.clear();
+    if (head[i] == model.cycle.pelvis) continue;
+    const bool bends = std::find(spine.begin(), spine.end(), head[i]) != spine.end();
+    PathJoint to{head[i], bends ? 1.0f / static_cast<float>(spine.size()) : 0.0f, 0.0f};
+    if (i >= body.neck_at) {
+      to.of_head = static_cast<float>(i < joints - 1 ? kNeckShare / necks
+                                      : necks > 0    ? 1.0 - kNeckShare
+                                                     : 1.0);
+      to.of_chest -= to.of_head;
+    }
+    tables.path.push_back(to);
+  }
+}
+
 void fill_upper_body(const WalkModel& model, Tables& tables) {
   const GaitCycle& cycle = model.cycle;
-  const std::size_t joints = cycle.skeleton.joints.size(), count = model.above.joint.size();
+  fill_path(model, tables);
+  const auto is_on_path = [&](int joint) {
+    return std::any_of(tables.path.begin(), tables.path.end(),
+                       [&](const PathJoint& p) { return p.joint == joint; });
+  };
+  // Joints that are still in the data may turn on the path.
+  std::vector<int> moved = model.above.joint;
+  for (const int joint : model.above.still)
+    (is_on_path(joint) ? moved : tables.still).push_back(joint);
+  const std::size_t joints = cycle.skeleton.joints.size(), count = moved.size();
   tables.upper_rows.resize((kKnots + 3) * count * 4);
   for (std::size_t i = 0; i < count; ++i) {
-    const int joint = model.above.joint[i];
+    const int joint = moved[i];
     UpperJoint to{joint, swing_of(model, joint), xyzw(cycle.standing_local[joint]), {}};
     const ArmBuild& arm = model.body.arm[to.swings > 2];
     const quat middle = to.swings % 2 == 1 ? arm.swing_shoulder : arm.swing_elbow;
@@ -155,7 +186,6 @@ void fill_upper_body(const WalkModel& model, Tables& tables) {
   }
   for (int side : {0, 1})
     tables.most_elbow_swing[side] = static_cast<float>(model.body.arm[side].most_elbow_swing);
-  tables.still = model.above.still;
   for (const int j : model.kept) tables.kept.emplace_back(j, cycle.standing_local[j]);
   tables.joints = static_cast<int>(joints);
   tables.pelvis = cycle.pelvis;
@@ -195,6 +225,8 @@ std::unique_ptr<const Tables> tables_of(const WalkModel& model, double tick_s) {
   tables->bounce = of(0.30);
   tables->lean = of(0.12);
   tables->posture = of(0.06);
+  tables->chest = of(0.10);
+  tables->head = of(0.07);
   tables->tick_s = static_cast<float>(tick_s);
   return tables;
 }

@@ -59,6 +59,12 @@ struct UpperJoint {
   std::array<float, 4> standing, middle;  // x, y, z, w; the middle of an arm's swing
 };
 
+// A joint on the way from the pelvis to the head, and its share of what chest and head are ahead.
+struct PathJoint {
+  int joint;
+  float of_chest, of_head;
+};
+
 struct Tables {
   alignas(64) StrideRows forward;
   FootprintLines footprints;
@@ -71,6 +77,7 @@ struct Tables {
 
   std::vector<UpperJoint> upper;
   std::vector<float> upper_rows;  // (kKnots + 3) x upper.size() x 4: x, y, z, w
+  std::vector<PathJoint> path;    // from the pelvis on
   std::array<float, 2> most_elbow_swing;
   std::vector<int> still;                  // always the identity
   std::vector<std::pair<int, quat>> kept;  // twist joints in the legs
@@ -78,7 +85,7 @@ struct Tables {
   std::array<float, 4> pelvis_standing;  // w, x, y, z
 
   float tick_s;
-  Filter step, first_step, turn_goal, turn, bounce, lean, posture;
+  Filter step, first_step, turn_goal, turn, bounce, lean, posture, chest, head;
 };
 
 // Of a tick of `tick_s` seconds.

@@ -49,7 +49,7 @@ void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& pose
   sink(tables, time, stride, ankle_m, pelvis);
   Leg<V> legs[2];
   solve_legs(tables, time, stride, feet, pelvis, state, legs);
-  write_upper_body(tables, state, poses.local, poses.walks);
+  write_upper_body(tables, pelvis, state, poses);
   write_legs(tables, time, feet, legs, poses);
   write_root<kWidth>(tables, pelvis, block, poses);
 

@@ -2,6 +2,7 @@
 #pragma once
 #include "gaitpad/math.h"
 #include "walk/leg_solve.h"
+#include "walk/pose_places.h"
 
 namespace gaitpad::anew {
 namespace {
@@ -28,10 +29,49 @@ V arm_swing(const Tables& tables, const State<V>& state) noexcept {
   return 1.0f + (extra > V{} ? V(extra / (1.0f + extra * (1.0f / kMostExtra))) : extra);
 }
 
-// `local`: of each walk, its local rotations by joint.
 template <class V>
-void write_upper_body(const Tables& tables, const State<V>& state, quat* const* local,
-                      int walks) noexcept {
+void write_joint(const Turn<V>& q, int joint, int w, const Poses& poses) noexcept {
+  store(Four{lane(q.x, w), lane(q.y, w), lane(q.z, w), lane(q.w, w)}, poses.local[w][joint]);
+}
+
+template <class V>
+Turn<V> read_joint(int joint, const Poses& poses) noexcept {
+  Turn<V> q;
+  for (int w = 0; w < poses.walks; ++w) {
+    const quat& from = poses.local[w][joint];
+    set_lane(static_cast<float>(from.w), w, q.w);
+    set_lane(static_cast<float>(from.x), w, q.x);
+    set_lane(static_cast<float>(from.y), w, q.y);
+    set_lane(static_cast<float>(from.z), w, q.z);
+  }
+  return q;
+}
+
+// Turns the joints from the pelvis to the head about the vertical, where chest and head are ahead:
+// each about its parent's upward axis, which that turn does not change.
+template <class V>
+void turn_ahead(const Tables& tables, const Pelvis<V>& pelvis, const State<V>& state,
+                const Poses& poses) noexcept {
+  const V chest_rad = state.chest_ahead_rad.x, head_rad = state.head_ahead_rad.x;
+  const auto leads = either(chest_rad != V{}, head_rad != V{});
+  if (!any(leads)) return;
+  const V is = chosen<V>(leads, 1.0f, 0.0f);
+  const auto& s = tables.pelvis_standing;
+  const Turn<V> standing{all<V>(s[0]), all<V>(s[1]), all<V>(s[2]), all<V>(s[3])};
+  Vec<V> up = back(pelvis.turn * standing) * Vec<V>{V{}, all<V>(1.0f), V{}};
+  for (const PathJoint& joint : tables.path) {
+    const Turn<V> q = read_joint<V>(joint.joint, poses);
+    const Turn<V> turned =
+        turn_about(up, V(joint.of_chest * chest_rad + joint.of_head * head_rad)) * q;
+    for (int w = 0; w < poses.walks; ++w)
+      if (lane(is, w) != 0.0f) write_joint(turned, joint.joint, w, poses);
+    up = back(q) * up;
+  }
+}
+
+template <class V>
+void write_upper_body(const Tables& tables, const Pelvis<V>& pelvis, const State<V>& state,
+                      const Poses& poses) noexcept {
   constexpr float kSoftElbow = 0.1f;
   const Knots<V> knots = knots_at(state.phase);
   const V swing = arm_swing(tables, state), shown = within(state.posture.x, 0.0f, 1.0f);
@@ -39,7 +79,7 @@ void write_upper_body(const Tables& tables, const State<V>& state, quat* const* 
   for (int side : {0, 1})
     elbow[side] = soft_least(swing, all<V>(tables.most_elbow_swing[side]), all<V>(kSoftElbow));
   const std::size_t count = tables.upper.size();
-  for (int w = 0; w < walks; ++w) {
+  for (int w = 0; w < poses.walks; ++w) {
     const float* row =
         tables.upper_rows.data() + static_cast<int>(lane(knots.first, w)) * count * 4;
     const float k0 = lane(knots.weight[0], w), k1 = lane(knots.weight[1], w),
@@ -61,9 +101,10 @@ void write_upper_body(const Tables& tables, const State<V>& state, quat* const* 
         const Four stand = part<Four>(joint.standing.data());
         q = unit(stand + (q - stand) * shows);
       }
-      store(q, local[w][joint.joint]);
+      store(q, poses.local[w][joint.joint]);
     }
   }
+  turn_ahead(tables, pelvis, state, poses);
 }
 
 }  // namespace

@@ -48,6 +48,8 @@ inline Block<1> taken_over(const WalkState& old, const GaitParams& params) {
   smoothed(gait.posture, to.posture);
   smoothed(old.path.lean_rad, to.lean_rad);
   smoothed(gait.step_time_s, to.step_time_s);
+  smoothed(old.body.chest_ahead_rad, to.chest_ahead_rad);
+  smoothed(old.body.head_ahead_rad, to.head_ahead_rad);
   to.right_swings = swing == kRightSide ? 1.0f : 0.0f;
   to.roll_ticks = static_cast<float>(old.clock.roll_ticks);
   to.flight_ticks = static_cast<float>(old.clock.flight_ticks);

@@ -115,7 +115,8 @@ struct Feet {
 
 template <class V>
 Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
-                  const Stride<V>& stride, const Hips<V>& hips, const State<V>& state) noexcept {
+                  const Stride<V>& stride, const Hips<V>& hips, const Change<V>& change,
+                  const State<V>& state) noexcept {
   Feet<V> feet;
   const V one = all<V>(1.0f), flight = state.flight_ticks;
   {  // The foot that stands: on its heel while it rolls, then on its toe.
@@ -124,7 +125,9 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
     const StrideFoot<V>& table = stride.foot[1];
     const V s = state.tick / (kRollEnd * state.roll_ticks);
     const V off = s < one ? V(state.stand_pitch_rad * value_left(s)) : V{};
-    const V pitch = table.pitch_rad + (time.flies ? V{} : off),
+    // Where the hips lead, its toe is down when the other one lifts off.
+    const V stays = 1.0f - change.led * (time.flies ? V{} : smoother(s));
+    const V pitch = table.pitch_rad * stays + (time.flies ? V{} : off),
             planted = time.flies ? most(pitch, V{}) : least(pitch, V{});
     foot.edge = edge_of(sole, table.twist_rad, table.roll_rad);
     foot.toe_m = sole.line_m;  // flat, from the origin
@@ -231,12 +234,14 @@ void change_feet(const Landing<V>& landing, const Mask<V>& strikes, const Feet<V
   const auto moved = [&](const V& x_m, const V& z_m) {
     return back_turn * Vec<V>{x_m - landing.x_m, V{}, z_m - landing.z_m};
   };
-  const Vec<V> print = moved(V{}, V{}), toe = moved(feet.sole[1].line_m.x, feet.sole[1].line_m.z),
-               pelvis = moved(state.pelvis_x_m, state.pelvis_z_m);
+  const Vec<V> print = moved(V{}, V{}), toe = moved(feet.sole[1].line_m.x, feet.sole[1].line_m.z);
   set(print.x, state.print_x_m), set(print.z, state.print_z_m);
   set(V(-landing.rad), state.print_rad);
   set(toe.x, state.toe_x_m), set(toe.z, state.toe_z_m);
-  set(pelvis.x, state.pelvis_x_m), set(pelvis.z, state.pelvis_z_m);
+  for (int k : {0, 1, 2}) {
+    const Vec<V> pelvis = moved(state.pelvis_x_m[k], state.pelvis_z_m[k]);
+    set(pelvis.x, state.pelvis_x_m[k]), set(pelvis.z, state.pelvis_z_m[k]);
+  }
   set(V(state.heading_rad - landing.rad), state.heading_rad);
   set(V{}, state.landing_x_m), set(V{}, state.landing_z_m), set(V{}, state.landing_rad);
   set(state.next_wider_m, state.wider_m);

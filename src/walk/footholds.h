@@ -42,9 +42,12 @@ V heading_ahead(const Tables& tables, const State<V>& state, const V& n) noexcep
 // Footprints lie on both sides of the path, which in a turn is an arc from the one's direction to
 // the other's: the way between them leads so far round. Turning on the spot they stand wider apart
 // and point ahead of the body.
-inline constexpr float kWayTurns = 0.82f, kFreeze = 0.55f, kInPlace_m = 0.2f, kFootAhead = 0.45f,
-                       kWider_s = 0.045f, kWidest_m = 0.045f, kStance_m = 0.105f,
-                       kLeastWider_m = 0.03f;
+inline constexpr float kWayTurns = 0.82f, kInPlace_m = 0.2f, kFootAhead = 0.45f, kWider_s = 0.045f,
+                       kWidest_m = 0.045f, kStance_m = 0.105f, kLeastWider_m = 0.03f;
+
+// A landing follows what is asked at once until kSettles of the flight, then more and more slowly,
+// and from kFreeze on no more. To stop it at once would be a jerk of the foot that flies.
+inline constexpr float kSettles = 0.25f, kFreeze = 0.6f, kSettling_s = 0.1f;
 
 template <class V>
 Landing<V> plan_landing(const Tables& tables, const Time<V>& time, State<V>& state) noexcept {
@@ -65,8 +68,13 @@ Landing<V> plan_landing(const Tables& tables, const Time<V>& time, State<V>& sta
           lead_m = in_place * tables.rest_lead_m;
   const V ahead_rad = state.turn_goal_rad_s.x * (state.roll_ticks + state.flight_ticks) *
                       tables.tick_s * kFootAhead;
-  const auto open = time.u <= all<V>(kFreeze);
-  const auto keep = [&](const V& now, V& kept) { kept = open ? now : kept; };
+  const V y = (time.u - kSettles) * (1.0f / (kFreeze - kSettles));
+  const auto follows = y <= V{}, open = y < all<V>(1.0f);
+  const float settling = kSettling_s * tables.time_scale / tables.tick_s;
+  const V share = 1.0f / (1.0f + settling * y * y / (1.0f - (open ? y : V{})));
+  const auto keep = [&](const V& now, V& kept) {
+    kept = follows ? now : open ? V(kept + (now - kept) * share) : kept;
+  };
   keep(V(along.sine * length_m + to.cosine * asides_m - stood_m - to.sine * lead_m),
        state.landing_x_m);
   keep(V(along.cosine * length_m - to.sine * asides_m + (1.0f - to.cosine) * lead_m),

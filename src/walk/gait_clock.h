@@ -160,15 +160,19 @@ void begin_flight(const Tables& tables, const Time<V>& time, const Mask<V>& lift
 }
 
 // After the flight, where `strikes`: the other foot's step begins. It makes up for what the steps
-// before were too short or long by rounding.
+// before were too short or long by rounding. Where it is slower than the last one (`led`), hips
+// that still are as fast would have to sink for the foot behind: it leaves the floor sooner.
 template <class V>
-void begin_step(const Tables& tables, const Time<V>& time, const Mask<V>& strikes,
+void begin_step(const Tables& tables, const Time<V>& time, const Mask<V>& strikes, const V& led,
                 State<V>& state) noexcept {
   const float tick_s = tables.tick_s;
   const Stages<V> next = stages_of(tables, state, no(time.right));
   const V short_s = state.late_s + state.step_s - (state.roll_ticks + state.flight_ticks) * tick_s;
   const V late_s = within(short_s, -tick_s, tick_s), step_s = next.roll_s + next.flight_s,
-          roll = ticks_of(V(next.roll_s + late_s), tick_s),
+          own_roll = ticks_of(V(next.roll_s + late_s), tick_s),
+          last_roll = next.roll / most(state.phase_rate, all<V>(1e-4f)),
+          led_roll = most(floored(root(V(own_roll * last_roll))), all<V>(2.0f)),
+          roll = led != V{} ? least(own_roll, led_roll) : own_roll,
           flight = ticks_of(V(step_s + late_s - roll * tick_s), tick_s);
   state.late_s = strikes ? late_s : state.late_s;
   state.step_s = strikes ? step_s : state.step_s;

@@ -44,8 +44,9 @@ struct Hips {
 // another one or the landing has moved, fades until the strike.
 template <class V>
 Hips<V> move_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
-                  const Stride<V>& stride, State<V>& state) noexcept {
+                  const Stride<V>& stride, const Change<V>& change, State<V>& state) noexcept {
   Hips<V> hips;
+  hips.heading = way_of(state.heading_rad);
   hips.behind = footprints_of(tables, time.right, state.ratio_behind);
   hips.ahead = footprints_of(tables, time.right, landing.ratio);
   const V turns = chosen<V>(time.right, 1.0f, 0.0f);
@@ -74,6 +75,26 @@ Hips<V> move_hips(const Tables& tables, const Time<V>& time, const Landing<V>& l
     };
     begin(from_x_m, per_x_m, state.hips_x_m);
     begin(from_z_m, per_z_m, state.hips_z_m);
+    // After a step in which the hips led they go on from where they are.
+    const auto was_led = both(strikes, change.was_led != V{});
+    if (any(was_led)) {
+      V x_m[3], z_m[3];
+      for (int n : {0, 1, 2}) {
+        const V at = n == 0 ? p0 : n == 1 ? p1 : p2, k = all<V>(static_cast<float>(n));
+        const Vec<V> pelvis =
+            hips.heading * read_pelvis(tables, at, state.ratio_behind, state.ratio_behind, V{});
+        const auto goes = [&](const Off<V>& of) { return V(of.x + k * (of.v + 0.5f * k * of.a)); };
+        x_m[n] = goes(change.pelvis_x_m) - pelvis.x - (to.x_m + to.per_cycle_x_m * at);
+        z_m[n] = goes(change.pelvis_z_m) - pelvis.z - (to.z_m + to.per_cycle_z_m * at);
+      }
+      const auto go_on = [&](const V(&m)[3], Off<V>& off) {
+        off.x = was_led ? m[0] : off.x;
+        off.v = was_led ? V(0.5f * (4.0f * m[1] - 3.0f * m[0] - m[2])) : off.v;
+        off.a = was_led ? V(m[0] - 2.0f * m[1] + m[2]) : off.a;
+      };
+      go_on(x_m, state.hips_x_m);
+      go_on(z_m, state.hips_z_m);
+    }
   }
   // Where the path has moved the hips have not.
   const V was_x_m = state.path_x_m + state.per_cycle_x_m * state.phase,
@@ -85,12 +106,199 @@ Hips<V> move_hips(const Tables& tables, const Time<V>& time, const Landing<V>& l
   const V ticks = time.to_strike + 1.0f;
   fade(ticks, state.hips_x_m);
   fade(ticks, state.hips_z_m);
-  hips.heading = way_of(state.heading_rad);
   const Vec<V> off = hips.heading * stride.pelvis_m;
   hips.x_m = x_m + state.hips_x_m.x + off.x;
   hips.z_m = z_m + state.hips_z_m.x + off.z;
-  state.pelvis_x_m = hips.x_m, state.pelvis_z_m = hips.z_m;
   return hips;
+}
+
+// --- A change of pace: the hips lead, the phase follows -------------------------------------------
+
+// Steps whose ratios differ by more are led. What the phase is off the one found fades in kCarry_s.
+inline constexpr float kOtherPace = 0.02f, kCarry_s = 0.15f, kMostBend_m_s2 = 15.0f;
+// The goal's rate and acceleration are read so far around the strike.
+inline constexpr float kAimTicks = 4.0f;
+// How much a phase that is a cycle off the clock counts, against hips that are off their place:
+// metres at the reference leg. It keeps heights in time with the landing.
+inline constexpr float kInTime_m = 1.2f, kLeastWay_m2 = 0.02f, kPhaseStep = 1e-3f;
+inline constexpr float kBeforeStep = 0.1f, kAfterStep = 0.14f;  // phases around the step's own
+inline constexpr float kFastestPhase = 2.5f;                    // of the clock's
+inline constexpr int kFewTries = 2, kPhaseTries = 6;
+
+// Moves the pelvis by one tick to where the tables have it at the coming strike, with their rate
+// and acceleration there.
+template <class V>
+void move_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
+                 const V& strike_phase, const V& strike_rate, const State<V>& state,
+                 Change<V>& change) noexcept {
+  V x_m[3], z_m[3];
+  for (int k : {0, 1, 2}) {
+    const V at = strike_phase + (static_cast<float>(k - 1) * kAimTicks) * strike_rate;
+    const Vec<V> pelvis = landing.way * read_pelvis(tables, at, landing.ratio, landing.ratio, V{});
+    x_m[k] = state.path_x_m + state.per_cycle_x_m * at + pelvis.x;
+    z_m[k] = state.path_z_m + state.per_cycle_z_m * at + pelvis.z;
+  }
+  const V ticks = time.to_strike + 1.0f, left = time.to_strike;
+  const auto led = change.led != V{};
+  const auto move = [&](const V(&m)[3], Off<V>& pelvis) {
+    const V rate = (m[2] - m[0]) * (0.5f / kAimTicks),
+            bend = (m[2] - 2.0f * m[1] + m[0]) * (0.5f / (kAimTicks * kAimTicks));
+    const auto goal = [&](const V& n) {
+      return Off<V>{V(m[1] - n * (rate - 0.5f * n * bend)), V(rate - bend * n), bend};
+    };
+    const Off<V> was = goal(ticks), is = goal(left);
+    Off<V> off{V(pelvis.x - was.x), V(pelvis.v - was.v), V(pelvis.a - was.a)};
+    fade(ticks, off);
+    pelvis.x = led ? V(is.x + off.x) : pelvis.x;
+    pelvis.v = led ? V(is.v + off.v) : pelvis.v;
+    pelvis.a = led ? V(is.a + off.a) : pelvis.a;
+  };
+  move(x_m, change.pelvis_x_m);
+  move(z_m, change.pelvis_z_m);
+}
+
+// The phase at which the tables have the pelvis where it is: by Newton's method, from `phase` on.
+template <class V>
+V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
+                  const Hips<V>& hips, const V& strike_phase, const V& strike_rate,
+                  const Mask<V>& is_new, const State<V>& state, const Change<V>& change,
+                  V& rate) noexcept {
+  const Way<V>& way = landing.way;
+  const auto along = [&](const V& x_m, const V& z_m) {
+    return V(x_m * way.sine + z_m * way.cosine);
+  };
+  const V share = smoother(time.share);
+  const V at_zero = mix(along(V(-hips.behind.stand_m.x), V(-hips.behind.stand_m.z)),
+                        along(state.path_x_m, state.path_z_m), share),
+          per_cycle = mix(along(V{}, hips.behind.stride_m),
+                          along(state.per_cycle_x_m, state.per_cycle_z_m), share);
+  const auto by_tables = [&](const V& p) {
+    return V(at_zero + per_cycle * p +
+             read_pelvis(tables, p, state.ratio_behind, landing.ratio, share).z);
+  };
+  const V wanted = along(change.pelvis_x_m.x, change.pelvis_z_m.x),
+          goes = along(change.pelvis_x_m.v, change.pelvis_z_m.v);
+  const float square = tables.size * tables.size, in_time = kInTime_m * kInTime_m * square,
+              least_m2 = kLeastWay_m2 * square;
+  const V low = time.step_phase - kBeforeStep, high = strike_phase + kAfterStep;
+  V phase = change.phase - change.off_phase.x;
+  phase = phase - floored(V(phase - 0.5f * (low + high) + 0.5f));
+  phase = least(most(phase, low), high);
+  const V last = phase;
+  for (int n = 0; n < (any(is_new) ? kPhaseTries : kFewTries); ++n) {
+    const V here = by_tables(phase),
+            slope = (by_tables(V(phase + kPhaseStep)) - here) * (1.0f / kPhaseStep),
+            weight = 1.0f / (slope * slope + (in_time + least_m2));
+    const V step = ((here - wanted) * slope + in_time * (phase - state.phase)) * weight,
+            next = least(most(V(phase - step), low), high),
+            moves = (goes * slope + in_time * state.phase_rate) * weight;
+    const auto tries = either(is_new, all<V>(static_cast<float>(n)) < all<V>(kFewTries));
+    phase = tries ? next : phase;
+    rate = tries ? moves : rate;
+  }
+  const V fastest = kFastestPhase * strike_rate;
+  return is_new ? phase : least(most(phase, V(last - fastest)), V(last + fastest));
+}
+
+// Where hips lead or have led: their place, and the stride at the phase that goes with it. The foot
+// that flies keeps to the clock. Returns that phase; elsewhere that of the clock.
+template <class V>
+V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
+            const Stride<V>& by_clock, State<V>& state, Change<V>& change, Hips<V>& hips,
+            Stride<V>& stride) noexcept {
+  const auto led = change.led != V{},
+             runs = either(either(led, change.was_led != V{}), change.off_phase.x != V{});
+  stride = by_clock;
+  if (!any(runs)) return state.phase;
+  const auto is_new =
+      both(both(no(time.flies), state.tick == all<V>(1.0f)), either(led, change.was_led != V{}));
+  fade(change.off_ticks, change.off_phase);
+  change.off_ticks = most(V(change.off_ticks - 1.0f), V{});
+  V phase = state.phase, rate = state.phase_rate;
+  if (any(led)) {
+    const Stages<V> next = stages_of(tables, state, no(time.right));
+    const V flight = chosen<V>(time.right, tables.stage_share[3], tables.stage_share[1]),
+            strike_phase = time.stage_end + (time.flies ? V{} : flight),
+            strike_rate = time.flies ? state.end_rate
+                                     : V(0.5f * (flight / state.flight_ticks +
+                                                 next.roll / ticks_of(next.roll_s, tables.tick_s)));
+    move_pelvis(tables, time, landing, strike_phase, strike_rate, state, change);
+    V moves{};
+    const V found = phase_of_pelvis(tables, time, landing, hips, strike_phase, strike_rate, is_new,
+                                    state, change, moves);
+    phase = led ? found : phase;
+    rate = led ? moves : rate;
+  }
+  const V was = change.phase - floored(V(change.phase - phase + 0.5f));
+  change.off_phase.x = is_new ? V(was + change.phase_rate - phase) : change.off_phase.x;
+  change.off_phase.v = is_new ? V(change.phase_rate - rate) : change.off_phase.v;
+  change.off_phase.a = is_new ? V{} : change.off_phase.a;
+  const float carry = kCarry_s * tables.time_scale / tables.tick_s;
+  change.off_ticks = is_new ? floored(all<V>(carry + 0.5f)) : change.off_ticks;
+  phase = phase + change.off_phase.x;
+  const V goes = is_new ? V(rate + change.off_phase.v) : V(phase - was);
+  change.phase = runs ? phase : change.phase;
+  change.phase_rate = runs ? goes : change.phase_rate;
+  phase = runs ? phase : state.phase;
+  const Stride<V> read =
+      read_stride(tables, time, phase, state.ratio_behind, landing.ratio, smoother(time.share));
+  stride = read;
+  stride.heel_behind_m = by_clock.heel_behind_m, stride.heel_ahead_m = by_clock.heel_ahead_m;
+  stride.heel_high_m = by_clock.heel_high_m;
+  // It stood, and will stand, at another phase than it flies at.
+  constexpr float kEdgeGoes = 0.4f;  // of the flight
+  const V goes_over = smoother(V(time.u * (1.0f / kEdgeGoes))) *
+                      (1.0f - smoother(V((time.u - (1.0f - kEdgeGoes)) * (1.0f / kEdgeGoes)))),
+          share = led ? goes_over : all<V>(1.0f);
+  const StrideFoot<V>&flying = by_clock.foot[0], &stood = read.foot[0];
+  StrideFoot<V>& swing = stride.foot[0];
+  swing.pitch_rad = time.flies ? flying.pitch_rad : stood.pitch_rad;
+  swing.twist_rad = time.flies ? mix(stood.twist_rad, flying.twist_rad, share) : stood.twist_rad;
+  swing.roll_rad = time.flies ? mix(stood.roll_rad, flying.roll_rad, share) : stood.roll_rad;
+  const Vec<V> moved = hips.heading * (read.pelvis_m - by_clock.pelvis_m);
+  hips.x_m = led ? change.pelvis_x_m.x : runs ? V(hips.x_m + moved.x) : hips.x_m;
+  hips.z_m = led ? change.pelvis_z_m.x : runs ? V(hips.z_m + moved.z) : hips.z_m;
+  return phase;
+}
+
+template <class V>
+void keep_pelvis(const Hips<V>& hips, State<V>& state) noexcept {
+  for (int k : {2, 1}) {
+    state.pelvis_x_m[k] = state.pelvis_x_m[k - 1];
+    state.pelvis_z_m[k] = state.pelvis_z_m[k - 1];
+  }
+  state.pelvis_x_m[0] = hips.x_m, state.pelvis_z_m[0] = hips.z_m;
+}
+
+// Where a step begins that goes another way than the last one, or follows one that did: it goes on
+// from where the pelvis is, in the new step frame. `phase`: what was shown at the strike.
+template <class V>
+void begin_lead(const Tables& tables, const Mask<V>& strikes, const V& phase, const V& rate,
+                const State<V>& state, Change<V>& change) noexcept {
+  const auto right = state.right_swings == V{};  // it swings in the step that begins
+  const V own_m = chosen<V>(right, tables.leg[1].own_step_m, tables.leg[0].own_step_m),
+          asked_m = by_side<V>(right, state.asked.length_m),
+          last_m = right ? state.length_m[1].x : state.length_m[0].x;
+  const auto leads = size(V((asked_m - last_m) / own_m)) > all<V>(kOtherPace);
+  change.was_led = strikes ? change.led : change.was_led;
+  change.led = strikes ? chosen<V>(leads, 1.0f, 0.0f) : change.led;
+  const auto begins = both(strikes, either(change.led != V{}, change.was_led != V{}));
+  const V m_x = state.pelvis_x_m[0] - state.pelvis_x_m[1],
+          m_z = state.pelvis_z_m[0] - state.pelvis_z_m[1],
+          b_x = state.pelvis_x_m[1] - state.pelvis_x_m[2],
+          b_z = state.pelvis_z_m[1] - state.pelvis_z_m[2];
+  const V bend_x = m_x - b_x, bend_z = m_z - b_z, bend = root(V(bend_x * bend_x + bend_z * bend_z));
+  const float most_bend = kMostBend_m_s2 * tables.tick_s * tables.tick_s;
+  const V within_most = most_bend / most(bend, all<V>(most_bend));
+  const auto begin = [&](const V& place, const V& m, const V& b, const V& bends, Off<V>& pelvis) {
+    pelvis.x = begins ? place : pelvis.x;
+    pelvis.v = begins ? V(1.5f * m - 0.5f * b) : pelvis.v;
+    pelvis.a = begins ? V(bends * within_most) : pelvis.a;
+  };
+  begin(state.pelvis_x_m[0], m_x, b_x, bend_x, change.pelvis_x_m);
+  begin(state.pelvis_z_m[0], m_z, b_z, bend_z, change.pelvis_z_m);
+  change.phase = begins ? phase : change.phase;
+  change.phase_rate = begins ? rate : change.phase_rate;
 }
 
 // The pelvis in the step frame.

@@ -57,8 +57,8 @@ struct State {
   V ratio_behind{}, ratio_ahead{};  // of the last step's stride, and of this one's, over the data's
   // The tables' path of the hips to that landing at phase 0, and its way per cycle, a tick ago.
   V path_x_m{}, path_z_m{}, per_cycle_x_m{}, per_cycle_z_m{};
-  Off<V> hips_x_m, hips_z_m;     // from that path
-  V pelvis_x_m{}, pelvis_z_m{};  // a tick ago
+  Off<V> hips_x_m, hips_z_m;           // from that path
+  V pelvis_x_m[3]{}, pelvis_z_m[3]{};  // in the last tick, and one and two before it
 
   // Swing foot: its last footprint and where its toe stands there.
   V print_x_m{}, print_z_m{}, print_rad{}, toe_x_m{}, toe_z_m{};
@@ -76,8 +76,19 @@ struct State {
   // Turn of the step frame in the world, half of it.
   V frame_sine{}, frame_cosine{};
 };
+// A step whose pace is another one than that of the step before: the hips go to their place at the
+// coming strike along a quintic, and the phase at which the tables are read follows them.
 template <class V>
-inline constexpr int kStateNumbers = sizeof(State<V>) / sizeof(V);
+struct Change {
+  V led{}, was_led{};             // 1 or 0: this step, and the one before it
+  Off<V> pelvis_x_m, pelvis_z_m;  // where the pelvis is, while it leads and a tick after
+  V phase{}, phase_rate{};        // that are shown
+  Off<V> off_phase;               // from the phase found; fades in off_ticks
+  V off_ticks{};
+};
+
+template <class V>
+inline constexpr int kStateNumbers = (sizeof(State<V>) + sizeof(Change<V>)) / sizeof(V);
 static_assert(sizeof(State<float>) <= 512);
 
 // The step frame in the world. Doubles, written at strikes alone.
@@ -90,6 +101,7 @@ struct Origin {
 template <int kWidth>
 struct alignas(64) Block {
   State<Floats<kWidth>> state;
+  Change<Floats<kWidth>> change;
   Origin origin[kWidth];
 };
 

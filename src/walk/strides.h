@@ -2,6 +2,7 @@
 // walks in a register.
 #pragma once
 #include <algorithm>
+#include <cstddef>
 
 #include "walk/footholds.h"
 
@@ -178,6 +179,40 @@ Stride<V> read_stride(const Tables& tables, const Time<V>& time, const V& phase,
   stride.pelvis_high_m = n[34];
   stride.ratio_ahead = ahead;
   return stride;
+}
+
+// The pelvis alone, at any phase.
+template <class V>
+Vec<V> read_pelvis(const Tables& tables, const V& phase, const V& behind, const V& ahead,
+                   const V& change) noexcept {
+  constexpr int kWidth = kLanes<V>, kAt = offsetof(StrideRow, pelvis_m) / sizeof(float);
+  const float last = tables.most_ratio * float(1.0 / kRatioStep);
+  const Knots<V> knots = knots_at(phase), old = ratios_at(behind, last),
+                 next = ratios_at(ahead, last);
+  alignas(64) float row[kWidth][4];
+  for (int w = 0; w < kWidth; ++w) {
+    const int i = static_cast<int>(lane(knots.first, w));
+    const int first[2] = {static_cast<int>(lane(old.first, w)),
+                          static_cast<int>(lane(next.first, w))};
+    const float share = lane(change, w), left = 1.0f - share;
+    float weight[kRatios + 4] = {};  // by ratio + 1
+    for (int k = 0; k < 4; ++k) weight[first[0] + 1 + k] = lane(old.weight[k], w) * left;
+    for (int k = 0; k < 4; ++k) weight[first[1] + 1 + k] += lane(next.weight[k], w) * share;
+    Four sum{};
+    const int begin = std::max(0, std::min(first[0], first[1])),
+              end = std::min(static_cast<int>(last), std::max(first[0], first[1]) + 3);
+    for (int r = begin; r <= end; ++r) {
+      Four here{};
+      for (int k = 0; k < 4; ++k)
+        here += part<Four>(reinterpret_cast<const float*>(&tables.forward[i + k][r]) + kAt) *
+                lane(knots.weight[k], w);
+      sum += here * weight[r + 1];
+    }
+    std::memcpy(row[w], &sum, sizeof sum);
+  }
+  V n[4];
+  to_lanes(&row[0][0], 4, n);
+  return {n[0], n[1], n[2]};
 }
 
 // Where a stride of this ratio goes: its length, and the footprints of swing and stand.

@@ -36,31 +36,38 @@ template <int kWidth>
 void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& poses) noexcept {
   using V = Floats<kWidth>;
   State<V>& state = block.state;
+  Change<V>& change = block.change;
   smooth_asked(tables, state);
   const Time<V> time = advance_clock(tables, state);
   const Landing<V> landing = plan_landing(tables, time, state);
-  const Stride<V> stride = read_stride(tables, time, state.phase, state.ratio_behind, landing.ratio,
-                                       smoother(time.share));
-  const Hips<V> hips = move_hips(tables, time, landing, stride, state);
-  const Feet<V> feet = plan_feet(tables, time, landing, stride, hips, state);
+  const Stride<V> by_clock = read_stride(tables, time, state.phase, state.ratio_behind,
+                                         landing.ratio, smoother(time.share));
+  Hips<V> hips = move_hips(tables, time, landing, by_clock, change, state);
+  Stride<V> stride;
+  const V phase = lead_hips(tables, time, landing, by_clock, state, change, hips, stride);
+  keep_pelvis(hips, state);
+  const Feet<V> feet = plan_feet(tables, time, landing, stride, hips, change, state);
   Pelvis<V> pelvis = pelvis_over(tables, time, hips, stride, state);
   const Vec<V> ankle_m[2] = {ankle_of(feet.foot[0], feet.sole[0]),
                              ankle_of(feet.foot[1], feet.sole[1])};
   sink(tables, time, stride, ankle_m, pelvis);
   Leg<V> legs[2];
   solve_legs(tables, time, stride, feet, pelvis, state, legs);
-  write_upper_body(tables, pelvis, state, poses);
+  write_upper_body(tables, pelvis, phase, state, poses);
   write_legs(tables, time, feet, legs, poses);
   write_root<kWidth>(tables, pelvis, block, poses);
 
   const auto lifts = both(no(time.flies), state.tick >= state.roll_ticks),
              strikes = both(time.flies, state.tick >= state.flight_ticks);
-  if (any(lifts)) lift_off(tables, time, lifts, landing, hips, feet, stride, state);
+  if (any(lifts)) lift_off(tables, time, lifts, landing, hips, feet, by_clock, state);
   keep_swing(feet.foot[0], state);
   if (any(strikes)) {
     move_frame<kWidth>(landing, strikes, block);
-    change_feet(landing, strikes, feet, stride, state);
-    begin_step(tables, time, strikes, state);
+    change_feet(landing, strikes, feet, by_clock, state);
+    const auto keeps = either(change.led != V{}, change.off_phase.x != V{});
+    const V rate = keeps ? change.phase_rate : state.phase_rate;
+    begin_lead(tables, strikes, phase, rate, state, change);
+    begin_step(tables, time, strikes, change.led, state);
   }
   if (any(lifts)) begin_flight(tables, time, lifts, state);
 }

@@ -17,8 +17,8 @@ void advance(const Tables& tables, Block<16>& block, const Poses& poses) noexcep
 template <int kFrom, int kTo>
 void copy_walk(const Block<kFrom>& from, int from_lane, Block<kTo>& to, int to_lane) noexcept {
   for (int n = 0; n < kStateNumbers<float>; ++n)
-    reinterpret_cast<float*>(&to.state)[n * kTo + to_lane] =
-        reinterpret_cast<const float*>(&from.state)[n * kFrom + from_lane];
+    reinterpret_cast<float*>(&to)[n * kTo + to_lane] =
+        reinterpret_cast<const float*>(&from)[n * kFrom + from_lane];
   to.origin[to_lane] = from.origin[from_lane];
 }
 

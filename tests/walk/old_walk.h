@@ -65,7 +65,10 @@ inline Block<1> taken_over(const WalkState& old, const GaitParams& params) {
     const vec3 p = from_world(frame, world_m);
     x_m = static_cast<float>(p.x), z_m = static_cast<float>(p.z);
   };
-  place(old.path.pelvis_m.x, to.pelvis_x_m, to.pelvis_z_m);
+  const vec3 &now = old.path.pelvis_m.x, &last = old.path.last_pelvis_m;
+  place(now, to.pelvis_x_m[0], to.pelvis_z_m[0]);
+  place(last, to.pelvis_x_m[1], to.pelvis_z_m[1]);
+  place(2.0 * last - now, to.pelvis_x_m[2], to.pelvis_z_m[2]);
   place(swings.heel_anchor_m, to.print_x_m, to.print_z_m);
   place(swings.toe_anchor_m, to.toe_x_m, to.toe_z_m);
   to.print_rad = static_cast<float>(swings.lift_yaw_rad - yaw);

@@ -34,6 +34,10 @@ class BothWalks {
     vec3* root = &pose.root_m;
     advance(*tables_, block_, Poses{&local, &root, 1});
   }
+  void steer(double x, double y) {
+    params_ = params_of(x, y);
+    ask(params_, block_.state.asked);
+  }
   const WalkState& old() const { return old_; }
   const Block<1>& block() const { return block_; }
   const Tables& tables() const { return *tables_; }
@@ -112,6 +116,66 @@ INSTANTIATE_TEST_SUITE_P(Straight, Pace,
                          testing::Values(vec2(0.0, 0.3), vec2(0.0, 0.8), vec2(0.0, 1.0)));
 INSTANTIATE_TEST_SUITE_P(Turning, Pace, testing::Values(vec2(-0.3, 0.8), vec2(0.7, 0.7)));
 
+// The greatest second difference of the legs' rotations, degrees a tick^2.
+class Jerks {
+ public:
+  void add(const Pose& pose) {
+    for (int side : {0, 1}) {
+      for (int j = 0; j < 3; ++j) {
+        std::array<quat, 3>& q = last_[side][j];
+        q = {pose.local[adult().leg[side].joint[j].joint], q[0], q[1]};
+        if (ticks_ < 2) continue;
+        const vec3 now = rotation_vector(glm::conjugate(q[1]) * q[0]),
+                   before = rotation_vector(glm::conjugate(q[2]) * q[1]);
+        most_deg = std::max(most_deg, glm::length(now - before) / kDegree);
+      }
+    }
+    ++ticks_;
+  }
+  double most_deg = 0.0;
+
+ private:
+  std::array<std::array<std::array<quat, 3>, 3>, 2> last_;
+  int ticks_ = 0;
+};
+
+// From the one stick to the other, at ten moments of a step: no rougher than the old walk, and hips
+// no lower than in the steady walks.
+class Change : public testing::TestWithParam<std::array<double, 2>> {};
+
+TEST_P(Change, LeadsOverMoreSoftlyThanTheOldWalkDoes) {
+  constexpr double kMostDip_m = 0.01;
+  const auto [from, to] = GetParam();
+  double old_bend = 0.0, bend = 0.0, old_dip_m = 0.0, dip_m = 0.0;
+  for (int wait = 0; wait < kRate; wait += kRate / 10) {
+    BothWalks walks(0.0, from);
+    Jerks old_jerks, jerks;
+    double old_low_m = 9.0, low_m = 9.0, steady_m = 9.0;
+    const int ticks = wait + 6 * kRate;
+    for (int tick = 0; tick < ticks + kRate; ++tick) {
+      if (tick == kRate + wait) walks.steer(0.0, to);
+      walks.step();
+      old_jerks.add(walks.old_pose);
+      jerks.add(walks.pose);
+      if (tick < kRate || tick >= ticks) steady_m = std::min(steady_m, walks.pose.root_m.y);
+      old_low_m = std::min(old_low_m, walks.old_pose.root_m.y);
+      low_m = std::min(low_m, walks.pose.root_m.y);
+    }
+    old_bend = std::max(old_bend, old_jerks.most_deg);
+    bend = std::max(bend, jerks.most_deg);
+    old_dip_m = std::max(old_dip_m, steady_m - old_low_m);
+    dip_m = std::max(dip_m, steady_m - low_m);
+  }
+  std::printf("second differences %.3f, old %.3f deg/tick^2; hips %.1f, old %.1f mm lower\n", bend,
+              old_bend, dip_m * 1e3, old_dip_m * 1e3);
+  EXPECT_LE(bend, old_bend);
+  EXPECT_LE(dip_m, kMostDip_m);
+}
+INSTANTIATE_TEST_SUITE_P(OfPace, Change,
+                         testing::Values(std::array<double, 2>{0.3, 1.0},
+                                         std::array<double, 2>{1.0, 0.3},
+                                         std::array<double, 2>{0.8, 1.0}));
+
 // Walks of different phases, in a block of that width and alone: the same numbers to the bit.
 template <int kWidth>
 void expect_same_bits() {
@@ -124,6 +188,7 @@ void expect_same_bits() {
     for (int tick = 0; tick < 11 * w + 3; ++tick) walks.step();
     alone.push_back(walks.block());
     alone.back().state.asked.length_m[0] += 0.01f * static_cast<float>(w);
+    if (w % 3 == 1) alone.back().state.asked.length_m[1] *= 0.7f;
     copy_walk(alone.back(), 0, block, w);
   }
   std::array<quat*, kWidth> local;
@@ -137,7 +202,7 @@ void expect_same_bits() {
       advance(walks.tables(), alone[w], Poses{&to, &root_m, 1});
       Block<1> lane_of;
       copy_walk(block, w, lane_of, 0);
-      ASSERT_EQ(std::memcmp(&lane_of.state, &alone[w].state, sizeof lane_of.state), 0)
+      ASSERT_EQ(std::memcmp(&lane_of, &alone[w], kStateNumbers<float> * sizeof(float)), 0)
           << "tick " << tick << " walk " << w;
       ASSERT_EQ(one.root_m, pose[w].root_m);
       for (const LegBuild& leg : adult().leg)

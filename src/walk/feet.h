@@ -61,16 +61,21 @@ V lift_of(const Time<V>& time, const State<V>& state) noexcept {
 // until here, and goes between the others.
 inline constexpr float kLiftFade = 0.5f, kLiftGrown = 0.4f, kLiftFalls = 0.5f, kLiftEnds = 0.85f,
                        kPitchFade = 0.2f;
-inline constexpr float kRollEnd = 0.9f;  // of the roll: the toe is down
+inline constexpr float kShortPitchFade = 0.6f, kFirstLift_m = 0.03f,
+                       kLastLift_m = 0.025f;  // of a first and a last one
+// Of the first roll: until then the heel stays down; of the tables' pitch when it lifts off.
+inline constexpr float kHeelStays = 0.25f, kFirstPitch = 0.8f;
+inline constexpr float kHeelRises = 0.5f;  // of the first flight: of the other foot
+inline constexpr float kRollEnd = 0.9f;    // of the roll: the toe is down
 // A flying toe may be that far below where it stands: the tables' own, which only just leave the
 // floor, are let through.
 inline constexpr float kMostSink_m = 0.0015f, kSoftPitch_rad = 0.0069813f, kWiderPitch = 0.25f;
 
 // The tables' place of the swinging heel, from its footprint to the landing.
 template <class V>
-Vec<V> flight_heel(const Time<V>& time, const Landing<V>& landing, const Stride<V>& stride,
-                   const Hips<V>& hips, const V& phase, const V& u,
-                   const State<V>& state) noexcept {
+Vec<V> flight_heel(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
+                   const Stride<V>& stride, const Hips<V>& hips, const V& phase, const V& u,
+                   const Change<V>& change, const State<V>& state) noexcept {
   const Way<V> left = way_of(state.print_rad);
   const V turns = chosen<V>(time.right, 1.0f, 0.0f);
   const auto seen = [&](const Footprints<V>& prints, const Vec<V>& heel_m, const V& turned) {
@@ -83,6 +88,23 @@ Vec<V> flight_heel(const Time<V>& time, const Landing<V>& landing, const Stride<
   const V gone = smoother(u);
   Vec<V> p{mix(V(state.print_x_m + from.x), V(landing.x_m + to.x), gone), V{},
            mix(V(state.print_z_m + from.z), V(landing.z_m + to.z), gone)};
+  const auto closes = change.closing != V{}, is_short = either(change.starting != V{}, closes);
+  if (any(is_short)) {
+    // As far as strides of its own length have it; before it lands it is one of the walk.
+    constexpr float kInPlaceStride_m = 0.02f, kLikeAStep = 0.4f, kWalksFrom = 0.3f;
+    const Vec<V> ahead = seen(hips.own, stride.heel_behind_m, turns);
+    const auto in_place = size(hips.own.stride_m) < all<V>(kInPlaceStride_m);
+    const V far = in_place ? smoother(u)
+                           : V(1.0f + ahead.z / (in_place ? all<V>(1.0f) : hips.own.stride_m)),
+            goes = kLikeAStep * smoother(V((u - kWalksFrom) * (1.0f / (1.0f - kWalksFrom)))),
+            walks = closes ? V{} : goes;
+    const V x = state.print_x_m + (landing.x_m - state.print_x_m) * far +
+                landing.way.cosine * ahead.x,
+            z = state.print_z_m + (landing.z_m - state.print_z_m) * far -
+                landing.way.sine * ahead.x;
+    p.x = is_short ? mix(x, V(landing.x_m + to.x), walks) : p.x;
+    p.z = is_short ? mix(z, V(landing.z_m + to.z), walks) : p.z;
+  }
   // On an arc: neither on its chord, which leads through the standing leg, nor on both directions
   // mixed, which lead far out.
   const V turn = landing.rad - state.print_rad;
@@ -94,7 +116,7 @@ Vec<V> flight_heel(const Time<V>& time, const Landing<V>& landing, const Stride<
                            0.0f, 1.0f);
     const Way<V> middle = way_of(V(state.print_rad + 0.5f * turn));
     const V arc = share * (1.0f - share), mixed = (1.0f - gone) * share + gone * (1.0f - share);
-    const V out = turn * root(square) * 0.5f * (arc - mixed);
+    const V out = turn * root(square) * 0.5f * (is_short ? arc : V(arc - mixed));
     p.x = p.x - middle.cosine * out;
     p.z = p.z + middle.sine * out;
   }
@@ -103,6 +125,10 @@ Vec<V> flight_heel(const Time<V>& time, const Landing<V>& landing, const Stride<
   const V more =
       1.0f + (most(factor, all<V>(1.0f)) - 1.0f) * (1.0f - smooth(kLiftFalls, kLiftEnds, u));
   p.y = stride.heel_high_m * low * mix(all<V>(1.0f), more, smoother(V(u * (1.0f / kLiftGrown))));
+  // Its toe leaves the floor at once.
+  const V left_u = 1.0f - u, square_u = u * left_u;
+  const V high_m = tables.size * 16.0f * chosen<V>(closes, kLastLift_m, kFirstLift_m);
+  p.y = is_short ? V(p.y + high_m * square_u * square_u) : p.y;
   return p;
 }
 
@@ -115,10 +141,12 @@ struct Feet {
 
 template <class V>
 Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
-                  const Stride<V>& stride, const Hips<V>& hips, const Change<V>& change,
-                  const State<V>& state) noexcept {
+                  const Stride<V>& by_clock, const Stride<V>& stride, const Hips<V>& hips,
+                  const Change<V>& change, const State<V>& state) noexcept {
   Feet<V> feet;
   const V one = all<V>(1.0f), flight = state.flight_ticks;
+  const auto starts = change.starting != V{}, closes = change.closing != V{},
+             first_roll = both(starts, no(time.flies));
   {  // The foot that stands: on its heel while it rolls, then on its toe.
     Foot<V>& foot = feet.foot[1];
     const Sole<V>& sole = feet.sole[1] = sole_of<V>(tables, no(time.right));
@@ -127,7 +155,11 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
     const V off = s < one ? V(state.stand_pitch_rad * value_left(s)) : V{};
     // Where the hips lead, its toe is down when the other one lifts off.
     const V stays = 1.0f - change.led * (time.flies ? V{} : smoother(s));
-    const V pitch = table.pitch_rad * stays + (time.flies ? V{} : off),
+    // In a first step it has not landed: its heel rises only while the other foot flies. In a last
+    // one it stays flat.
+    const V rises = starts ? smoother(V(time.u * (1.0f / kHeelRises))) : stays,
+            shows = both(closes, time.flies) ? V{} : rises;
+    const V pitch = table.pitch_rad * shows + (time.flies ? V{} : off),
             planted = time.flies ? most(pitch, V{}) : least(pitch, V{});
     foot.edge = edge_of(sole, table.twist_rad, table.roll_rad);
     foot.toe_m = sole.line_m;  // flat, from the origin
@@ -139,14 +171,18 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
   const StrideFoot<V>& table = stride.foot[0];
   const V u = time.u;
   // What lift-off differed by fades.
-  const V t = state.tick / (kPitchFade * flight);
-  const V off = both(time.flies, t < one)
-                    ? V(state.swing_pitch_rad * value_left(t) +
-                        state.swing_pitch_rate * kPitchFade * flight * slope_left(t))
-                    : V{};
-  const V planned = table.pitch_rad + off;
+  const V fade_ticks = flight * chosen<V>(either(starts, closes), kShortPitchFade, kPitchFade),
+          t = state.tick / fade_ticks;
+  const V off = both(time.flies, t < one) ? V(state.swing_pitch_rad * value_left(t) +
+                                              state.swing_pitch_rate * fade_ticks * slope_left(t))
+                                          : V{};
+  const V lifts =
+      smoother(V((state.tick / state.roll_ticks - kHeelStays) * (1.0f / (1.0f - kHeelStays))));
+  const V planned =
+      first_roll ? V(kFirstPitch * by_clock.foot[0].pitch_rad * lifts) : V(table.pitch_rad + off);
   const Way<V> left = way_of(state.print_rad);
-  Vec<V> p = feet.table_heel_m = flight_heel(time, landing, stride, hips, state.phase, u, state);
+  Vec<V> p = feet.table_heel_m =
+      flight_heel(tables, time, landing, stride, hips, state.phase, u, change, state);
   const V s = u * (1.0f / kLiftFade);
   const auto fading = both(time.flies, s < one);
   const V of_gap = fading ? value_left(s) : V{},
@@ -194,12 +230,13 @@ V slope_of(const V& now, const V& last, const V& before) noexcept {
 template <class V>
 void lift_off(const Tables& tables, const Time<V>& time, const Mask<V>& lifts,
               const Landing<V>& landing, const Hips<V>& hips, const Feet<V>& feet,
-              const Stride<V>& stride, State<V>& state) noexcept {
+              const Stride<V>& stride, const Change<V>& change, State<V>& state) noexcept {
   const V ticks = state.flight_ticks, phase = state.phase + state.phase_rate,
           share = (state.tick + 1.0f) / (state.roll_ticks + ticks);
   const Stride<V> next =
-      read_stride(tables, time, phase, state.ratio_behind, landing.ratio, smoother(share));
-  const Vec<V> ahead = flight_heel(time, landing, next, hips, phase, V(1.0f / ticks), state),
+      read_by_clock(tables, time, landing, phase, share, V(1.0f / ticks), change, state);
+  const Vec<V> ahead = flight_heel(tables, time, landing, next, hips, phase, V(1.0f / ticks),
+                                   change, state),
                &heel = feet.foot[0].heel_m, &table = feet.table_heel_m,
                &last = state.last_heel_m[0], &before = state.last_heel_m[1];
   const auto slope = [&](V Vec<V>::*part) {

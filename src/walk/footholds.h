@@ -50,12 +50,14 @@ inline constexpr float kWayTurns = 0.82f, kInPlace_m = 0.2f, kFootAhead = 0.45f,
 inline constexpr float kSettles = 0.25f, kFreeze = 0.6f, kSettling_s = 0.1f;
 
 template <class V>
-Landing<V> plan_landing(const Tables& tables, const Time<V>& time, State<V>& state) noexcept {
+Landing<V> plan_landing(const Tables& tables, const Time<V>& time, const Change<V>& change,
+                        State<V>& state) noexcept {
+  const auto closes = change.closing != V{};
   const V heading = heading_ahead(tables, state, V(time.to_strike + 1.0f));
   const Way<V> to = way_of(heading), along = way_of(V(kWayTurns * heading));
   const float left_m = tables.leg[0].track_m, right_m = tables.leg[1].track_m, grown = tables.size;
-  const V length_m = time.right ? state.length_m[1].x : state.length_m[0].x,
-          lands_m = chosen<V>(time.right, right_m, left_m),
+  const V steps_m = time.right ? state.length_m[1].x : state.length_m[0].x,
+          length_m = closes ? V{} : steps_m, lands_m = chosen<V>(time.right, right_m, left_m),
           stands_m = chosen<V>(time.right, left_m, right_m),
           outwards = chosen<V>(time.right, -1.0f, 1.0f);
   const V round = size(state.turn_goal_rad_s.x),
@@ -63,8 +65,9 @@ Landing<V> plan_landing(const Tables& tables, const Time<V>& time, State<V>& sta
   const V arc_m = least(V(grown * kWider_s * round), all<V>(grown * kWidest_m)),
           place_m = most(V(grown * kStance_m - size(lands_m)), all<V>(grown * kLeastWider_m)) *
                     least(round, all<V>(1.0f)),
-          wider_m = most(mix(arc_m, place_m, in_place), V{});
-  const V asides_m = lands_m + outwards * wider_m, stood_m = stands_m - outwards * state.wider_m,
+          wider_m = closes ? V{} : most(mix(arc_m, place_m, in_place), V{});
+  const V asides_m = lands_m + outwards * wider_m,
+          stood_m = stands_m - (closes ? V{} : V(outwards * state.wider_m)),
           lead_m = in_place * tables.rest_lead_m;
   const V ahead_rad = state.turn_goal_rad_s.x * (state.roll_ticks + state.flight_ticks) *
                       tables.tick_s * kFootAhead;
@@ -79,14 +82,15 @@ Landing<V> plan_landing(const Tables& tables, const Time<V>& time, State<V>& sta
        state.landing_x_m);
   keep(V(along.cosine * length_m - to.sine * asides_m + (1.0f - to.cosine) * lead_m),
        state.landing_z_m);
-  keep(V(heading + in_place * ahead_rad), state.landing_rad);
+  keep(V(heading + (closes ? V{} : V(in_place * ahead_rad))), state.landing_rad);
   keep(wider_m, state.next_wider_m);
   Landing<V> landing{state.landing_x_m, state.landing_z_m, state.landing_rad,
                      way_of(state.landing_rad)};
   // Along the heading, which may still turn after the place is settled.
   const V step_m = landing.x_m * to.sine + landing.z_m * to.cosine,
           own_m = chosen<V>(time.right, tables.leg[1].own_step_m, tables.leg[0].own_step_m);
-  landing.ratio = size(step_m) / own_m;
+  // A step that closes keeps what is left of the last one.
+  landing.ratio = closes ? state.ratio_behind : V(size(step_m) / own_m);
   return landing;
 }
 

@@ -53,21 +53,33 @@ void lead_turn(const V& ahead_rad, const Filter& filter, Smoothed<V>& value) noe
 }
 
 template <class V>
-void smooth_asked(const Tables& tables, State<V>& state) noexcept {
+void smooth_asked(const Tables& tables, const Change<V>& change, State<V>& state) noexcept {
   constexpr float kGravity_m_s2 = 9.81f, kLeastCycle_s = 0.2f;
+  constexpr float kFirstStep = 0.9f;  // of the length asked for
   constexpr float kChestAhead_s = 0.13f, kHeadAhead_s = 0.30f;
   const Asked<V>& asked = state.asked;
   for (int side : {0, 1}) {
-    follow(asked.length_m[side], tables.step, state.length_m[side]);
+    // The first step goes as far as the push that is still on its way asks.
+    const auto starts = change.starting != V{},
+               steps = both(starts, state.right_swings == all<V>(static_cast<float>(side)));
+    // A walk that is to end takes the running step as it was begun.
+    const V rests = most(change.stands, change.closing),
+            kept_m = rests != V{} ? V{} : state.length_m[side].x,
+            goal_m = asked.walks != V{} ? asked.length_m[side] : kept_m;
+    Smoothed<V> first = state.length_m[side];
+    follow(steps ? V(kFirstStep * goal_m) : goal_m, tables.first_step, first);
+    follow(goal_m, tables.step, state.length_m[side]);
+    state.length_m[side].x = starts ? first.x : state.length_m[side].x;
+    state.length_m[side].v = starts ? first.v : state.length_m[side].v;
     follow(asked.lift[side], tables.step, state.lift[side]);
   }
   const V cycle_s = asked.time_s[0] + asked.time_s[1];
   follow(V(0.5f * cycle_s), tables.step, state.step_time_s);
-  follow(asked.turn_rad_s, tables.turn_goal, state.turn_goal_rad_s);
-  settle(asked.turn_rad_s, state.turn_goal_rad_s);
+  const V turn_rad_s = asked.walks * asked.turn_rad_s;
+  follow(turn_rad_s, tables.turn_goal, state.turn_goal_rad_s);
+  settle(turn_rad_s, state.turn_goal_rad_s);
   follow(state.turn_goal_rad_s.x, tables.turn, state.turn_rad_s);
   settle(state.turn_goal_rad_s.x, state.turn_rad_s);
-  const V turn_rad_s = asked.walks * asked.turn_rad_s;
   lead_turn(V(kChestAhead_s * turn_rad_s), tables.chest, state.chest_ahead_rad);
   lead_turn(V(kHeadAhead_s * turn_rad_s), tables.head, state.head_ahead_rad);
   follow(asked.bounce, tables.bounce, state.bounce);
@@ -122,9 +134,32 @@ Stages<V> stages_of(const Tables& tables, const State<V>& state, const Mask<V>& 
           whole_beats(V(2.0f * swings_s * flies), kLeastFlight)};
 }
 
+// A start: from the stick to the lift-off, and the first flight, in seconds and of a steady one.
+inline constexpr float kFirstRoll_s = 0.25f, kLeastFirstFlight_s = 0.38f,
+                       kMostFirstFlight_s = 0.62f, kFirstFlight = 0.9f;
+
+// The first flight follows the stick until the foot lifts off: a thumb takes some time.
+template <class V>
+void time_first_flight(const Tables& tables, const Mask<V>& where, State<V>& state) noexcept {
+  const float tick_s = tables.tick_s, scale = tables.time_scale;
+  const Stages<V> here = stages_of(tables, state, state.right_swings != V{});
+  const V roll_s = whole_beats(all<V>(kFirstRoll_s * scale), 1.0f), roll = ticks_of(roll_s, tick_s),
+          flight_s = whole_beats(within(V(kFirstFlight * here.flight_s),
+                                        kLeastFirstFlight_s * scale, kMostFirstFlight_s * scale),
+                                 1.0f),
+          step_s = roll_s + flight_s, flight = ticks_of(V(step_s - roll * tick_s), tick_s);
+  state.step_s = where ? step_s : state.step_s;
+  state.roll_ticks = where ? roll : state.roll_ticks;
+  state.flight_ticks = where ? flight : state.flight_ticks;
+  state.end_rate = where ? V(0.5f * (here.roll / roll + here.flight / flight)) : state.end_rate;
+}
+
 // Moves the clock on by one tick. The phase follows a cubic to the end of the stage.
 template <class V>
-Time<V> advance_clock(const Tables& tables, State<V>& state) noexcept {
+Time<V> advance_clock(const Tables& tables, const Change<V>& change, State<V>& state) noexcept {
+  const auto follows = both(change.starting != V{}, state.flies == V{}),
+             runs = change.stands == V{};
+  if (any(follows)) time_first_flight(tables, follows, state);
   Time<V> time;
   time.right = state.right_swings != V{};
   time.flies = state.flies != V{};
@@ -135,9 +170,9 @@ Time<V> advance_clock(const Tables& tables, State<V>& state) noexcept {
   const V ticks = time.flies ? state.flight_ticks : state.roll_ticks, left = ticks - state.tick,
           s = 1.0f / left, way = time.stage_end - state.phase, v0 = state.phase_rate * left,
           v1 = state.end_rate * left, c2 = 3.0f * way - 2.0f * v0 - v1, c3 = v0 + v1 - 2.0f * way;
-  state.phase = state.phase + (v0 + (c2 + c3 * s) * s) * s;
-  state.phase_rate = (v0 + (2.0f * c2 + 3.0f * c3 * s) * s) * s;
-  state.tick = state.tick + 1.0f;
+  state.phase = runs ? V(state.phase + (v0 + (c2 + c3 * s) * s) * s) : state.phase;
+  state.phase_rate = runs ? V((v0 + (2.0f * c2 + 3.0f * c3 * s) * s) * s) : V{};
+  state.tick = runs ? V(state.tick + 1.0f) : V{};
   time.u = time.flies ? V(state.tick / state.flight_ticks) : V{};
   time.to_strike = ticks - state.tick + (time.flies ? V{} : state.flight_ticks);
   time.share = (state.tick + (time.flies ? state.roll_ticks : V{})) /
@@ -159,12 +194,14 @@ void begin_flight(const Tables& tables, const Time<V>& time, const Mask<V>& lift
   state.tick = lifts ? V{} : state.tick;
 }
 
+inline constexpr float kLastFlight_s = 0.40f;
+
 // After the flight, where `strikes`: the other foot's step begins. It makes up for what the steps
 // before were too short or long by rounding. Where it is slower than the last one (`led`), hips
 // that still are as fast would have to sink for the foot behind: it leaves the floor sooner.
 template <class V>
-void begin_step(const Tables& tables, const Time<V>& time, const Mask<V>& strikes, const V& led,
-                State<V>& state) noexcept {
+void begin_step(const Tables& tables, const Time<V>& time, const Mask<V>& strikes,
+                const Change<V>& change, State<V>& state) noexcept {
   const float tick_s = tables.tick_s;
   const Stages<V> next = stages_of(tables, state, no(time.right));
   const V short_s = state.late_s + state.step_s - (state.roll_ticks + state.flight_ticks) * tick_s;
@@ -172,8 +209,12 @@ void begin_step(const Tables& tables, const Time<V>& time, const Mask<V>& strike
           own_roll = ticks_of(V(next.roll_s + late_s), tick_s),
           last_roll = next.roll / most(state.phase_rate, all<V>(1e-4f)),
           led_roll = most(floored(root(V(own_roll * last_roll))), all<V>(2.0f)),
-          roll = led != V{} ? least(own_roll, led_roll) : own_roll,
-          flight = ticks_of(V(step_s + late_s - roll * tick_s), tick_s);
+          roll = change.led != V{} ? least(own_roll, led_roll) : own_roll,
+          rest_flight = ticks_of(V(step_s + late_s - roll * tick_s), tick_s),
+          flight =
+              change.closing != V{}
+                  ? least(rest_flight, ticks_of(all<V>(kLastFlight_s * tables.time_scale), tick_s))
+                  : rest_flight;
   state.late_s = strikes ? late_s : state.late_s;
   state.step_s = strikes ? step_s : state.step_s;
   state.roll_ticks = strikes ? roll : state.roll_ticks;

@@ -38,6 +38,7 @@ struct Hips {
   V x_m{}, z_m{};  // of the pelvis, on the ground
   Way<V> heading;  // of the body
   Footprints<V> behind, ahead;
+  Footprints<V> own;  // in a first step: of the foot that flies
 };
 
 // They follow the stride ahead to the landing. What they are off that path, for the step before was
@@ -49,6 +50,8 @@ Hips<V> move_hips(const Tables& tables, const Time<V>& time, const Landing<V>& l
   hips.heading = way_of(state.heading_rad);
   hips.behind = footprints_of(tables, time.right, state.ratio_behind);
   hips.ahead = footprints_of(tables, time.right, landing.ratio);
+  if (any(either(change.starting != V{}, change.closing != V{})))
+    hips.own = footprints_of(tables, time.right, short_ratio(tables, landing, state));
   const V turns = chosen<V>(time.right, 1.0f, 0.0f);
   const Path<V> to = path_to(landing, hips.ahead, turns);
   const V x_m = to.x_m + to.per_cycle_x_m * state.phase,
@@ -121,6 +124,7 @@ inline constexpr float kAimTicks = 4.0f;
 // How much a phase that is a cycle off the clock counts, against hips that are off their place:
 // metres at the reference leg. It keeps heights in time with the landing.
 inline constexpr float kInTime_m = 1.2f, kLeastWay_m2 = 0.02f, kPhaseStep = 1e-3f;
+inline constexpr float kGoesSomewhere = 0.2f;                   // of the data's stride
 inline constexpr float kBeforeStep = 0.1f, kAfterStep = 0.14f;  // phases around the step's own
 inline constexpr float kFastestPhase = 2.5f;                    // of the clock's
 inline constexpr int kFewTries = 2, kPhaseTries = 6;
@@ -139,7 +143,13 @@ void move_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& la
     z_m[k] = state.path_z_m + state.per_cycle_z_m * at + pelvis.z;
   }
   const V ticks = time.to_strike + 1.0f, left = time.to_strike;
-  const auto led = change.led != V{};
+  const auto led = change.led != V{}, closes = change.closing != V{};
+  // Or, in a last step, to rest between the feet.
+  for (int k : {0, 1, 2}) {
+    x_m[k] =
+        closes ? chosen<V>(time.right, -tables.leg[0].track_m, -tables.leg[1].track_m) : x_m[k];
+    z_m[k] = closes ? all<V>(tables.rest_lead_m) : z_m[k];
+  }
   const auto move = [&](const V(&m)[3], Off<V>& pelvis) {
     const V rate = (m[2] - m[0]) * (0.5f / kAimTicks),
             bend = (m[2] - 2.0f * m[1] + m[0]) * (0.5f / (kAimTicks * kAimTicks));
@@ -167,7 +177,9 @@ V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& l
   const auto along = [&](const V& x_m, const V& z_m) {
     return V(x_m * way.sine + z_m * way.cosine);
   };
-  const V share = smoother(time.share);
+  const V share = change.starting != V{}  ? all<V>(1.0f)
+                  : change.closing != V{} ? V{}
+                                          : smoother(time.share);
   const V at_zero = mix(along(V(-hips.behind.stand_m.x), V(-hips.behind.stand_m.z)),
                         along(state.path_x_m, state.path_z_m), share),
           per_cycle = mix(along(V{}, hips.behind.stride_m),
@@ -178,8 +190,11 @@ V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& l
   };
   const V wanted = along(change.pelvis_x_m.x, change.pelvis_z_m.x),
           goes = along(change.pelvis_x_m.v, change.pelvis_z_m.v);
-  const float square = tables.size * tables.size, in_time = kInTime_m * kInTime_m * square,
+  const float square = tables.size * tables.size, in_time_m2 = kInTime_m * kInTime_m * square,
               least_m2 = kLeastWay_m2 * square;
+  // Of a first step hips that go somewhere tell the phase alone.
+  const V in_time = in_time_m2 * (1.0f - most(change.starting, change.closing) *
+                                             smooth(0.0f, kGoesSomewhere, landing.ratio));
   const V low = time.step_phase - kBeforeStep, high = strike_phase + kAfterStep;
   V phase = change.phase - change.off_phase.x;
   phase = phase - floored(V(phase - 0.5f * (low + high) + 0.5f));
@@ -200,14 +215,35 @@ V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& l
   return is_new ? phase : least(most(phase, V(last - fastest)), V(last + fastest));
 }
 
+// So much of a stride shows.
+template <class V>
+void show(const V& shown, Stride<V>& stride) noexcept {
+  for (StrideFoot<V>& foot : stride.foot) {
+    foot.pitch_rad = shown * foot.pitch_rad;
+    foot.twist_rad = shown * foot.twist_rad;
+    foot.roll_rad = shown * foot.roll_rad;
+  }
+  stride.pelvis_m = stride.pelvis_m * shown;
+  stride.pelvis_tilt_rad = stride.pelvis_tilt_rad * shown;
+  stride.pelvis_yaw_rad = shown * stride.pelvis_yaw_rad;
+  stride.pelvis_low_m = shown * stride.pelvis_low_m;
+  stride.pelvis_high_m = shown * stride.pelvis_high_m;
+  for (auto& leg : stride.leg_rad)
+    for (V& angle_rad : leg) angle_rad = shown * angle_rad;
+}
+
+inline constexpr float kShownAfter = 0.55f;  // of a first step: all of the tables shows
+
 // Where hips lead or have led: their place, and the stride at the phase that goes with it. The foot
 // that flies keeps to the clock. Returns that phase; elsewhere that of the clock.
 template <class V>
 V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
             const Stride<V>& by_clock, State<V>& state, Change<V>& change, Hips<V>& hips,
             Stride<V>& stride) noexcept {
-  const auto led = change.led != V{},
-             runs = either(either(led, change.was_led != V{}), change.off_phase.x != V{});
+  const auto led = change.led != V{}, stands = change.stands != V{},
+             starts = change.starting != V{}, closes = change.closing != V{},
+             runs = either(either(either(led, change.was_led != V{}), change.off_phase.x != V{}),
+                           stands);
   stride = by_clock;
   if (!any(runs)) return state.phase;
   const auto is_new =
@@ -235,20 +271,30 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
   change.off_phase.a = is_new ? V{} : change.off_phase.a;
   const float carry = kCarry_s * tables.time_scale / tables.tick_s;
   change.off_ticks = is_new ? floored(all<V>(carry + 0.5f)) : change.off_ticks;
+  change.shown = runs ? (stands   ? V{}
+                         : starts ? smoother(V(time.share * (1.0f / kShownAfter)))
+                         : closes ? smoother(V(1.0f - time.share))
+                                  : all<V>(1.0f))
+                      : change.shown;
   phase = phase + change.off_phase.x;
   const V goes = is_new ? V(rate + change.off_phase.v) : V(phase - was);
   change.phase = runs ? phase : change.phase;
   change.phase_rate = runs ? goes : change.phase_rate;
   phase = runs ? phase : state.phase;
-  const Stride<V> read =
-      read_stride(tables, time, phase, state.ratio_behind, landing.ratio, smoother(time.share));
+  Stride<V> read = read_stride(tables, time, phase, state.ratio_behind, landing.ratio,
+                               starts   ? all<V>(1.0f)
+                               : closes ? V{}
+                                        : smoother(time.share));
+  if (any(change.shown != all<V>(1.0f))) show(change.shown, read);
   stride = read;
   stride.heel_behind_m = by_clock.heel_behind_m, stride.heel_ahead_m = by_clock.heel_ahead_m;
   stride.heel_high_m = by_clock.heel_high_m;
   // It stood, and will stand, at another phase than it flies at.
   constexpr float kEdgeGoes = 0.4f;  // of the flight
-  const V goes_over = smoother(V(time.u * (1.0f / kEdgeGoes))) *
-                      (1.0f - smoother(V((time.u - (1.0f - kEdgeGoes)) * (1.0f / kEdgeGoes)))),
+  const V goes_over =
+              smoother(V(time.u * (1.0f / kEdgeGoes))) *
+              (1.0f -
+               (closes ? V{} : smoother(V((time.u - (1.0f - kEdgeGoes)) * (1.0f / kEdgeGoes))))),
           share = led ? goes_over : all<V>(1.0f);
   const StrideFoot<V>&flying = by_clock.foot[0], &stood = read.foot[0];
   StrideFoot<V>& swing = stride.foot[0];
@@ -256,8 +302,14 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
   swing.twist_rad = time.flies ? mix(stood.twist_rad, flying.twist_rad, share) : stood.twist_rad;
   swing.roll_rad = time.flies ? mix(stood.roll_rad, flying.roll_rad, share) : stood.roll_rad;
   const Vec<V> moved = hips.heading * (read.pelvis_m - by_clock.pelvis_m);
-  hips.x_m = led ? change.pelvis_x_m.x : runs ? V(hips.x_m + moved.x) : hips.x_m;
-  hips.z_m = led ? change.pelvis_z_m.x : runs ? V(hips.z_m + moved.z) : hips.z_m;
+  hips.x_m = stands ? state.pelvis_x_m[0]
+             : led  ? change.pelvis_x_m.x
+             : runs ? V(hips.x_m + moved.x)
+                    : hips.x_m;
+  hips.z_m = stands ? state.pelvis_z_m[0]
+             : led  ? change.pelvis_z_m.x
+             : runs ? V(hips.z_m + moved.z)
+                    : hips.z_m;
   return phase;
 }
 
@@ -270,19 +322,10 @@ void keep_pelvis(const Hips<V>& hips, State<V>& state) noexcept {
   state.pelvis_x_m[0] = hips.x_m, state.pelvis_z_m[0] = hips.z_m;
 }
 
-// Where a step begins that goes another way than the last one, or follows one that did: it goes on
-// from where the pelvis is, in the new step frame. `phase`: what was shown at the strike.
+// Where the pelvis is, and how it moves there.
 template <class V>
-void begin_lead(const Tables& tables, const Mask<V>& strikes, const V& phase, const V& rate,
-                const State<V>& state, Change<V>& change) noexcept {
-  const auto right = state.right_swings == V{};  // it swings in the step that begins
-  const V own_m = chosen<V>(right, tables.leg[1].own_step_m, tables.leg[0].own_step_m),
-          asked_m = by_side<V>(right, state.asked.length_m),
-          last_m = right ? state.length_m[1].x : state.length_m[0].x;
-  const auto leads = size(V((asked_m - last_m) / own_m)) > all<V>(kOtherPace);
-  change.was_led = strikes ? change.led : change.was_led;
-  change.led = strikes ? chosen<V>(leads, 1.0f, 0.0f) : change.led;
-  const auto begins = both(strikes, either(change.led != V{}, change.was_led != V{}));
+void go_on_from_here(const Tables& tables, const Mask<V>& begins, const State<V>& state,
+                     Change<V>& change) noexcept {
   const V m_x = state.pelvis_x_m[0] - state.pelvis_x_m[1],
           m_z = state.pelvis_z_m[0] - state.pelvis_z_m[1],
           b_x = state.pelvis_x_m[1] - state.pelvis_x_m[2],
@@ -297,6 +340,31 @@ void begin_lead(const Tables& tables, const Mask<V>& strikes, const V& phase, co
   };
   begin(state.pelvis_x_m[0], m_x, b_x, bend_x, change.pelvis_x_m);
   begin(state.pelvis_z_m[0], m_z, b_z, bend_z, change.pelvis_z_m);
+}
+
+// Where a step begins that goes another way than the last one, or follows one that did: it goes on
+// from where the pelvis is, in the new step frame. `phase`: what was shown at the strike.
+template <class V>
+void begin_lead(const Tables& tables, const Mask<V>& strikes, const V& phase, const V& rate,
+                const State<V>& state, Change<V>& change) noexcept {
+  const auto right = state.right_swings == V{};  // it swings in the step that begins
+  const V own_m = chosen<V>(right, tables.leg[1].own_step_m, tables.leg[0].own_step_m),
+          asked_m = by_side<V>(right, state.asked.length_m),
+          smoothed_m = right ? state.length_m[1].x : state.length_m[0].x,
+          last_m = change.starting != V{} ? V(state.ratio_behind * own_m) : smoothed_m;
+  // A walk that is to end does so with the next step: its foot closes beside the other one.
+  const auto rests = both(strikes, change.closing != V{}),
+             closes = both(both(strikes, no(rests)), state.asked.walks == V{});
+  change.stands = rests ? all<V>(1.0f) : change.stands;
+  change.closing = closes ? all<V>(1.0f) : strikes ? V{} : change.closing;
+  const auto changes = size(V((asked_m - last_m) / own_m)) > all<V>(kOtherPace);
+  const auto leads = both(no(rests), either(closes, changes));
+  change.was_led = rests ? V{} : strikes ? change.led : change.was_led;
+  change.off_phase.x = rests ? V{} : change.off_phase.x;
+  change.led = strikes ? chosen<V>(leads, 1.0f, 0.0f) : change.led;
+  change.starting = strikes ? V{} : change.starting;
+  const auto begins = both(strikes, either(change.led != V{}, change.was_led != V{}));
+  go_on_from_here(tables, begins, state, change);
   change.phase = begins ? phase : change.phase;
   change.phase_rate = begins ? rate : change.phase_rate;
 }

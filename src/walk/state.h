@@ -76,14 +76,17 @@ struct State {
   // Turn of the step frame in the world, half of it.
   V frame_sine{}, frame_cosine{};
 };
-// A step whose pace is another one than that of the step before: the hips go to their place at the
-// coming strike along a quintic, and the phase at which the tables are read follows them.
+// A first step, or one whose pace is another one than that of the step before: the hips go to their
+// place at the coming strike along a quintic, and the phase at which the tables are read follows
+// them.
 template <class V>
 struct Change {
-  V led{}, was_led{};             // 1 or 0: this step, and the one before it
-  Off<V> pelvis_x_m, pelvis_z_m;  // where the pelvis is, while it leads and a tick after
-  V phase{}, phase_rate{};        // that are shown
-  Off<V> off_phase;               // from the phase found; fades in off_ticks
+  V stands{}, starting{}, closing{};  // 1 or 0: both feet rest; the first step; the last one
+  V shown = V{} + 1.0f;               // how much of the tables: 0 at rest
+  V led{}, was_led{};                 // 1 or 0: this step, and the one before it
+  Off<V> pelvis_x_m, pelvis_z_m;      // where the pelvis is, while it leads and a tick after
+  V phase{}, phase_rate{};            // that are shown
+  Off<V> off_phase;                   // from the phase found; fades in off_ticks
   V off_ticks{};
 };
 

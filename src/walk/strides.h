@@ -105,6 +105,13 @@ inline void by_foot(const Mask<V>& right, const V& of_left, const V& of_right, V
   stand = right ? of_left : of_right;
 }
 
+// Of strides whose half is the way of the foot that flies.
+template <class V>
+V short_ratio(const Tables& tables, const Landing<V>& landing, const State<V>& state) noexcept {
+  const V x = landing.x_m - state.print_x_m, z = landing.z_m - state.print_z_m;
+  return root(V(x * x + z * z)) * (1.0f / (tables.leg[0].own_step_m + tables.leg[1].own_step_m));
+}
+
 // `change`: from the stride behind, at 0, to the one ahead, at 1.
 template <class V>
 Stride<V> read_stride(const Tables& tables, const Time<V>& time, const V& phase, const V& behind,
@@ -178,6 +185,28 @@ Stride<V> read_stride(const Tables& tables, const Time<V>& time, const V& phase,
   stride.pelvis_low_m = n[33];
   stride.pelvis_high_m = n[34];
   stride.ratio_ahead = ahead;
+  return stride;
+}
+
+// The stride of the foot that flies, at a phase of the clock. In a first
+// and in a last step it flies as in strides of its own length, half of one, and before it lifts off
+// it is read as it will then be; at the end of the last it lands flat.
+template <class V>
+Stride<V> read_by_clock(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
+                        const V& phase, const V& share, const V& u, const Change<V>& change,
+                        const State<V>& state) noexcept {
+  const auto closes = change.closing != V{}, starts = either(change.starting != V{}, closes);
+  if (!any(starts))
+    return read_stride(tables, time, phase, state.ratio_behind, landing.ratio, smoother(share));
+  Stride<V> stride =
+      read_stride(tables, time, both(starts, no(time.flies)) ? most(phase, time.stage_end) : phase,
+                  starts ? short_ratio(tables, landing, state) : state.ratio_behind, landing.ratio,
+                  closes ? V{} : smoother(starts ? u : share));
+  const V flat = closes ? V(1.0f - smoother(u)) : all<V>(1.0f);
+  StrideFoot<V>& flies = stride.foot[0];
+  flies.pitch_rad = flat * flies.pitch_rad;
+  flies.twist_rad = flat * flies.twist_rad, flies.roll_rad = flat * flies.roll_rad;
+  stride.heel_high_m = starts ? stride.heel_behind_m.y : stride.heel_high_m;
   return stride;
 }
 

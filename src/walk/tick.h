@@ -32,34 +32,79 @@ void move_frame(const Landing<Floats<kWidth>>& landing, const Mask<Floats<kWidth
   state.frame_cosine = strikes ? cosine : state.frame_cosine;
 }
 
+// Where one that stands is to walk: the foot on the side of the turn goes first.
+template <int kWidth>
+void begin_walks(const Tables& tables, Block<kWidth>& block) noexcept {
+  using V = Floats<kWidth>;
+  State<V>& state = block.state;
+  Change<V>& change = block.change;
+  const auto begins = both(change.stands != V{}, state.asked.walks != V{});
+  if (!any(begins)) return;
+  const auto right = state.right_swings != V{},
+             other = both(begins, right != (state.asked.turn_rad_s < V{}));
+  if (any(other)) {
+    Landing<V> beside{state.print_x_m, state.print_z_m, state.print_rad, way_of(state.print_rad)};
+    Feet<V> feet;
+    feet.sole[1] = sole_of<V>(tables, no(right));
+    move_frame<kWidth>(beside, other, block);
+    change_feet(beside, other, feet, Stride<V>{}, state);
+    state.right_swings = other ? V(1.0f - state.right_swings) : state.right_swings;
+  }
+  const auto set = [&](const V& to, V& number) { number = begins ? to : number; };
+  const auto first = state.right_swings != V{};
+  const auto& share = tables.stage_share;
+  const V begin = chosen<V>(first, share[0] + share[1], 0.0f),
+          middle = 0.5f * chosen<V>(first, share[2] + share[3], share[0] + share[1]);
+  set(V{}, change.stands), set(all<V>(1.0f), change.starting), set(all<V>(1.0f), change.led);
+  set(V{}, change.was_led), set(V{}, change.off_phase.x), set(V{}, change.off_ticks);
+  // The tables' hips are over the foot that stands in the middle of its support.
+  set(V(begin + middle), change.phase), set(V{}, change.phase_rate);
+  set(begin, state.phase), set(V{}, state.phase_rate), set(V{}, state.strike_rate);
+  set(V{}, state.tick), set(V{}, state.flies), set(V{}, state.late_s);
+  set(V{}, state.ratio_behind), set(V{}, state.stand_pitch_rad);
+  for (Smoothed<V>& length_m : state.length_m) set(V{}, length_m.x), set(V{}, length_m.v);
+  go_on_from_here(tables, begins, state, change);
+}
+
+// Where both feet stand no clock runs, and nothing is left of the last step.
+template <class V>
+void rest(const Change<V>& change, State<V>& state) noexcept {
+  const auto stands = change.stands != V{};
+  const auto set = [&](float to, V& number) { number = stands ? all<V>(to) : number; };
+  set(1.0f, state.roll_ticks), set(1.0f, state.flight_ticks), set(0.0f, state.stand_pitch_rad);
+  set(0.0f, state.ratio_behind), set(0.0f, state.phase), set(0.0f, state.phase_rate);
+  set(0.0f, state.wider_m), set(0.0f, state.next_wider_m);
+}
+
 template <int kWidth>
 void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& poses) noexcept {
   using V = Floats<kWidth>;
   State<V>& state = block.state;
   Change<V>& change = block.change;
-  smooth_asked(tables, state);
-  const Time<V> time = advance_clock(tables, state);
-  const Landing<V> landing = plan_landing(tables, time, state);
-  const Stride<V> by_clock = read_stride(tables, time, state.phase, state.ratio_behind,
-                                         landing.ratio, smoother(time.share));
+  begin_walks(tables, block);
+  smooth_asked(tables, change, state);
+  const Time<V> time = advance_clock(tables, change, state);
+  const Landing<V> landing = plan_landing(tables, time, change, state);
+  const Stride<V> by_clock =
+      read_by_clock(tables, time, landing, state.phase, time.share, time.u, change, state);
   Hips<V> hips = move_hips(tables, time, landing, by_clock, change, state);
   Stride<V> stride;
   const V phase = lead_hips(tables, time, landing, by_clock, state, change, hips, stride);
   keep_pelvis(hips, state);
-  const Feet<V> feet = plan_feet(tables, time, landing, stride, hips, change, state);
+  const Feet<V> feet = plan_feet(tables, time, landing, by_clock, stride, hips, change, state);
   Pelvis<V> pelvis = pelvis_over(tables, time, hips, stride, state);
   const Vec<V> ankle_m[2] = {ankle_of(feet.foot[0], feet.sole[0]),
                              ankle_of(feet.foot[1], feet.sole[1])};
   sink(tables, time, stride, ankle_m, pelvis);
   Leg<V> legs[2];
   solve_legs(tables, time, stride, feet, pelvis, state, legs);
-  write_upper_body(tables, pelvis, phase, state, poses);
+  write_upper_body(tables, pelvis, phase, change.shown, state, poses);
   write_legs(tables, time, feet, legs, poses);
   write_root<kWidth>(tables, pelvis, block, poses);
 
   const auto lifts = both(no(time.flies), state.tick >= state.roll_ticks),
              strikes = both(time.flies, state.tick >= state.flight_ticks);
-  if (any(lifts)) lift_off(tables, time, lifts, landing, hips, feet, by_clock, state);
+  if (any(lifts)) lift_off(tables, time, lifts, landing, hips, feet, by_clock, change, state);
   keep_swing(feet.foot[0], state);
   if (any(strikes)) {
     move_frame<kWidth>(landing, strikes, block);
@@ -67,7 +112,8 @@ void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& pose
     const auto keeps = either(change.led != V{}, change.off_phase.x != V{});
     const V rate = keeps ? change.phase_rate : state.phase_rate;
     begin_lead(tables, strikes, phase, rate, state, change);
-    begin_step(tables, time, strikes, change.led, state);
+    begin_step(tables, time, strikes, change, state);
+    rest(change, state);
   }
   if (any(lifts)) begin_flight(tables, time, lifts, state);
 }

@@ -71,10 +71,10 @@ void turn_ahead(const Tables& tables, const Pelvis<V>& pelvis, const State<V>& s
 
 template <class V>
 void write_upper_body(const Tables& tables, const Pelvis<V>& pelvis, const V& phase,
-                      const State<V>& state, const Poses& poses) noexcept {
+                      const V& presence, const State<V>& state, const Poses& poses) noexcept {
   constexpr float kSoftElbow = 0.1f;
   const Knots<V> knots = knots_at(phase);
-  const V swing = arm_swing(tables, state), shown = within(state.posture.x, 0.0f, 1.0f);
+  const V swing = arm_swing(tables, state), shown = presence * within(state.posture.x, 0.0f, 1.0f);
   V elbow[2];
   for (int side : {0, 1})
     elbow[side] = soft_least(swing, all<V>(tables.most_elbow_swing[side]), all<V>(kSoftElbow));

@@ -13,6 +13,9 @@ void advance(const Tables& tables, Block<4>& block, const Poses& poses) noexcept
 void advance(const Tables& tables, Block<8>& block, const Poses& poses) noexcept;
 void advance(const Tables& tables, Block<16>& block, const Poses& poses) noexcept;
 
+// Sets up a walk that stands there, and faces that way.
+void stand(const Tables& tables, const Origin& place, Block<1>& block) noexcept;
+
 // Copies a walk from a lane of one block to a lane of another.
 template <int kFrom, int kTo>
 void copy_walk(const Block<kFrom>& from, int from_lane, Block<kTo>& to, int to_lane) noexcept {

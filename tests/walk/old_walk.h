@@ -11,6 +11,7 @@ inline bool has_just_struck(const WalkState& old) {
 
 inline void ask(const GaitParams& params, Asked<float>& asked) {
   asked.walks = params.walking ? 1.0f : 0.0f;
+  if (!params.walking) return;  // a walk that is to end keeps its times
   for (int side : {0, 1}) {
     asked.length_m[side] = static_cast<float>(params.stride[side].length_m);
     asked.time_s[side] = static_cast<float>(params.stride[side].time_s);

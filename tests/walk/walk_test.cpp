@@ -176,6 +176,114 @@ INSTANTIATE_TEST_SUITE_P(OfPace, Change,
                                          std::array<double, 2>{1.0, 0.3},
                                          std::array<double, 2>{0.8, 1.0}));
 
+// From a stand to a walk and back again, beside the old walk.
+struct Journey {
+  double bend_deg = 0.0, old_bend_deg = 0.0;  // greatest second differences of the legs
+  double dip_m = 0.0, back_m = 0.0;  // hips below the steady walk's lowest; on their way back
+  double forwards_m_s2 = 0.0, old_forwards_m_s2 = 0.0;
+  double stop_s = 0.0;
+  double slid_m = 0.0, deep_m = 0.0;  // planted points in a tick; heels and toes below the floor
+};
+Journey go(double x, double y, int stop_after) {
+  constexpr int kStand = 30, kStop = 2 * kRate;
+  const auto tables = tables_of(adult(), kDt);
+  Pose old_pose, pose;
+  WalkState old = standing(adult(), vec3(0.0), old_pose);
+  pose = old_pose;
+  Block<1> block;
+  stand(*tables, Origin{}, block);
+  quat* local = pose.local.data();
+  vec3* root = &pose.root_m;
+  Jerks old_jerks, jerks;
+  Journey journey;
+  double low_m = 9.0, steady_m = 9.0;
+  std::array<double, 9> z{}, old_z{};
+  vec3 was;
+  int was_side = -1, was_end = -1;
+  for (int tick = 0; tick < kStand + stop_after + kStop; ++tick) {
+    GaitParams params;
+    if (tick >= kStand && tick < kStand + stop_after) params = params_of(x, y);
+    ask(params, block.state.asked);
+    const Side stands = block.state.right_swings != 0.0f ? kLeftSide : kRightSide;
+    const int end = block.state.flies != 0.0f ? 1 : 0;  // its heel or its toe
+    gaitpad::advance(adult(), params, IkMode::robust, kDt, old, old_pose);
+    advance(*tables, block, Poses{&local, &root, 1});
+    if (tick < 20) continue;
+    old_jerks.add(old_pose);
+    jerks.add(pose);
+    for (int i = 8; i > 0; --i) z[i] = z[i - 1], old_z[i] = old_z[i - 1];
+    z[0] = pose.root_m.z, old_z[0] = old_pose.root_m.z;
+    if (tick > 30) {
+      const double per_s2 = kRate * kRate / 16.0;
+      journey.forwards_m_s2 =
+          std::max(journey.forwards_m_s2, std::abs(z[0] - 2.0 * z[4] + z[8]) * per_s2);
+      journey.old_forwards_m_s2 = std::max(journey.old_forwards_m_s2,
+                                           std::abs(old_z[0] - 2.0 * old_z[4] + old_z[8]) * per_s2);
+      if (x == 0.0) journey.back_m = std::max(journey.back_m, z[1] - z[0]);
+    }
+    for (const Side side : {kLeftSide, kRightSide}) {
+      const LegModel& leg = adult().leg[side].model;
+      for (int e : {0, 1}) {
+        const vec3 place =
+            point_of(pose, leg.joints.ankle,
+                     glm::conjugate(leg.standing[2]) * (e == 0 ? leg.heel_m : leg.toe_m));
+        const double rest_m = e == 0 ? 0.0 : leg.toe_rest_m;
+        journey.deep_m = std::max(journey.deep_m, rest_m - place.y);
+        if (side != stands || e != end) continue;
+        if (side == was_side && e == was_end)
+          journey.slid_m = std::max(journey.slid_m, glm::distance(place, was));
+        was = place, was_side = side, was_end = e;
+      }
+    }
+    low_m = std::min(low_m, pose.root_m.y);
+    if (block.change.stands != 0.0f && tick > kStand + stop_after && journey.stop_s == 0.0)
+      journey.stop_s = (tick - kStand - stop_after) * kDt;
+  }
+  BothWalks walks(x, y);
+  for (int tick = 0; tick < kRate; ++tick) {
+    walks.step();
+    steady_m = std::min(steady_m, walks.pose.root_m.y);
+  }
+  journey.bend_deg = jerks.most_deg, journey.old_bend_deg = old_jerks.most_deg;
+  journey.dip_m = steady_m - low_m;
+  return journey;
+}
+
+class Start : public testing::TestWithParam<vec2> {};
+
+TEST_P(Start, LeavesTheStandAndComesBackToItSoftly) {
+  constexpr double kMostBend_deg = 1.2, kMostDip_m = 0.01, kMostBack_m = 1e-4, kSlowestStop_s = 1.5,
+                   kMostSlid_m = 1e-4, kDeepest_m = 0.01;
+  Journey most;
+  double quickest_s = 9.0;
+  for (int stop_after = 2 * kRate; stop_after < 3 * kRate; stop_after += kRate / 5) {
+    const Journey journey = go(GetParam().x, GetParam().y, stop_after);
+    EXPECT_GT(journey.stop_s, 0.0);
+    quickest_s = std::min(quickest_s, journey.stop_s);
+    for (const auto part : {&Journey::bend_deg, &Journey::old_bend_deg, &Journey::dip_m,
+                            &Journey::back_m, &Journey::forwards_m_s2, &Journey::old_forwards_m_s2,
+                            &Journey::stop_s, &Journey::slid_m, &Journey::deep_m})
+      most.*part = std::max(most.*part, journey.*part);
+  }
+  std::printf(
+      "second differences %.3f, old %.3f deg/tick^2; hips %.1f mm lower, forwards %.1f, old %.1f "
+      "m/s^2, back %.4f mm a tick; stands after %.2f to %.2f s; planted points move %.4f mm a "
+      "tick; "
+      "%.1f mm below the floor\n",
+      most.bend_deg, most.old_bend_deg, most.dip_m * 1e3, most.forwards_m_s2,
+      most.old_forwards_m_s2, most.back_m * 1e3, quickest_s, most.stop_s, most.slid_m * 1e3,
+      most.deep_m * 1e3);
+  EXPECT_LE(most.bend_deg, kMostBend_deg);
+  EXPECT_LE(most.dip_m, kMostDip_m);
+  EXPECT_LE(most.back_m, kMostBack_m);
+  EXPECT_LE(most.stop_s, kSlowestStop_s);
+  EXPECT_LE(most.slid_m, kMostSlid_m);
+  EXPECT_LE(most.deep_m, kDeepest_m);
+}
+INSTANTIATE_TEST_SUITE_P(AndStop, Start,
+                         testing::Values(vec2(0.0, 0.3), vec2(0.0, 0.8), vec2(0.0, 1.0),
+                                         vec2(-0.3, 0.8), vec2(0.7, 0.7)));
+
 // Walks of different phases, in a block of that width and alone: the same numbers to the bit.
 template <int kWidth>
 void expect_same_bits() {
@@ -189,12 +297,17 @@ void expect_same_bits() {
     alone.push_back(walks.block());
     alone.back().state.asked.length_m[0] += 0.01f * static_cast<float>(w);
     if (w % 3 == 1) alone.back().state.asked.length_m[1] *= 0.7f;
+    if (w % 4 == 2) alone.back().state.asked.walks = 0.0f;
     copy_walk(alone.back(), 0, block, w);
   }
   std::array<quat*, kWidth> local;
   std::array<vec3*, kWidth> root;
   for (int w = 0; w < kWidth; ++w) local[w] = pose[w].local.data(), root[w] = &pose[w].root_m;
   for (int tick = 0; tick < 600; ++tick) {
+    if (tick == 400) {  // those that have stopped start again
+      block.state.asked.walks = all<Floats<kWidth>>(1.0f);
+      for (Block<1>& one_walk : alone) one_walk.state.asked.walks = 1.0f;
+    }
     advance(walks.tables(), block, Poses{local.data(), root.data(), kWidth});
     for (int w = 0; w < kWidth; ++w) {
       quat* to = one.local.data();

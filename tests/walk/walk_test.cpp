@@ -181,9 +181,17 @@ struct Journey {
   double bend_deg = 0.0, old_bend_deg = 0.0;  // greatest second differences of the legs
   double dip_m = 0.0, back_m = 0.0;  // hips below the steady walk's lowest; on their way back
   double forwards_m_s2 = 0.0, old_forwards_m_s2 = 0.0;
-  double stop_s = 0.0;
+  double stop_s = 0.0, turned_rad = 0.0, old_turned_rad = 0.0;
   double slid_m = 0.0, deep_m = 0.0;  // planted points in a tick; heels and toes below the floor
 };
+// `y` = 0: turns in place by `x` rad/s.
+GaitParams params_of_journey(double x, double y) {
+  GaitParams params = params_of(x, y > 0.0 ? y : 0.5);
+  if (y > 0.0) return params;
+  for (StrideParams& stride : params.stride) stride.length_m = 0.0;
+  params.turn_rate_rad_s = x;
+  return params;
+}
 Journey go(double x, double y, int stop_after) {
   constexpr int kStand = 30, kStop = 2 * kRate;
   const auto tables = tables_of(adult(), kDt);
@@ -196,13 +204,13 @@ Journey go(double x, double y, int stop_after) {
   vec3* root = &pose.root_m;
   Jerks old_jerks, jerks;
   Journey journey;
-  double low_m = 9.0, steady_m = 9.0;
+  double low_m = 9.0, steady_m = 9.0, old_low_m = 9.0;
   std::array<double, 9> z{}, old_z{};
   vec3 was;
   int was_side = -1, was_end = -1;
   for (int tick = 0; tick < kStand + stop_after + kStop; ++tick) {
     GaitParams params;
-    if (tick >= kStand && tick < kStand + stop_after) params = params_of(x, y);
+    if (tick >= kStand && tick < kStand + stop_after) params = params_of_journey(x, y);
     ask(params, block.state.asked);
     const Side stands = block.state.right_swings != 0.0f ? kLeftSide : kRightSide;
     const int end = block.state.flies != 0.0f ? 1 : 0;  // its heel or its toe
@@ -236,13 +244,20 @@ Journey go(double x, double y, int stop_after) {
       }
     }
     low_m = std::min(low_m, pose.root_m.y);
+    old_low_m = std::min(old_low_m, old_pose.root_m.y);
     if (block.change.stands != 0.0f && tick > kStand + stop_after && journey.stop_s == 0.0)
       journey.stop_s = (tick - kStand - stop_after) * kDt;
   }
-  BothWalks walks(x, y);
-  for (int tick = 0; tick < kRate; ++tick) {
-    walks.step();
-    steady_m = std::min(steady_m, walks.pose.root_m.y);
+  journey.turned_rad = block.origin[0].heading_rad + static_cast<double>(block.state.heading_rad);
+  journey.old_turned_rad = old.path.heading_rad;
+  if (y > 0.0) {
+    BothWalks walks(x, y);
+    for (int tick = 0; tick < kRate; ++tick) {
+      walks.step();
+      steady_m = std::min(steady_m, walks.pose.root_m.y);
+    }
+  } else {
+    steady_m = old_low_m;
   }
   journey.bend_deg = jerks.most_deg, journey.old_bend_deg = old_jerks.most_deg;
   journey.dip_m = steady_m - low_m;
@@ -259,6 +274,9 @@ TEST_P(Start, LeavesTheStandAndComesBackToItSoftly) {
   for (int stop_after = 2 * kRate; stop_after < 3 * kRate; stop_after += kRate / 5) {
     const Journey journey = go(GetParam().x, GetParam().y, stop_after);
     EXPECT_GT(journey.stop_s, 0.0);
+    if (GetParam().y == 0.0) {
+      EXPECT_NEAR(journey.turned_rad, journey.old_turned_rad, 0.01);
+    }
     quickest_s = std::min(quickest_s, journey.stop_s);
     for (const auto part : {&Journey::bend_deg, &Journey::old_bend_deg, &Journey::dip_m,
                             &Journey::back_m, &Journey::forwards_m_s2, &Journey::old_forwards_m_s2,
@@ -282,7 +300,8 @@ TEST_P(Start, LeavesTheStandAndComesBackToItSoftly) {
 }
 INSTANTIATE_TEST_SUITE_P(AndStop, Start,
                          testing::Values(vec2(0.0, 0.3), vec2(0.0, 0.8), vec2(0.0, 1.0),
-                                         vec2(-0.3, 0.8), vec2(0.7, 0.7)));
+                                         vec2(-0.3, 0.8), vec2(0.7, 0.7), vec2(0.9, 0.1),
+                                         vec2(-0.9, 0.0), vec2(0.5, 0.0)));
 
 // Walks of different phases, in a block of that width and alone: the same numbers to the bit.
 template <int kWidth>

@@ -88,6 +88,7 @@ struct Change {
   V phase{}, phase_rate{};            // that are shown
   Off<V> off_phase;                   // from the phase found; fades in off_ticks
   V off_ticks{};
+  V asked_ticks{};  // how long one that stands has been asked to walk
 };
 
 template <class V>

@@ -32,14 +32,32 @@ void move_frame(const Landing<Floats<kWidth>>& landing, const Mask<Floats<kWidth
   state.frame_cosine = strikes ? cosine : state.frame_cosine;
 }
 
+// A stand that is asked for very little waits whether it is meant: a stick that is touched in
+// passing would else cost two slow steps.
+template <class V>
+Mask<V> is_meant(const Tables& tables, const State<V>& state, const Change<V>& change) noexcept {
+  constexpr float kHesitation_s = 0.2f;  // for next to nothing; less for more, none from
+  constexpr float kSureRatio = 0.3f, kSureTurn_rad_s = 0.15f;  // this stride or turn on
+  const V ratio = most(V(state.asked.length_m[0] * (1.0f / tables.leg[0].own_step_m)),
+                       V(state.asked.length_m[1] * (1.0f / tables.leg[1].own_step_m))),
+          sure = most(V(ratio * (1.0f / kSureRatio)),
+                      V(size(state.asked.turn_rad_s) * (1.0f / kSureTurn_rad_s)));
+  return change.asked_ticks * tables.tick_s >=
+         kHesitation_s * tables.time_scale * (1.0f - least(sure, all<V>(1.0f)));
+}
+
 // Where one that stands is to walk: the foot on the side of the turn goes first.
 template <int kWidth>
 void begin_walks(const Tables& tables, Block<kWidth>& block) noexcept {
   using V = Floats<kWidth>;
   State<V>& state = block.state;
   Change<V>& change = block.change;
-  const auto begins = both(change.stands != V{}, state.asked.walks != V{});
+  const auto asked = both(change.stands != V{}, state.asked.walks != V{});
+  if (!any(either(asked, change.asked_ticks != V{}))) return;
+  change.asked_ticks = asked ? V(change.asked_ticks + 1.0f) : V{};
+  const auto begins = both(asked, is_meant(tables, state, change));
   if (!any(begins)) return;
+  change.asked_ticks = begins ? V{} : change.asked_ticks;
   const auto right = state.right_swings != V{},
              other = both(begins, right != (state.asked.turn_rad_s < V{}));
   if (any(other)) {

@@ -303,6 +303,26 @@ INSTANTIATE_TEST_SUITE_P(AndStop, Start,
                                          vec2(-0.3, 0.8), vec2(0.7, 0.7), vec2(0.9, 0.1),
                                          vec2(-0.9, 0.0), vec2(0.5, 0.0)));
 
+TEST(Stand, WaitsWhetherAFaintPushIsMeantAsLongAsTheOldWalkDoes) {
+  const auto tables = tables_of(adult(), kDt);
+  for (const double faint : {0.1, 0.3, 1.0}) {
+    GaitParams params = params_of(0.0, 0.3);
+    for (StrideParams& stride : params.stride) stride.length_m *= faint;
+    Pose old_pose, pose;
+    WalkState old = standing(adult(), vec3(0.0), old_pose);
+    Block<1> block;
+    stand(*tables, Origin{}, block);
+    ask(params, block.state.asked);
+    quat* local = pose.local.data();
+    vec3* root = &pose.root_m;
+    for (int tick = 0; tick < kRate / 2; ++tick) {
+      gaitpad::advance(adult(), params, IkMode::robust, kDt, old, old_pose);
+      advance(*tables, block, Poses{&local, &root, 1});
+      ASSERT_EQ(block.change.stands == 0.0f, old.clock.started) << faint << " tick " << tick;
+    }
+  }
+}
+
 // Walks of different phases, in a block of that width and alone: the same numbers to the bit.
 template <int kWidth>
 void expect_same_bits() {

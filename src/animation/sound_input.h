@@ -4,11 +4,11 @@
 
 namespace gaitpad {
 
-// Whether all numbers are finite and within their ranges (control/params_range.h). What the walk
-// was asked for in the last tick is.
 // a == b, and fast where not a bit differs, as most often.
 bool is_same(const UpperBodyParams& a, const UpperBodyParams& b) noexcept;
 
+// Whether all numbers are finite and within their ranges (control/params_range.h), or those of the
+// last tick, which were.
 bool is_sound(const GaitParams& params, const WalkState& state) noexcept;
 inline bool is_sound_tick(double dt_s) noexcept {
   return dt_s >= kLeastTick_s && dt_s <= kMostTick_s;

@@ -50,7 +50,7 @@ struct SimulationConfig {
   std::vector<std::string> remarks;  // what a user should know of the files that it was read from
 };
 
-// `SimulationConfig: rate_hz is 0, outside [20, 1000]`. Calls the check of all that it holds.
+// `SimulationConfig: rate_hz is 0, outside [10, 10000]`. Calls the check of all that it holds.
 std::optional<Error> check(const SimulationConfig& config);
 
 // Configurations for devices that are not known yet: set_pad() fills them in.

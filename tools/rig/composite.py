@@ -3,6 +3,7 @@
 A configfs gadget with one FunctionFS function on dummy_udc.INDEX, as pad_usb.c makes it for pads of one interface. Each
 interface has an IN endpoint that stays silent; those of class 3 have a descriptor: keyboard, mouse or game pad.
 """
+import glob
 import os
 import pathlib
 import struct
@@ -79,12 +80,14 @@ class Composite(Nodes):
 
     def __exit__(self, *_):
         (_GADGET / "UDC").write_text("\n")
-        wait_for(lambda: not self.usb_path, 10, "the unplugging")
-        subprocess.run(["umount", "-l", _MOUNT], check=True)
-        (_GADGET / "configs/c.1/it").unlink()
-        for folder in ("configs/c.1", "functions/ffs.composite", ""):
-            (_GADGET / folder).rmdir()
-        _drivers_of_models(on=True)
+        try:
+            wait_for(lambda: not self.usb_path, 10, "the unplugging")
+        finally:  # a device that stays would take the port from every later test
+            subprocess.run(["umount", "-l", _MOUNT], check=True)
+            (_GADGET / "configs/c.1/it").unlink()
+            for folder in ("configs/c.1", "functions/ffs.composite", ""):
+                (_GADGET / folder).rmdir()
+            _drivers_of_models(on=True)
 
     def _answer(self):
         """Answers requests for report descriptors; stalls all others."""
@@ -107,8 +110,8 @@ class Composite(Nodes):
     @property
     def usb_path(self):
         """Its folder in /sys, once it has interfaces."""
-        found = [path.parent for path in pathlib.Path(self.sysfs).glob("usb*/*-1/*-1:1.0")]
-        return found[0] if found else None
+        found = glob.glob(self.sysfs + "/usb*/*-1/*-1:1.0")  # pathlib's raises when a folder goes while it looks
+        return pathlib.Path(found[0]).parent if found else None
 
     def interface_of(self, node):
         """Class, subclass and protocol of the interface that the node belongs to."""

@@ -1,6 +1,6 @@
-// Which joints of a skeleton are legs, spine, neck, head and arms. Joints are found by their names
-// where the names say it, else by the skeleton's shape. Whoever solves, retargets or draws a limb
-// asks here, so all of them mean the same joints.
+// Finds the legs, spine, neck, head and arms of a skeleton: by joint names if they are known ones,
+// else by the skeleton's shape. Solving, retargeting and drawing use these functions, so all of
+// them mean the same joints.
 //
 // The functions run when a motion or a character is loaded; they allocate.
 #pragma once
@@ -16,7 +16,8 @@
 
 namespace gaitpad {
 
-// What the name of one joint says. A joint is named after the part that it turns or stands at.
+// The side and the body part that a joint's name states. A joint is named after the part that it
+// turns or stands at.
 enum class NamedSide { none, left, right };
 enum class NamedPart {
   none,
@@ -45,9 +46,9 @@ struct LegNames {
 };
 
 // Finds both legs (indexed by Side). `motion` may still be in file units and may have any axis up.
-// Names come first. Where they fail, the legs are the two lowest chains that hang on one joint in
-// the motion's middle frame, tried with y up, then with z up. Left and right follow the names, else
-// the geometry: toes point forward. Errors do not name the file: `no two legs ...`.
+// If the names do not tell them, the legs are the two lowest chains that hang on one joint in the
+// motion's middle frame, tried with y up, then with z up. Left and right follow the names, else the
+// geometry: toes point forward. Errors do not name the file: `no two legs ...`.
 Result<std::array<LegJoints, 2>> find_legs(const Motion& motion,
                                            const std::array<LegNames, 2>& given = {});
 
@@ -63,11 +64,11 @@ struct ArmChain {
   int collar = -1;  // the lowest collar bone above the shoulder, -1: none
   int shoulder = -1, elbow = -1;
   int wrist = -1;     // an End Site where the skeleton has no hand
-  int hand_end = -1;  // the farthest joint below the wrist, not of the thumb; -1: none
+  int hand_end = -1;  // the farthest joint below the wrist, the thumb left out; -1: none
   bool is_found() const noexcept { return shoulder >= 0; }
 };
 
-// What a skeleton lacks is empty or -1.
+// The joints above the legs. A part that the skeleton lacks is empty or -1.
 struct UpperBodyJoints {
   std::vector<int> spine;  // from above the pelvis up to the joint that carries arms and neck
   std::vector<int> neck;   // from above that joint to below the head
@@ -76,8 +77,9 @@ struct UpperBodyJoints {
   std::array<ArmChain, 2> arm;  // indexed by Side
 };
 
-// Finds what is above the legs. `position_m`: world positions of all joints in some pose, which has
-// to be upright along +y if the names say nothing. Never fails: an odd skeleton has no arms.
+// Finds the joints above the legs. `position_m`: world positions of all joints in some pose, which
+// has to be upright along +y if the names tell nothing. Never fails: in an unusual skeleton no arms
+// are found.
 UpperBodyJoints find_upper_body(const Skeleton& skeleton, const std::array<LegJoints, 2>& legs,
                                 int pelvis, std::span<const vec3> position_m);
 

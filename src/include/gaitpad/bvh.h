@@ -1,5 +1,5 @@
-// BVH files: read as they stand, and written from poses. gaitpad/motion_file.h makes a read file a
-// motion in metres; here nothing is interpreted.
+// Reads BVH files as they stand, and writes poses as BVH files. gaitpad/motion_file.h converts what
+// was read into a motion in metres.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -26,7 +26,7 @@ enum class BvhChannel : std::uint8_t {
 inline constexpr bool is_rotation(BvhChannel c) noexcept { return c >= BvhChannel::x_rotation; }
 
 struct BvhJoint {
-  // Of an End Site its parent's name and "_End", then "_End2" and so on for further ones.
+  // An End Site has its parent's name and "_End", further ones of the parent "_End2" and so on.
   std::string name;
   int parent = -1;   // index; -1: the root
   vec3 offset{0.0};  // from the parent, file units
@@ -45,8 +45,8 @@ struct Bvh {
   std::vector<double> values;  // frames x channels; file units and degrees
 };
 
-// Parses a text. Taken are any order and number of channels of a joint, CRLF, tabs, trailing blanks
-// and a last line without its end; every frame stands on a line of its own. Counts in the text are
+// Parses a text. Accepts any order and number of channels of a joint, CRLF, tabs, trailing blanks
+// and a last line without its end; every frame needs a line of its own. Counts in the text are
 // checked before memory is allocated for them. Errors read `NAME:LINE: cause`.
 Result<Bvh> parse_bvh(std::string_view text, const std::string& name);
 // The same for a file.
@@ -70,9 +70,9 @@ struct BvhLayout {
 };
 
 // Writes poses as a BVH file. The root has OFFSET 0 0 0 and six channels, every other joint three
-// rotations. Of the angles that give the same rotation those nearest to the frame before are
-// written, so that no channel jumps. Every pose is written at once; finish() fills in the number of
-// frames, so `out` must be able to seek.
+// rotations. If several sets of angles give a rotation, the nearest to the frame before is written,
+// so that no channel jumps. Every pose is written at once; finish() fills in the number of frames,
+// so `out` must be able to seek.
 class BvhWriter {
  public:
   // `out` and `skeleton` must live until finish().

@@ -1,5 +1,6 @@
-// From raw stick axes to a calibrated position: centre and range of each axis, then dead zones and
-// a response curve of each stick. Also the calibration files (TOML, grammar in config/README.md).
+// Converts raw stick axes to a calibrated position: centre and range of each axis, then dead zones
+// and a response curve of each stick. Also the calibration files (TOML, grammar in
+// config/README.md).
 //
 //   gaitpad::Calibration calibration;              // of an unknown stick, or from a file
 //   gaitpad::Stick stick = stick_position(calibration, pad);  // pad: from decode()
@@ -33,8 +34,8 @@ enum class ZoneShape : std::uint8_t {
   axial,   // each axis by itself
   both,    // radial, then a narrower zone on the sideways axis: one can walk straight ahead
 };
-// How the raw axes lie under the thumb: the raw direction that grows when the stick goes right, and
-// the one that grows when it goes forward. One is an x, the other a y.
+// How the raw axes lie under the thumb: which raw direction grows when the stick goes right, and
+// which one when it goes forward. One is an x, the other a y.
 enum class RawDirection : std::uint8_t { plus_x, minus_x, plus_y, minus_y };
 constexpr bool is_along_x(RawDirection d) noexcept {
   return d == RawDirection::plus_x || d == RawDirection::minus_x;
@@ -93,9 +94,10 @@ double trigger_position(const TriggerCalibration& calibration, double raw) noexc
 //   const Stick stick = stick_position(calibration, filter.filtered(calibration, state));
 class JumpFilter {
  public:
-  void take(const PadState& state) noexcept;  // as the newest report has it
-  // No report came for kSettled_s, or twice as long as between the last two: the newest position
-  // holds. A pad that reports changes only would be behind for as long as nothing changes.
+  void take(const PadState& state) noexcept;  // adds the newest report's positions
+  // Call it when no report came for kSettled_s, or for twice the time between the last two: the
+  // newest position then counts at once. Otherwise a pad that reports only changes would lag one
+  // report behind while it rests.
   void settle() noexcept { last_[0] = last_[1] = last_[2]; }
   // The state with the medians in place of the sticks that the calibration filters; the others stay
   // bit by bit.
@@ -107,24 +109,24 @@ class JumpFilter {
   bool is_begun_ = false;
 };
 
-// The same calibration without negative zeros: the only numbers that calibration_text() does not
-// keep bit by bit. A canonical calibration is what a recording of it reads back.
+// The same calibration without negative zeros, the only numbers that calibration_text() does not
+// keep bit by bit. A calibration that was read back from a recording is canonical.
 Calibration canonical(const Calibration& calibration) noexcept;
 
 // ---- Calibration files
 
-// Which devices a file is for, as `054c:09cc`, `054c:*` or `*:*`.
+// The devices that a file is for, as `054c:09cc`, `054c:*` or `*:*`.
 struct DevicePattern {
   int vendor = -1, product = -1;  // -1: any
   bool operator==(const DevicePattern&) const = default;
 };
-// What tells one device from another when a calibration is looked for.
+// The facts by which calibration files tell devices apart.
 struct DeviceIdentity {
   std::uint16_t vendor = 0, product = 0;
   std::string unique_id, port;  // as DeviceInfo::unique_id and physical_path
-  std::string driver;           // empty, as in a foreign recording: hidraw
+  std::string driver;           // empty (foreign recordings): hidraw
 };
-// What was measured when the file was made, to compare it with a later day; changes no output. Raw,
+// Measurements made along with the file, to compare with a later day; they change no output. Raw,
 // in the stick's frame; none: not known.
 struct StickMeasured {
   std::optional<double> sigma, hysteresis, drift_per_s, circularity_error;  // the last in percent
@@ -139,7 +141,7 @@ struct CalibrationFile {
   std::string mapping;                 // a line of SDL's controller data base, or empty
   Calibration calibration;
   std::array<std::optional<StickMeasured>, 2> measured;  // left, right
-  std::optional<TurnRates> gyro_bias_rad_s;  // what the gyroscope shows while the pad lies still
+  std::optional<TurnRates> gyro_bias_rad_s;              // its rates while the pad lies still
   bool operator==(const CalibrationFile&) const = default;
 };
 

@@ -1,5 +1,5 @@
-// From a gait cycle to the family of clean strides that a walk reads. This is done when a motion is
-// loaded, and takes some tenths of a second.
+// Computes the family of clean strides that a walk reads from a gait cycle. This runs when a motion
+// is loaded, and takes some tenths of a second.
 //
 //   auto cycle = gaitpad::with_clean_strides(gaitpad::procedural_gait());
 //   if (!cycle) return std::puts(cycle.error().message.c_str());

@@ -18,7 +18,7 @@
 
 namespace gaitpad {
 
-// Reads a style. A value that the file leaves out is that of the plain style.
+// Reads a style. Values that the file leaves out are the plain style's.
 Result<Style> load_style(const std::string& path);
 // The text of a file from which load_style() reads the same values; never empty.
 std::string style_text(const Style& style);
@@ -35,11 +35,11 @@ Result<Terrain> parsed_terrain(std::string_view text, const std::string& path);
 // neither variable is an absolute path. The folder need not exist.
 std::string user_config_folder();
 
-// Those that exist of the folders laid out like this repository's config/, the most important one
-// first: $GAITPAD_CONFIG, ../share/gaitpad and ../config beside the program's folder, `built_in`
-// (empty: none), the user's. Of files with the same name the first folder's counts, so a user's
-// file never hides a bundled one. Calibrations and pad files in the user's folder are found in
-// other ways.
+// The folders of configuration that exist, laid out like this repository's config/, the most
+// important one first: $GAITPAD_CONFIG, ../share/gaitpad and ../config beside the program's folder,
+// `built_in` (empty: none), the user's. Of files with the same name the first folder's counts, so a
+// user's file never hides a bundled one. Calibrations and pad files in the user's folder are found
+// by other functions.
 std::vector<std::string> config_folders(const std::string& built_in);
 
 // The path that a user's FILE|NAME means: itself if it has a slash or ends in .toml, else
@@ -56,8 +56,8 @@ std::vector<std::string> config_files(const std::vector<std::string>& folders,
 // The name by which a file is called: without its folder and without .toml.
 std::string config_name(const std::string& path);
 
-// What a file of configuration or a recording says that it is: the first sentence of the comment
-// that it begins with, without what stands in brackets; empty if there is none.
+// A configuration file or recording in one sentence: the first sentence of the comment that it
+// begins with, without brackets and their content; empty if there is none.
 std::string config_summary(const std::string& path);
 
 // Saves a style of the user's own as styles/NAME.toml in user_config_folder() and returns the path.

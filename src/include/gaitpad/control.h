@@ -1,6 +1,6 @@
-// Stick and stylization state to gait parameters (Meredith & Maddock 2005, section 3.1). All
-// functions are stateless, allocate nothing and may be called in every tick; the walk smooths what
-// changes between ticks.
+// Converts the stick and the stylization state to gait parameters (Meredith & Maddock 2005, section
+// 3.1). All functions are stateless, allocate nothing and may be called in every tick; the walk
+// smooths what changes between ticks.
 //
 //   const gaitpad::GaitLimits limits = gaitpad::gait_limits(model);  // of gaitpad/walk_model.h
 //   const gaitpad::GaitParams params = gaitpad::gait_params(stick, style, limits);
@@ -25,25 +25,26 @@ inline constexpr double kWalkRatio_m_min = 0.0058;  // metres per step a minute
 inline constexpr double kMaxStepTime_s = 1.1;       // slower walks shorten the step instead
 inline constexpr double kTurnInPlaceStepTime_s = 0.48;
 inline constexpr double kMaxTurnRate_rad_s = 1.0;
-// On the spot a turn is quicker by this factor, from this forward deflection on it is not.
+// A turn on the spot is faster by kQuickerInPlace; the factor falls to 1 at the forward deflection
+// kNotInPlace.
 inline constexpr double kQuickerInPlace = 1.65, kNotInPlace = 0.15;
-// Walking backwards: the share of the forward speed, and the factor on the length that a forward
-// step has at the same speed.
+// Walking backwards: speed as a share of the forward speed, and step length as a share of that of a
+// forward step at the same speed.
 inline constexpr double kBackwardShare = 0.45;
 inline constexpr double kBackwardStep = 0.8;
-// Backward deflection counts only beyond this share of the sideways one, which is 10 degrees behind
-// the side: a thumb that turns on the spot must not step back and forth.
+// Backward deflection counts only beyond this share of the sideways deflection (10 degrees behind
+// the side), so that a thumb that turns on the spot does not cause steps back and forth.
 inline constexpr double kBackwardSector = 0.176;
-inline constexpr double kFullFatigueLeaves = 0.4;  // of maximum speed and of maximum stride
+inline constexpr double kFullFatigueLeaves = 0.4;  // share of maximum speed and stride at fatigue 1
 
-// What a character does at full deflection.
+// The gait of a character at full deflection.
 struct GaitLimits {
   double max_speed_m_s = kMaxSpeed_m_s;
   double max_step_m = std::sqrt(60.0 * kWalkRatio_m_min * kMaxSpeed_m_s);  // mean of both feet
   std::array<double, 2> step_share{1.0, 1.0};  // by Side: of a foot's step over the mean of both
   double max_step_time_s = kMaxStepTime_s;     // straight ahead
-  // At the greatest turn rate, less of it in proportion more: the foot of a slower step would land
-  // beside the hips.
+  // At the greatest turn rate; at the share s of that rate it is divided by s. In a turn the foot
+  // of a slower step would land beside the hips.
   double max_turning_step_time_s = kMaxStepTime_s;
   double turn_step_time_s = kTurnInPlaceStepTime_s;  // of a turn in place and of a closing step
   double max_turn_rate_rad_s = kMaxTurnRate_rad_s;   // equal for all, so walkers stay side by side
@@ -62,27 +63,29 @@ struct OwnGait {
   std::array<double, 2> step_m{1.0, 1.0};  // by Side
   double step_time_s = 0.5;                // half a cycle
 };
-// The limits of a walk with this gait: at `stick` the parameters are exactly those, at others speed
-// goes with the stick and the step with its root, so the walk's own walk ratio stays constant. A
-// slow walk is slow at every stick: its longest step lasts as many times longer than the adult's as
-// its own step. How fast it turns, and its steps while it turns, are the adult's.
+// The limits of a walk with this gait. At the deflection own.stick the parameters are exactly that
+// gait; elsewhere speed is proportional to the deflection and step length to its square root, so
+// the walk ratio stays constant. A slow walk is slow at every deflection: its longest step time is
+// the adult's times the ratio of its own step time to the adult's. Turn rate and step times in
+// turns are the adult's.
 GaitLimits gait_limits(double leg_length_m, const OwnGait& own) noexcept;
 
 // The share of maximum speed and maximum stride that fatigue (0 .. 1) leaves.
 double vigour(double fatigue) noexcept;
 
 // The parameters that a stick and a style ask for. Only stick.left is read. Forward deflection
-// walks, backward deflection walks backwards, sideways deflection turns, alone on the spot.
+// walks, backward deflection walks backwards, sideways deflection turns; without any other
+// deflection it turns on the spot.
 GaitParams gait_params(const Stick& stick, const StyleValues& style,
                        const GaitLimits& limits) noexcept;
 
-// What a deflection means: how far ahead and how quickly round, as in a car; or the direction in
-// which to go, seen along `camera_rad` (a heading, 0 along +z, to the left positive).
+// The meaning of a deflection. steers: forward speed and turn rate, as in a car. points: the
+// direction to walk in, seen along `camera_rad` (a heading, 0 along +z, positive to the left).
 enum class StickMeans : std::uint8_t { steers, points };
 
-// The stick that steers a walker with this heading to where `stick` points: as far as it is pushed
-// and in that direction, at once within 60 degrees of the heading, beyond that with slower steps,
-// and from 90 degrees on by a turn on the spot. Only stick.left is read and written.
+// The stick that turns a walker with this heading into the direction in which `stick` points. The
+// forward deflection is the push times cos^2 of the angle still to turn (0 beyond 90 degrees: a
+// turn on the spot), the turn rate 3/s times that angle. Only stick.left is read and written.
 Stick pointed_stick(const Stick& stick, double heading_rad, double camera_rad,
                     const GaitLimits& limits) noexcept;
 
@@ -113,8 +116,8 @@ double value_of(GaitKey key, const GaitParams& params) noexcept;
 struct GaitRange {
   double min, max;
 };
-// The values that have an effect on a character with these limits: as far as its stick, or a style,
-// goes.
+// The range of values that have an effect on a character with these limits: what its stick or a
+// style can ask for.
 GaitRange range_of(GaitKey key, const GaitLimits& limits) noexcept;
 
 // Plain, trivially copyable. Arrays are indexed by GaitKey.

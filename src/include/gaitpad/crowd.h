@@ -24,19 +24,19 @@ struct CrowdMember {
 
 class Crowd {
  public:
-  Crowd() = default;  // nobody
+  Crowd() = default;  // an empty crowd
   // The same, or `members[3].model is null`.
   static Result<Crowd> create(std::span<const CrowdMember> members, IkMode mode = IkMode::robust);
-  // Everybody stands.
+  // All members stand.
   explicit Crowd(std::span<const CrowdMember> members, IkMode mode = IkMode::robust);
 
   int size() const noexcept { return static_cast<int>(states_.size()); }
-  // What each of them is to do in the next ticks, by member; at first to stand.
+  // The parameters of each member in the next ticks; at first all stand.
   std::span<GaitParams> params() noexcept { return params_; }
-  // Moves everybody on by one tick of `dt_s` seconds, a constant of the run. No heap, lock or
+  // Advances all members by one tick of `dt_s` seconds, a constant of the run. No heap, lock or
   // clock.
   void advance(double dt_s) noexcept;
-  // The same in blocks, each once a tick, in any order and on any threads.
+  // advance() in blocks: each block once a tick, in any order and on any threads.
   int blocks() const noexcept;
   void advance_block(int number, double dt_s) noexcept;
 
@@ -58,14 +58,15 @@ class Crowd {
   void store_pose(int member, const Pose& pose) noexcept;
 
   IkMode mode_ = IkMode::robust;
-  std::vector<int> order_;  // in which members are advanced: those of a model together
+  std::vector<int> order_;  // members in the order in which they are advanced: grouped by model
   std::vector<int> block_begin_{
-      0};  // in `order_`, and its end: the members of a block share a model
+      0};  // index of each block's first entry in `order_`, then the end; a block has one model
   std::vector<std::shared_ptr<const WalkModel>> models_;
   std::vector<GaitParams> params_;
   std::vector<WalkState> states_;
   std::vector<vec3> roots_m_;
-  std::vector<std::size_t> first_joint_{0};  // in `local_`, by member, and the end
+  std::vector<std::size_t> first_joint_{0};  // index of each member's first joint in `local_`, then
+                                             // the end
   std::vector<quat> local_;
 };
 

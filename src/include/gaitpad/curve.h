@@ -73,7 +73,7 @@ void approach(T& x, T& v, const T& goal_x, const T& goal_v, const R& remaining_s
 }
 
 // A difference that fades away along a cubic: `value` and `slope` at 0, both 0 from `duration` on.
-// Like what follows it may stand for several walkers side by side (V as in gaitpad/math.h).
+// It and the types below may hold values of several walkers side by side (V as in gaitpad/math.h).
 template <class V>
 struct FadeOf {
   V value{}, slope{};  // slope per unit of the argument
@@ -110,7 +110,8 @@ struct SmoothFade {
   }
 };
 
-// How a Damped value follows its goal: the same for all values of one time constant and tick.
+// The coefficients of a Damped filter, computed once for all values with the same time constant and
+// tick.
 struct Damping {
   double pull, keep, dt_s;
   Damping(double time_constant_s, double tick_s) noexcept : dt_s(tick_s) {
@@ -128,7 +129,7 @@ struct Damped {
   V v{};
   void advance(const V& goal, const Damping& damping) noexcept {
     v = (v + (goal - x) * damping.pull) * damping.keep;
-    // Numbers that are almost 0 are slow to compute with.
+    // Flush denormals, which are slow to compute with.
     v = ((v < 1e-100) & (v > -1e-100)) ? V{} : v;
     x = x + v * damping.dt_s;
   }
@@ -137,8 +138,8 @@ struct Damped {
   }
 };
 
-// max(x, 0), min(a, b) and max(a, b) with their corner rounded by a parabola over |x| < width. What
-// does not change from walker to walker may be a double.
+// max(x, 0), min(a, b) and max(a, b) with their corner rounded by a parabola over |x| < width.
+// Arguments that are equal for all walkers may be doubles.
 template <class V, class W>
 V soft_positive(const V& x, const W& width) noexcept {
   const V rounded = (x + width) * (x + width) / (4.0 * width);

@@ -1,5 +1,5 @@
-// From the bytes of a report to the state of the pad. pad_layout() works out once, at set-up, which
-// field of which report is which control; decode() then reads a report without heap or locks.
+// Decodes the bytes of a report into the state of the pad. pad_layout() works out once, at set-up,
+// which field of which report is which control; decode() then reads a report without heap or locks.
 //
 //   gaitpad::DeviceInfo device;
 //   device.descriptor = ...;                            // the HID report descriptor
@@ -9,7 +9,7 @@
 //
 // How controls are found: fields of the first game-pad, joystick or multi-axis collection with X
 // and Y are bound by their usages and neighbours; a [[pad]] entry of config/pads (pad_overrides.h)
-// or a line of SDL's data base (DeviceInfo::mapping) replaces what usages do not tell.
+// or a line of SDL's data base (DeviceInfo::mapping) adds what usages do not tell.
 #pragma once
 #include <cstdint>
 #include <string>

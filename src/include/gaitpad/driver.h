@@ -2,12 +2,12 @@
 // such a device. An open device delivers its reports as bytes and never interprets them. If its
 // source has no report descriptor, the driver builds one that states the layout of its reports.
 //
-// Threads  `find` is called by one thread (the finder's), `open` by a thread for each pad: of one
-//          pad never twice at once, of several at any time. It may take time: two seconds to start
-//          a pad, three more until the kernel's driver has started it, five for a request that the
-//          pad does not answer. An open Device belongs to the I/O thread, which makes all further
-//          calls; another thread may destroy it. A driver never calls back from a thread of its
-//          own; a thread that only talks to the pad is allowed (hidraw).
+// Threads  `find` is called by one thread (the finder's), `open` by a thread for each pad: never
+//          twice at once for one pad, at any time for several. It may take long: two seconds to
+//          start a pad, three more until the kernel's driver has started it, five for a request
+//          that the pad does not answer. An open Device belongs to the I/O thread, which makes all
+//          further calls; another thread may destroy it. A driver never calls back from a thread
+//          of its own; a thread that only talks to the pad is allowed (hidraw).
 // Blocking No call of Device waits for a report: the I/O thread sleeps in poll() over the
 //          `poll_fds` of all devices. A few calls take as long as the system takes: clearing a
 //          stalled endpoint (usb), a joystick that SDL has just found (sdl), closing.
@@ -65,8 +65,8 @@ class Device {
   virtual ~Device() = default;
 
   virtual const DeviceInfo& info() const noexcept = 0;
-  // What to wait for. When one of them is ready, call `read` until it returns `nothing`. They may
-  // change after a read.
+  // The file descriptors to poll. When one of them is ready, call `read` until it returns
+  // `nothing`. They may change after a read.
   virtual std::span<const pollfd> poll_fds() const noexcept = 0;
   virtual Status read(Report& report) noexcept = 0;
   // From now on `read` gives every packet as the source gives it, also those that are no input. For
@@ -81,7 +81,7 @@ class Device {
   // Reports known to be lost or refused since the device was opened (SYN_DROPPED, overruns, a wrong
   // checksum, a stalled endpoint).
   virtual std::int64_t lost() const noexcept { return 0; }
-  // What a user should know although the pad works: one sentence each, returned once.
+  // Remarks for the user about a pad that works: one sentence each, returned once.
   virtual std::vector<std::string> take_remarks() { return {}; }
 };
 

@@ -29,7 +29,7 @@ struct Swing {
 // no swing and the last pose is the first one again, the clip is taken as a loop.
 std::vector<Swing> swings(const Motion& motion, Side side);
 
-// The most typical one of these: nearest to the foot's median duration and length. None where there
+// The typical one of these swings: nearest to the foot's median duration and length. None if there
 // is no swing.
 std::optional<Swing> robust_flight(const Motion& motion, Side side);
 

@@ -1,10 +1,9 @@
 // The crowd of a session: characters that walk behind the first one, in a formation, each with its
 // own build and style.
 //
-// They follow the first character: its speed and turn rate are theirs, in their own steps, so the
-// formation stays together. Who has which build and style, and where each stands, follows from the
-// member's number alone. Commands for styles and gait, zones of the terrain and fatigue act on the
-// session's walkers, not on them.
+// They walk at the first character's speed and turn rate, in steps of their own, so the formation
+// stays together. A member's number alone decides its build, its style and its place. Commands for
+// styles and gait, zones of the terrain and fatigue act on the session's walkers, not on them.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -21,11 +20,11 @@ namespace gaitpad {
 
 class Workers;
 
-// A member takes about 6 KB, and a replay keeps the beginning beside the present: so many take 1.2
-// GB.
+// A member takes about 6 KB, twice in a replay, which keeps the beginning beside the present: 1.2
+// GB for the largest crowd.
 inline constexpr int kMaxFollowers = 100'000;
-// Viewers get the poses of so many, those nearest to the first character. A picture of more would
-// take longer than a fifth of a second without a graphics card.
+// Viewers get the poses of at most this many members, those nearest to the first character. A
+// picture of more would take longer than a fifth of a second without a graphics card.
 inline constexpr int kMaxShownFollowers = 2000;
 inline constexpr int kFollowerBuilds = 16;
 
@@ -42,14 +41,14 @@ struct FollowerPoses {
 
 class Followers {
  public:
-  Followers() = default;  // nobody
+  Followers() = default;  // an empty crowd
   struct Options {
     int count = 0;
     IkMode ik = IkMode::robust;
     int threads = 1;
-    int shown = kMaxShownFollowers;  // so many have poses in shown()
+    int shown = kMaxShownFollowers;  // the number of members that have poses in shown()
     vec3 first_m{0.0};               // where the first character stands at first, facing +z
-    vec3 middle_m{0.0};              // the middle of the characters that they stand behind
+    vec3 middle_m{0.0};              // the middle between the characters that they stand behind
   };
   // `builds`: at least one.
   Followers(const Options& options, const std::vector<std::shared_ptr<const WalkModel>>& builds,
@@ -63,13 +62,13 @@ class Followers {
   }
   const vec3& start_m(int member) const noexcept { return start_m_[member]; }
 
-  // Moves everybody on by one tick, after the first character has made it.
+  // Advances all members by one tick; to be called after the first character's tick.
   void advance(const GaitParams& first, const WalkState& first_state, double dt_s) noexcept;
-  // Everybody back to where it stands at first.
+  // Puts all members back to where they stood at first.
   void restart() noexcept;
-  // Of the first Options::shown.
+  // The poses of the first Options::shown members.
   const FollowerPoses& shown() const noexcept { return shown_; }
-  std::size_t bytes() const noexcept;  // what a copy takes, about
+  std::size_t bytes() const noexcept;  // size of a copy, about
 
  private:
   struct Kind {  // a build in a style

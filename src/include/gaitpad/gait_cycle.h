@@ -63,9 +63,9 @@ struct GaitCycle {
 
   double duration_s = 0.0;  // of the stride in the source
   double stride_m = 0.0;    // travel in it
-  // Where the stride stands in the source: from `first_frame` on, `frames` long, both between
-  // frames where need be; phase 0 is somewhere in it. Frames count from 0 in the file, of which
-  // loading drops none.
+  // The stride's place in the source: from `first_frame` on, `frames` long; neither needs to be a
+  // whole number, and phase 0 is somewhere in it. Frames count from 0 in the file, of which loading
+  // drops none.
   double first_frame = 0.0, frames = 0.0;
   double turn_rad = 0.0;  // change of heading in it, + left; the cycle itself is straight
   // By Side, measured on the heels while the feet stand flat: from the other foot's heel along the
@@ -85,9 +85,9 @@ struct GaitCycle {
   std::vector<quat> local;
   std::vector<quat> standing_local;  // joints: local rotations of the standing pose
 
-  Pace pace = Pace::own;  // of the motion
+  Pace pace = Pace::own;  // as the motion's
 
-  // What a walk reads (gaitpad/stride_family.h); with_clean_strides() fills it.
+  // The tables that a walk reads (gaitpad/stride_family.h); with_clean_strides() fills them.
   std::shared_ptr<const StrideFamily> strides;
 };
 
@@ -98,9 +98,9 @@ std::optional<Error> check(const GaitCycle& cycle);
 // of one joint after the other.
 struct PoseRows {
   int joint_count = 0;     // of the skeleton
-  std::vector<int> joint;  // what the columns are of
+  std::vector<int> joint;  // the joints of the columns, four columns each
   std::vector<int> still;  // further joints, whose rotation is always the identity
-  int stride = 0;          // columns, a multiple of eight: what is left over turns nothing
+  int stride = 0;          // columns, a multiple of eight; columns beyond the joints' are padding
   std::vector<double> value;
   std::vector<double> standing;  // one more row: the standing pose
 };
@@ -111,7 +111,7 @@ CycleSample sample_at(const GaitCycle& cycle, double phase) noexcept;
 // pose.root_m.
 void sample_local(const GaitCycle& cycle, double phase, Pose& pose) noexcept;
 
-// How far forward the stick asks for the source's own gait, at its own pace.
+// The forward deflection that gives the source's own gait, at the motion's own pace.
 inline constexpr double kOwnStick = 0.8;
 
 // Finds the best full stride of a motion and makes it periodic: heading and travel taken out, the
@@ -119,7 +119,7 @@ inline constexpr double kOwnStick = 0.8;
 // except where a knee is nearer to straight than about 3 degrees (off by fractions of a millimetre)
 // or bent backwards (off by a few millimetres). Error `NAME: cause` where the motion holds no walk
 // of both feet: both are in the air (a run), their events are not in a walk's order, or the hips do
-// not travel. Where the speed or the cadence tells of a wrong frame time, it names frame_rate_hz.
+// not travel. If speed or cadence suggest a wrong frame time, it names frame_rate_hz.
 Result<GaitCycle> gait_cycle(const Motion& motion);
 
 // The embedded default: an adult with 0.84 m of thigh + shank, 120 Hz, one exactly periodic and
@@ -128,11 +128,11 @@ GaitCycle procedural_gait();
 // The same walk as a motion of several strides (for `gaitpad motion`, export and tests).
 Motion procedural_motion();
 
-// Retargets a walk (section 3.2): `source` as the skeleton of `character` walks it. How the
-// character stands is measured on its own walk where it has one, else on the frame of its file in
-// which it stands straightest. Leg angles and foot rotations are taken over, and lengths grow by
-// the ratio of the legs. Spine, neck, head and arms follow their counterparts, whatever they are
-// called; other joints follow those of equal name. Error `NAME: cause`.
+// Retargets a walk (section 3.2): `source`, walked by the skeleton of `character`. The character's
+// standing pose is measured on its own walk if it has one, else on the straightest frame of its
+// file. Leg angles and foot rotations are taken over, and lengths grow by the ratio of the legs.
+// Spine, neck, head and arms follow their counterparts, whatever they are called; other joints
+// follow those of equal name. Error `NAME: cause`.
 Result<GaitCycle> cycle_on_skeleton(const GaitCycle& source, const Motion& character);
 
 // Thigh + shank, the mean of both legs.

@@ -25,30 +25,31 @@ inline constexpr ArmWeights kEvenArmWeights = {1, 1, 1, 1, 1, 1};
 using SpineWeights = std::array<double, kSpineParts>;
 inline constexpr SpineWeights kEvenSpineWeights = {1, 1};
 
-// Where a hand is held. With both shares 0 it swings with the arm. Lengths are an adult's: a
-// carried place scales with the length of the arm, a rail's place with the height of the shoulders.
+// The place at which a hand is held. With both shares 0 the hand swings with the arm. Lengths are
+// an adult's: a carried place scales with the length of the arm, a rail's place with the height of
+// the shoulders.
 struct HandParams {
   double carry = 0.0;  // share, 0 .. 1: at a place in front of the chest
   // That place, from the middle between the shoulders, in the upright frame that turns with them:
   // x outwards (to the hand's own side), y up, z forward. The default is a tray at elbow height.
   double x_m = 0.16, y_m = -0.30, z_m = 0.36;
-  double rail = 0.0;  // share, 0 .. 1: on a rail along the way; goes before `carry`
+  double rail = 0.0;  // share, 0 .. 1: on a rail along the way; overrides `carry`
   double rail_height_m = 0.90, rail_side_m = 0.36;  // above the ground; sideways of the hips' path
   bool operator==(const HandParams&) const = default;
 };
 
-// Where the head looks. Angles are in degrees, as in a file, so that a style is written back as it
-// was read.
+// The direction or the place that the head looks at. Angles are in degrees, as in a file, so that a
+// style is written back as it was read.
 struct HeadParams {
   double look = 0.0;                       // share, 0 .. 1: in the direction of
   double yaw_deg = 0.0, pitch_deg = 0.0;   // yaw from the heading, + left; pitch + up
-  double look_at = 0.0;                    // share, 0 .. 1: at a place; goes before `look`
+  double look_at = 0.0;                    // share, 0 .. 1: at a place; overrides `look`
   double x_m = 0.0, y_m = 1.6, z_m = 5.0;  // that place, world, not scaled
   double lead = 0.0;                       // share, 0 .. 1: to where the walk is about to head
   bool operator==(const HeadParams&) const = default;
 };
 
-// How the trunk is held, beyond what the data do; 0 as in the data. Degrees.
+// The trunk's posture, added to that of the data. Degrees.
 struct TrunkParams {
   double lean_deg = 0.0;  // forward, over the whole walk and when standing
   // Sideways over the left and over the right leg, while that leg stands alone.
@@ -56,7 +57,7 @@ struct TrunkParams {
   bool operator==(const TrunkParams&) const = default;
 };
 
-// What a style says of the body above the hips. Arrays of two are indexed by Side.
+// A style's values for the body above the hips. Arrays of two are indexed by Side.
 struct UpperBodyParams {
   std::array<double, 2> arm_swing{1.0, 1.0};  // factor on the arm's swing in the motion data
   std::array<double, 2> arm_out_deg{};        // the upper arms are spread by this

@@ -68,8 +68,8 @@ struct IkTrace {
 };
 
 // The paper's steps 1-7 to the letter, with raw weights: theta += W J^T (J J^T)^-1 dX (eq. (5)), dX
-// halved in step 5, no limits, no damping. The caps only keep it from running for ever. With
-// equal weights w an iteration leaves 1 - w of the error, so small weights need many.
+// halved in step 5, no limits, no damping. The caps only bound its time. With equal weights w an
+// iteration leaves 1 - w of the error, so small weights need many.
 struct PaperOptions {
   double tolerance_m = 1e-4;
   double epsilon_m = 1e-6;  // step 5: greatest ||(I - J J^+) dX||

@@ -1,6 +1,6 @@
-// The keyboard as a pad with one stick: the keys say where the stick shall go, it moves there
-// smoothly and reports like any pad. It is no driver: nothing finds it; whoever reads the keys
-// opens it.
+// The keyboard as a pad with one stick: the keys set the stick's goal, the stick moves there
+// smoothly and reports like any pad. It belongs to no driver: the code that reads the keys opens
+// it.
 #pragma once
 #include <atomic>
 #include <cstdint>
@@ -22,7 +22,7 @@ class KeyboardStick {
   KeyboardStick(const KeyboardStick&) = delete;
   KeyboardStick& operator=(const KeyboardStick&) = delete;
 
-  // Where the stick shall go, +x right, +y forward; any thread, never waits. Shortened to length 1;
+  // Sets the stick's goal, +x right, +y forward; any thread, never waits. Shortened to length 1;
   // not-a-number is the centre.
   void steer(const vec2& wanted) noexcept;
 

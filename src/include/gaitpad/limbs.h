@@ -7,7 +7,7 @@ namespace gaitpad {
 
 enum Side : int { kLeftSide = 0, kRightSide = 1 };
 inline constexpr Side other(Side s) noexcept { return s == kLeftSide ? kRightSide : kLeftSide; }
-// By Side: of legs and of sticks, in sentences and in files.
+// Names by Side, of legs and of sticks, for sentences and files.
 inline constexpr std::array<const char*, 2> kSideNames = {"left", "right"};
 
 // A leg's joint angles in radians, about axes fixed in the standing pose (x left, y up, z forward)

@@ -40,7 +40,7 @@ struct LiveStatus {
   // From the arrival of a report to the tick that uses it, at pace 1.
   double wait_us_median = 0.0, wait_us_max = 0.0;
   // From the arrival of a report to the hand-over of the first frame that shows what it did, at
-  // pace 1: median and 99th percentile; 0 if nobody shows frames (LiveSession::end_frame()).
+  // pace 1: median and 99th percentile; 0 if no frames are shown (LiveSession::end_frame()).
   double frame_us_p50 = 0.0, frame_us_p99 = 0.0;
   std::array<std::int64_t, kWaitClasses> wait_counts{};  // by kWaitClass_ns; the last: longer
   // How the loop thread is scheduled: `SCHED_FIFO 20`, `normal priority`, `by hand`.
@@ -50,7 +50,7 @@ struct LiveStatus {
   std::int64_t recording_lost = 0;  // reports that the recording missed: it is inexact then
 };
 
-// How an input report came to its tick.
+// The times at which an input report arrived and was used.
 struct ReportTime {
   std::int64_t tick = 0;
   std::int64_t arrival_ns = 0, begin_ns = 0;  // CLOCK_MONOTONIC: its stamp, and the tick's begin
@@ -62,7 +62,7 @@ enum class FrameEnd { handed_over, not_shown };
 class LiveSession {
  public:
   // Reads the files, opens the recording and starts the threads. Error: a file that cannot be read,
-  // a wish that makes no sense (PadStream::start()), a rate outside 1 .. kMaxRateHz.
+  // an impossible request for a pad (PadStream::start()), a rate outside 1 .. kMaxRateHz.
   static Result<std::unique_ptr<LiveSession>> start(const SessionSpec& spec);
   // The same in two parts, so that a program can end one session only when the files of the next
   // are known to fit together: prepare() reads them and touches no device. `prepared` is used once.
@@ -80,28 +80,28 @@ class LiveSession {
   const SessionFrame& latest(bool& is_new) noexcept;  // valid until the next call
   // The same, just before drawing: if a tick is due and has not run, waits for it, at most 2 ms.
   const SessionFrame& latest_due() noexcept;
-  // What was read last has gone to the display, or will never go there: measures how old the
-  // reports are that it shows for the first time.
+  // Tells that the frame that was read last is on the display now, or will never be. This measures
+  // the age of the reports whose effect it shows first.
   void end_frame(FrameEnd end) noexcept;
-  // The oldest sample that was not taken yet; false if there is none. When nobody takes samples the
-  // newest are dropped.
+  // Takes the oldest sample; false if there is none. If samples are not taken, new ones are
+  // dropped.
   bool take_sample(TickSample& sample) noexcept;
-  // The oldest that was not taken yet, of a session with SessionSpec::Live::report_times. The
-  // newest are dropped when nobody takes them.
+  // Takes the oldest time, in a session with SessionSpec::Live::report_times; false if there is
+  // none. If times are not taken, new ones are dropped.
   bool take_report_time(ReportTime& time) noexcept;
-  // Ticks in a second of the clock over the rate: 0 stands still, 1 is real time, 0.25 slow motion,
-  // at most 8; less than 1/1024 stands still. A tick computes the same at every pace. Takes effect
-  // within 20 ms. While the session stands still latest() still shows the driving pad's state and
-  // presses.
+  // Sets the pace, ticks per second over the rate: 0 stands still, 1 is real time, 0.25 slow
+  // motion, at most 8; less than 1/1024 stands still. A tick computes the same at every pace. Takes
+  // effect within 20 ms. While the session stands still latest() still shows the driving pad's
+  // state and presses.
   void set_pace(double pace) noexcept;
-  void step(int ticks) noexcept;     // runs so many at pace 8 if it stands still; else nothing
+  void step(int ticks) noexcept;     // if the session stands still: runs them at pace 8
   void advance(int ticks) noexcept;  // Clock::by_hand: runs them here and now; else nothing
   // The keyboard as a stick: where it should go, +x right, +y forward, at most 1 long. It moves
   // there smoothly.
   void steer(const vec2& wanted) noexcept;
   // From any thread.
-  // `style limp_left`; the grammar: config/README.md, `C:`. What is wrong with one is a remark, and
-  // it counts as a bad command.
+  // `style limp_left`; the grammar: config/README.md, `C:`. A command that cannot be carried out
+  // gives a remark and counts as bad.
   void command(std::string_view text);
   // A style that commands may name from now on, in cast() too; one of the same name is replaced.
   // From the viewing thread.
@@ -112,8 +112,8 @@ class LiveSession {
   std::optional<Error> end_recording();
   bool has_ended() const noexcept;  // the pad is a recording that ended a second ago
   LiveStatus status() const noexcept;
-  // What users should know (pads that cannot be opened, real-time scheduling that was refused),
-  // each once.
+  // Remarks for users (pads that cannot be opened, real-time scheduling that was refused), each
+  // once.
   std::vector<std::string> take_remarks();
 
   // Ends the threads and the recording. Once. Error: the recording could not be written.

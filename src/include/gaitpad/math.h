@@ -22,7 +22,7 @@ using vec3 = glm::dvec3;
 using mat3 = glm::dmat3;
 using quat = glm::dquat;
 
-// A program that sets GLM up otherwise would read other numbers than the library has written.
+// With another GLM configuration a program would misread the numbers that the library has written.
 static_assert(std::is_trivially_copyable_v<quat>, "build without GLM_FORCE_CTOR_INIT");
 static_assert(sizeof(vec3) == 3 * sizeof(double) && sizeof(quat) == 4 * sizeof(double),
               "build without GLM_FORCE_DEFAULT_ALIGNED_GENTYPES");
@@ -34,8 +34,9 @@ inline const vec3 kLeft = vec3(1.0, 0.0, 0.0);           // world axes: x to the
 inline const vec3 kUp = vec3(0.0, 1.0, 0.0);             // heading 0, y up,
 inline const vec3 kForward = vec3(0.0, 0.0, 1.0);        // z forward
 
-// The same of numbers V that stand for several walkers side by side, one in each lane of a register
-// (base/lanes.h); of doubles they are those above. In memory their parts stand in the same order.
+// The same types for numbers V that stand for several walkers side by side, one in each lane of a
+// register (base/lanes.h); for doubles they are those above. In memory their parts stand in the
+// same order.
 template <class V>
 struct Vec3Of {
   V x, y, z;
@@ -73,7 +74,7 @@ quat rotation_between(const vec3& from, const vec3& to) noexcept;
 vec3 rotation_vector(const quat& q) noexcept;
 quat from_rotation_vector(const vec3& v) noexcept;
 // `share` of the way from one rotation to the other, the shorter way round: linear, then
-// normalized. The ends are normalized, too.
+// normalized. The ends are normalized as well.
 quat nlerp(const quat& from, const quat& to, double share) noexcept;
 // Rotation whose columns are the images of x, y, z (orthonormal, right-handed).
 quat from_axes(const vec3& x, const vec3& y, const vec3& z) noexcept;
@@ -88,7 +89,7 @@ inline double horizontal_length(const vec3& v) noexcept { return std::sqrt(v.x *
 // Heading of a direction's horizontal part.
 inline double heading_of(const vec3& direction) noexcept { return atan2(direction.x, direction.z); }
 
-// The functions below are of a number or of several side by side.
+// The functions below take a number, or several side by side.
 template <class V>
 V within(const V& x, double low, double high) noexcept {
   const V above = x < low ? V{} + low : x;
@@ -100,7 +101,7 @@ auto smoothstep(double a, double b, const V& x) noexcept {
   const auto u = within((x - a) / (b - a), 0.0, 1.0);
   return u * u * (3.0 - 2.0 * u);
 }
-// The same with zero curvature at both ends, too (quintic), from 0 to 1.
+// The same with zero curvature at both ends as well (quintic), from 0 to 1.
 template <class V>
 auto smootherstep(const V& x) noexcept {
   const auto u = within(1.0 * x, 0.0, 1.0);
@@ -110,7 +111,7 @@ template <class A, class B, class V>
 auto mix(const A& a, const B& b, const V& t) noexcept {
   return a + (b - a) * t;
 }
-// What is left of whole turns, 0 .. 1.
+// The part of a number of turns beyond whole ones, 0 .. 1.
 inline double fraction(double turns) noexcept { return turns - std::floor(turns); }
 
 }  // namespace gaitpad

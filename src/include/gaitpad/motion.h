@@ -20,7 +20,7 @@ struct MotionFrame {
   std::vector<vec3> translation_m;
 };
 
-// Whose speed and step the stick asks for: the motion's own, or an adult's on the character's legs.
+// The gait that the stick scales: the motion's own, or an adult's on the character's legs.
 enum class Pace { own, adult };
 inline constexpr std::array<const char*, 2> kPaceNames = {"own", "adult"};  // indexed by Pace
 constexpr const char* name_of(Pace pace) noexcept {
@@ -40,7 +40,8 @@ struct Motion {
   std::array<LegJoints, 2> legs;  // indexed by Side
   double metres_per_unit = 1.0;   // file units times this are metres
   double frame_time_s = 1.0 / 120.0;
-  Pace pace = Pace::own;  // of the motion's description; the built-in motion has the adult's
+  Pace pace = Pace::own;  // as the motion's description states it; the built-in motion has the
+                          // adult's
   std::vector<MotionFrame> frames;
 };
 

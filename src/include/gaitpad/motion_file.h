@@ -21,7 +21,7 @@ namespace gaitpad {
 inline constexpr std::size_t kMaxMotionFileBytes = std::size_t{512} << 20;
 inline constexpr long long kMaxFrameJoints = 10'000'000;  // 100 joints: 14 minutes at 120 Hz
 
-// What the file does not say, or says wrongly.
+// Facts that a motion file does not state, or states wrongly.
 struct LoadOptions {
   double metres_per_unit = 0.0;    // 0: from the length of the legs, metres_per_unit() below
   double frame_rate_hz = 0.0;      // 0: as the file says; 120 Hz for an .amc that says nothing
@@ -32,7 +32,7 @@ struct LoadOptions {
 // Loads a motion by its file's ending: .amc with its .asf, .asf alone (its rest pose as one frame),
 // else BVH. Errors read `PATH: cause` or `PATH:LINE: cause`.
 //
-// What the file leaves open is settled so:
+// Facts that the file leaves open:
 // - Up is the axis of y and z along which the hips stand above the ankles; z-up files are turned to
 //   y up.
 // - The root's OFFSET is part of its position channels in some files and not in others. The reading
@@ -63,8 +63,8 @@ Result<Motion> motion_from_acclaim(const NamedText& asf, const NamedText& amc,
 // makes the leg 0.65 to 1.05 m long (at most one does); if none does, the leg is kReferenceLeg_m
 // long.
 double metres_per_unit(double leg_length_units) noexcept;
-// The same for a file that states its unit: that one if it makes the leg 0.4 to 1.3 m long, as of
-// children and giants; else the file is wrong, as endorphin's are.
+// The same for a file that states its unit. The stated unit counts if it makes the leg 0.4 to 1.3 m
+// long, as children and giants have; otherwise the file is wrong, as endorphin's are.
 double metres_per_unit(double leg_length_units, double stated_unit_m) noexcept;
 
 // The file that a user's FILE|NAME means: itself if it has a dot or a slash or exists, else
@@ -72,10 +72,10 @@ double metres_per_unit(double leg_length_units, double stated_unit_m) noexcept;
 Result<std::string> motion_path(const std::vector<std::string>& folders,
                                 const std::string& file_or_name);
 
-// Loads what a session walks by: a file as load_motion() does, or a .toml file (config/README.md,
-// Motions). That one holds key-framed poses, or names a motion file beside it and says what cannot
-// be found in it: its unit, skeleton, frame rate and the joints of the legs. `given` goes before
-// what the .toml file says.
+// Loads the motion of a session: a file as load_motion() does, or a .toml file (config/README.md,
+// Motions). That one holds key-framed poses, or names a motion file beside it and states what
+// cannot be found in it: its unit, skeleton, frame rate and the joints of the legs. `given` takes
+// precedence over the .toml file.
 Result<Motion> load_motion_source(const std::string& path, const LoadOptions& given = {});
 
 }  // namespace gaitpad

@@ -1,5 +1,5 @@
-// From a device to a pad that can drive: its layout (config/pads, else a line of the user's data
-// base or of SDL's) and its calibration. Set-up code: it reads files and allocates.
+// Makes a device a pad that can drive: its layout (config/pads, else a line of the user's data base
+// or of SDL's) and its calibration. Set-up code: it reads files and allocates.
 #pragma once
 #include <optional>
 #include <string>
@@ -13,18 +13,18 @@
 
 namespace gaitpad {
 
-// What calibration files tell devices apart by.
+// The facts by which calibration files tell devices apart.
 DeviceIdentity identity_of(const DeviceInfo& info);
 
-// What files say about pads. A session reads them once.
+// Everything that files say about pads. A session reads it once.
 struct PadFiles {
   PadOverrides overrides;                        // --map first, then config/pads
   std::optional<CalibrationFile> calibration;    // --calibration: for every pad but the keyboard
   std::string user_calibrations;                 // the user's folder, for live pads alone
   std::vector<std::string> calibration_folders;  // searched for the best fitting file otherwise
-  // Lines of SDL's data base that the user has, the most important first, for live pads alone:
-  // $SDL_GAMECONTROLLERCONFIG, $SDL_GAMECONTROLLERCONFIG_FILE, user_mapping_file(). And why one of
-  // the files cannot be read; empty: none, or they can.
+  // The user's lines of SDL's data base, the most important first, for live pads alone:
+  // $SDL_GAMECONTROLLERCONFIG, $SDL_GAMECONTROLLERCONFIG_FILE, user_mapping_file().
+  // `mapping_problem` says why one of the files cannot be read; empty: all were read.
   std::vector<std::string> mappings;
   std::string mapping_problem;
 };

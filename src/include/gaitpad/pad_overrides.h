@@ -1,4 +1,4 @@
-// What a descriptor does not say about a pad: which usage is which control, by device and driver.
+// Facts about a pad that its descriptor lacks: which usage is which control, by device and driver.
 // It comes from files (config/pads; grammar in config/README.md, Pads) or is stated in code. Set-up
 // code; it allocates.
 #pragma once
@@ -15,7 +15,7 @@
 
 namespace gaitpad {
 
-// Which button has which number on HID's button page, counted from 1.
+// The number that each button has on HID's button page, counted from 1.
 enum class ButtonOrder {
   direct_input,  // x a b y, shoulders, triggers, back start, sticks, guide: Logitech, Switch,
                  // clones
@@ -35,7 +35,7 @@ struct ControlSource {
   std::uint32_t usage = 0;
   std::uint32_t occurrence = 1;  // the n-th field with that usage in its report, from 1
   std::uint32_t mask = 0;  // of a button: pressed if one of these bits is set; 0: by its range
-  bool reversed = false;   // of an axis: against HID's directions (x right, y towards the owner)
+  bool reversed = false;   // of an axis: against HID's directions (x right, y towards the player)
   AxisPart part = AxisPart::whole;   // a half is 0 in the middle and full at its end
   StickSide side = StickSide::both;  // of a stick's axis: the source moves it to this side only
   std::uint8_t directions = 0;       // of a hat: any of 1 up, 2 right, 4 down, 8 left; 0: no hat

@@ -19,7 +19,7 @@
 
 namespace gaitpad {
 
-// Which pad a user asks for; empty: any.
+// The pad that a user asks for; empty: any.
 struct PadWish {
   std::string pad;  // a path (node or recording), a `vid:pid`, a unique id, a unique part of a name
   std::string driver;  // hidraw, evdev, sdl or usb: this driver alone
@@ -115,8 +115,8 @@ struct PadStreamCounts {
 class PadStream {
  public:
   // Starts both threads. Pads that are plugged in already are announced like those plugged in
-  // later. A wish that no device fits is waited for. Error: an unknown driver, a damaged recording,
-  // a part of a name that fits several pads.
+  // later. If no device fits the wish, the stream waits for one. Error: an unknown driver, a
+  // damaged recording, a part of a name that fits several pads.
   static Result<std::unique_ptr<PadStream>> start(PadStreamOptions options);
   ~PadStream();  // closes every device and gives back what was taken from the kernel
 
@@ -145,7 +145,7 @@ class PadStream {
   // True once every device of a recording has come to its end; never for hardware.
   bool has_ended() const noexcept;
   PadStreamCounts counts() const noexcept;  // any thread
-  // What users should know (a pad that cannot be opened and why, an unplugged one), each once.
+  // Remarks for users (a pad that cannot be opened and why, an unplugged one), each once.
   std::vector<std::string> take_remarks();
 
  private:

@@ -1,5 +1,6 @@
-// Which stick drives the walk. Pads keeps the pads of a session, plugged in or not, each with its
-// layout and its calibration, and gives one stick position a tick: that of the driving pad.
+// Chooses the stick that drives the walk. Pads keeps the pads of a session, plugged in or not, each
+// with its layout and its calibration, and gives one stick position a tick: that of the driving
+// pad.
 //
 //   Pads pads({config}, 240);
 //   pads.take_report(report);              // for each report of the tick, in order of arrival
@@ -18,7 +19,7 @@
 
 namespace gaitpad {
 
-// What is known of a pad before its first report.
+// The facts about a pad that are known before its first report.
 struct PadConfig {
   std::shared_ptr<const PadLayout> layout;  // null: none of its reports can be decoded
   Calibration calibration;
@@ -27,7 +28,7 @@ struct PadConfig {
   bool streams = false;             // it reports while at rest too: silence means that it is gone
   bool is_fallback = false;         // the keyboard: it drives only while no other pad is plugged in
   bool has_factory_sticks = false;  // live pads: it told its own calibration when it was opened
-  std::optional<FactoryGyro> factory_gyro;  // the same of its gyroscope
+  std::optional<FactoryGyro> factory_gyro;  // the same for its gyroscope
 };
 
 // For users.
@@ -39,7 +40,7 @@ using PressCounts = std::array<std::uint32_t, kButtonCount>;
 // Counts the buttons that are up in `before` and down in `now` (PadState::buttons).
 void count_presses(std::uint32_t before, std::uint32_t now, PressCounts& presses) noexcept;
 
-// By which of the rules below a recording was made, as its V: line says.
+// The version of the rules below that a recording was made with, by its V: line.
 enum class PadRules {
   version_1,  // the first pad drives, moved or not, and a D-pad drives never
   version_2,

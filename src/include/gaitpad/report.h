@@ -1,5 +1,5 @@
-// What a driver delivers (a device and its reports) and what decode() makes of a report (the pad's
-// state). Plain data.
+// The data that a driver delivers (a device and its reports) and the state that decode() makes of a
+// report. Plain data.
 #pragma once
 #include <array>
 #include <cstddef>
@@ -66,8 +66,8 @@ inline std::string_view text_of(const Report& r) noexcept {
   return {reinterpret_cast<const char*>(r.bytes.data()), r.size};
 }
 
-// Indices into PadState::axis. Sticks -1..1, +x right, +y forward (away from the thumb's owner);
-// triggers 0..1.
+// Indices into PadState::axis. Sticks -1..1, +x right, +y forward (away from the player); triggers
+// 0..1.
 enum PadAxis : int {
   kLeftX,
   kLeftY,

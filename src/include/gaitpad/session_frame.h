@@ -1,5 +1,6 @@
-// What a viewer needs of a session: the cast once, a frame whenever it draws, and a sample of each
-// tick for graphs. All of it is copied out of the simulation; changing it has no effect on one.
+// The data that a viewer reads of a session: the cast once, a frame whenever it draws, and a sample
+// of each tick for graphs. All of it is copied out of the simulation; changing it has no effect on
+// one.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -12,7 +13,7 @@
 
 namespace gaitpad {
 
-// What stays the same while a session runs.
+// The part of a session that stays the same while it runs.
 struct CastMember {
   std::string character, style;  // names; the style is the one at the beginning
   std::shared_ptr<const WalkModel> model;
@@ -26,7 +27,7 @@ struct Cast {
   std::string motion;  // its name
   std::shared_ptr<const GaitCycle> source;
   std::vector<CastMember> members;
-  std::vector<CrowdCastMember> crowd;                       // those that viewers get poses of
+  std::vector<CrowdCastMember> crowd;                       // the members whose poses viewers get
   std::shared_ptr<const Terrain> terrain = flat_terrain();  // never null
   std::vector<std::string> styles;                          // that a `style` command may name
   std::vector<StyleValues> style_values;                    // of these, as in their files
@@ -43,7 +44,7 @@ struct WalkerFrame {
   GaitOverrides overrides;
   std::array<LegAngles, 2> angles_rad{};  // of the pose; signs as in gaitpad/limbs.h
   double phase = 0.0;            // of the source's cycle, 0 .. 1 from the right heel strike on
-  double presence = 0.0;         // how much of the source shows: 0 standing .. 1 walking
+  double presence = 0.0;         // share of the source's motion that shows: 0 standing .. 1 walking
   std::array<vec3, 2> lift_m{};  // where the heel began its present or last flight, world
   vec3 landing_m{0.0};           // where the heel of the present or last step lands, world
   std::int64_t ik_failures = 0;
@@ -54,7 +55,7 @@ struct PadFrame {
   std::uint16_t device = kNoDevice;  // kNoDevice: none has driven so far
   bool is_present = false;
   PadState state;              // uncalibrated
-  Calibration calibration;     // that makes the stick of it
+  Calibration calibration;     // which converts `state` to the stick
   std::uint64_t reports = 0;   // since the beginning
   std::int64_t untouched = 0;  // how often its left stick began to walk untouched
 };

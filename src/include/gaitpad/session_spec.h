@@ -11,8 +11,8 @@
 
 namespace gaitpad {
 
-// A recording of a session holds what the session was made of. What `walk` and `pad.map` leave
-// empty is in its replay as the recording says, and in other sessions the default.
+// A recording of a session holds this description. Members of `walk` and `pad.map` that are empty
+// take the recording's value in its replay, and the default in other sessions.
 //
 // FILE|NAME is a path, or the name of a file in the folders of configuration.
 struct SessionSpec {
@@ -25,7 +25,7 @@ struct SessionSpec {
     std::string script;               // FILE with commands at given times
     std::optional<IkMode> ik;         // none: robust
     StickMeans stick = StickMeans::steers;  // until a command says otherwise
-    std::optional<int> crowd;               // so many more walk behind the first character; none: 0
+    std::optional<int> crowd;               // characters that walk behind the first; none: 0
     bool shows_crowd = true;  // frames hold the crowd's poses; false saves their copies in a tick
     // None: in a replay the trace's, else what the motion's description says, else its own. The
     // built-in motion has the adult's whatever stands here.
@@ -37,25 +37,24 @@ struct SessionSpec {
     std::string map;          // pad file that goes before config/pads
     std::string calibration;  // file of the stick
   };
-  // Of a live session alone.
+  // For a live session alone.
   struct Live {
     std::string record;     // FILE.hid to write the session to
     bool keyboard = false;  // a pad that LiveSession::steer() moves, used while no pad is deflected
-    int frame_ticks =
-        1;  // each so many ticks there is a new LiveSession::latest(); 0: there is none
+    int frame_ticks = 1;    // ticks from one LiveSession::latest() to the next; 0: there is none
     bool report_times = false;  // for LiveSession::take_report_time()
     bool rumble = true;         // a beat at each heel strike, stronger the faster the walk
     std::string stream;         // osc://HOST:PORT or json://HOST:PORT to send the poses to
-    int stream_fps = 60;        // so many a second
+    int stream_fps = 60;        // poses sent a second
     bool forward = false;       // a virtual pad has the driving pad's calibrated state
     // by_hand: no loop thread, ticks run in LiveSession::advance() alone; for pictures and videos.
     enum class Clock { real_time, by_hand } clock = Clock::real_time;
   };
-  // Of a replay alone.
+  // For a replay alone.
   struct Replay {
     static constexpr double kMaxHours = 12.0, kMaxDamagedHours = 1.0;
     std::string trace;               // the recording; empty: the session is live
-    Damage damage = Damage::refuse;  // what a damaged line of it means
+    Damage damage = Damage::refuse;  // how to treat a damaged line of it
     // Whether commands and zones may name styles of the user's folder. Without it a replay is the
     // same on every machine.
     bool user_styles = false;
@@ -65,7 +64,7 @@ struct SessionSpec {
     std::string out;         // folder for the files that replay() writes; empty: none
     std::optional<int> fps;  // of the poses written; none: one pose a tick
     bool gltf = false;       // write pose.glb beside pose.bvh
-    int crowd_files = 32;    // of the crowd the first so many get files, too
+    int crowd_files = 32;    // number of the crowd's members that get files as well
   };
 
   Walk walk;

@@ -43,11 +43,11 @@ struct SimulationConfig {
   Pace pace = Pace::own;      // that was chosen; with the built-in motion it changes nothing
   std::vector<WalkerConfig>
       walkers;            // at least one; they stand side by side, the first at the origin
-  int crowd = 0;          // so many more walk behind the first, at most kMaxFollowers
+  int crowd = 0;          // number of characters that walk behind the first, at most kMaxFollowers
   int crowd_threads = 1;  // that move the crowd on, at most; the poses are the same for any number
   bool shows_crowd = true;  // keeps the crowd's poses of two ticks for viewers
   std::shared_ptr<const Terrain> terrain = flat_terrain();  // never null
-  std::vector<std::string> remarks;  // what a user should know of the files that it was read from
+  std::vector<std::string> remarks;  // remarks for the user on the files that it was read from
 };
 
 // `SimulationConfig: rate_hz is 0, outside [10, 10000]`. Calls the check of all that it holds.
@@ -130,8 +130,8 @@ class Simulation {
   // Whether a heel of the first character struck the ground in the last tick.
   bool heel_struck() const { return heel_struck_; }
   const SimulationCounts& counts() const { return counts_; }
-  // Over the bits of every pose of every character in every tick so far, those of the crowd after
-  // the walkers'.
+  // Hash over the bits of every pose of every character in every tick so far, those of the crowd
+  // after the walkers'.
   std::uint64_t pose_hash() const { return hash_.value(); }
 
  private:
@@ -154,7 +154,7 @@ class Simulation {
   double terrain_scale_ = 1.0;
   Stick stick_;
   StickMeans stick_means_ = StickMeans::steers;
-  double camera_rad_ = 0.0;  // that a stick which points is seen along
+  double camera_rad_ = 0.0;  // the heading along which a pointing stick is seen
   bool heel_struck_ = false;
   SimulationCounts counts_;
   WordHash hash_;

@@ -31,8 +31,8 @@ struct StrideFootOf {
   V pitch_rad{}, twist_rad{}, roll_rad{};
 };
 
-// A stride at one phase. What is 0 when standing is 0 here, too: the pelvis' place counts from the
-// standing pelvis over the path, and angles from the standing pose's.
+// A stride at one phase. Counted from standing: the pelvis' place from the standing pelvis over the
+// path, angles from the standing pose's.
 template <class V>
 struct StrideCellOf {
   Vec<V> pelvis_m{};
@@ -44,7 +44,7 @@ struct StrideCellOf {
 using StrideFoot = StrideFootOf<double>;
 using StrideCell = StrideCellOf<double>;
 
-// Where a stride goes.
+// The length of a stride and the places of its footprints.
 template <class V>
 struct FootprintsOf {
   V stride_m{};
@@ -55,18 +55,18 @@ struct FootprintsOf {
 using Footprints = FootprintsOf<double>;
 template <class V>
 struct StrideTrackOf : FootprintsOf<V> {
-  V low_m{}, high_m{};  // between which the pelvis rises and falls, as in StrideCell
+  V low_m{}, high_m{};  // lowest and highest place of the pelvis, as in StrideCell
 };
 using StrideTrack = StrideTrackOf<double>;
 
-// What turns strides of the motion into the character's: all lengths grow by `length`, but those of
-// the pelvis by `pelvis`.
+// Scales strides of the motion to the character: all lengths by `length`, but those of the pelvis
+// by `pelvis`.
 struct StrideScale {
   double length = 1.0, pelvis = 1.0;
   vec3 hips_m{0.0};                  // the middle of the hips, from the pelvis, in the motion
   double stand_roll_rad = 0.0;       // of the motion's standing pelvis
-  std::array<vec3, 2> standing_m{};  // that middle when standing: in the motion, on the character
-  std::array<vec3, 2> apart_m{};     // by Side: what a wider or narrower pelvis moves the feet by
+  std::array<vec3, 2> standing_m{};  // that middle when standing: motion's, character's
+  std::array<vec3, 2> apart_m{};     // by Side: feet's shift for a wider or narrower pelvis
 };
 
 // One stride length. All of it may be added and scaled, number by number.
@@ -105,9 +105,8 @@ StridePlace stride_at(const std::vector<StrideTable>& table, double phase, doubl
 // ratio, from its share in the data: double support is longer in short steps.
 double roll_time_share(double data_share, double ratio) noexcept;
 
-// The time at which a phase is reached that runs through the four stages of a cycle, each in its
-// own time, at a smooth rate: cubic in each stage, and at a border between two the mean of their
-// rates.
+// Converts a phase to the time at which it is reached. The four stages of a cycle have a time each;
+// the rate is smooth: cubic in each stage, and at a border between two the mean of their rates.
 struct StageClock {
   std::array<double, 4> phase_share{},
       time_share{};                             // roll right, flight left, roll left, flight right

@@ -1,4 +1,4 @@
-// What a session came to: numbers of the whole run and of each character.
+// The results of a session: numbers of the whole run and of each character.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -39,10 +39,10 @@ struct RunSummary {
   std::int64_t ticks = 0;
   std::int64_t reports = 0;         // input reports, sound or not
   std::int64_t bad_reports = 0;     // that their device cannot send
-  std::int64_t bad_commands = 0;    // that could not be obeyed
+  std::int64_t bad_commands = 0;    // that could not be carried out
   std::int64_t damaged_lines = 0;   // of the trace, skipped
   std::int64_t recording_lost = 0;  // reports missing in the session's recording: it is inexact
-  int crowd = 0;                    // so many more walked behind the first
+  int crowd = 0;                    // number of characters that walked behind the first one
   std::vector<WalkerSummary> walkers;
   bool operator==(const RunSummary&) const = default;
 };

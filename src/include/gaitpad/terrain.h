@@ -83,7 +83,7 @@ struct TerrainSection {
   int piece = 0;                         // number of the piece that leads up to it
 };
 
-// A rectangle of the ground in which everybody walks in one style. Its border belongs to it.
+// A rectangle of the ground in which all characters walk in one style. Its border belongs to it.
 struct TerrainZone {
   double from_m = 0.0, to_m = 0.0;  // along z
   double left_m = std::numeric_limits<double>::infinity();
@@ -169,7 +169,7 @@ RoughSection rough_section(double length_m, double amplitude_m, double wavelengt
 // The same ground with all lengths and heights times `factor` (> 0), also those of the zones.
 Terrain scaled(const Terrain& terrain, double factor);
 
-// One plane at height 0, shared by everybody who walks on it.
+// One plane at height 0, shared by all its users.
 std::shared_ptr<const Terrain> flat_terrain();
 
 }  // namespace gaitpad

@@ -16,7 +16,8 @@
 namespace gaitpad {
 
 inline constexpr int kDefaultRateHz = 240;
-inline constexpr int kLeastRateHz = 10;  // at fewer ticks a second nobody can walk
+inline constexpr int kLeastRateHz = 10;  // at fewer ticks a second a walk is too coarse to be
+                                         // useful
 inline constexpr int kMaxRateHz = 10000;
 inline constexpr int kTraceVersion = 2;  // what it changed: PadRules
 inline constexpr std::size_t kMaxTraceDevices = 16;

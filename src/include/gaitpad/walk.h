@@ -23,9 +23,9 @@
 
 namespace gaitpad {
 
-// A tick lasts at least and at most so long.
+// The shortest and the longest tick.
 inline constexpr double kLeastTick_s = 1e-4, kMostTick_s = 0.1;
-// A place in the world has coordinates of at most so much.
+// The greatest coordinate of a place in the world, positive or negative.
 inline constexpr double kFarthest_m = 1e6;
 
 // paper: the paper's steps 1-7 to the letter; no joint limits, and the solver may fail.
@@ -37,8 +37,8 @@ enum class Stage : std::uint8_t {
   roll,    // Table I (b): the landed heel and the other foot's toe are planted
 };
 
-// Where coordinates lie in the world: turned by `heading_rad` about the vertical through their
-// origin, which is at `place_m`.
+// A frame in the world, turned by `heading_rad` about the vertical through its origin, which is at
+// `place_m`.
 struct Placement {
   vec3 place_m{0.0};
   double heading_rad = 0.0;  // to the left positive
@@ -50,8 +50,8 @@ vec3 from_world(const Placement& placed, const vec3& world_m) noexcept;
 // Where `placed` lies after the world has been turned and shifted by `by`.
 Placement moved(const Placement& by, const Placement& placed) noexcept;
 
-// What one tick did, for export, tests and panels. World frame, metres: y up, floor 0, heading 0
-// along +z, x to the left at heading 0. Arrays are indexed by Side.
+// The results of one tick, for export, tests and panels. World frame, metres: y up, floor 0,
+// heading 0 along +z, x to the left at heading 0. Arrays are indexed by Side.
 struct WalkFrame {
   Stage stage = Stage::idle;
   Side swing = kLeftSide;    // flight: the flying foot; roll: the foot that has just landed
@@ -92,7 +92,7 @@ struct FootPlane {
   quat tilt = kIdentity;  // from level ground
 };
 
-// Where a foot is to be, on level ground.
+// The place and attitude that a foot shall have, on level ground.
 template <class V>
 struct FootPoseOf {
   Vec<V> heel_m{}, toe_m{};  // world
@@ -102,14 +102,14 @@ struct FootPoseOf {
   Quat<V> rotation{};        // of all these: the foot segment's, world
   V toe_rad{};               // of the toe joint, toe end down positive
 };
-// And on any.
+// The same on any ground.
 struct FootPose : FootPoseOf<double> {
   quat tilt = kIdentity;  // from level ground to the foot's own
   FootPose() noexcept : FootPoseOf{.yaw = kIdentity, .edge = kIdentity, .rotation = kIdentity} {}
 };
 
-// What keeps a flying foot off the ground between its two footholds: two uniform cubic B-splines
-// over the flight, given by their inner control points.
+// The curve that keeps a flying foot off the ground between its two footholds: two uniform cubic
+// B-splines over the flight, given by their inner control points.
 inline constexpr int kFlightKnots = 8;
 using FlightSpline = std::array<double, kFlightKnots - 1>;
 struct FlightRoom {
@@ -118,8 +118,8 @@ struct FlightRoom {
   vec3 planned_for_m{0.0};                                    // the landing that it is planned for
 };
 
-// A value that may not jump: it, and its first and second differences; by what it is kept off its
-// goal, and for how many ticks still.
+// A value that may not jump, with its first and second differences; its offset from the goal, and
+// the number of ticks in which the offset fades.
 template <class T, class V>
 struct EasedOf {
   T value{}, rate{}, bend{};
@@ -135,7 +135,7 @@ struct FootFlow {
   FadeOf<V> pitch_fade;  // over the running mode, argument in ticks of it
   V fade_begin{};        // from this one on
   Vec<V> lift_m{};       // heel at lift-off
-  // What the heel's place at lift-off differs by from the tables', and its slope per flight.
+  // The difference between the heel's place at lift-off and the tables', and its slope per flight.
   Vec<V> gap_m{}, gap_slope_m{};
   V gap_begin{}, gap_lasts{};  // in shares of the flight
   V gap_yaw_rad{};
@@ -149,7 +149,7 @@ struct FootState : FootFlow<double> {
   FootPose pose;
   FootMode mode = FootMode::support;
   int mode_ticks = 0;  // since the mode began
-  // On flat ground the rest keeps these values.
+  // On flat ground the members below keep these values.
   FootPlane plane;                      // that it stands on or stood on last
   double base_m = 0.0;                  // height of the ground that the pose is planned over
   double rise_m = 0.0;                  // how far the foot rises with the hips
@@ -158,7 +158,7 @@ struct FootState : FootFlow<double> {
   FlightRoom room;
 };
 
-// What terrain makes of a step. On flat ground all of it keeps these values.
+// A step as terrain changes it. On flat ground all members keep these values.
 struct Foothold {
   vec3 wanted_m{0.0};      // the heel's place if the ground were level
   double yaw_rad = 0.0;    // of the foot
@@ -178,7 +178,7 @@ struct HipsGround {
   double early_m = 0.0, yield_m = 0.0;  // and how far below that landing, at it and after it
 };
 
-// What a walk remembers of the upper body.
+// The state of the upper body.
 struct UpperBodyState {
   UpperBodyParams goal, now;  // asked for; smoothed and in force
   std::array<double, sizeof(UpperBodyParams) / sizeof(double)>
@@ -187,24 +187,24 @@ struct UpperBodyState {
   EasedOf<vec3, double> eased_chest, eased_head;  // turns in the walker's axes, rotation vectors
   // How far the trunk leans in this tick, and how far the upper arms are spread; in paper mode not.
   double forward_rad = 0.0, left_rad = 0.0;
-  // What is seen of a change before the feet can follow: the mean speed, the lean into another one,
-  // and how far chest and head are turned ahead, to the left positive.
+  // Signs of a change that show before the feet can follow: the mean speed, the lean into another
+  // one, and the angles by which chest and head are turned ahead, to the left positive.
   Damped<double> speed_m_s, push_rad, chest_ahead_rad, head_ahead_rad;
   std::array<double, 2> out_rad{};
   // Height of the ground under a rail, smoothed, and its rate.
   std::array<double, 2> rail_ground_m{}, rail_ground_m_s{};
 };
 
-// A person who stands: for how long, how much of it shows, and how far the trunk rises with the
-// breath and the head is turned by a glance, to the left and down positive. The hips' sway is of
-// the path.
+// The state of a character that stands: for how long, the share of its movements that shows, the
+// rise of the trunk with the breath, and the turn of the head in a glance, to the left and down
+// positive. The hips' sway is in PathFlow.
 struct IdleState {
   int ticks = 0;
   double share = 0.0;  // 0 none .. 1 all
   double breath_rad = 0.0, glance_rad = 0.0, nod_rad = 0.0;
 };
 
-// Where the walk is in its step, in ticks. A step is a roll and the flight after it; phases count
+// The walk's progress in its step, in ticks. A step is a roll and the flight after it; phases count
 // from the right foot's strike.
 struct StepClock {
   Stage stage = Stage::idle;
@@ -230,15 +230,15 @@ struct StepClock {
   double phase = 0.0, phase_rate = 0.0;   // per tick
   double stage_phase = 0.0;               // where the running stage began
   double end_rate = 0.0;                  // phase_rate at its end
-  // The running roll and step as planned, not rounded to ticks; how many ticks the step was given;
-  // and by how much the steps so far were too short.
+  // The durations of the running roll and step as planned, not rounded to ticks; the number of
+  // ticks that the step was given; and the total by which the steps so far were too short.
   double roll_s = 0.0, step_s = 0.0;
   int step_ticks = 0;
   double late_s = 0.0;
   double tick_s = 1.0 / 240.0;  // length of the last tick
 };
 
-// How it walks: the parameters, smoothed, and the stride ratios that follow from them.
+// The gait: the parameters, smoothed, and the stride ratios that follow from them.
 template <class V>
 struct GaitFlow {
   std::array<Damped<V>, 2> length_m, flight_height;
@@ -253,8 +253,8 @@ struct GaitFlow {
   V ratio_behind{};         // of the step before: the stride ratio at the last strike
   V step_ratio{};           // of the running step,
   SmoothFade<V> off_ratio;  // and how far the tables' is off it
-  // What a changed plan left of the last one's share of the tables, change from the stride behind
-  // to the one ahead, and phase; gone after so many ticks.
+  // The differences from the last plan that a changed plan left: in the share of the tables, in the
+  // change from the stride behind to the one ahead, and in phase. They fade in off_ticks.
   SmoothFade<V> off_shown, off_change, off_phase;
   V off_ticks{};
   V shown{}, change{}, phase{};                 // in force,
@@ -264,7 +264,7 @@ struct GaitFlow {
 };
 using GaitState = GaitFlow<double>;
 
-// Where it goes: landing places, and the hips on their way there.
+// The path: landing places, and the hips on their way to them.
 template <class V>
 struct PathFlow {
   V heading_rad{};
@@ -274,14 +274,15 @@ struct PathFlow {
   SmoothFade<Vec<V>> pelvis_m;
   Vec<V> last_pelvis_m{};
   Vec<V> rest_m{};  // where it comes to rest when stopping
-  // How much of the walk is not steady: 0 none .. 1 all. Then nothing that is planned may jump.
+  // The share of the walk that is not steady, 0 .. 1. While it is above 0, planned values may not
+  // jump.
   V unsteady{};
   EasedOf<V, V> eased_height;   // of the pelvis
   Damped<V> sunk_m;             // how much lower it is than the tables have it
   V wider_m{}, next_wider_m{};  // the footprint that stands, and the next one, in a turn
-  // What the hips' place differs by from the tables' path to the landing; it fades in the step.
+  // The hips' offset from the tables' path to the landing; it fades in the step.
   SmoothFade<Vec<V>> off_m;
-  // What that path led to a tick ago.
+  // The landing, heading and ratio of that path one tick ago.
   Vec<V> last_landing_m{};
   V last_heading_rad{}, last_ratio{};
   Vec<V> landing_m{};
@@ -297,28 +298,29 @@ struct PathState : PathFlow<double> {
   Damped<double> slope_lean_rad;  // of the trunk into a slope or stair, forwards positive
 };
 
-// The legs' angles: the pose's; those of even weights, and their running means; the tables', and
-// what even ones differed by from them a tick before; what the weights changed then.
+// The legs' angles: in the pose; with even weights, and the running means of these; in the tables.
+// And of the tick before: the even ones' offset from the tables, and the change by the weights.
 template <class V>
 struct LegFlow {
   using Angles = std::array<std::array<V, kLegDofs>, 2>;
   Angles angles_rad{}, even_rad{}, mean_rad{}, lagging_rad{};
   Angles data_rad{}, last_off_rad{}, last_shift_rad{};
-  std::array<Damped<V>, 2> loose;  // whether uneven weights may turn the foot: 0 not .. 1
-  // How low its heel is kept where it would rise, and the pitch that its leg asks for all the same.
+  std::array<Damped<V>, 2> loose;  // whether uneven weights may turn the foot: 0 no .. 1 yes
+  // The share to which the heel is kept low although it would rise, and the pitch that its leg asks
+  // for.
   std::array<Damped<V>, 2> low;
   std::array<V, 2> asked_rad{};
 };
 using LegState = LegFlow<double>;
 
-// All that a walk remembers. Plain, trivially copyable.
+// The whole state of a walk. Plain, trivially copyable.
 struct WalkState {
   WalkFrame frame;
-  // A walk counts in coordinates of its own, in which the sections of its terrain lie, too. Poses
-  // and `frame` are in the world, where these coordinates lie so: writing it between two ticks
-  // moves the walk and its ground rigidly, and every bit of the rest stays. For a platform it is
-  // the platform's place in each tick; for a shifted origin and a teleport see move_walk() and
-  // put_walk().
+  // A walk is computed in coordinates of its own, which its terrain's sections share. `placed` is
+  // the place of these coordinates in the world; poses and `frame` are in the world. Writing
+  // `placed` between two ticks moves the walk and its ground rigidly, and every bit of the rest
+  // stays. For a platform it is the platform's place in each tick; for a shifted origin and a
+  // teleport see move_walk() and put_walk().
   Placement placed;
   StepClock clock;
   GaitState gait;
@@ -343,7 +345,7 @@ void move_walk(const Placement& by, WalkState& state, Pose& pose) noexcept;
 // The same, so that the hips come to be over a place and face a heading.
 void put_walk(const vec3& place_m, double heading_rad, WalkState& state, Pose& pose) noexcept;
 
-// Where an engine has moved a character's capsule to, and how it goes on there. World.
+// The place, heading and velocity that an engine has given a character's capsule. World.
 struct CapsuleMotion {
   vec3 place_m{0.0};
   double heading_rad = 0.0;  // that it is to have when it stands
@@ -363,8 +365,8 @@ GaitParams following(const CapsuleMotion& capsule, const WalkState& state, const
 void advance(const WalkModel& model, const GaitParams& params, IkMode mode, double dt_s,
              WalkState& state, Pose& pose) noexcept;
 
-// How much of the data's oscillations and postures shows: 0 at rest, 1 from half the data's pace
-// on.
+// The share of the data's oscillations and postures that shows: 0 at rest, 1 from half the data's
+// pace on.
 double presence(const WalkState& state) noexcept;
 
 }  // namespace gaitpad

@@ -1,7 +1,6 @@
-// Everything about one character's walk that does not change while it walks: the data module's gait
-// cycle, retargeted to the character's legs and laid out in tables (Meredith & Maddock 2005,
-// sections 3.2 and 3.3). A model is immutable after walk_model(), and any number of walkers may
-// share it.
+// The part of a character's walk that does not change while it walks: the data module's gait cycle,
+// retargeted to the character's legs and laid out in tables (Meredith & Maddock 2005, sections 3.2
+// and 3.3). A model is immutable after walk_model(), and any number of walkers may share it.
 #pragma once
 #include <array>
 #include <memory>
@@ -104,7 +103,8 @@ struct LegBuild {
   double track_m = 0;    // sideways place of the heel from the pelvis' path, + left
 };
 
-// Where a character's strides go, in its lengths: evenly farther for greater ratios.
+// The footprints of a character's strides, in its lengths, as a line over the ratio: at_zero +
+// ratio * per_ratio.
 struct FootprintLine {
   Footprints at_zero, per_ratio;
   double most_ratio = 0.0;  // of the tables
@@ -143,13 +143,13 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
 // Its stride of one ratio in its lengths, at one phase. No heap.
 StridePlace stride_of(const WalkModel& model, bool backward, double phase, double ratio) noexcept;
 
-// What the stick asks of this character at full deflection, by the pace of its motion: the adult's
-// for its legs, or the motion's own gait at kOwnStick.
+// The limits of this character at full deflection, by the pace of its motion: the adult's for its
+// legs, or the motion's own gait at kOwnStick.
 GaitLimits gait_limits(const WalkModel& model) noexcept;
 
-// How far forward the stick gives the data's speed, on the data's own legs. At the own pace that is
-// kOwnStick, and the steps are the data's too; at the adult's pace they are an adult's. Nothing if
-// the data are faster than full stick.
+// The forward deflection that gives the data's speed, on the data's own legs. At the own pace that
+// is kOwnStick, and the steps are the data's too; at the adult's pace they are an adult's. Nothing
+// if the data are faster than full stick.
 std::optional<double> own_stick(const GaitCycle& cycle) noexcept;
 
 // The factor by which a terrain has to grow for this walker: 1 where it fits. Where the sole and

@@ -1,4 +1,4 @@
-// What a game takes out of a walk: the events of a tick, the joints that it wants, and the pose in
+// The output of a walk for a game: the events of a tick, the joints that it wants, and the pose in
 // floats, in its own memory and joint order.
 //
 //   const WalkFrame before = state.frame;
@@ -36,8 +36,8 @@ struct WalkEvents {
   const WalkEvent* end() const noexcept { return event.data() + count; }
 };
 
-// What has happened since `before`, the frame of one tick earlier. A move of the walk in between is
-// no event.
+// The events since `before`, the frame of one tick earlier. A move of the walk in between is no
+// event.
 WalkEvents walk_events(const WalkFrame& before, const WalkState& state) noexcept;
 
 // By joint of the model's skeleton: 1 for the legs, the pelvis and what it hangs on; else 0, so

@@ -1,5 +1,5 @@
-// The ground as a walk meets it, in the walk's own coordinates: sections lie in them, and a game's
-// ground is asked for by its place in the world.
+// The ground in a walk's own coordinates. Sections lie in these coordinates; a game's ground is
+// asked for by its place in the world.
 #pragma once
 #include <array>
 

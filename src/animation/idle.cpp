@@ -1,4 +1,4 @@
-// A person who stands breathes, sways over the feet, and looks round now and then. All of it
+// A standing character breathes, sways over its feet, and looks round now and then. All of it
 // follows from the ticks of the stand, so a replay stands the same; it begins some time after the
 // feet are at rest and ends while a walk begins. Planted feet stay where they are: hips move over
 // them.
@@ -11,7 +11,7 @@ namespace gaitpad {
 namespace {
 
 constexpr double kBeginsAfter_s = 1.0, kBegins_s = 2.0, kEnds_s = 0.8;
-// 14 breaths a minute raise the trunk by so much (people at rest: 12 to 18).
+// 14 breaths a minute (people at rest: 12 to 18), each of which raises the trunk by kBreath_rad.
 constexpr double kBreath_Hz = 0.235, kBreath_rad = 0.6 * kDegree;
 // Quiet stance sways by 3 to 5 mm (standard deviation of the centre of pressure, Winter 1995),
 // below 0.5 Hz.
@@ -33,7 +33,8 @@ double swings(std::span<const Swing> of, double time_s) noexcept {
   return sum;
 }
 
-// 0 .. 1 of the draw `which` of a glance: splitmix64, so that neighbours have nothing in common.
+// A random number in [0, 1): number `which` of this glance. By splitmix64, so that successive
+// numbers are unrelated.
 double drawn(std::uint64_t glance, std::uint64_t which) noexcept {
   std::uint64_t bits = (4 * glance + which + 1) * 0x9e3779b97f4a7c15u;
   bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -74,7 +75,7 @@ void advance_idle(const Tick& tick, WalkState& state) noexcept {
   }
   const double breath = 0.5 - 0.5 * sin_cos(2.0 * kPi * kBreath_Hz * time_s).cos;
   idle.breath_rad = amount * kBreath_rad * breath;
-  // Of mirrored walks the stands are mirrored, too: the foot that landed last says which it is.
+  // After a mirrored walk the stand is mirrored as well: the foot that landed last tells the side.
   const double outwards = state.clock.swing == kLeftSide ? 1.0 : -1.0;
   glance(time_s, amount, outwards, idle);
   const double size_m = amount * tick.model.size;

@@ -344,7 +344,7 @@ IkDofValues relative_weights(const IkChain& chain) noexcept {
   return w;
 }
 
-// A chain, as the robust solver takes it. A row more than there are is zero: kRowCount is even.
+// A chain in the form of the robust solver. kRowCount is even; a row beyond the given ones is zero.
 template <int kRowCount>
 struct ChainSystem {
   using V = double;

@@ -1,9 +1,9 @@
-// Legs whose foot is planned as a whole have one degree of freedom left, the knee's swivel, and a
-// closed form for the rest. Where that does not reach: the robust solver of gaitpad/ik.h for legs,
-// whose sizes are known when compiling: seven single
-// rotations (hip x z y, knee x, ankle x z y) and the six rows that hold a foot. Several legs are
-// solved side by side, one a lane: the two of a character, or those of a crowd. Every lane gets the
-// bits that solve_robust() gives with max_tries = 1, whatever the others do.
+// Inverse kinematics of legs. A leg whose foot is planned as a whole has one degree of freedom
+// left, the knee's swivel; a closed form gives the rest. If the closed form fails, the robust
+// solver of gaitpad/ik.h runs, with the sizes of a leg known when compiling: seven single rotations
+// (hip x z y, knee x, ankle x z y) and the six rows that hold a foot. Several legs are solved side
+// by side, one a lane: the two of a character, or those of a crowd. Every lane gets the bits that
+// solve_robust() gives with max_tries = 1, whatever the others do.
 #pragma once
 #include "base/lanes.h"
 #include "gaitpad/ik.h"
@@ -25,8 +25,8 @@ struct LegGoals {
   std::array<V, 6> goal_m;
 };
 
-// A leg whose foot is planned as a whole: where its ankle is to be, in the pelvis' frame from the
-// hip joint, and the foot's axes.
+// A leg whose foot is planned as a whole: the goal of its ankle, in the pelvis' frame from the hip
+// joint, and the foot's axes.
 template <class V>
 struct PlannedLeg {
   V thigh_m, shank_m;
@@ -41,9 +41,9 @@ struct LegSolution {
   Vec3Of<V> heel_m, toe_m;  // the first two points, in the pelvis' frame from the hip joint
 };
 
-// The weights of equation (5): they share out what the planted point of the sole leaves free. `of`
-// LegGoals, the weights are W, the first point is the one that is met exactly; the second and third
-// are `lever_m` from it along the foot and across it, and give way.
+// The weights of equation (5): they decide how a leg uses the freedom that the planted point of its
+// sole leaves. In LegGoals, the weights are then W; the first point is met exactly; the second and
+// third, `lever_m` from it along the foot and across it, give way.
 template <class V>
 struct LegShares {
   V uneven;                               // 1, or 0: this leg is left as it is
@@ -55,8 +55,8 @@ struct LegShares {
   V knee_rad, knee_soft_rad;     // a knee that is straighter than this is bent
 };
 
-// One leg: what is to be reached and where the solver starts, then the best pose and what it came
-// to. Angles and weights have to be finite.
+// One leg: its goals and the solver's start, then the best pose and its error. Angles and weights
+// have to be finite.
 struct LegToSolve {
   LegGoals<double> goals;
   LegShares<double> shares;  // where weights differ
@@ -64,7 +64,7 @@ struct LegToSolve {
   LegSolution<double> solution;
 };
 
-// One leg, and whether it was reached: 1 or 0. Else the angles are as they were.
+// One leg, and whether its goal was reached: 1 or 0. If not, the angles are unchanged.
 struct LegToClose {
   PlannedLeg<double> planned;
   LegAngles angles_rad;

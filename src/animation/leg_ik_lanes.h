@@ -5,7 +5,7 @@
 
 namespace gaitpad {
 
-// Which of a goal's points a row is of.
+// The goal's point that each row belongs to.
 inline constexpr std::array<int, 6> kPointOf = {0, 0, 0, 1, 1, 2};
 
 namespace {
@@ -149,7 +149,7 @@ inline MaskOf<V> close_lanes(const PlannedLeg<V>& planned, LegValues<V>& angles_
   const Vec3Of<V> from = -(a + b * bends) * y - (b * bent) * z;
   Vec3Of<V> axis = cross_of(from, ankle);
   V w = square + dot_of(from, ankle);
-  // Rotation vectors of hip and foot, and what is left of the foot's for the ankle.
+  // Rotation vectors of hip and foot, and the part of the foot's that the ankle has to turn.
   const Vec3Of<V> of_hip = axis * (2.0 / w),
                   of_foot =
                       0.5 * (cross_of(foot_x, planned.foot_x) + cross_of(foot_y, planned.foot_y) +
@@ -195,8 +195,8 @@ inline MaskOf<V> close_lanes(const PlannedLeg<V>& planned, LegValues<V>& angles_
 
 // --- Equation (5) --------------------------------------------------------------------------------
 
-// The exact rows are closed in every step, this share of the rest: with all of it some walks swing
-// between two poses.
+// The share of the errors closed in one step; the exact rows are closed fully in every step. With a
+// share of 1 some walks swing between two poses.
 inline constexpr double kShareStep = 0.5;
 inline constexpr double kMostShareStep_rad = 0.6;
 inline constexpr double kSharedNear_rad = 0.05 * kDegree, kSharedNear_m = 0.001;

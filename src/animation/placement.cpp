@@ -1,4 +1,4 @@
-// Where a walk lies in the world, and how it follows what an engine moves.
+// Places a walk in the world, and lets it follow a body that an engine moves.
 #include "animation/placement.h"
 
 #include "gaitpad/control.h"
@@ -55,7 +55,7 @@ void put_walk(const vec3& place_m, double heading_rad, WalkState& state, Pose& p
 GaitParams following(const CapsuleMotion& capsule, const WalkState& state, const StyleValues& style,
                      const GaitLimits& limits) noexcept {
   constexpr double kCatchUp_s = 0.6, kTurns_s = 0.35;
-  constexpr double kStill_m_s = 0.1, kBeside_m = 0.8;  // so slow and so near, it has arrived
+  constexpr double kStill_m_s = 0.1, kBeside_m = 0.8;  // slower and nearer: it has arrived
   constexpr double kNear_m = 0.12, kFaces = 3.0 * kDegree;
   const WalkFrame& frame = state.frame;
   vec3 off_m = capsule.place_m - frame.root_m;

@@ -1,10 +1,10 @@
-// What a tick reports in the world (WalkState::placed), and its root motion.
+// Reports a tick in the world (WalkState::placed), and its root motion.
 #pragma once
 #include "gaitpad/walk.h"
 
 namespace gaitpad {
 
-// What a tick has written in the walk's own coordinates: brings it to the world.
+// Brings the results of a tick from the walk's own coordinates to the world.
 void place_in_world(const Placement& placed, WalkFrame& frame, vec3& root_m, quat& root) noexcept;
 
 struct RootBefore {
@@ -14,7 +14,7 @@ struct RootBefore {
 inline RootBefore root_of(const WalkState& state) noexcept {
   return {state.path.hips_m, state.path.heading_rad};
 }
-// Since then, in the walk's own coordinates.
+// Reports the root's motion since `before`, in the walk's own coordinates.
 void report_root(const RootBefore& before, WalkState& state) noexcept;
 
 }  // namespace gaitpad

@@ -37,7 +37,7 @@ std::optional<Error> length_problem(double length_m) {
                " and " + number(kMaxLength_m) + " m"};
 }
 
-// Why a sole would not lie on a surface of at most this bend and grade.
+// The reason why a sole would not lie on a surface of at most this bend and grade.
 std::optional<Error> shape_problem(double bend_1_m, double grade) {
   if (!(grade <= kMaxGrade))
     return Error{"a grade of " + fixed(grade, 2) + " is too steep: at most " + number(kMaxGrade)};

@@ -1,10 +1,11 @@
-// The upper body of a walk: the data's, but for arms that swing as far as the pace asks, hands and
-// a head that are to be somewhere, and joints that follow by their weights (equation 5). Meredith &
-// Maddock 2005, section 5 (future work). Nothing in here moves pelvis or legs.
+// The upper body of a walk. It moves as in the data, except that arms swing as far as the pace
+// asks, hands and head are brought to the places that a style names, and joints follow by their
+// weights (equation 5). Meredith & Maddock 2005, section 5 (future work). Nothing in here moves
+// pelvis or legs.
 //
 // In a tick: smooth_upper_body() brings the style's values into force, and pose_upper_body() leans
 // the trunk and spreads the arms, poses the spine, then the arms that hang on it, then the head.
-// What is as the data have it is not touched, so it costs nothing and keeps its bits.
+// Joints that move as in the data are not touched, so they cost nothing and keep their bits.
 #include <bit>
 #include <cstring>
 
@@ -157,17 +158,18 @@ void lean_trunk(const WalkModel& model, const WalkState& state, const PosePart& 
   }
 }
 
-// Where a walk begins, changes or ends the data's chest and head may jump: their second differences
-// are bounded. What that differs by the spine's joints share, and neck and head.
+// When a walk begins, changes or ends, the data's chest and head may jump, so their second
+// differences are bounded. The spine's joints share the chest's correction; neck and head share the
+// head's.
 constexpr double kMostChest_s2 = 260.0 * kDegree, kMostHead_s2 = 145.0 * kDegree,
                  kTrunkEases_s = 0.25;
 
-// How far the segment is turned from standing, as a rotation vector in the walker's axes.
+// The segment's turn from standing, as a rotation vector in the walker's axes.
 vec3 turn_of(const quat& world, const quat& standing, double heading_rad) noexcept {
   return rotation_vector(rotation_y(-heading_rad) * world * glm::conjugate(standing));
 }
 
-// The turn that it is to have.
+// That turn with its second difference bounded.
 vec3 eased_turn(const Tick& tick, const WalkState& state, const vec3& goal, double most_s2,
                 EasedOf<vec3, double>& eased) noexcept {
   const double changes = state.body.push_rad.x != 0.0 ? 1.0 : state.path.unsteady;
@@ -372,7 +374,7 @@ bool is_arm_free(const UpperBodyParams& now, Side side) noexcept {
          now.hand[side].rail <= 0.0;
 }
 
-// Where each hand is before anything is done to it, for those whose arm is there.
+// The hands' places in the data, of arms that exist.
 using HandPlaces = std::array<vec3, 2>;
 
 vec3 hand_place(const ArmBuild& arm, const JointFrames& world) noexcept {
@@ -443,8 +445,8 @@ vec3 rail_place(const WalkModel& model, const WalkState& state, const HandParams
   return place;
 }
 
-// Where the solver starts for a held hand: the elbow points out and is bent as the distance of the
-// place asks, the wrist is as in the data.
+// The solver's start for a held hand: the elbow points out and is bent as the distance of the place
+// asks, the wrist is as in the data.
 IkAngles held_start(const Arm& arm, Side side, double rail, const vec3& place_m) noexcept {
   const double a = upper_m(arm), b = lower_m(arm);
   const double far = glm::distance(place_m, arm.shoulder_m);
@@ -601,7 +603,7 @@ void turn_head(const UpperBodyModel& body, const Skeleton& skeleton, const quat&
   }
 }
 
-constexpr double kHeadStays = 0.8;  // of the lean into a change: the head stays so upright
+constexpr double kHeadStays = 0.8;  // share of the lean into a change that the head does not follow
 
 bool is_head_free(const HeadParams& head) noexcept {
   return head.look <= 0.0 && head.look_at <= 0.0 && head.lead <= 0.0;
@@ -668,11 +670,11 @@ void pose_head(const Tick& tick, WalkState& state, const PosePart& pose,
 
 namespace {
 
-// A trunk leans into a speed that it does not have yet, a little also into a slow one, and back
-// from one that it is to lose; head and chest turn before the pelvis does (people: by 0.3 s and
-// less). Times in seconds at the reference leg.
+// The trunk leans into a change of speed: forward while the walk is slower than asked, a little
+// even for a slow walk, and back while it is faster. Head and chest turn before the pelvis does
+// (people: by 0.3 s and less). Times in seconds at the reference leg.
 constexpr double kPush = 3.0 * kDegree;                                          // for 1 m/s
-constexpr double kFirstPush = 2.0 * kDegree, kFirstFrom = 0.4, kFirstAll = 0.8;  // of what lacks
+constexpr double kFirstPush = 2.0 * kDegree, kFirstFrom = 0.4, kFirstAll = 0.8;  // at a start
 constexpr double kCalm = 0.25, kSoftCalm_m_s = 0.1;
 constexpr double kPushSmoothing = 0.04, kSpeedSmoothing = 0.15;
 constexpr double kHeadAhead_s = 0.30, kHeadSmoothing = 0.07;

@@ -7,8 +7,8 @@
 //
 // Hips. They follow the tables of clean strides (gaitpad/stride_family.h) from the footprint of the
 // foot that stands to the next landing. A step leads from the stride of the last step to its own,
-// so both tables are read and mixed. What the hips differ by from that path, because a landing has
-// moved, fades until the strike.
+// so both tables are read and mixed. The hips' offset from that path, which a moved landing causes,
+// fades until the strike.
 //
 // The pose. Feet and pelvis are planned first, then the inverse kinematics connects them (section
 // 3.3.2), and everything else comes from the data at this phase.
@@ -21,7 +21,7 @@
 
 namespace gaitpad {
 
-// --- What all parts of a tick ask about the walk -------------------------------------------------
+// --- Queries about the walk that all parts of a tick use -----------------------------------------
 
 Side step_foot(const WalkState& state) noexcept {
   return state.clock.stage == Stage::flight ? state.clock.swing : other(state.clock.swing);
@@ -109,17 +109,21 @@ namespace {
 constexpr double kSlowerOnStairs = 1.2, kSlowestRise = 0.34, kSteepRise = 0.15;
 constexpr double kStairStep_s = 0.84, kStairRise = 0.2;
 constexpr double kSlowerBack = 2.05;
-// A start: from the stick to the lift-off, and the first flight, in seconds and of a steady one.
+// The first step: from the stick to the lift-off (kFirstRollOn_s if the hips still move), then the
+// flight, kFirstFlight of a steady one within the two bounds.
 constexpr double kFirstRoll_s = 0.25, kFirstRollOn_s = 0.13, kLeastFirstFlight_s = 0.38,
                  kMostFirstFlight_s = 0.62, kFirstFlight = 0.9;
-// A closing foot lands so long before the hips rest; its flight, of a steady one.
+// A closing foot lands kLandsBefore_s before the hips rest; its flight lasts at most kMostClosing
+// times as long as a steady one.
 constexpr double kLandsBefore_s = 0.04, kLeastClosing_s = 0.30, kMostClosing = 1.25;
 constexpr double kLongestClosingRoll = 1.6, kLeastClosingRoll_s = 0.11, kLeastRollLeft_s = 0.05;
-constexpr double kOtherPace = 0.02;    // ratios that differ by more take a step that leads over
+constexpr double kOtherPace = 0.02;    // a greater change of the ratio takes a step of transition
 constexpr double kLastRoll_s = 0.17;   // until both feet are flat
-constexpr double kShownAtRest = 0.08;  // so little of the tables shows that another step may begin
-constexpr double kHesitation = 0.2;    // for next to nothing; less for more, none from
-constexpr double kSureRatio = 0.3, kSureTurn = 0.15;  // this stride ratio or turn (rad/s) on
+constexpr double kShownAtRest = 0.08;  // share of the tables below which another step may begin
+// A stand waits kHesitation before a tiny command starts a walk, less before a greater one, and not
+// from this stride ratio or turn (rad/s) on.
+constexpr double kHesitation = 0.2;
+constexpr double kSureRatio = 0.3, kSureTurn = 0.15;
 
 // Share of the cycle's time.
 double time_share(const WalkModel& model, const WalkState& state, Stage stage,
@@ -206,7 +210,7 @@ void time_step(const Tick& tick, double roll_s, double flight_s, StepClock& cloc
 
 // Begins a step: `rolling` has just landed, the other foot flies next.
 void begin_step(const Tick& tick, Side rolling, WalkState& state) noexcept {
-  // A step that was changed on its way owes nothing.
+  // A step that was changed on its way passes no rounding on to the next one.
   if (state.clock.step_ticks == state.clock.roll_ticks + state.clock.flight_ticks)
     state.clock.late_s =
         std::clamp(state.clock.late_s + state.clock.step_s - state.clock.step_ticks * tick.dt_s,
@@ -216,7 +220,7 @@ void begin_step(const Tick& tick, Side rolling, WalkState& state) noexcept {
   time_step(tick, stage_time(tick.model, state, Stage::roll, rolling),
             stage_time(tick.model, state, Stage::flight, other(rolling)), state.clock);
   state.clock.stage_phase = rolling == kRightSide ? 0.0 : tick.model.share[0] + tick.model.share[1];
-  // The phase may have come out a whole turn off.
+  // The phase may be off by whole turns.
   state.clock.phase = state.clock.stage_phase;
   begin_stage(Stage::roll, rolling, state.clock.roll_ticks, state);
   aim_phase(tick, state);
@@ -287,7 +291,7 @@ void begin_settling(const Tick& tick, Side landed, WalkState& state) noexcept {
 void land_foot(const Tick& tick, WalkState& state) noexcept {
   StepClock& clock = state.clock;
   const Side landed = clock.swing;
-  // A step that was walked on with may not have come over to its own stride.
+  // After a stop that was taken back the tables may not have reached the step's own stride.
   const double change = std::clamp(state.gait.change, 0.0, 1.0);
   if (!clock.closing)
     state.gait.ratio_behind =
@@ -315,8 +319,8 @@ void land_foot(const Tick& tick, WalkState& state) noexcept {
   }
   const double own_m = tick.model.own_step_m[clock.backward ? landed : other(landed)];
   const double asked = tick.params.stride[other(landed)].length_m / own_m;
-  // A limp's steps differ from each other, and uneven ground shortens them: the pace changes where
-  // what is asked for does.
+  // A limp's steps differ from each other, and uneven ground shortens them, so the pace counts as
+  // changed only if the step that is asked for changes.
   const double last =
       begins && tick.flat ? state.gait.ratio_behind : state.gait.length_m[other(landed)].x / own_m;
   clock.led = clock.stopping || std::abs(asked - last) > kOtherPace;
@@ -327,8 +331,8 @@ void land_foot(const Tick& tick, WalkState& state) noexcept {
 // Step times, and how long double support takes, follow the parameters at the next step.
 void ask_for(const GaitParams& params, const WalkModel& model, WalkState& state) noexcept {
   for (int side : {0, 1}) state.gait.time_s[side] = params.stride[side].time_s;
-  // Of the foot whose step is the longer one beside its own: a limp, which shortens one, does not
-  // change the other foot's time.
+  // Use the larger of both feet's ratios: a limp, which shortens one step, does not change the
+  // other foot's time.
   state.gait.asked_ratio = 0.0;
   for (int side : {0, 1}) {
     const double own_m = model.own_step_m[params.backward ? 1 - side : side];
@@ -336,8 +340,9 @@ void ask_for(const GaitParams& params, const WalkModel& model, WalkState& state)
   }
 }
 
-// A stand that is asked for very little waits whether it is meant: a stick that is touched in
-// passing would else cost two slow steps before a full push in another direction is followed.
+// A stand waits up to kHesitation before it follows a very small command: a stick that is touched
+// in passing would otherwise cost two slow steps before a full push in another direction is
+// followed.
 bool is_meant(const Tick& tick, WalkState& state) noexcept {
   const double sure = std::max(state.gait.asked_ratio / kSureRatio,
                                std::abs(tick.params.turn_rate_rad_s) / kSureTurn);
@@ -358,7 +363,7 @@ void advance_clock(const Tick& tick, WalkState& state) noexcept {
            state.clock.end_rate, remaining, 1.0);
 }
 
-// Begins the next stage where this one is over.
+// Begins the next stage if this one is over.
 void finish_stage(const Tick& tick, WalkState& state) noexcept {
   if (state.clock.stage == Stage::idle || state.clock.tick < state.clock.stage_ticks) return;
   const Side swing = state.clock.swing;
@@ -391,7 +396,7 @@ void time_step_again(const Tick& tick, WalkState& state) noexcept {
   aim_phase(tick, state);
 }
 
-// Its foot lifts off where the hips are as far ahead of the standing foot as in a walk.
+// The closing foot lifts off when the hips are as far ahead of the standing foot as in a walk.
 void time_closing_step(const Tick& tick, WalkState& state) noexcept {
   StepClock& clock = state.clock;
   const double scale = tick.model.time_scale;
@@ -497,7 +502,7 @@ WalkState standing(const WalkModel& model, const vec3& place_m, double heading_r
   state.path.base.height_m = state.path.base.level_m =
       std::min(state.foot[kLeftSide].plane.place_m.y, state.foot[kRightSide].plane.place_m.y);
   advance(model, GaitParams{}, IkMode::robust, 1.0 / 240.0, state, pose);
-  // What may not jump has come to its place in that tick, without a rate.
+  // Values that may not jump reach their goals in that tick; then they rest.
   state.path.eased_height.rate = state.path.eased_height.bend = 0.0;
   for (auto* turn : {&state.body.eased_chest, &state.body.eased_head})
     turn->rate = turn->bend = vec3(0.0);
@@ -637,7 +642,7 @@ void advance(const WalkModel& model, const GaitParams& params, IkMode mode, doub
   const int parts = tick_parts(dt_s);
   const Tick tick = {model, params, mode, dt_s / parts, is_flat(*model.terrain), state.placed};
   const RootBefore before = root_of(state);
-  static thread_local PlannedTick planned;  // kept, for clearing it costs more than a leg
+  static thread_local PlannedTick planned;  // kept: clearing costs more than a leg's solve
   for (int part = 0; part < parts; ++part) {
     plan_tick(tick, state, planned);
     pose_legs(planned);

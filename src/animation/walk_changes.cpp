@@ -1,8 +1,8 @@
-// How a walk comes to rest, at any moment of a step, and how it goes on if the stick comes back.
+// How a walk comes to rest at any moment of a step, and how it goes on if the stick comes back.
 //
-// A stop chooses among three ends the first that brakes softly: the flying foot closes beside the
-// standing one; it lands ahead and the other foot closes; one more step comes between. The hips go
-// to their place between the feet along a quintic, whose time is chosen for the least braking.
+// A stop takes the first of three ends that brakes softly: the flying foot closes beside the
+// standing one; it lands ahead and the other foot closes; one more step comes in between. The hips
+// go to their place between the feet along a quintic, whose time is chosen for the least braking.
 #include "animation/sound_input.h"
 #include "animation/walk_flow.h"
 
@@ -12,10 +12,10 @@ namespace {
 // A quintic to rest brakes with about kNeed v^2 / way. Times are in seconds at the reference leg.
 constexpr double kNeed = 0.72, kBrake_m_s2 = 3.0, kCloseBrake_m_s2 = 3.3, kMostBrake_m_s2 = 3.9;
 constexpr double kLeastRest_s = 0.25, kMostRest_s = 1.6;
-constexpr double kShortestStep = 0.25, kFurtherStep = 0.3;  // of the foot's own step
+constexpr double kShortestStep = 0.25, kFurtherStep = 0.3;  // shares of the foot's own step
 constexpr double kToClose_s = 0.40, kWayWhileClosing = 0.44;
 constexpr double kMoves_m_s = 1.1,
-                 kMovesFrom = 0.5;  // a landing moves by so much, from this flight on
+                 kMovesFrom = 0.5;  // from this share of the flight on a landing moves no faster
 constexpr double kBehind_m = 0.02;
 constexpr double kLandsAhead = 0.42;  // of a step: so far are hips behind the foot that lands
 constexpr double kInPlace = 0.1;      // steps below this ratio turn on the spot
@@ -31,13 +31,14 @@ vec3 left_of(double heading_rad) noexcept {
   return glm::cross(kUp, heading_direction(heading_rad));
 }
 
-// At this time from now the hips have at least so far to go yet: their foot lands ahead of them.
+// A bound: in `time_s` from now the hips must still have `way_m` to go, so that the foot that lands
+// then is ahead of them.
 struct Behind {
   double time_s = 0.0, way_m = 0.0;
 };
 
-// The time in which hips come to rest most softly, neither beyond their place nor back, and not
-// before their feet. Hips that move away from it turn round soon.
+// The time in which the hips come to rest most softly: without passing their place or moving back,
+// and not before the feet. Hips that move away from it turn round soon.
 double best_rest_s(double way_m, double speed_m_s, double bend_m_s2, double scale,
                    std::span<const Behind> landings) noexcept {
   constexpr int kTimes = 20, kPoints = 40;
@@ -96,7 +97,7 @@ Flown flown(const Tick& tick, const WalkState& state) noexcept {
   return flown;
 }
 
-// Gives the running step another end. A foot in flight goes over to its new path until it lands.
+// Changes the end of the running step. A foot in flight goes over to its new path until it lands.
 template <class Change>
 void change_step(const Tick& tick, WalkState& state, const Change& change) noexcept {
   const bool flies = state.clock.stage == Stage::flight;
@@ -107,7 +108,7 @@ void change_step(const Tick& tick, WalkState& state, const Change& change) noexc
   if (!state.clock.led) state.clock.led_from = state.clock.tick;
   change();
   state.clock.led = true;
-  // A foot that rolls down has some time left for it.
+  // A foot that rolls down needs some time for it.
   const int least =
       state.clock.tick + static_cast<int>(kRollsOn_s * tick.model.time_scale / tick.dt_s + 0.5);
   if (!flies && state.clock.stage_ticks < least)
@@ -129,8 +130,8 @@ void change_step(const Tick& tick, WalkState& state, const Change& change) noexc
   const Flown is = flown(tick, state);
   foot.gap_m = was.heel_m[0] - is.heel_m[0];
   foot.gap_slope_m = ((was.heel_m[1] - is.heel_m[1]) - foot.gap_m) * ticks;
-  // A foot that was lower than it is to be goes over in proportion: it would else come to the
-  // ground.
+  // If the foot is lower than the new plan, the offset shrinks in proportion to the planned height:
+  // a constant offset would take the foot through the ground.
   foot.gap_high_m = std::max(is.heel_m[0].y - is.base_m, kLow_m * tick.model.size);
   if (foot.gap_m.y < 0.0)
     foot.gap_slope_m.y -=
@@ -200,15 +201,15 @@ void plan_rest(const Tick& tick, WalkState& state) noexcept {
     clock.closing_ticks = clock.rest_ticks;
     clock.stopping = clock.led = true;
   };
-  // The steps that are left take as long as the last one, and the running one, too, if it has just
+  // The remaining steps take as long as the last one, and so does the running one if it has just
   // begun: a thumb that lets go asks for slow ones on its way.
   const int running = clock.roll_ticks + clock.flight_ticks,
             usual = clock.last_step_ticks > 0 ? std::min(running, clock.last_step_ticks) : running;
   for (double& time_s : state.gait.time_s) time_s = usual * tick.dt_s / clock.slowness;
   state.gait.asked_ratio = ratio_ahead<double>(model, moment_of(model, state), state);
   const bool flies = clock.stage == Stage::flight;
-  // A foot that is about to land does so where it is, and one that is high up; over uneven ground
-  // any that flies does, for the way to its foothold is planned.
+  // A foot that is about to land, or that is high up, lands where it is. Over uneven ground every
+  // flying foot does, because the way to its foothold is planned.
   const double lands_s = (clock.stage_ticks - clock.tick) * tick.dt_s;
   const bool is_high = state.gait.flight_height[swing].x > kHighFlight;
   if (flies && (!tick.flat || is_high || lands_s < kLands_s * scale)) return;
@@ -285,8 +286,9 @@ void walk_on(const Tick& tick, WalkState& state) noexcept {
   StepClock& clock = state.clock;
   const bool flies = clock.stage == Stage::flight;
   if (clock.closing && flies && (!tick.flat || clock.tick > kTurnsBack * clock.stage_ticks)) return;
-  // Hips that have braked cannot be where the tables have them at a strike that is near: it goes on
-  // from there. Not over uneven ground, where a foothold further on is planned with the step.
+  // Hips that have braked cannot reach the tables' place at a near strike, so the walk goes on
+  // after that strike; over uneven ground it does not wait, because a foothold further on is
+  // planned with the step.
   const double left_s = (clock.stage_ticks - clock.tick) * tick.dt_s;
   if (tick.flat && flies && left_s < kNearStrike_s * tick.model.time_scale) return;
   change_step(tick, state, [&] {

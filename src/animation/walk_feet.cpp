@@ -1,10 +1,10 @@
-// Where the feet are to be, before any inverse kinematics.
+// Plans the feet, before any inverse kinematics.
 //
 // A foot is always in one of three modes. In support it stands on its toe, and the heel may rise.
 // In flight its heel follows the flight path of the data, stretched to go from where it lifted to
 // where it is to land. In roll it has landed on its heel, and the toe comes down. A foot's pose is
-// a place (of the heel or the toe), a direction and a pitch. When the mode changes, what the pose
-// and its rate differ by from the new mode's plan fades away as a cubic, so nothing jumps.
+// a place (of the heel or the toe), a direction and a pitch. When the mode changes, the difference
+// of pose and rate from the new mode's plan fades as a cubic, so nothing jumps.
 //
 // Heights and pitches count from the plane that the foot is planned on: the ground under its sole,
 // and in flight a line from the plane it left to the plane it will land on.
@@ -21,7 +21,7 @@ void pitch_foot(const LegBuild& leg, double pitch_rad, FootPose& pose, FootMode 
   set_pitch<double>(leg, pitch_rad, mode == FootMode::support, pose);
 }
 
-// The foot before it rose as its leg asked.
+// The foot's pose before it rose as its leg asked.
 FootPose planned_pose(const WalkModel& model, const WalkState& state, Side side) noexcept {
   FootPose pose = state.foot[side].pose;
   const double asked_rad = state.legs.asked_rad[side];
@@ -67,7 +67,7 @@ void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept {
       state.gait.turn_rate.x * heel_rise<double>(model, at, side) * tick.dt_s * ticks;
   foot.eased_heel = {.value = lifts.heel_m, .rate = slope_m / ticks, .bend = {}, .off = {}};
   foot.eased_pitch = {.value = lifts.pitch_rad, .rate = pitch_rate, .bend = {}, .off = {}};
-  // What this foot differs by from the tables fades away.
+  // This foot's difference from the tables fades.
   foot.gap_m = foot.gap_slope_m = vec3(0.0);
   foot.gap_begin = 0.0;
   foot.gap_lasts = kLiftFade;

@@ -2,8 +2,8 @@
 // legs' angles by inverse kinematics (section 3.3.2), and the local rotations of all joints.
 //
 // Robust mode starts from the tables' angles, which know of stiff joints already. Six rows hold the
-// whole foot; the knee's swivel, which they leave free, is pulled to the data's. What is left to
-// solve for is little, and the weights of equation (5) share it out.
+// whole foot; the knee's swivel, which they leave free, is pulled to the data's. Little is left to
+// solve for, and the weights of equation (5) distribute it.
 #pragma once
 #include "animation/leg_ik.h"
 #include "animation/walk_flow.h"
@@ -60,8 +60,8 @@ void set_leg(const LegBuild& leg, const PoseOf<V>& foot, const PelvisOf<V>& pelv
   set_vector<V>(along, goals.along);
 }
 
-// The rows' goals: of the first point, of one that is `ahead_m` of it in the foot, and of one
-// beside it. What lies between the foot's points does not turn in its own axes.
+// The goals of the rows: the first point, a point `ahead_m` in front of it in the foot, and a point
+// beside it. In the foot's own axes the differences between these points are constant.
 template <class V>
 void set_rows(const LegBuild& leg, const Vec<V>& first_m, const vec3& ahead_m,
               LegGoals<V>& goals) noexcept {
@@ -76,7 +76,7 @@ void set_rows(const LegBuild& leg, const Vec<V>& first_m, const vec3& ahead_m,
                   up};
 }
 
-// Where one leg starts, near to where it ends.
+// The start of one leg's solve, close to its end.
 template <class V>
 void set_start(const Tick& tick, const PlanOf<V>& plan, Side side, StateOf<V>& state,
                std::array<V, kLegDofs>& angles_rad) noexcept {
@@ -86,7 +86,7 @@ void set_start(const Tick& tick, const PlanOf<V>& plan, Side side, StateOf<V>& s
     if (j == kKneeX) data = max_of(data, all_of<V>(kLeastKnee));
     auto& legs = state.legs;
     const V off = legs.even_rad[side][j] - legs.data_rad[side][j];
-    // What the weights change goes on as it did.
+    // Extrapolates the change that the weights made.
     const V shift = legs.angles_rad[side][j] - legs.even_rad[side][j];
     legs.angles_rad[side][j] = shift + (shift - legs.last_shift_rad[side][j]);
     legs.last_shift_rad[side][j] = shift;
@@ -96,7 +96,7 @@ void set_start(const Tick& tick, const PlanOf<V>& plan, Side side, StateOf<V>& s
   }
 }
 
-// What is to be reached, by a leg of even weights.
+// The goals of a leg with even weights.
 template <class V, class Limited>
 void set_limits(const LegBuild& leg, Limited& to) noexcept {
   to.thigh_m = all_of<V>(leg.model.thigh_m);
@@ -163,14 +163,14 @@ MaskOf<V> needs_mending(const WalkModel& model, const MomentOf<V>& at, Side side
 inline constexpr double kMeanTime_s = 0.5;  // of each of two filters in a row
 inline constexpr double kLeastW = 0.09;     // of a locked joint
 inline constexpr double kMostPull_rad = 18.0 * kDegree;
-inline constexpr double kHeldPull = 0.3;  // what acts of the pull where the foot may not turn
+inline constexpr double kHeldPull = 0.3;  // share of the pull that acts while the foot may not turn
 inline constexpr double kFootLever_m = 0.2;
-// Of the flight: until here the toe is the planted point, from here on the heel; from here on the
-// foot turns back to its plan, and is as good as landed.
+// Shares of the flight. The planted point is the toe until kToeUntil and the heel from kOnHeel on;
+// the foot turns back to its plan from kToLand to kLanded.
 inline constexpr double kToeUntil = 0.15, kOnHeel = 0.6, kToLand = 0.4, kLanded = 0.95;
-// How far a foot gives way: squared radians that cost as much as one of a joint's.
+// How much a foot gives way: squared radians that cost as much as one squared radian of a joint.
 inline constexpr double kGiveAside = 0.15, kGiveFlying = 0.5, kGiveRolling = 0.05;
-// A foot that stood flat becomes free so slowly, when a walk begins.
+// When a walk begins, a foot that stood flat becomes free with this time constant.
 inline constexpr double kLoosening_s = 0.04;
 inline constexpr double kTight_rad = 3.0 * kDegree;  // a foot with less room hardly gives way
 inline constexpr double kFloorRoom_m = 0.0003;
@@ -228,8 +228,8 @@ void advance_weighted_leg(const Tick& tick, const MomentOf<V>& at, Side side,
                                  Damping(kLoosening_s * tick.model.time_scale, tick.dt_s));
 }
 
-// What the weights of one leg ask for. `goals` has the leg and the axes of the planned foot, and is
-// the weighted leg's afterwards. `angles_rad` is where it starts.
+// The goals of one leg with uneven weights. `goals` has the leg and the axes of the planned foot,
+// and receives the weighted leg's. `angles_rad`: the start.
 template <class V>
 void set_shares(const Tick& tick, const MomentOf<V>& at, const PlanOf<V>& plan,
                 const PelvisOf<V>& pelvis, Side side, const StateOf<V>& state, LegGoals<V>& goals,
@@ -286,7 +286,7 @@ void set_shares(const Tick& tick, const MomentOf<V>& at, const PlanOf<V>& plan,
               lever_m * leg.line, goals);
 }
 
-// What the weighted step came to; of even legs the even pose.
+// The result of the weighted step; for even legs the even pose.
 template <class V>
 void keep_shared(const LegBuild& leg, Side side, const LegGoals<V>& goals,
                  const LegShares<V>& shares, const std::array<V, kLegDofs>& angles_rad,
@@ -305,7 +305,7 @@ void keep_shared(const LegBuild& leg, Side side, const LegGoals<V>& goals,
   posed.squares = uneven ? solution.squares : posed.squares;
   posed.heel_m = chosen(uneven, along(V(-leg.foot_m * (1.0 - shares.on_heel))), posed.heel_m);
   posed.toe_m = chosen(uneven, along(V(leg.foot_m * shares.on_heel)), posed.toe_m);
-  // Of the sine the arc's series: a foot turns by less than 20 degrees.
+  // The series of the arc sine: a foot turns by less than 20 degrees.
   const V sine = -dot_of(goals.across, line), cube = sine * sine * sine;
   posed.pitch_rad += uneven ? sine + cube / 6.0 + 0.075 * cube * sine * sine : V{};
 }
@@ -319,12 +319,12 @@ V level_toe(const V& pitch_rad, const V& flight_progress) noexcept {
   return -soft_positive(pitch_rad, max_of(all_of<V>(1e-9), V(kSoftToe * air)));
 }
 
-// The foot is where it is planned.
+// The leg of a foot that is where it is planned.
 template <class V>
 PosedLegOf<V> closed_leg(const PoseOf<V>& foot) noexcept {
   return {all_of<V>(1.0), V{}, V{}, foot.heel_m, foot.toe_m, foot.pitch_rad};
 }
-// Where it was not reached in closed form: what the solver came to.
+// The solver's result, for a leg that the closed form did not reach.
 template <class V>
 void keep_solved(const LegBuild& leg, const MaskOf<V>& where, const LegSolution<V>& solution,
                  const PelvisOf<V>& pelvis, PosedLegOf<V>& posed) noexcept {
@@ -339,7 +339,7 @@ void keep_solved(const LegBuild& leg, const MaskOf<V>& where, const LegSolution<
   posed.toe_m = chosen(where, pelvis.place(leg, Vec<V>{toe.x, toe.y, toe.z}), posed.toe_m);
 }
 
-// What the legs of one tick came to: the toes, and what the tick reports of them.
+// The results of the legs in one tick: the toes, and the values that the tick reports.
 template <class V>
 void report_leg(const MomentOf<V>& at, Side side, const PosedLegOf<V>& posed, StateOf<V>& state,
                 std::span<WalkFrame* const> frames) noexcept {
@@ -390,7 +390,7 @@ Quat<V> turn_xzy(const HalfTurns<V>& half, int x) noexcept {
   return Quat<V>(w * yc - j * ys, i * yc - k * ys, w * ys + j * yc, k * yc + i * ys);
 }
 
-// Where the poses of the walks go: local rotations by joint.
+// The output of the walks' poses: local rotations by joint.
 template <int kWidth>
 using Locals = std::array<quat*, kWidth>;
 
@@ -538,7 +538,7 @@ void write_data(const WalkModel& model, const MomentOf<V>& at, const GaitFlow<V>
   }
 }
 
-// All joints but what a style asks of the upper body.
+// Writes all joints; a style's changes of the upper body come later.
 template <class V>
 void write_pose(const WalkModel& model, const MomentOf<V>& at, const StateOf<V>& state,
                 const PelvisOf<V>& pelvis, const Locals<kWidthOf<V>>& local) noexcept {

@@ -1,7 +1,7 @@
-// What every walk computes in every tick, of one walk or of several side by side (V: a double, or a
-// register of as many): the parameters smoothed, the landing place, the strides' tables, hips and
-// feet. What begins now and then, and what terrain adds, is computed for one walk at a time
-// (walk.cpp, walk_feet.cpp, walk_terrain.cpp).
+// The part of a tick that every walk computes, for one walk or for several side by side (V: a
+// double, or a register of as many): the parameters smoothed, the landing place, the strides'
+// tables, hips and feet. Beginnings of stages, and the effects of terrain, are computed for one
+// walk at a time (walk.cpp, walk_feet.cpp, walk_terrain.cpp).
 //
 // Walks side by side share a model and walk on flat ground. Where their stages differ, the parts of
 // a tick are computed for all of them and chosen by masks; a part that none of them is in is left
@@ -18,7 +18,7 @@ template <class V>
 inline V value(const MaskOf<V>& mask, const V& a, const V& b) noexcept {
   return mask ? a : b;
 }
-// Of two doubles that do not differ from lane to lane.
+// Chooses between two doubles that are equal in all lanes.
 template <class V>
 inline V value(const MaskOf<V>& mask, double a, double b) noexcept {
   return mask ? all_of<V>(a) : all_of<V>(b);
@@ -118,7 +118,7 @@ void smooth_parameters(const Tick& tick, const MomentOf<V>& at, const ParamsOf<V
   for (int side : {0, 1}) {
     const V kept_m = value<V>(at.finishes, gait.length_m[side].x, V{});
     const V goal_m = value<V>(at.walking, params.length_m[side], kept_m);
-    // The first step goes as far as the push that is still on its way asks.
+    // The first step follows a push that still grows, faster than later steps do.
     Damped<V> first = gait.length_m[side];
     first.advance(at.steps(static_cast<Side>(side)) ? kFirstStep * goal_m : goal_m, first_step);
     gait.length_m[side].advance(goal_m, step);
@@ -150,8 +150,8 @@ void smooth_parameters(const Tick& tick, const MomentOf<V>& at, const ParamsOf<V
   for (int side : {0, 1}) gait.arm_swing[side] = pace * params.arm_swing[side];
 }
 
-// How much of the data's oscillations and postures shows: 0 at rest, 1 from half the data's pace
-// on.
+// The share of the data's oscillations and postures that shows: 0 at rest, 1 from half the data's
+// pace on.
 template <class V>
 V presence_of(const GaitFlow<V>& gait) noexcept {
   return within(gait.shown, 0.0, 1.0) * within(gait.posture.x, 0.0, 1.0);
@@ -178,7 +178,7 @@ TablesOf<V> tables_of(const WalkModel& model, const MaskOf<V>& backward) noexcep
   return tables;
 }
 
-// Where a stride of the character goes.
+// The footprints of a stride of the character.
 template <class V>
 FootprintsOf<V> track_of(const WalkModel& model, const MaskOf<V>& backward,
                          const V& ratio) noexcept {
@@ -198,7 +198,7 @@ FootprintsOf<V> track_of(const WalkModel& model, const MaskOf<V>& backward,
 // The running step's length over the data's.
 template <class V>
 V ratio_of_step(const WalkModel& model, const MomentOf<V>& at, const StateOf<V>& state) noexcept {
-  // Run back, a foot makes the step that the other one makes forwards.
+  // In a cycle that is run back, a foot makes the step that the other one makes forwards.
   const V own_m = value<V>(at.right_steps != at.backward, model.own_step_m[kRightSide],
                            model.own_step_m[kLeftSide]);
   const V step_m =
@@ -214,7 +214,8 @@ V ratio_ahead(const WalkModel& model, const MomentOf<V>& at, const StateOf<V>& s
                              state.gait.off_ahead.x));
 }
 
-// A walk limps from the one difference of both feet's strides on, wholly from the other.
+// A walk counts as limping from a difference of kEvenSteps between both feet's strides on, fully
+// from kUnevenSteps.
 inline constexpr double kEvenSteps = 0.03, kUnevenSteps = 0.2, kLeastAsked = 0.1;
 
 // Where one foot's steps are shorter than the other's, the tables of short strides would keep both
@@ -242,7 +243,7 @@ void raise_limping_heel(const Tick& tick, const MomentOf<V>& at, const StateOf<V
       smoothstep(kEvenSteps, kUnevenSteps, V(1.0 - max_of(evenness(asked), evenness(length_m)))) *
       smootherstep(V(at.flight_progress() / 0.2)) *
       (1.0 - smootherstep(V((at.flight_progress() - 0.5) / 0.4)));
-  // A stop shortens one step, too, but does not limp.
+  // A stop shortens one step as well, but does not limp.
   const auto is_limping = at.flies & not_of(at.stopping) & (limps != V{});
   if (!any(is_limping)) return;
   const V own = at.right_steps ? asked[kRightSide] : asked[kLeftSide];
@@ -253,8 +254,8 @@ void raise_limping_heel(const Tick& tick, const MomentOf<V>& at, const StateOf<V
   plan.heel_up_m = is_limping ? mix(plan.heel_up_m, high_m, limps) : plan.heel_up_m;
 }
 
-// More bounce lets the pelvis sink deeper, less keeps it as low as it is at its lowest: no leg has
-// to be longer for it.
+// With more bounce the pelvis sinks deeper; with less it keeps its lowest height: in neither case
+// does a leg have to be longer.
 template <class V>
 V bounced(const StrideScale& scale, const GaitFlow<V>& gait, const PlanOf<V>& plan) noexcept {
   const V y = plan.cell.pelvis_m.y, more = gait.bounce.x - 1.0;
@@ -280,8 +281,8 @@ Vec<V> side_of(const Vec<V>& forward) noexcept {
   return {forward.z, V{}, V{} - forward.x};
 }
 
-// Where a point of the travel frame of a stride is, seen from the footprint of `side` in the
-// running step: of the flying foot the one that it left (which 0) or will land on (1).
+// Converts a point from the travel frame of a stride to the frame of a footprint of `side` in the
+// running step: for the flying foot the footprint that it left (`which` 0) or will land on (1).
 template <class V>
 Vec<V> from_footprint(const MomentOf<V>& at, const FootprintsOf<V>& track, const V& phase,
                       Side side, int which, const Vec<V>& travel_m) noexcept {
@@ -294,7 +295,7 @@ Vec<V> from_footprint(const MomentOf<V>& at, const FootprintsOf<V>& track, const
   return p;
 }
 
-// A place seen from where it points `forward`.
+// Turns a place so that its z axis points along `forward`.
 template <class V>
 Vec<V> turned(const Vec<V>& forward, const Vec<V>& p) noexcept {
   return {forward.z * p.x + forward.x * p.z, p.y, forward.z * p.z - forward.x * p.x};
@@ -333,16 +334,16 @@ LineOf<V> path_to_landing(const MomentOf<V>& at, const FootprintsOf<V>& track,
 
 inline constexpr double kShownAfter = 0.55;  // of a first step: all of the tables shows
 
-// How much of the tables shows by the plan: of the first step more and more, when stopping as much
-// as is left of the way to rest.
+// The planned share of the tables: in the first step it grows, and when stopping it is the share of
+// the way that is left to rest.
 template <class V>
 V planned_share(const MomentOf<V>& at, const V& step_share, const V& rest_ticks) noexcept {
   const V begins = at.starting ? smootherstep(V(step_share / kShownAfter)) : all_of<V>(1.0);
   const V ends = smootherstep(V(rest_ticks / at.closing_ticks));
   return (at.stopping & (at.closing | not_of(at.started))) ? ends : at.started ? begins : V{};
 }
-// From the stride behind, at 0, to the one ahead, at 1: a first step has none behind, a closing one
-// none ahead.
+// The change from the stride behind (0) to the one ahead (1): a first step has none behind, a
+// closing one none ahead.
 template <class V>
 V planned_change(const MomentOf<V>& at, const V& step_share) noexcept {
   const V walks = at.starting ? all_of<V>(1.0) : smootherstep(step_share);
@@ -356,8 +357,8 @@ StrideFootOf<V> chosen_foot(const MaskOf<V>& mask, const StrideFootOf<V>& a,
           mask ? a.twist_rad : b.twist_rad, mask ? a.roll_rad : b.roll_rad};
 }
 
-// The foot of a step that begins or ends at rest flies as in strides of its own length, which is
-// that of half a stride, and a closing one lands flat.
+// If a step begins or ends at rest, its foot flies as in strides of its own length, which is half a
+// stride's; a closing foot lands flat.
 template <class V>
 void plan_short_flight(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& state,
                        const TablesOf<V>& tables, const V& ahead, const V& phase,
@@ -370,7 +371,7 @@ void plan_short_flight(const Tick& tick, const MomentOf<V>& at, const StateOf<V>
   const V length_m = sqrt_of(V(way.x * way.x + way.z * way.z));
   const V ratio = length_m / (model.own_step_m[0] + model.own_step_m[1]);
   const RatiosOf<V> own = ratios_at<V>(tables, ratio), next = ratios_at<V>(tables, ahead);
-  // Before it lifts off, as it will then be.
+  // Before lift-off, plan for the moment of lift-off.
   const V at_phase = at.flies ? phase : at.stage_end;
   const V u = at.flies ? at.flight_progress() : V{};
   const KnotsOf<V> knots = knots_at<V>(at_phase);
@@ -391,7 +392,7 @@ void plan_short_flight(const Tick& tick, const MomentOf<V>& at, const StateOf<V>
   plan.heel_up_m = is_short ? flying.heel_m.y : plan.heel_up_m;
 }
 
-// At a phase of the walk and a share of the running step's time.
+// The plan at a phase of the walk and a share of the running step's time.
 template <class V>
 void plan_stride(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& state, const V& phase,
                  const V& step_share, PlanOf<V>& plan) noexcept {
@@ -424,7 +425,7 @@ void plan_stride(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& stat
   }
   stride_between<V>(ratios[0], ratios[1], plan.change, knots, plan.cell);
   scale_stride<V>(scale, plan.cell);
-  // A foot that flies does so whatever else shows of the tables.
+  // A flying foot always shows fully, whatever share of the tables shows.
   const auto& feet = plan.cell.foot;
   plan.flying = chosen_foot<V>(at.right_steps, feet[kRightSide], feet[kLeftSide]);
   constexpr int kNumbers = sizeof(StrideCell) / sizeof(double);
@@ -435,7 +436,7 @@ void plan_stride(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& stat
     plan_short_flight<V>(tick, at, state, tables, ahead, phase, plan);
   plan.cell.pelvis_m.y = bounced<V>(scale, state.gait, plan);
 }
-// Now.
+// The plan of this moment.
 template <class V>
 void plan_stride(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& state,
                  PlanOf<V>& plan) noexcept {
@@ -449,8 +450,8 @@ inline constexpr double kReach = 0.9994;  // of the leg: a knee bent by 4 degree
 inline constexpr double kUnsteadyReach = 0.997, kUnsteadySoft_m = 0.016;  // and by 11
 inline constexpr double kSoftReach_m = 0.006, kKnown_m = 0.0015, kWiderReach = 0.6,
                         kWidest_m = 0.06;
-// So far hips sink at most: a leg that is asked for more, as a step that jumps while it turns may,
-// stays short of its foot.
+// The most that hips sink: a leg that would need more, as in a step that jumps while it turns, does
+// not reach its foot.
 inline constexpr double kMostSunk_m = 0.34, kSoftSunk_m = 0.12;
 inline constexpr double kFreeze = 0.55;  // of the flight: after it the landing place is settled
 
@@ -498,8 +499,8 @@ V turn_ahead(const Tick& tick, const StateOf<V>& state, const MomentOf<V>& at) n
 }
 
 // Feet land on both sides of the path: in a turn that is an arc. Turning on the spot they stand
-// wider apart, and point where the body will face.
-// Of the turn between two footprints: the way between them leads so far round.
+// wider apart, and point where the body will face. The way from one footprint to the next turns by
+// kWayTurns of the turn between them.
 inline constexpr double kWayTurns = 0.82;
 inline constexpr double kInPlaceLength_m = 0.2, kFootAhead = 0.45;
 inline constexpr double kWiderInTurns_s = 0.045, kWidestInTurns_m = 0.045, kStance_m = 0.105,
@@ -524,7 +525,8 @@ void plan_landing(const Tick& tick, const MomentOf<V>& at, StateOf<V>& state) no
                                     state.gait.length_m[kLeftSide].x));
     const V lands_m = value<V>(at.right_steps, track_m[kRightSide], track_m[kLeftSide]),
             stands_m = value<V>(at.right_steps, track_m[kLeftSide], track_m[kRightSide]);
-    // The path runs between the footprints, on an arc from the one's direction to the other's.
+    // The path runs between the footprints on an arc, from the direction of the first to that of
+    // the second.
     const V turn = heading - stands_rad, round = abs_of(state.gait.turn_goal.x);
     const V in_place = 1.0 - smoothstep(0.0, kInPlaceLength_m * tick.model.size, abs_of(length_m));
     const V outwards = value<V>(at.right_steps, -1.0, 1.0);
@@ -570,7 +572,7 @@ Vec<V> pelvis_between(const StrideScale& scale, const RatiosOf<V>& behind, const
   return cell.pelvis_m;
 }
 
-// Where the stride ahead has the pelvis on its way to the landing.
+// The pelvis' place in the stride ahead, on its way to the landing.
 template <class V>
 Vec<V> pelvis_to_landing(const StrideScale& scale, const PlanOf<V>& plan, const V& phase) noexcept {
   return plan.hips_m[1].at(phase) +
@@ -597,7 +599,7 @@ SmoothFade<Vec<V>> path_at_strike(const WalkModel& model, const MomentOf<V>& at,
       from = chosen(at.was_led, goes - over_ground<V>(heading, pelvis), from);
     }
     off[k] = from - plan.hips_m[1].at(phase);
-    // A walk beside it that stands has no ticks left.
+    // A lane whose walk stands has no ticks left.
     const V left = max_of(V(at.stage_ticks - double(k)), all_of<V>(1.0));
     approach(phase, rate, at.stage_end, at.end_rate, left, 1.0);
   }
@@ -610,8 +612,8 @@ SmoothFade<Vec<V>> chosen_fade(const MaskOf<V>& mask, const SmoothFade<Vec<V>>& 
   return {chosen(mask, a.x, b.x), chosen(mask, a.v, b.v), chosen(mask, a.a, b.a)};
 }
 
-// The hips follow the tables' path to the next landing. What they differ by from it, from the step
-// before or because the landing has moved, fades until the strike.
+// The hips follow the tables' path to the next landing. Their offset from it, from the step before
+// or because the landing has moved, fades until the strike.
 template <class V>
 void advance_hips(const Tick& tick, const MomentOf<V>& at, StateOf<V>& state,
                   const PlanOf<V>& plan) noexcept {
@@ -664,8 +666,8 @@ void advance_hips(const Tick& tick, const MomentOf<V>& at, StateOf<V>& state,
 // step, a stop the first half.
 
 inline constexpr double kPhaseStep = 1e-3, kAimTicks = 4.0, kMostBend_m_s2 = 15.0;
-// How much a phase that is a cycle off the clock counts, against hips that are off their place:
-// metres at the reference leg. It keeps heights in time with the landing.
+// The cost of a phase that is a cycle off the clock, as metres (at the reference leg) that the hips
+// are off their place. It keeps heights in time with the landing.
 inline constexpr double kGoesSomewhere =
     0.2;  // of the data's stride: a shorter one keeps to the clock
 inline constexpr double kInTime_m = 1.2, kLeastWay_m2 = 0.02;
@@ -745,7 +747,7 @@ V phase_of_pelvis(const WalkModel& model, const MomentOf<V>& at, const StateOf<V
     phase = tries ? next : phase;
     rate = tries ? moves : rate;
   }
-  // Hips that hardly move are at no certain phase.
+  // Hips that hardly move do not tell a phase.
   const V most = kFastestPhase * at.strike_rate;
   return all_tries ? phase : min_of(max_of(phase, V(last - most)), V(last + most));
 }
@@ -765,8 +767,7 @@ void read_at(const WalkModel& model, const StateOf<V>& state, const MaskOf<V>& w
   plan.cell.pelvis_m.y = where ? bounces : plan.cell.pelvis_m.y;
 }
 
-// What a changed plan left of the last one fades: of `value` now, which by the plan is `planned`
-// with its rate.
+// Fades the offset that a changed plan left: `value` now, by the plan `planned` with its rate.
 template <class V>
 void carry_over(const MaskOf<V>& changed, const V& value, const V& rate, const V& planned,
                 const V& planned_rate, SmoothFade<V>& off) noexcept {
@@ -798,7 +799,7 @@ void lead_hips(const Tick& tick, MomentOf<V>& at, StateOf<V>& state, PlanOf<V>& 
   }
   // Not led: the tables' place, its rate and acceleration by differences.
   const Vec<V> moved = by_tables - last, before = last - path.last_pelvis_m;
-  // Bounded, for a landing that jumps to another tread moves the path.
+  // Bounded, because a landing that jumps to another tread moves the path.
   const double most = kMostBend_m_s2 * tick.dt_s * tick.dt_s;
   Vec<V> bend = moved - before;
   bend = bend * min_of(V(most / max_of(length_of(bend), all_of<V>(most))), all_of<V>(1.0));
@@ -822,7 +823,7 @@ void lead_hips(const Tick& tick, MomentOf<V>& at, StateOf<V>& state, PlanOf<V>& 
   path.hips_m = chosen(at.led, path.pelvis_m.x - off, path.hips_m);
 }
 
-// Moves on what changed plans have left.
+// Advances the offsets that changed plans have left.
 template <class V>
 void fade_changes(const MomentOf<V>& at, const V& step_share, const V& share_a_tick,
                   GaitFlow<V>& gait) noexcept {
@@ -864,11 +865,11 @@ void fade_changes(const MomentOf<V>& at, const V& step_share, const V& share_a_t
 
 // --- What is not steady does not jump ------------------------------------------------------------
 
-// Seconds at the reference leg: a walk counts as unsteady, and as steady again, in these; what is
-// planned and may not jump is back at its plan in the others.
+// Times at the reference leg: a walk becomes unsteady in kUnsteady_s and steady again in kSteady_s;
+// planned values that may not jump return to their plan in the others.
 inline constexpr double kUnsteady_s = 0.10, kSteady_s = 0.3, kEases_s = 0.12, kHeaveEases_s = 0.07,
                         kRises_s = 0.05;
-// The greatest second differences over time, and how fast the heel's may grow: a flying foot brakes
+// Bounds of second differences over time, and for the heel of their growth: a flying foot brakes
 // harder in every step than a pelvis may.
 inline constexpr double kMostHeave_m_s2 = 45.0, kMostHeel_m_s3 = 7000.0, kMostPitch_s2 = 300.0,
                         kMostEdge_s2 = 150.0;
@@ -886,8 +887,8 @@ V size_of(const Vec3Of<V>& x) noexcept {
 inline double size_of(const vec3& x) noexcept { return length_of(x); }
 
 // Follows a goal. While the walk is not steady the second difference is at most `most` or, where
-// `grows` is not 0, by that greater than in the last tick. What that keeps the value off its goal
-// by is gone after `lasts` ticks. In a steady walk the goal comes back as it is.
+// `grows` is not 0, by that greater than in the last tick. The offset from the goal that this
+// leaves is gone after `lasts` ticks. In a steady walk the goal comes back as it is.
 template <class V, class T>
 T ease(const T& goal, double most, double grows, const V& lasts, const V& unsteady,
        EasedOf<T, V>& eased) noexcept {
@@ -910,7 +911,7 @@ T ease(const T& goal, double most, double grows, const V& lasts, const V& unstea
   eased.ticks = clamps ? lasts : max_of(V(left - 1.0), V{});
   return chosen(runs | clamps, goal + off.x, goal);
 }
-// What it came to in this tick.
+// The value in this tick.
 template <class T, class V>
 void keep(const T& value, EasedOf<T, V>& eased) noexcept {
   const T rate = value - eased.value;
@@ -919,7 +920,7 @@ void keep(const T& value, EasedOf<T, V>& eased) noexcept {
   eased.value = value;
 }
 
-// How much of the walk is not steady: rises where hips lead and in the step after that.
+// The share of the walk that is not steady: it rises where hips lead and in the step after that.
 template <class V>
 void advance_unsteady(const Tick& tick, const MomentOf<V>& at, PathFlow<V>& path) noexcept {
   const double scale = tick.model.time_scale;
@@ -930,13 +931,14 @@ void advance_unsteady(const Tick& tick, const MomentOf<V>& at, PathFlow<V>& path
 
 // --- Feet: their place, direction and pitch ------------------------------------------------------
 
-// A flying toe may be that far below where it stands: then the tables' own toes, which only just
-// leave the floor, are let through.
+// A flying toe may be kMostSink_m lower than when it stands: so the tables' own toes, which only
+// just leave the floor, are let through.
 inline constexpr double kMostSink_m = 0.0015, kSoftPitch = 0.4 * kDegree, kWiderPitch = 0.25;
 inline constexpr double kRiseBegin = 0.20, kHeelRiseLasts = 0.18;  // own phase: the heel may rise
 inline constexpr double kReachOnToe =
-    0.99995;  // of the leg: with the hip further away, the heel rises
-// A low foot rises when its leg is longer than this, of the leg, with hips that are lower by this.
+    0.99995;  // of the leg: if the hip is farther away, the heel rises
+// A foot whose heel stays low rises when its leg would be longer than kLowReach of its length with
+// hips that are kLowHips_m lower.
 inline constexpr double kLowHips_m = 0.045, kLowSmoothing = 0.03, kLowUntil = 0.25,
                         kLowRisen = 45.0 * kDegree, kLowReach = 0.985, kSoftRise = 12.0 * kDegree;
 inline constexpr double kMostUpright = 0.99, kSoftUpright = 0.12;
@@ -950,17 +952,19 @@ inline constexpr double kInPlaceStride_m = 0.02, kLikeAStep = 0.4, kWalksFrom = 
 inline constexpr double kSoftFloor_m = 0.02, kFirstLift_m = 0.03, kLastLift_m = 0.025,
                         kEdgeGoes = 0.4;
 inline constexpr double kSoftFrom = 0.3;  // of a changed flight: from it on the floor is soft
-// Of the first roll: until then the heel stays down; of the tables' pitch when it lifts off.
+// kHeelStays: of the first roll, in which the heel stays down. kFirstPitch: of the tables' pitch at
+// the lift-off.
 inline constexpr double kHeelStays = 0.25, kFirstPitch = 0.8;
 inline constexpr double kEdgeUp = 0.25,
-                        kEdgeDown = 0.9;  // of the flight: between them soles clear the floor
+                        kEdgeDown = 0.9;  // of the flight: soles clear the floor between these
 inline constexpr double kLiftGround =
-    0.5;                                  // of the flight: until then the plane left bounds the toe
-inline constexpr double kLowPitch = 0.5;  // of the flight: until then a low foot's pitch is less
-// Of the flight: from kLiftGrown until kLiftFalls all of a style's factor on its height acts.
+    0.5;                                  // of the flight: until then the old plane bounds the toe
+inline constexpr double kLowPitch = 0.5;  // of the flight: a low foot pitches less until then
+// Shares of the flight. A style's factor on its height acts fully between kLiftGrown and
+// kLiftFalls.
 inline constexpr double kLiftGrown = 0.4, kLiftFalls = 0.5, kLiftEnds = 0.85;
 
-// How far a standing foot may leave the floor with its heel: 0 flat .. 1 freely.
+// The freedom of a standing foot to lift its heel off the floor: 0 none .. 1 all.
 template <class V>
 V heel_rise(const WalkModel& model, const MomentOf<V>& at, Side side) noexcept {
   const double strike = side == kRightSide ? 0.0 : model.share[0] + model.share[1];
@@ -1058,8 +1062,8 @@ V table_pitch(const MomentOf<V>& at, const StateOf<V>& state, const PlanOf<V>& p
   return is_low ? pitch * mix(low, 1.0, smootherstep(V(u / kLowPitch))) : pitch;
 }
 
-// How much of the tables' twist and roll a foot on the ground shows: when standing it is flat, and
-// one that closes lands so.
+// The share of the tables' twist and roll that a foot on the ground shows: a standing foot is flat,
+// and a closing one lands flat.
 template <class V>
 V on_its_edges(const MomentOf<V>& at, Side side) noexcept {
   const V fading =
@@ -1067,8 +1071,8 @@ V on_its_edges(const MomentOf<V>& at, Side side) noexcept {
   return at.started ? all_of<V>(1.0) : fading;
 }
 
-// Of a foot that starts from rest, or comes to rest: from its footprint to the next one as far as
-// strides of that length have it.
+// The place of a foot that starts from rest or comes to rest: between its footprint and the next
+// one, as far as in strides of that length.
 template <class V>
 Vec<V> short_flight(const MomentOf<V>& at, const StateOf<V>& state, const PlanOf<V>& plan,
                     Side side, const V& u) noexcept {
@@ -1181,7 +1185,7 @@ Vec<V> flying_edges(const MomentOf<V>& at, const StateOf<V>& state, const PlanOf
           low * mix(stands.roll_rad, plan.flying.roll_rad, goes), V{}};
 }
 
-// Where the foot flies, still without its pitch.
+// The flying foot, still without its pitch.
 template <class V>
 FlightOf<V> flight_point(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& state,
                          const PlanOf<V>& plan, Side side, const V& u) noexcept {
@@ -1207,8 +1211,8 @@ FlightOf<V> flight_point(const Tick& tick, const MomentOf<V>& at, const StateOf<
   return point;
 }
 
-// Its pitch: what is planned, as far as the toe stays off that ground. `off_rad`: by how much that
-// is not the tables'.
+// The pitch of the flying foot: as planned, as far as the toe stays off that ground. `off_rad`: its
+// difference from the tables'.
 template <class V>
 void pitch_in_flight(const WalkModel& model, const StateOf<V>& state, Side side, const V& u,
                      const V& pitch, const V& off_rad, FlightOf<V>& point) noexcept {
@@ -1335,7 +1339,7 @@ void reach_with_toe(const WalkModel& model, const MomentOf<V>& at, StateOf<V>& s
   foot.pose = chosen_pose(short_of, pose, foot.pose);
 }
 
-// So far a leg reaches: less where the walk is not steady, for a straight knee would turn fast.
+// The reach of a leg: less in a walk that is not steady, since a straight knee would turn fast.
 template <class V>
 V reach_of(const LegBuild& leg, const PathFlow<V>& path) noexcept {
   return leg.model.length_m() * mix(kReach, kUnsteadyReach, V(smootherstep(path.unsteady)));
@@ -1362,8 +1366,8 @@ void keep_in_reach(const WalkModel& model, const MomentOf<V>& at, StateOf<V>& st
   foot.pose = chosen_pose(pulls, pose, foot.pose);
 }
 
-// How much a foot whose heel stays low asks of the hips and of its own pitch: from its rise on, and
-// until its heel swings forward.
+// How far a foot whose heel stays low lowers the hips and pitches itself: from the rise of its heel
+// on, until the heel swings forward.
 template <class V>
 void advance_low_foot(const Tick& tick, const MomentOf<V>& at, StateOf<V>& state,
                       Side side) noexcept {
@@ -1375,7 +1379,7 @@ void advance_low_foot(const Tick& tick, const MomentOf<V>& at, StateOf<V>& state
   state.legs.low[side].advance(goal, Damping(kLowSmoothing * tick.model.time_scale, tick.dt_s));
 }
 
-// Such a foot rises as far as its leg asks.
+// Pitches such a foot as far as its leg asks.
 template <class V>
 void rise_as_asked(const WalkModel& model, const MomentOf<V>& at, StateOf<V>& state, Side side,
                    const Vec<V>& hip_m) noexcept {
@@ -1457,7 +1461,7 @@ V pelvis_height(const WalkModel& model, double tick_s, StateOf<V>& state, const 
     const Vec<V> ankle = pose.heel_m - pose.rotation * all_of<V>(leg.model.heel_m),
                  hip = pelvis.hip(leg);
     const V span = length_of(ankle - hip);
-    // What the tables ask for is let through.
+    // A reach that the tables ask for is let through.
     const V beyond = (span - known) / model.size;
     const auto asked = beyond > V{};
     if (!any(asked)) continue;
@@ -1470,7 +1474,7 @@ V pelvis_height(const WalkModel& model, double tick_s, StateOf<V>& state, const 
     const V upright = max_of(V(0.3 * span), V(hip.y - ankle.y)) / span;
     squares += asked ? excess * excess / (upright * upright) : V{};
   }
-  // What a foot asked that has just left the ground fades.
+  // The lowering that a foot asked for fades once it has left the ground.
   PathFlow<V>& path = state.path;
   const V drop = soft_min(sqrt_of(squares), kMostSunk_m * model.size, kSoftSunk_m * model.size);
   path.sunk_m.advance(drop, Damping(kRises_s * model.time_scale, tick_s));

@@ -77,7 +77,7 @@ void add(const IkResult& r, PosedLeg& solved) noexcept {
   solved.failed = r.status != IkStatus::converged;
 }
 
-// Where heel, toe and pitch are with these angles.
+// Heel, toe and pitch at these angles.
 PosedLeg posed_leg(PosedLeg solved, const IkAngles& angles, const LegBuild& leg,
                    const Pelvis& pelvis, const FootPose& foot) noexcept {
   const IkFrame end = end_frame(leg.chain, angles);
@@ -94,7 +94,7 @@ void point_foot_down(const LegBuild& leg, double more_rad, double flight_progres
   const double open =
       smoothstep(0.0, 0.2, flight_progress) * (1.0 - smoothstep(0.7, 0.95, flight_progress));
   FootPose& pose = foot.pose;
-  // Of the heel, over the plane that the foot is planned on.
+  // Height of the heel over the plane that the foot is planned on.
   const double heel_m = (pose.heel_m.y - foot.base_m) * foot.plane.normal.y;
   const double room = highest_pitch<double>(leg, heel_m, 0.0) - pose.pitch_rad;
   const double allowed = std::min(more_rad, std::max(0.0, room));

@@ -280,7 +280,7 @@ vec3 foot_point(const CycleSample& sample, Side side, const vec3& point_m) {
   return leg.ankle_m + leg.foot * point_m;
 }
 
-// Where a heel stands, from the pelvis' path, mean over the flat part of support.
+// The place of a standing heel, from the pelvis' path: its mean over the flat part of support.
 vec3 mean_heel(const GaitCycle& source, Side side) {
   vec3 sum(0.0);
   constexpr int kCount = 16;
@@ -377,7 +377,8 @@ void lay_out_legs(WalkModel& model) {
   }
 }
 
-// What a tick samples: neither the legs' joints, which the inverse kinematics sets, nor kept ones.
+// The rows that a tick samples: without the legs' joints, which the inverse kinematics sets, and
+// without kept ones.
 void lay_out_rows(WalkModel& model) {
   std::array<bool, kMaxJoints> is_set{};
   for (const int j : model.kept) is_set[j] = true;
@@ -389,7 +390,7 @@ void lay_out_rows(WalkModel& model) {
   model.above = pose_rows(model.cycle, {is_set.data(), model.cycle.skeleton.joints.size()});
 }
 
-// What hangs on the pelvis, but for the legs, stands as if it did not roll.
+// Keeps the joints on the pelvis, but for the legs, as upright as if the pelvis did not roll.
 void keep_trunk_upright(double roll_rad, GaitCycle& cycle) {
   const quat& pelvis = cycle.pelvis_standing;
   const quat back = glm::conjugate(pelvis) * rotation_z(-roll_rad) * pelvis;

@@ -7,7 +7,7 @@
 namespace gaitpad {
 namespace {
 
-// Whose step runs. After the last landing of a stop the roll belongs to no step.
+// The foot whose step runs. After the last landing of a stop the roll belongs to no step.
 std::optional<Side> steps_of(Stage stage, Side swing, bool goes_on) noexcept {
   if (stage == Stage::flight) return swing;
   if (stage == Stage::roll && goes_on) return other(swing);

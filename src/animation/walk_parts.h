@@ -1,4 +1,4 @@
-// What the files of the walk call of each other. walk.cpp holds the tick that calls all of it.
+// Functions and types that the files of the walk share. walk.cpp holds the tick that calls them.
 #pragma once
 #include <span>
 
@@ -8,13 +8,13 @@
 
 namespace gaitpad {
 
-// What does not change within a tick.
+// Data that do not change within a tick.
 struct Tick {
   const WalkModel& model;
   const GaitParams& params;
   IkMode mode;
   double dt_s;
-  bool flat;              // no terrain: all that walk_terrain.cpp does is left out
+  bool flat;              // no terrain: the tick leaves out all of walk_terrain.cpp
   Placement placed = {};  // of the walk
 };
 
@@ -24,7 +24,7 @@ struct Tick {
 template <class V>
 constexpr bool kAlone = std::is_same_v<V, double>;
 
-// Where each walk is in its step: StepClock and the feet's modes as numbers and masks.
+// The walks' progress in their steps: StepClock and the feet's modes as numbers and masks.
 template <class V>
 struct CountsOf {
   std::array<V, 2> mode_ticks;
@@ -49,7 +49,7 @@ struct MomentOf : CountsOf<V> {
   }
   // 0 outside of flights.
   V flight_progress() const noexcept { return flies ? this->tick / this->stage_ticks : V{}; }
-  // Of the running step's time that is over; of a walk that has closed none.
+  // The share of the running step's time that is over; 0 for a walk that has closed.
   V step_share() const noexcept { return share_at(V{}); }
   V step_share_ahead() const noexcept { return share_at(V{} + 1.0); }
   V share_at(const V& ahead) const noexcept {
@@ -89,7 +89,7 @@ struct FlightOf {
 };
 using FlightPoint = FlightOf<double>;
 
-// What is asked of each walk in this tick.
+// The parameters of each walk in this tick.
 template <class V>
 struct ParamsOf {
   std::array<V, 2> length_m, flight_height;
@@ -105,14 +105,14 @@ struct LineOf {
   Vec<V> at(const V& phase) const noexcept { return at_zero_m + per_phase_m * phase; }
 };
 
-// What the tables say of one moment of a step. A step leads from the stride that the last step was
+// The tables' values at one moment of a step. A step leads from the stride that the last step was
 // taken with to the one that it is taken with itself: the hips follow the first one's table from
 // the footprint that they come from, the second one's towards the next, and change over smoothly.
 template <class V>
 struct PlanOf {
   V phase{};                          // of the data, unwrapped: within this step it does not jump
   V change{};                         // from the one stride, at 0, to the other, at 1
-  V shown{};                          // how much of the tables shows: 0 when standing
+  V shown{};                          // share of the tables that shows: 0 when standing
   V ratio_ahead{};                    // of the stride that the step is taken with
   std::array<RatiosOf<V>, 2> ratios;  // of the two strides,
   std::array<FootprintsOf<V>, 2> track;  // where they go,
@@ -123,7 +123,7 @@ struct PlanOf {
   StrideFootOf<V> flying;          // the foot that flies, or is about to
   V heel_up_m{};                   // its heel's height,
   FootprintsOf<V> short_track;     // and the stride that it flies in at a start or stop
-  // Where the footprints point that the flying foot left and that it will land on: unit.
+  // Unit directions of the footprints that the flying foot left and that it will land on.
   Vec<V> lifted{}, lands{};
 };
 
@@ -140,7 +140,7 @@ struct PelvisOf {
   }
 };
 
-// What a leg's solver came to. Heel and toe in the world.
+// The solution of one leg. Heel and toe in the world.
 template <class V>
 struct PosedLegOf {
   V iterations{}, squares{};  // of the error, square metres
@@ -158,8 +158,7 @@ using Pelvis = PelvisOf<double>;
 
 inline constexpr double kEvenSpread = 1e-9;  // weights closer to each other than this are even
 // The share of its change that a joint of relative weight `w` (0 locked .. 1 free) leaves to the
-// other joints. Its fourth power stands for the few iterations of a solve, each of which multiplies
-// by W.
+// other joints: 0.8 (1 - w^4), fitted to the hip's range after two iterations.
 template <class V>
 V held_back(const V& w) noexcept {
   return 0.8 * (1.0 - (w * w) * (w * w));
@@ -168,7 +167,7 @@ V held_back(const V& w) noexcept {
 // The foot that flies in this step (also during the roll before its flight).
 Side step_foot(const WalkState& state) noexcept;
 Moment moment_of(const WalkModel& model, const WalkState& state) noexcept;
-// The phase so many ticks ahead in the running stage.
+// The phase `ticks` ahead in the running stage.
 double phase_ahead(const WalkModel& model, const WalkState& state, double ticks) noexcept;
 // The phase at which the running stage ends.
 double stage_end_phase(const WalkModel& model, const WalkState& state) noexcept;
@@ -183,17 +182,18 @@ double stage_share(const WalkModel& model, Stage stage, Side swing) noexcept;
 
 // --- walk_changes.cpp: how a walk comes to rest, and goes on -------------------------------------
 inline constexpr double kCarry_s = 0.15;  // what a changed plan left of the last one fades in it
-// The plan of this tick is another one than the last tick's: what is left of that one fades.
+// Begins another plan than the last tick's; the difference from that one fades in `time_s`.
 void replan(double time_s, const Tick& tick, WalkState& state) noexcept;
-// The stick was let go, or asks for the other direction: where and when the hips come to rest.
+// Plans where and when the hips come to rest: the stick was let go, or asks for the other
+// direction.
 void plan_rest(const Tick& tick, WalkState& state) noexcept;
-// Where they rest, as soon as the foot that closes is known.
+// Plans the place where they rest, as soon as the foot that closes is known.
 void plan_rest_place(const Tick& tick, WalkState& state) noexcept;
-// The stick came back: a step that has not come far is one of the walk again.
+// The stick came back: takes a step that has not come far into the walk again.
 void walk_on(const Tick& tick, WalkState& state) noexcept;
 // Gives the running step the time that steps are to take now.
 void time_step_again(const Tick& tick, WalkState& state) noexcept;
-// When the foot that closes lifts off and lands. While it still stands.
+// Plans when the foot that closes lifts off and lands, while it still stands.
 void time_closing_step(const Tick& tick, WalkState& state) noexcept;
 // Ticks until the hips are as far over the standing foot as they are at the lift-off of the other.
 int ticks_to_lift_off(const WalkModel& model, const WalkState& state) noexcept;
@@ -203,7 +203,7 @@ int ticks_to_lift_off(const WalkModel& model, const WalkState& state) noexcept;
 double height_on(const FootPlane& plane, const vec3& place_m) noexcept;
 // True if a riser lies between two footholds.
 bool crosses_riser(const Terrain& terrain, const FootPlane& a, const FootPlane& b) noexcept;
-// Where a single foot stands nearest to `heel_m` without an edge under it.
+// The plane of a single foot that stands nearest to `heel_m` without an edge under it.
 FootPlane standing_plane(const WalkModel& model, Side side, const vec3& heel_m,
                          double yaw_rad) noexcept;
 // Smooths how far the trunk leans into the slope or stair that the running step leads over.
@@ -212,7 +212,8 @@ void lean_into_slope(const Tick& tick, WalkState& state) noexcept;
 // the heading at landing, and `across_m` from the standing heel.
 void choose_foothold(const Tick& tick, WalkState& state, const vec3& forward,
                      const vec3& across_m) noexcept;
-// What the ground leaves of the running step's length, and the ratio that the tables are read for.
+// Updates the share of the running step's length that the ground leaves, and the ratio that the
+// tables are read for.
 void follow_ground(const Tick& tick, WalkState& state) noexcept;
 // Moves the height of the ground that the hips go over.
 void advance_base(const Tick& tick, WalkState& state) noexcept;
@@ -228,10 +229,10 @@ Climb climb_of(const WalkModel& model, const WalkState& state, Side side, const 
 void tilt_in_flight(const WalkState& state, Side side, double gone, FlightPoint& point) noexcept;
 // Plans how the flying foot clears the ground between its two footholds.
 void plan_room(const Tick& tick, WalkState& state, Side side) noexcept;
-// Moves it by what its room asks for, and up with the hips.
+// Moves the foot as its FlightRoom asks, and up with the hips.
 void clear_ground(const Tick& tick, WalkState& state, const StridePlan& plan, Side side, double u,
                   FlightPoint& point) noexcept;
-// A standing foot over whose ground the hips have risen rises on its toe.
+// Lifts a standing foot on its toe if the hips have risen over its ground.
 void rise_on_toe(const Tick& tick, WalkState& state, const StridePlan& plan, Side side) noexcept;
 
 // --- walk_feet.cpp: the feet's modes -------------------------------------------------------------
@@ -279,8 +280,8 @@ void plan_tick(const Tick& tick, WalkState& state, PlannedTick& planned) noexcep
 void pose_legs(const PlannedTick& planned) noexcept;
 void finish_tick(const PlannedTick& planned, Pose& pose) noexcept;
 
-// What comes before and after the parts that walks share: what begins, and the clock; the report,
-// and what ends.
+// The parts of a tick before and after those that walks share: first what begins, and the clock;
+// then the report, and what ends.
 void begin_tick(const Tick& tick, WalkState& state, Moment& at) noexcept;
 void end_tick(const Tick& tick, const vec3& pelvis_m, WalkState& state) noexcept;
 

@@ -1,5 +1,5 @@
-// What uneven ground makes of a walk: where a foot may land, what ground the hips go over, and how
-// a foot flies over what lies between.
+// Adapts a walk to uneven ground: where a foot may land, the ground that the hips go over, and the
+// flight over the ground in between.
 //
 // Footholds. Risers cut the ground into pieces, and a foot stands on one piece. For each piece
 // between the wanted place and the standing foot's, a cost says how much the step would have to
@@ -33,11 +33,11 @@ constexpr double kSlopeShortens = 1.0;  // a grade g leaves 1 / (1 + g) of a ste
 // The sole keeps kEdgeRoom legs away from an edge, but gives up at most kMostEdgeShare of its room.
 constexpr double kEdgeRoom = 0.05, kMostEdgeShare = 0.3;
 constexpr int kMostPieces = 8;  // compared, from the wanted one to the standing foot's
-// How willingly a step is moved across the heading, against along it.
+// Weight of moving a step across its heading, relative to moving it along.
 constexpr double kSkew = 0.25;
-// What a piece costs: about the logarithm of how much longer or shorter it makes the step (steps
-// shorter than kLeastStep legs count as that long), and further costs of what the step becomes:
-// stuck in place, sideways, high, overhanging, long. Rises are in legs.
+// The cost of a piece: about the logarithm of the factor by which it makes the step longer or
+// shorter (steps shorter than kLeastStep legs count as that long), and further costs if the step
+// gets stuck, goes sideways, high, over an edge, or long. Rises are in legs.
 constexpr double kLeastStep = 0.05, kStuck = 0.3, kStuckCosts = 2.0, kAside = 3.0;
 constexpr double kEasyRise = 0.22, kRiseCosts = 10.0, kMostRise = 0.345, kTooHigh = 100.0;
 constexpr double kOverhang = 30.0, kLongStep = 0.6, kLongCosts = 10.0;
@@ -137,8 +137,8 @@ double cost_of(const Floor& terrain, const Step& step, const Stretch& piece) noe
          kOverhang * room.lacks_m / step.leg_m;
 }
 
-// Tries the pieces from the one that the wanted place is on back to the standing foot's. Where that
-// is the same one, and its edge is in the way, the one behind this edge is tried, too.
+// Tries the pieces from the one that the wanted place is on back to the standing foot's. If both
+// are the same piece, and its edge is in the way, the piece behind this edge is tried as well.
 Stretch best_piece(const Floor& terrain, const Step& step, const Stretch* settled) noexcept {
   const double middle = 0.5 * (step.sole.back_m + step.sole.front_m);
   const double stands = step.from_m.z + middle;
@@ -195,7 +195,7 @@ void look_ahead(const Tick& tick, const Step& landing, const vec3& across_m,
   const vec3 place = place_on(step, best_piece(terrain, step, nullptr), fits);
   const vec3 middle = place + step.middle_m;
   const double next_m = ground_at(terrain, middle.x, middle.z).height_m;
-  // Of the rise to the next landing and the rest of the flying foot's rise, the greater one.
+  // The greater one of the rise to the next landing and the rest of the flying foot's rise.
   const double step_m = std::abs(next_m - state.path.landing_m.y),
                way_m = std::abs(next_m - landing.from_m.y);
   state.path.foothold.next_rise = std::max(step_m, way_m - step_m) / tick.model.leg_length_m;
@@ -421,9 +421,9 @@ constexpr double kSinkBegin = 0.5, kSinkBeginBack = 0.35;  // of the flight
 constexpr double kSinkEnd = 0.25;                          // of the roll
 constexpr double kSinkBeginClosing =
     0.15;  // both feet then stand, with straight knees, at the landing
-// How far the knee of a foot gives way that lands from a height: kYield legs from great heights,
-// half of it from kHalfYield. Chosen so that the knee is bent by 20 to 35 degrees on house stairs.
-// The other leg's knee is bent by kBentBefore of it, for a straight knee cannot yield smoothly.
+// The yield of the knee of a foot that lands from a height: kYield legs from great heights, half of
+// kYield at a fall of kHalfYield legs, so that the knee bends by 20 to 35 degrees on house stairs.
+// The other leg's knee is bent by kBentBefore of it, because a straight knee cannot yield smoothly.
 constexpr double kBentBefore = 0.65;
 constexpr double kYield = 0.0255, kHalfYield = 0.01;
 // A leg is stretched to this share of its length before its foot has to rise with the hips.
@@ -581,7 +581,7 @@ constexpr double kLack_m = 0.006, kEasyShift_m = 0.2, kSharper = 1.5;
 // A lift-off stays gentler: there the leg is stretched.
 constexpr double kMostSharp = 0.38;
 constexpr int kTries = 4;
-// Of the flight: from here on a foot on its way down is over its landing's piece.
+// The share of the flight from which on a foot on its way down is over its landing's piece.
 constexpr double kOver = 0.685;
 constexpr int kMostRisers = 4, kTautRounds = 24;
 constexpr double kTautRoom = 0.5;  // of kRoomAbove_m
@@ -833,7 +833,7 @@ FlightSpline lead_in(const Flight& flight, Wanted& beside) noexcept {
   return knots;
 }
 
-// For every flight that does not only lead down.
+// Plans a flight that stays level or goes up.
 void plan_over(const Tick& tick, const WalkState& state, const FootState& foot,
                const Flight& flight, FlightRoom& room) noexcept {
   const double size = tick.model.size;
@@ -881,7 +881,7 @@ double way_on(const Tick& tick, const Flight& flight, int i, double raise) noexc
   return on;
 }
 
-// How much each knot counts at each probe of the flight.
+// The weight of each knot at each probe of the flight.
 constexpr auto kKnotWeights = [] {
   std::array<Wanted, kFlightKnots - 1> weights;
   for (int k = 0; k < kFlightKnots - 1; ++k) {

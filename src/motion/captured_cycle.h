@@ -1,6 +1,6 @@
-// From a captured stride to a gait cycle, in three steps: the stride becomes a periodic function of
-// its phase (straight, without its travel, without a seam); the function is sampled as poses; and
-// from these the standing pose and the angles of the legs are measured.
+// Makes a gait cycle from a captured stride in three steps: the stride becomes a periodic function
+// of its phase (straight, without its travel, without a seam); the function is sampled as poses;
+// and from these the standing pose and the angles of the legs are measured.
 #pragma once
 #include <array>
 #include <vector>

@@ -1,5 +1,5 @@
-// When feet strike the ground and leave it: the one place that finds these events, in the frames of
-// a file as well as in the samples of a closed stride.
+// Finds when feet strike the ground and leave it, in the frames of a file as well as in the samples
+// of a closed stride.
 //
 // A foot *strikes* when its heel is down and still: at 0.3 m/s or less and at most 5 mm above where
 // it then rests. Its *toe is off* when it begins to leave: when it last was at 0.2 m/s before it

@@ -1,5 +1,5 @@
-// How a foot's sole is guessed from its joints: captures have no joint at the heel, some have no
-// toe. Lengths are shares of the leg (thigh + shank) unless the comment says otherwise.
+// Constants for guessing a foot's sole from its joints: captures have no joint at the heel, some
+// have no toe. Lengths are shares of the leg (thigh + shank) unless the comment says otherwise.
 #pragma once
 
 namespace gaitpad {

@@ -215,7 +215,7 @@ unsigned guid_word(const std::string& line, std::size_t byte) {
   return value(byte) | value(byte + 1) << 8;
 }
 
-// Why a mapping line is not for this pad; empty: it is.
+// The reason why a mapping line is not for this pad; empty: it is.
 std::string mapping_problem(const std::string& line, const DeviceInfo& device) {
   if (!is_one_line(line)) return "SDL mapping: it holds a control character";
   const unsigned vendor = guid_word(line, 4), product = guid_word(line, 8);

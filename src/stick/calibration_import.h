@@ -13,7 +13,7 @@ namespace gaitpad {
 
 // `text` is of one of these kinds:
 // - a recording of evemu, libinput or umockdev: the ranges of the kernel's axes and their `flat`;
-//   of several nodes the pad's is read;
+//   if it has several nodes, the pad's is read;
 // - lines of SDL's controller data base: the pad's own line becomes `mapping`; other lines are
 //   skipped.
 // Errors begin with `source`: `bug.yml:23: ...`. Only the calibration and the mapping are filled;
@@ -22,7 +22,7 @@ namespace gaitpad {
 Result<CalibrationFile> calibration_import(std::string_view text, const std::string& source,
                                            const DeviceInfo& device, const PadLayout& layout);
 
-// How the sticks lie according to their frames, for sdl_mapping_text.
+// The sticks' axes according to their frames, for sdl_mapping_text().
 StickAxes stick_axes(const Calibration& calibration) noexcept;
 
 }  // namespace gaitpad

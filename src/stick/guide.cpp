@@ -30,7 +30,8 @@ constexpr double kOfReach = 0.6;      // of the farthest that was seen: counts a
 constexpr double kOfMedianRim = 0.6;  // less is a cut corner; a square gate has 0.71
 constexpr double kLeastTravel = 15.0 * kDegree, kMostTravel = 90.0 * kDegree;  // noise, spikes
 
-constexpr double kUnpressed = 0.1;  // raw; a turn that stays so far inside of a push
+constexpr double kUnpressed = 0.1;  // raw; a turn that stays this far inside of a push was not
+                                    // pressed to the rim
 
 constexpr std::int64_t kHeldNs = 250 * kMillisecondNs;
 constexpr double kInOfRim = 0.6;  // nearer than this it is let go
@@ -96,7 +97,7 @@ bool ReleaseWatch::is_held() const noexcept {
 bool ReleaseWatch::is_back() const noexcept {
   if (near_ns_ >= kNearNs && away_ns_ == 0) return true;
   if (still_.still_ns() < kStillNs || !(glm::length(still_.mean()) < kFarthestRest)) return false;
-  // Each of the first rests may be a stick that was held; from two on the rest is known.
+  // One rest may be a stick that was held; from two rests on the place is known.
   return rests_.size() < 2 || glm::distance(still_.mean(), *rest_) < kAway;
 }
 
@@ -345,7 +346,7 @@ void CalibrationGuide::unplugged() noexcept {
   }
 }
 
-// The controls stood where they are from the last time to this one.
+// Counts the time since the last call as time in which no control moved.
 void CalibrationGuide::advance(std::int64_t now_ns) {
   if (!is_placed_ || now_ns <= time_ns_ || step() == GuideStep::done) return;
   // The stamps of a damaged recording may be any numbers.

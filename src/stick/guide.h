@@ -21,7 +21,7 @@ namespace gaitpad {
 
 inline constexpr std::int64_t kMillisecondNs = 1'000'000;
 
-// How long the position has stood still; it may wander slowly, within 0.04.
+// Measures for how long the position has stood still; it may wander slowly, within 0.04.
 class StillWatch {
  public:
   void hold(const vec2& raw, std::int64_t duration_ns) noexcept;
@@ -38,7 +38,8 @@ class StillWatch {
 inline constexpr double kHalfWay = 0.5;  // from rest; farther out a control is pushed
 
 inline constexpr int kWantedReleases = 6, kWantedSides = 3;
-inline constexpr int kWantedReleasesAside = 10;  // of a stick that rests off its middle: a thumb?
+inline constexpr int kWantedReleasesAside = 10;  // if the stick rests off its middle, where a thumb
+                                                 // may hold it
 inline constexpr std::int64_t kWantedRestNs = 2500 * kMillisecondNs;  // at the end, to see drift
 
 // Counts releases: the stick was away from its rest, then stood still there for half a second, or
@@ -177,9 +178,8 @@ class CalibrationGuide {
   void repeat();  // begins the step again
   void back();    // begins the step before again
 
-  // What is known so far: all tracks (of skipped steps too, raw as the layout has them), and how
-  // the axes lie. The frame is the layout's own if there were no pushes or they contradict each
-  // other.
+  // The tracks so far (also of skipped steps, raw as the layout has them) and the sticks' frames. A
+  // frame is the layout's own if there were no pushes or they contradict each other.
   PadTracks tracks() const;
   StickFrame frame(int side) const;
 

@@ -1,6 +1,6 @@
-// How often a pad has something new to say: many send the same position several times, so that
-// their rate of reports is no rate of positions. Counted while a stick moves, since at rest every
-// sound stick repeats itself.
+// Measures how often a pad reports a new position. Many pads send each position several times, so
+// the rate of reports is not the rate of positions. It is measured while a stick moves, since at
+// rest every sound stick repeats itself.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -23,7 +23,7 @@ class NewValueCount {
   std::optional<MovementRate> rate() const noexcept;
 
  private:
-  // From one position to the next, as long as they follow within kPause_ns.
+  // A run of positions that follow each other within kPause_ns.
   struct Movement {
     std::int64_t time_ns = 0;
     std::int64_t reports = 0, values = 0;

@@ -98,8 +98,8 @@ double radial_noise(const Line& line, double sigma) noexcept {
   return std::max(sigma * std::sqrt(1.0 + steepness * steepness), kLeastNoise);
 }
 
-// Reports are cut at the end of the range. Of a gate that ends there half of the samples would lie
-// beyond, on average by 0.8 sigma (farther in: fewer samples, by a little less).
+// Reports are clipped at the end of the range. If a gate ends there, half of its samples would lie
+// beyond it, by 0.8 sigma on average (for a gate farther in: fewer samples, by a little less).
 double without_end(double raw, double sigma) noexcept {
   return std::fabs(raw) < 1.0 ? raw : std::copysign(1.0 + kMeanOfUpperHalf * sigma, raw);
 }
@@ -256,9 +256,9 @@ constexpr double kGreatestNoise = 0.2;  // raw; beyond that nothing is a rim
 // Half widths of the windows; the radius comes from the widest line that agrees with the narrower.
 constexpr double kWidths[] = {1.0 * kSpacing, 1.5 * kSpacing, 2.0 * kSpacing, 3.0 * kSpacing,
                               4.0 * kSpacing, 6.0 * kSpacing, 8.0 * kSpacing};
-// How many standard errors may lie between the estimates (fewer: noisy; more: rounds the corners of
-// a square; 1.5 gives the least circularity error over all made gates) and between an estimate and
-// the direction's own samples.
+// The greatest difference, in standard errors, between the estimates (fewer: noisy; more: rounds
+// the corners of a square; 1.5 gives the least circularity error over all made gates) and between
+// an estimate and the direction's own samples.
 constexpr double kAgreement = 1.5, kOwnAgreement = 3.0;
 constexpr double kGreatestError =
     0.025;                      // raw, one standard error; beyond it the direction was not seen
@@ -270,7 +270,7 @@ constexpr double kSharp = 0.6;  // sine of the angle by which a corner turns at 
 constexpr double kOfSide = 15.0 * kDegree, kStraight = 3.0 * kSpacing;
 constexpr int kParts = 8;                        // of each piece of the outline, for the bins
 constexpr double kLeastCircularityRadius = 0.2;  // dualshock-tools'
-constexpr int kLeastFilledBins = 44;             // the error of fewer is another number
+constexpr int kLeastFilledBins = 44;             // with fewer bins the error is not comparable
 
 double cross(const vec2& a, const vec2& b) noexcept { return a.x * b.y - a.y * b.x; }
 
@@ -434,7 +434,7 @@ std::vector<Polar> turned_samples(std::span<const StickTrack> tracks, const vec2
   constexpr double kOfTurn = 10.0 * kDegree;
   std::vector<Polar> turned;
   for (const StickTrack& track : tracks) {
-    std::vector<std::pair<Polar, double>> run;  // and how far it was turned by then
+    std::vector<std::pair<Polar, double>> run;  // each with the angle turned by then
     const auto end_run = [&] {
       const double whole = run.empty() ? 0.0 : run.back().second;
       for (const auto& [polar, way] : run) {

@@ -28,9 +28,10 @@ vec2 point_of(const Outline& outline, int k) noexcept;
 
 // The direction in which it reaches least far; none if no direction was seen.
 std::optional<int> worst_direction(const Outline& outline) noexcept;
-// The direction (of the outline) in which it lies deepest inside what gates allow, as if the stick
-// was turned there without being pressed to its rim; none if it lies so nowhere. Where a push
-// (`pushes`: raw) was held that reaches no farther than the outline, the gate itself is short.
+// The direction (of the outline) in which it lies deepest inside the shapes that gates have, as if
+// the stick was turned there without being pressed to its rim; none if there is no such direction.
+// Directions in which a push (`pushes`: raw) was held and reached no farther are left out: there
+// the gate itself is short.
 std::optional<int> unpressed_direction(const Outline& outline, std::span<const vec2> pushes);
 // The least radius of the directions in each of the 48 bins about the middle; 0: not seen.
 std::array<double, kCircularityBins> least_reaches(const Outline& outline) noexcept;
@@ -40,7 +41,7 @@ int degrees_of(int k) noexcept;
 // "front left (135 degrees from the right)"
 std::string direction_text(int k);
 
-// How many of the 48 bins about the middle the outline covers.
+// The number of the 48 bins about the middle that the outline covers.
 int filled_bins(const Outline& outline) noexcept;
 // The raw ends of the outline to the left, right, back and front; none if it was not seen there.
 struct Reach {

@@ -48,8 +48,8 @@ constexpr double kWornHysteresis = 0.06, kWornSigma = 0.01, kWornCentre = 0.12, 
 constexpr double kWornWander = 0.01;
 constexpr double kWornSteps = 1.5;  // smaller noise comes from the steps
 constexpr int kWornJumps = 3;
-// A thumb or a finger that lies on a stick holds it aside, while its range stays symmetric. So many
-// rests are no accident.
+// A thumb or a finger that lies on a stick holds it aside, while its range stays symmetric. After
+// kSureRests rests this is no accident.
 constexpr double kHeldCentre = 0.1, kSymmetric = 0.05;
 constexpr std::size_t kSureRests = 14;
 
@@ -74,8 +74,8 @@ double reach_in(const Outline& outline, int direction) noexcept {
   return outline.radius[static_cast<std::size_t>(direction)];
 }
 
-// Reasons for which a side, or the worst of all directions, reaches less far than `least`. Of a
-// side beside the worst direction that one's number is told, which the picture shows.
+// Reasons for which a side, or the worst of all directions, reaches less far than `least`. If the
+// worst direction is beside a side, its number replaces the side's, because the picture shows it.
 std::vector<std::string> short_sides(const StickStatistics& s, double least) {
   constexpr int kBeside = kOutlineDirections / 16;
   std::optional<int> worst = worst_direction(s.outline);
@@ -101,7 +101,7 @@ bool is_turned(const StickStatistics& s) noexcept {
 vec2 middle_of_range(const StickStatistics& s) noexcept {
   return 0.5 * vec2(*s.min_x + *s.max_x, *s.min_y + *s.max_y);
 }
-// How far off the middle of its range it rests; 0 if that is not known.
+// The distance of its rest from the middle of its range; 0 if that is not known.
 double off_middle(const StickStatistics& s) noexcept {
   return s.centre && is_turned(s) ? glm::length(*s.centre - middle_of_range(s)) : 0.0;
 }
@@ -111,13 +111,14 @@ bool may_be_held(const StickStatistics& s) noexcept {
          s.rests.size() < kSureRests;
 }
 
-// Those that the median of three takes out.
+// The jumps that the median of three takes out.
 std::int64_t single_jumps(const StickStatistics& s) noexcept { return s.jumps - s.long_jumps; }
 
 double share_of_jumps(const StickStatistics& s) noexcept {
   return static_cast<double>(s.jumps) / static_cast<double>(std::max<std::int64_t>(s.samples, 1));
 }
-// How many moments a minute have two jumps in three reports, which pass the median.
+// The times a minute at which two jumps come in three reports, which the median of three lets
+// through.
 double passing_jumps(const StickStatistics& s) noexcept {
   const double share = share_of_jumps(s);
   return 2.0 * share * share * 60.0 * s.rate_hz.value_or(250.0);
@@ -168,8 +169,8 @@ void add_zones(const StickStatistics& s, StickAdvice& advice) noexcept {
   StickCalibration& c = advice.calibration;
   const double half = least_half(c), sigma = greatest_sigma(s);
   advice.inner_zone = std::max(kLeastInner, 3.0 * sigma + hysteresis_of(s));
-  // With little hysteresis that formula covers too little of the noise, and it ignores wander and
-  // single rests far from the others: to other sides they may lie a little farther off. A single
+  // With little hysteresis that formula covers too little of the noise. It also ignores wander, and
+  // single rests far from the others, which may be a little farther off on other sides. A single
   // one may have been a thumb, but a zone that is too wide is better than a walk by itself.
   const double away = 0.5 * hysteresis_of(s) + kSpreadOfDisplaced * s.displaced_by;
   const double rest =

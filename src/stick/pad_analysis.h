@@ -1,4 +1,4 @@
-// From measurements to advice: a calibration with its zones, and a verdict in plain words.
+// Turns measurements into advice: a calibration with its zones, and a verdict in plain words.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -47,7 +47,7 @@ bool has_a_centre(const PadAnalysis& analysis) noexcept;
 bool is_known(const PadAnalysis& analysis, std::size_t side) noexcept;
 // Whether it can calibrate anything: a stick is known.
 bool is_useful(const PadAnalysis& analysis) noexcept;
-// Why it is not useful, in a sentence without a full stop.
+// The reason why it is not useful: a sentence without a full stop.
 std::string why_useless(const PadAnalysis& analysis);
 // Writes the advice for sticks whose verdict is not `unknown` into `file`, and triggers that were
 // pressed. The rest of the calibration that `file` holds stays: an unknown stick, the range of a

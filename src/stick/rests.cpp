@@ -83,7 +83,7 @@ RestNoise noise_about(const RestTrend& line, std::span<const RestPoint> points) 
   return noise;
 }
 
-// Leaves out what lies far from the line through all points.
+// Leaves out points far from the line through all of them.
 void remove_spikes(std::vector<RestPoint>& points) {
   const RestTrend line = rest_trend(points);
   const RestNoise noise = noise_about(line, points);
@@ -462,7 +462,7 @@ Evidence evidence_of(std::span<const StickTrack> tracks, std::span<const Still> 
     evidence.step_noise = evidence.step / std::sqrt(12.0);
   }
   const double measured = freedom >= 6.0 ? std::sqrt(squares / freedom) : 0.0;
-  // A code that never flips only says that the place is within a step.
+  // A code that never flips only tells that the place is within a step.
   evidence.block_noise = std::max({evidence.white_noise, measured, 0.02 * evidence.step, 1e-7});
   const double blocks_each = blocks / static_cast<double>(evidence.releases.size());
   evidence.mean_noise = evidence.block_noise / std::sqrt(blocks_each);
@@ -562,8 +562,8 @@ struct Home {
   std::vector<bool> counts;
 };
 
-// Which releases count. Leaves out a thumb that lay on the stick: a minority, several times farther
-// off than the others.
+// Marks the releases that count. A thumb on the stick does not: a minority of rests, several times
+// farther off than the others.
 std::vector<bool> usual_releases(std::span<const Release> releases, double noise) {
   std::vector<bool> counts(releases.size(), true);
   if (releases.size() < 4) return counts;
@@ -634,8 +634,8 @@ Home home_of(std::span<const Release> releases, const Evidence& evidence) {
     return home;
   }
   home.centre = with.home;
-  // Which releases are odd is decided by the model; one of unknown direction counts if it lies no
-  // farther out than the others.
+  // The model decides which releases are odd; one of unknown direction counts if it lies no farther
+  // out than the others.
   double radius = 0.0;
   for (std::size_t i = 0; i < releases.size(); ++i) {
     if (with.counts[i]) {
@@ -650,9 +650,9 @@ Home home_of(std::span<const Release> releases, const Evidence& evidence) {
   return home;
 }
 
-// Whether the stick was moved and let go between two rests: the way was seen, or the track of the
-// first one ends away from it. A stick that rests while the pad is unplugged, or from one recording
-// to the next, shows no return.
+// Whether the stick was moved and let go between two rests: its movement was seen, or the first
+// rest's track ends away from it. A stick that rests while the pad is unplugged, or from one
+// recording to the next, shows no return.
 bool was_let_go(std::span<const StickTrack> tracks, std::span<const Release> releases) noexcept {
   constexpr double kSeenMovement = 0.2;  // raw
   for (std::size_t i = 1; i < releases.size(); ++i) {
@@ -687,8 +687,8 @@ void set_sigma(RestStatistics& to, const Evidence& evidence, const vec2& step) {
 
 // ---- Moving by itself
 
-// From the changes over 0.2 s, of which noise and flipping codes explain a part. The median over
-// the hands-off times, because a thumb may lie on the stick in some of them.
+// Estimated from the changes over 0.2 s, less the part that noise and flipping codes explain. The
+// median over the hands-off times, because a thumb may lie on the stick in some of them.
 double wander_of(std::span<const HandsOff> times, const vec2& drift, const vec2& step) {
   constexpr std::size_t kLag = 2;                    // blocks of 0.1 s
   constexpr double kShare = kLag * 0.1 - 0.1 / 3.0;  // s; a block is a mean over 0.1 s

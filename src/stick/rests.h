@@ -1,4 +1,5 @@
-// Where a stick comes to rest when it is let go: how exactly, how quietly, and whether it stays.
+// Measures where a stick comes to rest when it is let go: how exactly, with how much noise, and
+// whether it stays there.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -10,7 +11,7 @@
 
 namespace gaitpad {
 
-// Positions and lengths are raw. What too little data cannot tell is none.
+// Positions and lengths are raw. A value is none if there are too few data for it.
 struct RestStatistics {
   std::int64_t rest_samples = 0;
   double rest_s = 0.0;
@@ -22,7 +23,7 @@ struct RestStatistics {
   std::optional<double> drift_per_s;  // speed at rest; exactly 0 unless it is significant
   vec2 drift{0.0};                    // the same as a vector, per second
   // How far it moves by itself within a second, beyond noise: standard deviation of each axis, over
-  // all the time in which nobody held it.
+  // all the time in which it was not held.
   double wander = 0.0;
   std::vector<HandsOff> hands_off;  // that time
   int displaced = 0;                // releases after which it rested far from where it mostly rests

@@ -1,6 +1,6 @@
-// All that a stick's raw reports say about it: where it rests and how quietly, how far it reaches,
-// how regularly it reports. Nobody has to mark anything: rests, turns and pushes are found in the
-// tracks. Set-up code; it allocates.
+// The statistics of a stick's raw reports: where it rests and how quietly, how far it reaches, how
+// regularly it reports. Rests, turns and pushes are found in the tracks; no marks are needed.
+// Set-up code; it allocates.
 #pragma once
 #include <cstdint>
 #include <optional>
@@ -13,7 +13,8 @@
 
 namespace gaitpad {
 
-// Positions and lengths are raw, as in StickSample. What too little data cannot tell is none.
+// Positions and lengths are raw, as in StickSample. A value is none if there are too few data for
+// it.
 struct StickStatistics : RestStatistics {
   std::int64_t samples = 0;  // all reports
 

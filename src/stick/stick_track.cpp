@@ -414,7 +414,8 @@ std::optional<Spacing> spacing(std::span<const StickTrack> tracks) {
   return Spacing{mean_s, spacing_within(found, 0.0, 1.5 * mean_s).deviation_s};
 }
 
-// Counts lost reports, not late ones: five intervals together must be too long by half a one, too.
+// Counts lost reports, not late ones: five intervals together must also be too long by half an
+// interval.
 std::int64_t gaps_of(const StickTrack& track, double interval_s) noexcept {
   std::int64_t gaps = 0;
   for (std::size_t i = 1; i < track.size(); ++i) {

@@ -1,5 +1,5 @@
-// A stick's raw positions over time: collected from reports, cleaned of what would mislead, and
-// what they say of the reports themselves (rate, steps, gaps). All of stick's analysis reads these.
+// A stick's raw positions over time: collected from reports, with wrong ones removed, and measures
+// of the reports themselves (rate, steps, gaps). All analysis of sticks reads these tracks.
 #pragma once
 #include <array>
 #include <cstdint>
@@ -83,7 +83,7 @@ double seconds_between(std::int64_t from_ns, std::int64_t to_ns) noexcept;
 
 // A pad that is silent for longer than this may be gone: no position counts for longer.
 inline constexpr double kMaxHold_s = 2.0;
-// How long sample i stood: until the next sample; the last one for one interval.
+// The time for which sample i stood: until the next sample; the last one for one interval.
 double hold_s(const StickTrack& track, std::size_t i, double interval_s) noexcept;
 // The number of reports that a hold stands for: 1 if the next report followed within 1.5 intervals,
 // else as many as were left out (nothing changed) or lost. Means at rest use this as their weight,

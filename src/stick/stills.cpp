@@ -120,8 +120,9 @@ bool stays(std::span<const Cell> cells, const Run& run, std::size_t end) noexcep
   return true;
 }
 
-// Runs of cells in the middle of still windows, longer by what of the outermost windows is rest for
-// certain: a movement begins and ends within the noise, and on a slow pad between two reports.
+// Runs of cells in the middle of still windows, extended by the part of the outermost windows that
+// is certainly rest: a movement begins and ends within the noise, and on a slow pad between two
+// reports.
 std::vector<Run> still_runs(std::span<const Cell> cells, double slow, double interval_s) {
   std::vector<Run> runs;
   if (cells.size() < kWindow) return runs;
@@ -138,7 +139,7 @@ std::vector<Run> still_runs(std::span<const Cell> cells, double slow, double int
       if (is_same) {
         runs.back().end = end;
       } else {
-        // The way between two places belongs to neither.
+        // The movement between two places belongs to neither.
         const std::size_t least = runs.empty() ? 0 : (runs.back().end + begin) / 2;
         if (!runs.empty()) runs.back().end = std::min(runs.back().end, least);
         runs.push_back({std::max(begin - std::min(begin, room), least), end});
@@ -197,7 +198,7 @@ bool may_be_rest(const Still& still, const std::optional<Extent>& turned) noexce
   return !turned || glm::length((still.mean - turned->middle()) / turned->half()) < 0.6;
 }
 
-// Where the stick went; none unless it went all the way round.
+// The extent of the stick's track; none unless the stick went all the way round.
 std::optional<Extent> turned_extent(std::span<const StickTrack> tracks) {
   const Extent extent = extent_of(tracks);
   const double least_half = std::min(extent.half().x, extent.half().y);
@@ -291,8 +292,8 @@ constexpr std::size_t kBlockCells = 5;
 constexpr double kOutwards = 0.012;       // raw in 60 ms: a push may have begun
 constexpr std::size_t kLongestPush = 25;  // cells
 
-// Where the stick was while it was slow and not held at its rim: of a stick that never stands
-// still, the middle of its wanderings. None if it was always moved.
+// The mean place of the stick while it was slow and not held at its rim: for a stick that never
+// stands still, the middle of its wanderings. None if it was always moved.
 std::optional<vec2> usual_place(std::span<const Cell> cells) {
   constexpr double kFast = 0.05;  // raw from cell to cell
   std::vector<vec2> places;
@@ -326,7 +327,7 @@ void add_hands_off(std::size_t track, std::span<const Cell> cells, const vec2& h
         if ((away(last - 1) - away(last - 4)) * reach < kOutwards) break;
       }
     }
-    // Of a short time the end counts, though it may not have settled quite.
+    // If the time is short, its end counts, although the stick may not quite have settled.
     if (is_released && last < first + kBlockCells)
       first = std::max(begin + kLeastSettlingCells, last - std::min(last, kBlockCells));
     if (last < first + kBlockCells) continue;
@@ -342,7 +343,7 @@ void add_hands_off(std::size_t track, std::span<const Cell> cells, const vec2& h
   }
 }
 
-// How far the stick was usually pushed: a square gate's corners are far beyond that.
+// The usual length of a push; a square gate's corners are far beyond it.
 double usual_reach(std::span<const std::vector<Cell>> cells, const vec2& home) {
   std::vector<double> away;
   double farthest = 0.5;

@@ -1,4 +1,5 @@
-// Where in its tracks a stick stood still, and which of these places is its rest.
+// Finds the places at which a stick stood still in its tracks, and tells which of them are its
+// rest.
 #pragma once
 #include <cstddef>
 #include <cstdint>
@@ -21,7 +22,7 @@ struct Still {
   // was hardly moved.
   vec2 from{0.0};
 };
-// A time in which nobody held the stick: from when it has settled after a release, or from the
+// A time in which the stick was not held: from when it has settled after a release, or from the
 // beginning of a track, to the next push. It may move by itself, so it need not be still.
 struct HandsOff {
   std::size_t track = 0;

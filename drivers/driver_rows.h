@@ -1,5 +1,5 @@
-// What each driver file defines for its row in driver_registry.cpp. A driver whose library is
-// missing is not compiled, and its row then has no functions.
+// The functions that each driver file defines for its row in driver_registry.cpp. A driver whose
+// library is missing is not compiled, and its row then has no functions.
 #pragma once
 #include <memory>
 #include <string>

@@ -1,5 +1,5 @@
-// The effects of force feedback that programs have uploaded to a virtual pad, and by which number
-// the real pad behind it knows each. The kernel numbers the effects of every device by itself.
+// The effects of force feedback that programs have uploaded to a virtual pad, each with its number
+// on the real pad behind it. The kernel numbers the effects of every device by itself.
 #pragma once
 #include <linux/input.h>
 
@@ -26,7 +26,7 @@ class EffectTable {
   // (null). Meanwhile effects are kept.
   void set_target(EffectTarget* target) noexcept;
 
-  // What a program asks of the virtual pad, by its own numbers; as EffectTarget.
+  // A program's requests to the virtual pad, by the program's numbers; as EffectTarget.
   int upload(const ff_effect& effect) noexcept;
   int erase(int id) noexcept;
   void send(std::uint16_t code, std::int32_t value) noexcept;

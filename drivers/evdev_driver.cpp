@@ -1,7 +1,7 @@
-// Pads through Linux's evdev, by libevdev: what the kernel's own driver made of the pad. It needs
-// no more permission than desktops give their users for pads, has the kernel's time of each event,
-// and serves pads that are no HID devices (xpad). The node is stated as a HID device:
-// hid/evdev_layout.h.
+// Pads through Linux's evdev, by libevdev: the events that the kernel's own driver makes of a pad's
+// reports. It needs no more permission than desktops give their users for pads, has the kernel's
+// time of each event, and serves pads that are no HID devices (xpad). The node is stated as a HID
+// device: hid/evdev_layout.h.
 #include <errno.h>
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -90,7 +90,7 @@ Result<InputNode> open_input_node(const std::string& node, int mode) {
   return opened;
 }
 
-// How the node is stated as a HID device.
+// The node, stated as a HID device.
 EvdevLayout input_node_layout(const InputNode& opened, const std::string& node) {
   std::vector<std::uint8_t> own_descriptor;
   if ((libevdev_get_id_version(opened.device.get()) & kArrangedByKernel) == 0) {
@@ -311,8 +311,8 @@ Device::Status EvdevDevice::next_packet() noexcept {
   }
 }
 
-// Whether the pad has sent nothing yet. The kernel's axes are 0 then, which of 0..255 is far left
-// and forward. A stick that is really held there shows when it moves.
+// Whether the pad has sent nothing yet. Its axes then read 0, which would be a push far left and
+// forward if their range is 0..255. A stick that is really held there shows when it moves.
 bool EvdevDevice::is_untouched() const noexcept {
   bool is_at_an_end = false;
   for (const EvdevField& f : layout_.fields) {
@@ -355,7 +355,7 @@ bool has_key_between(const libevdev* device, unsigned first, unsigned end) {
   return false;
 }
 
-// What the node is if it is no pad; empty: it is a pad.
+// The kind of device that the node is if it is no pad; empty: it is a pad.
 const char* what_else(const libevdev* device, const SystemNode& node) {
   if (libevdev_has_property(device, INPUT_PROP_ACCELEROMETER) || node.name.ends_with("(IMU)") ||
       node.name.ends_with(" IMU")) {
@@ -384,7 +384,7 @@ bool cannot_have_a_stick(const std::string& node) {
   return !bits.empty() && std::string_view("37bfBF").find(bits.back()) == std::string_view::npos;
 }
 
-// What was seen of a node when it was opened.
+// The facts about a node from when it was opened.
 struct Seen {
   std::string other;  // what it is if it is no pad
   std::vector<std::uint8_t> descriptor;

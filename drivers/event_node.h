@@ -1,5 +1,5 @@
-// A pad's event node, for who wants more of it than its reports: to have it alone, the codes behind
-// a report, and its effects of force feedback.
+// A pad's event node, for callers that need more than its reports: its events for themselves alone,
+// the codes behind a report, and its effects of force feedback.
 #pragma once
 #include <cstdint>
 #include <memory>
@@ -17,9 +17,9 @@ class EventNode : public Device, public EffectTarget {
   static Result<std::unique_ptr<EventNode>> open(const DeviceListing& listing);
 
   // From now on no other program gets its events, and it has no effects but the caller's. 0, or
-  // errno: EBUSY if another program has it so.
+  // errno: EBUSY if another program has done so.
   virtual int grab() noexcept = 0;
-  // The values of which the newest report was made.
+  // The values that the newest report was made of.
   virtual const EvdevState& state() const noexcept = 0;
   virtual const EvdevLayout& layout() const noexcept = 0;
   // Its codes of EV_FF: the kinds of effects, the gain. Empty: none, or the node may be read only.

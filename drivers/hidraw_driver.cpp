@@ -146,7 +146,7 @@ class HidrawPort final : public PadPort {
 };
 
 // Its thread must not use the handle: hidapi writes its error text into it on every call. It shares
-// the one opening; another one would have a queue of reports that nobody reads. Null if the
+// the one opening; a second opening would have a queue of reports that is never read. Null if the
 // descriptor is not known, or no thread can be started.
 std::unique_ptr<PacketSender> hidraw_sender(int fd, bool is_numbered) {
   const auto own = std::make_shared<const OwnedFd>(fd < 0 ? -1 : ::fcntl(fd, F_DUPFD_CLOEXEC, 0));

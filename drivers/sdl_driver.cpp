@@ -1,9 +1,9 @@
 // Joysticks of SDL2, where a user asks for the driver `sdl`. SDL has
 // one list of joysticks, one set of hints and one queue of events for the whole program, which may
-// be somebody else's. So hints are only set if the program has no joysticks, and nothing of others
-// is taken off the queue: an event watch sees each joystick event when SDL creates it, on any
-// thread, and stores it for the open device. SDL has nothing to poll(): it looks at its joysticks
-// when it is asked to, here once a millisecond.
+// belong to a host program. So hints are only set if the program has no joysticks, and nothing of
+// others is taken off the queue: an event watch sees each joystick event when SDL creates it, on
+// any thread, and stores it for the open device. SDL has nothing to poll(): it looks at its
+// joysticks when it is asked to, here once a millisecond.
 #include <SDL2/SDL.h>
 #include <dlfcn.h>
 #include <fmt/format.h>
@@ -102,7 +102,7 @@ class Sdl {
     return sdl;
   }
   Sdl(const Sdl&) = delete;
-  // Takes events of our open joysticks off the queue, if nobody else in the program empties it.
+  // Takes events of our open joysticks off the queue, if no other part of the program empties it.
   void clear_queue() noexcept;
   ~Sdl() {
     if (!problem_.empty()) return;

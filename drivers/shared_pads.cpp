@@ -95,7 +95,7 @@ class SharedPad final : public Device {
  private:
   enum class Ring { no, yes };
 
-  // Of a pad that nobody reads the oldest packet is dropped.
+  // Drops the oldest packet if the pad's packets are not read.
   void put(const Report& packet, Ring ring) noexcept {
     if (count_ == kInbox) {
       ++lost_;

@@ -52,7 +52,7 @@ std::uint16_t hex16(std::string_view digits) {
   return static_cast<std::uint16_t>(take_number<std::uint32_t>(digits, 16).value_or(0));
 }
 
-// What the HID device and the USB interface above the node tell.
+// Adds the facts of the HID device and the USB interface above the node.
 void add_parents(udev_device* device, SystemNode& node) {
   udev_device* hid = udev_device_get_parent_with_subsystem_devtype(device, "hid", nullptr);
   udev_device* usb = udev_device_get_parent_with_subsystem_devtype(device, "usb", "usb_interface");

@@ -1,5 +1,5 @@
-// What the system (sysfs and udev, through libudev) knows about input hardware: its nodes, what
-// they belong to, plugging in and unplugging. Used by the drivers' `find`, the finder and `gaitpad
+// The system's knowledge (sysfs and udev, through libudev) of input hardware: its nodes, what they
+// belong to, plugging in and unplugging. Used by the drivers' `find`, the finder and `gaitpad
 // doctor`.
 #pragma once
 #include <cstdint>
@@ -38,8 +38,8 @@ std::vector<std::uint8_t> sysfs_bytes(const std::filesystem::path& path);
 // The number that it holds, in hexadecimal; none: there is no such file, or no number.
 std::optional<std::uint32_t> sysfs_hex(const std::filesystem::path& path);
 
-// Of the input device that the kernel made of a HID device or USB interface, the version in SDL's
-// GUID; 0: there is none.
+// The version of the input device that the kernel made of a HID device or USB interface, as in
+// SDL's GUID; 0: there is none.
 std::uint16_t input_version(const std::filesystem::path& owner);
 
 // The nodes of "hidraw", "input" (event nodes only) or "usb" (devices; pad_path is empty because
@@ -52,7 +52,7 @@ std::string usb_interface_path(const std::string& interface_name);
 // How often the interface's interrupt IN endpoint is polled, by its `interval` (`4ms`, `125us`); 0:
 // unknown, or there is none.
 double usb_poll_rate_hz(const std::string& interface_path);
-// What the pad reports of its battery, as the kernel's driver has it.
+// The state of the pad's battery, as the kernel's driver has it.
 struct Battery {
   std::optional<int> percent;  // none: the pad tells a level only
   std::string level;           // critical, low, normal, high, full; empty: unknown
@@ -62,7 +62,7 @@ struct Battery {
 std::optional<Battery> battery_of(const std::string& pad_path);
 // By what a stream knows of an open device.
 std::optional<Battery> battery_of(const DeviceInfo& device);
-// Why this user cannot open the node for reading and writing; empty: the user can.
+// The reason why this user cannot open the node for reading and writing; empty: there is none.
 // `/dev/hidraw3: permission denied (owner 0, group 0, mode 0600); gaitpad doctor tells the fix`
 std::string access_problem(const std::string& node);
 

@@ -105,7 +105,7 @@ class TraceFileDevice final : public Device {
     const std::vector<TraceEvent>& events = *events_;
     while (next_ < events.size() && events[next_].device != device_) ++next_;
   }
-  // Of the next event; after the last one: of the end.
+  // The time of the next event; after the last one, of the end.
   std::int64_t due_ns() const noexcept {
     const std::vector<TraceEvent>& events = *events_;
     return next_ < events.size() ? playback_->due_ns(events[next_].time_us) : end_ns_;

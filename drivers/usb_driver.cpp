@@ -512,7 +512,7 @@ struct SharedInterfaces {
     static SharedInterfaces interfaces;
     return interfaces;
   }
-  std::mutex mutex;  // also while one is claimed, so that nobody claims it again
+  std::mutex mutex;  // also while one is claimed, so that none is claimed twice
   std::map<std::string, std::weak_ptr<SharedDevice>> open;
 };
 

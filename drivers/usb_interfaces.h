@@ -1,5 +1,5 @@
-// What sysfs tells about a USB device's interfaces: which of them may be pads, at which port they
-// are, which driver has them. Nothing here opens a device.
+// The facts that sysfs has about a USB device's interfaces: which of them may be pads, at which
+// port they are, which driver has them. Nothing here opens a device.
 #pragma once
 #include <cstdint>
 #include <optional>

@@ -61,7 +61,7 @@ void close_others(int kept) {
   constexpr int kAttempts = 250;
   constexpr timespec kPause = {0, 20'000'000};
   ::setsid();  // Ctrl-C in the terminal must not end the watcher
-  // A process of its own, for which nobody has to wait when it ends.
+  // A process of its own, which needs no waitpid() when it ends.
   if (const pid_t watcher = ::_Fork(); watcher != 0) leave(watcher < 0 ? errno : 0);
   close_others(link);
   char word = 0;

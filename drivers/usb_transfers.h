@@ -42,7 +42,7 @@ class UsbTransfers {
   UsbTransfers(const UsbTransfers&) = delete;
   UsbTransfers& operator=(const UsbTransfers&) = delete;
 
-  // What to wait for; does not change while the device is there.
+  // The descriptors to poll; they do not change while the device is there.
   std::span<const pollfd> poll_fds() const noexcept { return poll_fds_; }
   // Receives and sends packets; waits at most `timeout`.
   void handle_events(std::chrono::milliseconds timeout) noexcept;

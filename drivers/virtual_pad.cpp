@@ -9,7 +9,7 @@
 namespace gaitpad {
 namespace {
 
-// No USB device has this vendor's id: it is none.
+// Not a USB vendor's id: it marks our own virtual pad.
 constexpr int kOwnVendor = 0x6761, kOwnProduct = 0x7470;
 
 // By PadButton, as far as Linux's gamepads name them.

@@ -1,4 +1,4 @@
-// A pad that the kernel shows to every program, made by uinput: what gaitpad makes of a real or
+// A pad that the kernel shows to every program, made by uinput: its state comes from a real or
 // recorded pad. XboxPad states the layout of Linux's gamepads (Documentation/input/gamepad.rst in
 // the kernel) with the codes of the Xbox pads' driver, which games and SDL know without a mapping.
 #pragma once
@@ -31,7 +31,7 @@ struct VirtualPadAxis {
   bool operator==(const VirtualPadAxis&) const = default;
 };
 
-// What programs see of a virtual pad. Its axes begin at 0 and its keys released.
+// The properties of a virtual pad that programs see. Its axes begin at 0 and its keys released.
 struct VirtualPadShape {
   std::string name;
   BusType bus = BusType::virtual_bus;
@@ -45,7 +45,7 @@ struct VirtualPadShape {
 
 // Whether such a pad is seen, whatever its ids: gaitpad must not read its own output.
 bool is_virtual_pad(const DeviceInfo& info) noexcept;
-// Where it is plugged in, in place of a port.
+// Stands in place of the port at which it is plugged in.
 inline constexpr std::string_view kVirtualPort = "gaitpad/";
 
 // Made in the kernel; destroying it unplugs it.
@@ -79,8 +79,8 @@ VirtualPadShape shape_of(XboxKind kind);
 // A stick's full deflection.
 inline constexpr int kFullStick = 32767;
 
-// What turns one state into the other, without the SYN_REPORT at the end. y grows backwards; the
-// D-pad is a hat.
+// The events that turn one state into the other, without the SYN_REPORT at the end. y grows
+// backwards; the D-pad is a hat.
 std::vector<VirtualPadEvent> events_between(const VirtualPadState& from, const VirtualPadState& to,
                                             XboxKind kind = XboxKind::calibrated);
 

@@ -134,7 +134,7 @@ class GipQuirks final : public PadQuirks {
     // Without a complete header it is unknown: pass it on, so that the decoder counts it.
     if (packet.size() < kHeaderBytes) return !is_of_protocol(packet[0]);
     const bool is_known = packet[0] == kInput || packet[0] == kGuide || is_of_protocol(packet[0]);
-    if (!is_known) return true;  // unknown: passed on and counted, too
+    if (!is_known) return true;  // unknown: passed on and counted as well
     const std::uint8_t options = packet[1];
     const bool is_input = !is_of_protocol(packet[0]);
     if ((options & kChunk) != 0) {  // part of a long message; input is never long

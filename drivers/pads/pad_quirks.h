@@ -1,6 +1,6 @@
-// Quirks: what a kind of pad needs in addition to its report descriptor: packets that start it,
-// packets that are no input, rumble. Bytes only; the drivers that carry packets (hidraw, usb) share
-// the quirks.
+// Quirks: the handling that a kind of pad needs beside its report descriptor: packets that start
+// it, packets that are no input, rumble. Bytes only; the drivers that carry packets (hidraw, usb)
+// share the quirks.
 #pragma once
 #include <array>
 #include <chrono>
@@ -67,7 +67,8 @@ class PadQuirks {
   }
   // Whether accept() ever has a reply.
   virtual bool replies() const noexcept { return false; }
-  // What is handed on of a packet that was accepted: itself, or a state made of several packets.
+  // The report to hand on for a packet that was accepted: the packet itself, or a state put
+  // together from several packets.
   virtual std::span<const std::uint8_t> report_of(
       std::span<const std::uint8_t> packet) const noexcept {
     return packet;
@@ -88,8 +89,8 @@ std::unique_ptr<PadQuirks> make_pad_quirks(const DeviceInfo& device);
 
 // The first packet of a HID pad that was just opened, and its size: what it sends within 30 ms,
 // else its answer when it is asked for a report with its stick; 0: none. A pad that reports changes
-// only would not tell that its stick rests, and its first push would not count. An answer of zeros,
-// a corner of the stick, is none: some pads give it instead of their state.
+// only would not tell that its stick rests, and its first push would not count. An answer of zeros
+// is ignored: some pads give it instead of their state, and it would mean a corner of the stick.
 std::size_t first_packet(PadPort& port, const std::vector<std::uint8_t>& descriptor,
                          std::span<std::uint8_t> packet) noexcept;
 

@@ -37,8 +37,8 @@ std::vector<DeviceListing> joy_con_pairs(const std::vector<DeviceListing>& singl
 Result<std::unique_ptr<Device>> join_joy_cons(std::unique_ptr<Device> one,
                                               std::unique_ptr<Device> other);
 
-// A pair's reports have one side's sensors, 13 to 48. This byte says whose: the motors' answer in a
-// single one's report, which no layout reads.
+// A pair's reports have one side's sensors, bytes 13 to 48. This byte tells which side's; in a
+// single Joy-Con's report it holds the motors' answer, which no layout reads.
 inline constexpr std::size_t kPairSideByte = 12;
 inline constexpr std::uint8_t kPairLeft = 'L', kPairRight = 'R';
 
@@ -58,9 +58,8 @@ class PlugWatch {
   bool was_plugged_ = true;
 };
 
-// Where a pad behind a receiver of Microsoft's is, which its kernel driver does not tell apart.
-// The port of an event node: Linux xpad.c says `/input0` of every interface of an Xbox 360
-// receiver.
+// The port of a pad behind a receiver of Microsoft's, whose kernel driver gives all of its pads one
+// port: Linux xpad.c says `/input0` of every interface of an Xbox 360 receiver.
 std::string port_behind_receiver(const std::string& port, std::string_view kernel_driver,
                                  unsigned interface_number);
 // DeviceListing::pad_path: xone's dongle has one USB interface for all; `maker` is the sysfs folder

@@ -63,8 +63,8 @@ std::uint8_t motor(std::uint16_t strength) noexcept {
 }
 
 // The calibration of a gyroscope: what it counted at rest and while it was turned both ways about
-// each axis, then the speed of both turns in degrees a second. What it counts at rest is in the
-// reports no more (hid-playstation.c: "bias"). None: numbers that no such chip has.
+// each axis, then the speed of both turns in degrees a second. The reports no longer contain the
+// counts at rest (hid-playstation.c: "bias"). None: numbers that no such chip has.
 enum class TurnOrder { by_axis, by_way };  // plus and minus of each axis; all plus, then all minus
 constexpr std::size_t kGyroBytes = 23;
 std::optional<FactoryGyro> gyro_of(std::span<const std::uint8_t> feature, TurnOrder order) {
@@ -97,7 +97,7 @@ class SonyQuirks : public PadQuirks {
         is_bluetooth_(device.bus == BusType::bluetooth),
         full_report_(full_report) {}
 
-  // The wireless adapter sends reports without a pad, too.
+  // The wireless adapter sends reports even without a pad.
   bool is_plugged() const noexcept final { return is_plugged_; }
 
   bool accept(std::span<const std::uint8_t> packet, OutPacket& reply) noexcept final {
@@ -143,7 +143,7 @@ class SonyQuirks : public PadQuirks {
 };
 
 // On USB it sends nothing until two features were read: Linux's hid-sony.c
-// (sixaxis_set_operational_usb), whose third step some copies answer by rumbling for ever.
+// (sixaxis_set_operational_usb), whose third step makes some copies rumble without end.
 class DualShock3 final : public PadQuirks {
  public:
   explicit DualShock3(const DeviceInfo& device)

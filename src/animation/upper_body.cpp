@@ -670,11 +670,12 @@ void pose_head(const Tick& tick, WalkState& state, const PosePart& pose,
 
 namespace {
 
-// The trunk leans into a change of speed: forward while the walk is slower than asked, a little
-// even for a slow walk, and back while it is faster. Head and chest turn before the pelvis does
-// (people: by 0.3 s and less). Times in seconds at the reference leg.
-constexpr double kPush = 3.0 * kDegree;                                          // for 1 m/s
-constexpr double kFirstPush = 2.0 * kDegree, kFirstFrom = 0.4, kFirstAll = 0.8;  // at a start
+// The trunk leans into a change of speed: forward while the walk is slower than asked, back while
+// it is faster. kFirstPush is added, in part while more than kFirstFrom of the asked speed is
+// missing and fully from kFirstAll on, so that a slow walk leans as well. Head and chest turn
+// before the pelvis does (people: by 0.3 s and less). Times in seconds at the reference leg.
+constexpr double kPush = 3.0 * kDegree;  // for 1 m/s
+constexpr double kFirstPush = 2.0 * kDegree, kFirstFrom = 0.4, kFirstAll = 0.8;
 constexpr double kCalm = 0.25, kSoftCalm_m_s = 0.1;
 constexpr double kPushSmoothing = 0.04, kSpeedSmoothing = 0.15;
 constexpr double kHeadAhead_s = 0.30, kHeadSmoothing = 0.07;

@@ -144,7 +144,7 @@ Result<std::string> file_text(const std::string& path, std::size_t max_bytes) {
   return text;
 }
 
-// --- what a session is made of
+// --- the input files of a session
 
 namespace {
 

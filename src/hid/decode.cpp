@@ -465,7 +465,7 @@ const Field* nth_field(const ReportDescriptor& d, std::uint8_t report_id, const 
   return nullptr;
 }
 
-// What is known of the controls apart from the descriptor: from a pad file, or from SDL.
+// Facts about the controls beside the descriptor: from a pad file, or from SDL.
 struct Wishes {
   std::optional<ButtonOrder> order;
   const ControlMap* controls = nullptr;      // of a pad file: the others keep their default
@@ -645,7 +645,7 @@ bool reads(const ReportLayout& layout, const Field& f) {
 std::vector<UnnamedButton> unnamed_buttons(const PadLayout& layout) {
   std::vector<UnnamedButton> unnamed;
   const ReportDescriptor& d = layout.descriptor;
-  // Of a report that is replaced the pad's own descriptor says nothing that is true.
+  // If a pad file replaces a report, the pad's own description of it is wrong.
   const auto is_replaced = [&layout](std::uint8_t id) {
     return std::any_of(layout.reports.begin(), layout.reports.end(), [id](const ReportLayout& r) {
       return r.report_id == id && !r.exact_sizes.empty();

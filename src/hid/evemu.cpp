@@ -134,7 +134,7 @@ std::unique_ptr<EvdevReader> make_evemu_reader() { return std::make_unique<Evemu
 
 namespace {
 
-// What the kernel's hid-input does with the fields of one pad.
+// Computes the events that the kernel's hid-input makes of the fields of one pad.
 class EvemuWriter {
  public:
   EvemuWriter(const DeviceInfo& info, ReportDescriptor descriptor)

@@ -17,7 +17,7 @@ namespace gaitpad {
 bool is_evemu(std::string_view text) noexcept;
 
 std::unique_ptr<EvdevReader> make_evemu_reader();
-// What an `E:` line holds, which umockdev writes, too. Returns why it is damaged.
+// Reads the content of an `E:` line, which umockdev writes as well. Returns why it is damaged.
 std::optional<std::string> add_evemu_event(Words words, EvdevRecording& node);
 
 // The first pad of the trace. Fields whose usages the kernel gives no code are left out, and so are

@@ -305,7 +305,7 @@ std::optional<Guid> guid_of(std::string_view line) {
   return guid;
 }
 
-// What stands behind `key:` in the line; empty: nothing.
+// The text after `key:` in the line; empty: there is none.
 std::string_view pair_of(std::string_view line, std::string_view key) {
   while (!line.empty()) {
     std::string_view pair = take_part(line, ',');
@@ -492,7 +492,7 @@ std::vector<Moved> moved_by(PadAxis axis, const StickAxes& sticks) {
   return moved;
 }
 
-// SDL's y grows towards the thumb's owner, ours away from it.
+// SDL's y grows towards the player, ours away from the player.
 std::string_view sign_of(PadAxis axis, bool is_positive) {
   return is_positive != is_upward(axis) ? "+" : "-";
 }

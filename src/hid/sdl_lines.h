@@ -27,13 +27,13 @@ Result<ControlMap> sdl_controls(std::string_view mapping, const ReportDescriptor
 // The lines of a gamecontrollerdb.txt that are for Linux, without comments, in their order. Lines
 // that no recording can hold are left out.
 std::vector<std::string> mapping_lines(std::string_view text);
-// Of those lines the one for this device; empty: none. As in SDL the line of another version counts
-// if there is none of this one. But a line with the kernel's mark counts codes that the kernel's
-// driver for the pad chose, one without it the pad's own controls: these are not mixed. A line with
-// a checksum is for pads of one name. A line for printed names counts
-// only if there is none by position.
+// The one of those lines that is for this device; empty: none. As in SDL the line of another
+// version counts if there is none of this one. But a line with the kernel's mark counts codes that
+// the kernel's driver for the pad chose, one without it the pad's own controls: these are not
+// mixed. A line with a checksum is for pads of one name. A line for printed names counts only if
+// there is none by position.
 std::string fitting_mapping(std::span<const std::string> lines, const DeviceInfo& device);
-// `lines` with those of `own` that have another GUID: what a user has, after an import.
+// The user's lines after an import: `lines`, and those of `own` with another GUID.
 std::vector<std::string> merged_mappings(const std::vector<std::string>& lines,
                                          const std::vector<std::string>& own);
 

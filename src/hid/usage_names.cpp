@@ -15,7 +15,7 @@ struct UsageName {
   const char* name;
 };
 
-// What pads, their motors and lights use of the HID Usage Tables 1.4.
+// The part of the HID Usage Tables 1.4 that pads, their motors and lights use.
 constexpr UsageName kNames[] = {
     {0x00010001, "Pointer"},
     {0x00010002, "Mouse"},

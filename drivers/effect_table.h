@@ -16,7 +16,7 @@ class EffectTarget {
   // Changes effect.id; one of -1 becomes the number of the new effect.
   virtual int upload(ff_effect& effect) noexcept = 0;
   virtual int erase(int id) noexcept = 0;
-  // An event of EV_FF. `code`: an effect, which starts so many times or stops (0), or FF_GAIN.
+  // An event of EV_FF. `code`: an effect, which starts `value` times or stops (0), or FF_GAIN.
   virtual int send(std::uint16_t code, std::int32_t value) noexcept = 0;
 };
 

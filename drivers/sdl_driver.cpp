@@ -51,8 +51,8 @@ constexpr std::size_t kMaxAxes = 64, kMaxButtons = 255, kMaxHats = 4;
 GAITPAD_SDL_FUNCTIONS(GAITPAD_SDL_POINTER)
 #undef GAITPAD_SDL_POINTER
 
-// What prevents it; empty: all functions can be called. A program that has SDL already keeps its
-// own.
+// Loads the library; returns what prevents it. Empty: all functions can be called. A program that
+// has SDL already keeps its own.
 std::string load_library() {
   constexpr const char* kLibrary = "libSDL2-2.0.so.0";
   void* library = RTLD_DEFAULT;  // a null pointer

@@ -83,7 +83,7 @@ class JoystickReports {
 JoystickReports joystick_reports(JoystickState state, const std::string& node,
                                  std::uint16_t version);
 
-// What SDL has reported of one open joystick and its device has not read yet.
+// The reports of SDL on one open joystick that its device has not read yet.
 struct JoystickInbox {
   std::int32_t joystick = -1;  // SDL's instance id
   std::deque<JoystickReports::Change> changes;
@@ -98,7 +98,7 @@ class JoystickInboxes {
 
   void add(JoystickInbox& inbox);
   void remove(const JoystickInbox& inbox) noexcept;
-  JoystickInbox take(JoystickInbox& inbox);  // its content since the last take
+  JoystickInbox take(JoystickInbox& inbox);  // takes its content out
   bool has(std::int32_t joystick) const noexcept;
   void put(std::int32_t joystick, const JoystickReports::Change& change);
   // Drops the last changes as long as `is_reset` is true of them.

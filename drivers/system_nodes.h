@@ -49,8 +49,8 @@ std::vector<SystemNode> system_nodes(std::string_view subsystem);
 DeviceListing listing_of(const SystemNode& node, const char* driver);
 // pad_path of a USB interface: `1-1.2:1.0` as in /sys/bus/usb/devices.
 std::string usb_interface_path(const std::string& interface_name);
-// How often the interface's interrupt IN endpoint is polled, by its `interval` (`4ms`, `125us`); 0:
-// unknown, or there is none.
+// The rate at which the interface's interrupt IN endpoint is polled, by its `interval` (`4ms`,
+// `125us`); 0: unknown, or there is none.
 double usb_poll_rate_hz(const std::string& interface_path);
 // The state of the pad's battery, as the kernel's driver has it.
 struct Battery {

@@ -506,7 +506,7 @@ Result<std::shared_ptr<SharedDevice>> claim_shared(const std::string& node,
       std::make_unique<UsbPackets>(std::move(*claimed), std::move(*transfers)));
 }
 
-// What is open, by the interface's sysfs folder.
+// The interfaces that are open, by their sysfs folders.
 struct SharedInterfaces {
   static SharedInterfaces& all() {
     static SharedInterfaces interfaces;

@@ -1,5 +1,5 @@
-// Where the tests find the repository and the real data. The paths stand in folders.cpp alone, so
-// that a compiler cache serves every checkout with the same objects.
+// The folders of the repository and of the real data, for tests. The paths stand in folders.cpp
+// alone, so that a compiler cache serves every checkout with the same objects.
 #pragma once
 #include <string>
 

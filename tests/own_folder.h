@@ -13,7 +13,7 @@
 
 namespace gaitpad {
 
-// How many files and folders stand in a folder.
+// The number of files and folders in a folder.
 inline int entries_in(const std::filesystem::path& folder) {
   return static_cast<int>(std::distance(std::filesystem::directory_iterator(folder), {}));
 }
@@ -34,7 +34,7 @@ class OwnFolder {
     std::filesystem::permissions(path, std::filesystem::perms::owner_all, ignored);
     std::filesystem::remove_all(path, ignored);
   }
-  // Where a file or folder of it stands or would stand.
+  // The path of a file or folder in it, whether it exists or not.
   std::string at(const std::string& name) const { return (path / name).string(); }
   // Writes a file, and the folders that it needs; where it is.
   std::string write(const std::string& name, const std::string& text = "") const {

@@ -1,4 +1,4 @@
-// What a test takes out of a Result.
+// Takes the value out of a Result, in a test.
 #pragma once
 #include <stdexcept>
 #include <string>

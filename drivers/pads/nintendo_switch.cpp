@@ -69,7 +69,7 @@ constexpr std::size_t kPacketBytes = 64;
 constexpr std::size_t kAckAt = 13, kSubcommandAt = 14, kAddressAt = 15, kLengthAt = 19,
                       kFlashAt = 20, kKindAt = 17;
 
-// Where the flash memory has the calibration of the sticks, 9 bytes each.
+// The addresses of the sticks' calibration in the flash memory, 9 bytes each.
 constexpr std::uint32_t kFactoryAddress = 0x603d;  // left, right
 constexpr std::size_t kFactoryBytes = 18;
 constexpr std::uint32_t kUserAddress = 0x8010;  // per stick a mark, then the 9 bytes
@@ -93,7 +93,7 @@ constexpr int kMinCentre = 1024, kMaxCentre = 3072, kMinWay = 256;
 struct StickRange {  // counts; x, then y
   std::array<int, 2> min{}, centre{}, max{};
 };
-// What Linux's hid-nintendo assumes for a pad without calibration.
+// The range that Linux's hid-nintendo assumes for a pad without calibration.
 constexpr StickRange kUsualRange = {{500, 500}, {2000, 2000}, {3500, 3500}};
 
 // Two numbers of 12 bits in three bytes.
@@ -103,7 +103,7 @@ std::array<int, 2> unpacked(std::span<const std::uint8_t, 3> bytes) noexcept {
 
 enum class Side { left, right };
 
-// Which of the three pairs of numbers is the way up, the centre, the way down.
+// The places of the way up, the centre and the way down among the three pairs of numbers.
 struct RangeOrder {
   std::size_t up, centre, down;
 };

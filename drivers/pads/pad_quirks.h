@@ -46,7 +46,7 @@ struct OutPacket {
   std::chrono::milliseconds repeat{0};
 };
 
-// Who started the pad: some start-up packets are only for a pad without a kernel driver.
+// The one who started the pad: some start-up packets are only for a pad without a kernel driver.
 enum class StartedBy { kernel, us };
 
 class PadQuirks {

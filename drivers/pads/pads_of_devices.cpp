@@ -52,7 +52,7 @@ std::vector<std::uint8_t> plug_descriptor(int plug) {
   return d;
 }
 
-// Which motors run. One packet sets them all, so the plugs of an adapter share this.
+// Whether each motor runs. One packet sets them all, so the plugs of an adapter share this.
 using AdapterMotors = std::array<std::atomic<bool>, kPlugs>;
 
 std::shared_ptr<AdapterMotors> motors_of(const std::string& adapter) {
@@ -141,7 +141,7 @@ std::vector<PadCollection> pad_collections(const ReportDescriptor& d) {
   return all;
 }
 
-// Where the usage of each application collection stands: its least significant byte.
+// The indices of the least significant bytes of the application collections' usages.
 std::vector<std::size_t> application_usages(const std::vector<std::uint8_t>& d) {
   std::vector<std::size_t> places;
   int depth = 0;

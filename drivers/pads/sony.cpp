@@ -197,9 +197,9 @@ class DualShock4 final : public SonyQuirks {
   }
 };
 
-// Of another maker, for the PlayStation 4: by USB alone, and not every one has motors. It tells
-// that in a feature which its descriptor must state: pads of the same makers that do not know it
-// hang when they are asked.
+// A pad of another maker for the PlayStation 4: by USB alone, and not every one has motors. It
+// tells whether it has in a feature which its descriptor must state: pads of the same makers that
+// do not know it hang when they are asked.
 class DualShock4OfOthers final : public PadQuirks {
  public:
   static constexpr std::uint8_t kAbilities = 0x03, kEffects = 0x05;

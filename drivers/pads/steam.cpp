@@ -163,7 +163,7 @@ constexpr std::size_t kHeaderBytes = 2, kSegmentBytes = 18, kMaxSegments = 8;
 enum : std::uint8_t { kIsSegment = 0x80, kIsLast = 0x40, kSegmentNumber = 0x07 };  // header
 constexpr std::uint8_t kBluetoothState = 4;  // low half of a message's first byte
 
-// Which parts a state has, by the other bits of its first two bytes, in the order of the parts.
+// The parts that a state has, by the other bits of its first two bytes, in the order of the parts.
 struct StatePart {
   unsigned bit = 0;
   std::size_t bytes = 0;

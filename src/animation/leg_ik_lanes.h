@@ -105,8 +105,8 @@ inline V angle_near(const V& sine, const V& cosine, const V& old_rad, const V& o
   return old_rad + atan_kernel(V(across / along));
 }
 
-// How much three joint axes have to turn for a rotation vector: x, z and y of Rx Rz Ry. `x` and `y`
-// are the axes before the last turn, `z` is the second one.
+// The turns of three joint axes that together make a rotation vector: x, z and y of Rx Rz Ry. `x`
+// and `y` are the axes before the last turn, `z` is the second one.
 template <class V>
 inline std::array<V, 3> turns_xzy(const Vec3Of<V>& vector, const Vec3Of<V>& x, const Vec3Of<V>& y,
                                   const Vec3Of<V>& z, const V& sine_z, const V& cosine_z) noexcept {

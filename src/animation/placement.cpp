@@ -66,7 +66,7 @@ GaitParams following(const CapsuleMotion& capsule, const WalkState& state, const
   const double aim_rad = arrives ? capsule.heading_rad : heading_of(goes);
   const double off_rad = aim_rad - frame.heading_rad,
                left_rad = off_rad - 2.0 * kPi * std::floor(off_rad / (2.0 * kPi) + 0.5);
-  // Where it has arrived it may step back; else it turns round.
+  // A body that has arrived may be followed by steps back; otherwise the walk turns round.
   const double along = glm::dot(goes, heading_direction(frame.heading_rad)),
                ahead = arrives ? along : std::max(0.0, along);
   Stick stick;

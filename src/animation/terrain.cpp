@@ -306,7 +306,7 @@ double bounded_place(double x_m) noexcept {
   return x_m > -kFar_m ? x_m : -kFar_m;
 }
 
-// How much higher a section ends than it begins.
+// The difference in height between a section's end and its begin.
 double rise_of(const SectionShape& shape) noexcept {
   if (const auto* slope = std::get_if<SlopeSection>(&shape)) return rise_of(*slope);
   if (const auto* stairs = std::get_if<StairsSection>(&shape))

@@ -554,9 +554,10 @@ void pose_arm(const WalkModel& model, const WalkState& state, Side side, const S
 
 constexpr double kMostYaw = 70.0 * kDegree, kMostPitch = 40.0 * kDegree;  // from the trunk
 constexpr double kSoftYaw = 6.0 * kDegree, kSoftHeadPitch = 4.0 * kDegree;
-// The head does not follow a goal behind it: turning left and turning right would be equally far.
+// The head does not follow a goal behind it, because turning left and right would be equally far,
+// nor one straight above or below it (kLevelFrom, kLevelTo: horizontal part of its direction).
 constexpr double kBesideYaw = 105.0 * kDegree, kBehindYaw = 150.0 * kDegree;
-constexpr double kLevelFrom = 0.15, kLevelTo = 0.4;  // nor a goal straight above or below
+constexpr double kLevelFrom = 0.15, kLevelTo = 0.4;
 constexpr double kNeckShare = 0.45;
 constexpr double kLead_s = 0.6;  // how far ahead of the walk a leading head looks
 

@@ -1,4 +1,4 @@
-// How a walk comes to rest at any moment of a step, and how it goes on if the stick comes back.
+// Lets a walk come to rest at any moment of a step, and go on if the stick comes back.
 //
 // A stop takes the first of three ends that brakes softly: the flying foot closes beside the
 // standing one; it lands ahead and the other foot closes; one more step comes in between. The hips

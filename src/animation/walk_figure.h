@@ -168,7 +168,7 @@ inline constexpr double kFootLever_m = 0.2;
 // Shares of the flight. The planted point is the toe until kToeUntil and the heel from kOnHeel on;
 // the foot turns back to its plan from kToLand to kLanded.
 inline constexpr double kToeUntil = 0.15, kOnHeel = 0.6, kToLand = 0.4, kLanded = 0.95;
-// How much a foot gives way: squared radians that cost as much as one squared radian of a joint.
+// Squared radians that a foot gives way by at the cost of one squared radian of a joint.
 inline constexpr double kGiveAside = 0.15, kGiveFlying = 0.5, kGiveRolling = 0.05;
 // When a walk begins, a foot that stood flat becomes free with this time constant.
 inline constexpr double kLoosening_s = 0.04;
@@ -189,7 +189,7 @@ MaskOf<V> set_relative_weights(const GaitFlow<V>& gait, Side side,
   return least < all_of<V>(1.0 - kEvenSpread);
 }
 
-// How far the foot may turn about the planted point, until toe or heel is on its floor.
+// The angles by which the foot may turn about the planted point, until toe or heel is on its floor.
 template <class V>
 void set_room(const Tick& tick, const StateOf<V>& state, Side side, const V& flown,
               LegShares<V>& shares) noexcept {

@@ -112,7 +112,7 @@ void smooth_parameters(const Tick& tick, const MomentOf<V>& at, const ParamsOf<V
                        StateOf<V>& state) noexcept {
   GaitFlow<V>& gait = state.gait;
   const double scale = tick.model.time_scale, dt = tick.dt_s;
-  // A walk that is to end takes the running step as it was begun, and one that closes it.
+  // A walk that is to end keeps its running step's length, also for the step that closes it.
   const Damping step(kStepSmoothing * scale, dt), first_step(kFirstStepSmoothing * scale, dt),
       weights(kWeightSmoothing * scale, dt), hips(kBounceSmoothing * scale, dt);
   for (int side : {0, 1}) {
@@ -218,9 +218,9 @@ V ratio_ahead(const WalkModel& model, const MomentOf<V>& at, const StateOf<V>& s
 // from kUnevenSteps.
 inline constexpr double kEvenSteps = 0.03, kUnevenSteps = 0.2, kLeastAsked = 0.1;
 
-// Where one foot's steps are shorter than the other's, the tables of short strides would keep both
-// feet low: then a heel flies as high as in strides in which both go as far as the longer one, and
-// comes down as the tables have it.
+// If one foot's steps are shorter than the other's, the tables of short strides would keep both
+// feet low. So a heel then flies as high as in strides in which both feet go as far as the longer
+// one, and comes down as the tables have it.
 template <class V>
 void raise_limping_heel(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& state,
                         const TablesOf<V>& tables, const KnotsOf<V>& knots, const V& ahead,
@@ -492,7 +492,7 @@ V step_length(const MomentOf<V>& at, const V& length_m) noexcept {
   return at.closing ? V{} : signed_m;
 }
 
-// How far the walk turns in the time of the running step.
+// The turn of the walk in the time of the running step.
 template <class V>
 V turn_ahead(const Tick& tick, const StateOf<V>& state, const MomentOf<V>& at) noexcept {
   return state.gait.turn_goal.x * (at.roll_ticks + at.flight_ticks) * tick.dt_s;
@@ -659,7 +659,7 @@ void advance_hips(const Tick& tick, const MomentOf<V>& at, StateOf<V>& state,
 
 // --- The hips lead, the phase follows ------------------------------------------------------------
 
-// Where a walk begins, ends, or changes its pace, the pelvis goes along a quintic from where it is,
+// While a walk begins, ends, or changes its pace, the pelvis goes along a quintic from where it is,
 // with its rate and acceleration, to where the tables have it at the coming strike, or to rest. The
 // tables are read at the phase at which they have the pelvis there, so that at every tick the
 // posture is that of a steady walk with its hips at that place: a start is the second half of a
@@ -1012,7 +1012,7 @@ void set_pitch(const LegBuild& leg, const V& pitch_rad, const MaskOf<V>& on_toe,
   pose.toe_m = chosen(on_toe, pose.toe_m, toe);
 }
 
-// How much steeper the line from heel to toe is in a foot that twists and rolls.
+// The factor by which the line from heel to toe is steeper in a foot that twists and rolls.
 template <class V>
 V rolled_elevation(const LegBuild& leg, const PoseOf<V>& pose) noexcept {
   const Vec<V> line = pose.edge * all_of<V>(leg.model.toe_m - leg.model.heel_m);
@@ -1049,7 +1049,7 @@ V table_pitch(const MomentOf<V>& at, const StateOf<V>& state, const PlanOf<V>& p
   const auto flat =
       at.closing & not_of(at.in_flight[side]) & not_of(at.in_roll[side]) & not_of(at.steps(side));
   pitch = flat ? V{} : pitch;
-  // Where the hips lead, the toe of a foot that has landed is down when the other one lifts off.
+  // If the hips lead, the toe of a foot that has landed is down when the other one lifts off.
   const auto stops = at.in_roll[side] & at.led;
   if (any(stops)) {
     const V down = (at.tick - at.led_from) / (kRollEnd * (at.stage_ticks - at.led_from));
@@ -1174,7 +1174,7 @@ Vec<V> flight_heel(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& st
 template <class V>
 Vec<V> flying_edges(const MomentOf<V>& at, const StateOf<V>& state, const PlanOf<V>& plan,
                     Side side, const V& u) noexcept {
-  // Where the hips lead, the foot stood, and will stand, at another phase than it flies at.
+  // If the hips lead, the foot stood, and will stand, at another phase than it flies at.
   const V lands = at.closing ? V{} : smootherstep(V((u - 1.0 + kEdgeGoes) / kEdgeGoes));
   const V goes = at.led ? smootherstep(V(u / kEdgeGoes)) * (1.0 - lands) : all_of<V>(1.0);
   const StrideFootOf<V>& stands = plan.cell.foot[side];
@@ -1366,8 +1366,8 @@ void keep_in_reach(const WalkModel& model, const MomentOf<V>& at, StateOf<V>& st
   foot.pose = chosen_pose(pulls, pose, foot.pose);
 }
 
-// How far a foot whose heel stays low lowers the hips and pitches itself: from the rise of its heel
-// on, until the heel swings forward.
+// The share to which a foot whose heel stays low lowers the hips and pitches itself: from the rise
+// of its heel on, until the heel swings forward.
 template <class V>
 void advance_low_foot(const Tick& tick, const MomentOf<V>& at, StateOf<V>& state,
                       Side side) noexcept {

@@ -437,7 +437,7 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
   model.source_leg_length_m = 0.5 * (cycle.leg[0].length_m() + cycle.leg[1].length_m());
   model.leg_length_m = model.source_leg_length_m * ratio;
   model.size = model.leg_length_m / kReferenceLeg_m;
-  model.time_scale = std::sqrt(std::sqrt(model.size));  // as step times scale
+  model.time_scale = std::sqrt(std::sqrt(model.size));  // as gait_limits() scales times
   for (Side side : {kLeftSide, kRightSide}) {
     model.leg[side] = leg_build(model.cycle.leg[side]);
     const double lift = cycle.toe_off[side] - cycle.strike[side];

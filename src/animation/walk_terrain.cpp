@@ -48,7 +48,7 @@ constexpr double kStay = 0.1;          // another piece than before has to be ch
 constexpr double kBeside_m = 1e-6;     // from a riser: on one side of it
 constexpr double kMoved_m = 1e-6, kTurned_rad = 1e-6;
 
-// How far the sole reaches along z from its heel point.
+// The sole's extent along z, from its heel point.
 struct Extent {
   double back_m = 0.0, front_m = 0.0;
 };
@@ -59,7 +59,7 @@ Extent sole_extent(const LegBuild& leg, double yaw_rad) noexcept {
   return {std::min(0.0, tip) - half, std::max(0.0, tip) + half};
 }
 
-// Where the heel may stand on a piece, along z.
+// The part of a piece, along z, on which the heel may stand.
 struct Room {
   double low_m, high_m, lacks_m;
 };
@@ -446,13 +446,13 @@ Sinking sinking(const WalkState& state, double flight_ticks) noexcept {
   return s;
 }
 
-// How far the hips are below their own height over a foot that lands from a height of `fall_m`.
+// The depth of the hips below their own height over a foot that lands from a height of `fall_m`.
 double early_yield(const WalkModel& model, double fall_m) noexcept {
   if (fall_m <= 0.0) return 0.0;
   return kYield * model.leg_length_m * fall_m / (fall_m + kHalfYield * model.leg_length_m);
 }
-// How far the next foot lands below the standing one, its heel or its toe: a foot that points
-// down reaches less far.
+// The height by which the next foot lands below the standing one, its heel or its toe: a foot that
+// points down reaches less far.
 double fall_ahead(const WalkModel& model, const WalkState& state) noexcept {
   const Side lands = step_foot(state), stands = other(lands);
   const FootPlane &from = state.foot[stands].plane, &to = state.path.landing_plane;
@@ -485,7 +485,7 @@ void begin_base(const WalkModel& model, WalkState& state) noexcept {
   base.drop_m = base.yield_m = base.early_m = 0.0;
 }
 
-// How far the hips sink until the next landing, and after it.
+// Plans how far the hips sink until the next landing, and after it.
 void plan_drop(const WalkModel& model, WalkState& state) noexcept {
   HipsGround& base = state.path.base;
   base.early_m = early_yield(model, fall_ahead(model, state));
@@ -525,7 +525,7 @@ void advance_base(const Tick& tick, WalkState& state) noexcept {
 
 namespace {
 
-// How far a foot over ground of height `base_m` rises because the hips are over higher ground.
+// The rise of a foot over ground of height `base_m` because the hips are over higher ground.
 double rise_with_hips(const WalkModel& model, const WalkState& state, const StridePlan& plan,
                       Side side, double base_m) noexcept {
   const LegBuild& leg = model.leg[side];
@@ -723,8 +723,8 @@ double base_under(const FlightPoint& point, const vec3& p) noexcept {
          (n.x * (p.x - point.pose.heel_m.x) + n.z * (p.z - point.pose.heel_m.z)) / n.y;
 }
 
-// How far to move along z so that no part of the sole is inside a riser that leads up from
-// `height_m` at either end of `piece`.
+// The shift along z that takes every part of the sole out of a riser that leads up from `height_m`
+// at either end of `piece`.
 double way_back(const Floor& terrain, const Sole& sole, const Stretch& piece, double height_m,
                 double room, double size) noexcept {
   double shift = 0.0;
@@ -787,8 +787,7 @@ Flight planned_flight(const Tick& tick, const WalkState& state, Side side) noexc
   return flight;
 }
 
-// How far the ground line has to rise so that the sole, moved along z by `shift`, clears the
-// ground.
+// The rise of the ground line that lets the sole, moved along z by `shift`, clear the ground.
 Wanted wanted_raise(const Tick& tick, const Flight& flight, bool crosses_riser,
                     const FlightSpline& shift) noexcept {
   const Floor terrain{*tick.model.terrain, tick.placed};
@@ -923,8 +922,8 @@ bool leads_down(const Tick& tick, const Flight& flight) noexcept {
   return *std::max_element(above.begin(), above.end()) < kRoomAbove_m * tick.model.size + kRiser_m;
 }
 
-// How far ahead of its own path the foot has to be to come over its landing's piece in time: a
-// growing share of the way that is left, as in lead_in().
+// The lead over its own path that brings the foot over its landing's piece in time: a growing share
+// of the way that is left, as in lead_in().
 FlightSpline early_lead(const Tick& tick, const Flight& flight) noexcept {
   constexpr int over = static_cast<int>(kOver * kProbes);
   const double left = flight.left[over];

@@ -182,7 +182,7 @@ bool is_sound_move(const double* place_m, double turn_rad, int& bad) noexcept {
   return found == 0;
 }
 
-// How many of the first `count` joints can be written to `out`.
+// The number of the first `count` joints that can be written to `out`.
 int32_t joints_for(const gaitpad_walk* walk, const float* out, int32_t count) noexcept {
   return walk && out ? std::clamp(count, 0, walk->pose.joint_count) : 0;
 }

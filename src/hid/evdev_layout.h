@@ -64,7 +64,7 @@ struct EvdevAxis {
   std::int32_t min = 0,
                max = 0;  // as the kernel states them; unknown unless min < max
 };
-// What a node can report, by ascending code.
+// The codes that a node can report, ascending.
 struct EvdevAbilities {
   std::vector<EvdevAxis> axes;
   std::vector<std::uint16_t> keys;

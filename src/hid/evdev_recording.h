@@ -63,7 +63,7 @@ class EvdevReader {
   virtual ~EvdevReader() = default;
   // Why the line is damaged, without its place; none: it is not.
   virtual std::optional<std::string> add(std::string_view line) = 0;
-  // What is missing if no node has an axis or a key.
+  // The text for an error if no node has an axis or a key.
   virtual std::string missing() const { return "no device with an axis or a key"; }
 };
 

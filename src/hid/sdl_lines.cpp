@@ -331,7 +331,8 @@ bool is_for_name(std::string_view line, const Guid& guid, std::string_view name)
   return wanted == 0 || wanted == name_sum(name);
 }
 
-// Names of buttons are by position here: a line for printed names counts only if there is no other.
+// Our buttons are named by position, so a line for buttons by their printed names counts only if
+// there is no other.
 constexpr std::string_view kLabelHint = "SDL_GAMECONTROLLER_USE_BUTTON_LABELS";
 bool is_for_labels(std::string_view line) { return pair_of(line, "hint").starts_with(kLabelHint); }
 
@@ -416,7 +417,7 @@ class FieldNumbers {
     const auto n = index_in(numbers_.axes, source);
     return n ? fmt::format("{}a{}{}", part, *n, low_is_full != is_low ? "~" : "") : std::string();
   }
-  // Of a whole hat: `h0.` and the mask of directions.
+  // The source of a whole hat: `h0.` and the mask of directions.
   std::string hat_source(std::uint8_t report_id, const FieldBits& bits,
                          std::uint8_t directions) const {
     ControlSource source;

@@ -40,7 +40,7 @@ std::vector<std::string> merged_mappings(const std::vector<std::string>& lines,
 // Whether the mapping has no control characters, so that a calibration can hold it.
 bool is_one_line(std::string_view mapping);
 
-// Which axis of the layout moves an axis of a stick, for sticks that are mounted turned.
+// The axis of the layout that moves an axis of a stick, for sticks that are mounted turned.
 struct StickAxis {
   PadAxis axis = kLeftX;
   bool reversed = false;  // against the direction of the layout

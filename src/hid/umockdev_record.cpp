@@ -38,7 +38,7 @@ std::optional<Bytes> bytes_of(std::string_view digits) {
 std::uint16_t word(std::span<const std::uint8_t> bytes, std::size_t index) {
   return static_cast<std::uint16_t>(bytes[2 * index] | bytes[2 * index + 1] << 8);
 }
-// Of the kernel's input_absinfo.
+// Number `i` of the kernel's input_absinfo.
 std::int32_t number(std::span<const std::uint8_t> bytes, std::size_t index) {
   const std::uint32_t low = word(bytes, 2 * index), high = word(bytes, 2 * index + 1);
   return static_cast<std::int32_t>(low | high << 16);
@@ -162,7 +162,7 @@ Cause UmockdevReader::identity(const Bytes& bytes) {
   return std::nullopt;
 }
 
-// Of the input device, the first parent of an event node.
+// A property of the input device, the first parent of an event node.
 void UmockdevReader::property(std::string_view key, std::string_view value) {
   DeviceInfo& info = node().info;
   if (key == "NAME") info.name = trimmed(value, "\"").substr(0, kMaxTraceTextBytes);

@@ -82,6 +82,7 @@ Claims cost_group(Study& s, IkMode mode) {
 }
 
 using Group = Claims (*)(Study&, IkMode);
+// Beside each group stand the numbers of its claims.
 constexpr Group kGroups[] = {
     &flight_group,                 // 1-5
     &robust_only<scaling_claims>,  // 6

@@ -53,7 +53,7 @@ constexpr double kLeastImportedInner = 0.05, kMostInner = 0.9;
 constexpr double kLeastTriggerWay = 0.1;
 constexpr unsigned kCodesByKernel = 0x8000;
 
-// What a tool claims of one axis of the pad, in counts.
+// The claims of a tool about one axis of the pad, in counts.
 struct Claim {
   std::string axis;  // for sentences
   double min = 0.0, low = 0.0, high = 0.0, max = 0.0;

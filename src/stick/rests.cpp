@@ -471,7 +471,7 @@ Evidence evidence_of(std::span<const StickTrack> tracks, std::span<const Still> 
 
 // ---- Drift
 
-// Logarithm of how much likelier the rests are with a trend than without. 16 is one in ten million:
+// Logarithm of the odds of the rests with a trend to those without. 16 is one in ten million:
 // chance and the habits of a hand seldom look so much like a line. If noise explains the residual
 // with the trend, the odds are measured against the noise, else against the residual.
 constexpr double kSure = 16.0, kSureOfOne = 12.0;

@@ -22,8 +22,8 @@ struct RestStatistics {
   std::optional<double> hysteresis;  // greatest distance between rests; none: never let go between
   std::optional<double> drift_per_s;  // speed at rest; exactly 0 unless it is significant
   vec2 drift{0.0};                    // the same as a vector, per second
-  // How far it moves by itself within a second, beyond noise: standard deviation of each axis, over
-  // all the time in which it was not held.
+  // Its movement by itself within a second, beyond noise: standard deviation of each axis, over all
+  // the time in which it was not held.
   double wander = 0.0;
   std::vector<HandsOff> hands_off;  // that time
   int displaced = 0;                // releases after which it rested far from where it mostly rests

@@ -279,8 +279,8 @@ bool remove_spikes(StickTrack& track, const Scale& scale, CleanTracks& counts) {
   return is_any;
 }
 
-// How many reports from i on show a drop-out of this axis; 0: none begins there. The axis jumps to
-// another value, stays there and jumps back, each within one report. A hand needs several.
+// The number of reports from i on that show a drop-out of this axis; 0: none begins there. The axis
+// jumps to another value, stays there and jumps back, each within one report. A hand needs several.
 std::size_t drop_out_length(const StickTrack& track, std::size_t i, int axis,
                             double interval_s) noexcept {
   constexpr double kSmallest = 0.2, kPlateau = 0.04, kOfHeight = 0.2;  // raw, raw, share
@@ -466,7 +466,7 @@ std::vector<double> distinct_values(std::span<const StickTrack> tracks, int axis
   return values;
 }
 
-// Where the stick was this long before or after a sample.
+// The stick's place this long before or after a sample.
 vec2 place_at(const StickTrack& track, std::size_t i, double seconds) noexcept {
   while (seconds < 0.0 && i > 0 &&
          seconds_between(track[i - 1].time_ns, track[i].time_ns) <= -seconds) {

@@ -123,8 +123,8 @@ ReportTiming report_timing(std::span<const StickTrack> tracks, double repeats_ex
 // `declared`. Axis 0 is x, 1 is y.
 double quantisation_step(std::span<const StickTrack> tracks, int axis, double declared);
 
-// How often an axis, or both, froze for 70 ms or more while the other one, or a turn, moved on.
-// `repeats`: for each axis, the chance that noise repeats a value at rest.
+// The number of times that an axis, or both, froze for 70 ms or more while the other one, or a
+// turn, moved on. `repeats`: for each axis, the chance that noise repeats a value at rest.
 std::int64_t stuck_values(std::span<const StickTrack> tracks, double interval_s,
                           const vec2& repeats);
 

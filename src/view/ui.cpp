@@ -361,7 +361,7 @@ void draw_columns(Ui& ui, const UiLayout& layout) {
   ui.state.memory.was_open = ui.state.is_open;
 }
 
-constexpr std::size_t kBarButtons = 6;  // the panels' buttons follow them
+constexpr std::size_t kBarButtons = 6;  // the buttons that open panels come after these
 
 // A button of the bar with its action; without an action it opens the view menu.
 struct Entry {

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kMinute = 60 * kRate;
 
-// What a minute's stand shows, from its fifth second on, when all of it shows.
+// Measures of a minute's stand, from its fifth second on, when all of the idle movement shows.
 struct Stood {
   std::vector<vec3> hips_m;
   std::vector<double> breath_rad, glance_rad;

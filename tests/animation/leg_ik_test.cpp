@@ -57,7 +57,7 @@ Leg random_leg(Random& random, double from_goal_rad, double off_m, double least_
   return leg;
 }
 
-// How many legs, in registers of how many numbers.
+// The number of legs, and of numbers in a register.
 template <int kLegs, int kNumbers>
 struct CompiledFor {
   static constexpr int kWidth = kLegs, kRegister = kNumbers;

@@ -48,7 +48,7 @@ class MadeCrowd {
   Crowd& crowd() { return crowd_; }
   const std::vector<CrowdMember>& members() const { return members_; }
 
-  // What everybody is to do in this tick: each begins, turns and rests at times of its own.
+  // Commands all members in this tick: each begins, turns and rests at times of its own.
   void command(int tick) {
     for (int i = 0; i < crowd_.size(); ++i) {
       const int t = tick - 7 * i, leg = t / (2 * kCrowdRate);

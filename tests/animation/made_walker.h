@@ -66,7 +66,7 @@ class MadeWalker {
   const std::vector<WalkFrame>& frames() const { return frames_; }
   const std::vector<std::array<LegAngles, 2>>& angles_rad() const { return angles_rad_; }
 
-  // How far a planted point strays from where it was when it was planted.
+  // The farthest that a planted point moves while it is planted.
   double drift_m() const {
     double farthest = 0.0;
     for (int point = 0; point < 4; ++point) {

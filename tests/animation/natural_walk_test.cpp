@@ -1,5 +1,6 @@
-// How a walk begins, ends, turns and changes its pace, against what people do. Hips and knees are
-// read from the posed skeleton, the rest from what a tick tells. The built-in motion, level ground.
+// Compares how a walk begins, ends, turns and changes its pace with what people do. Hips and knees
+// are read from the posed skeleton, the rest from the tick's report. The built-in motion, level
+// ground.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,7 +19,7 @@ constexpr int kMoments = 24;
 constexpr int kJustLanding =
     5;  // ticks, 21 ms: a foot that lands so soon is no step that is taken yet
 
-// A walker whose posed hips are kept, too.
+// A walker that also keeps its posed hips.
 struct Posed {
   MadeWalker walker;
   std::vector<vec3> hips_m;  // between the hip joints

@@ -1,4 +1,5 @@
-// Where a walk lies in the world: moved at any tick, it walks on with the bits that it has unmoved.
+// A walk's place in the world: a walk that is moved at any tick walks on with the bits that it has
+// unmoved.
 #include "animation/placement.h"
 
 #include <gtest/gtest.h>

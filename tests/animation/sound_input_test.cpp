@@ -1,5 +1,5 @@
-// Numbers that nobody can walk with, through every function that takes run-time inputs: none
-// crashes, none reaches a pose, each is counted.
+// Numbers out of their ranges, through every function that takes run-time inputs: none crashes,
+// none reaches a pose, each is counted.
 #include "animation/sound_input.h"
 
 #include <gtest/gtest.h>
@@ -21,7 +21,7 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 GaitParams usual_params() {
   return gait_params({.left = vec2(0.2, 0.8)}, StyleValues{}, gait_limits(adult()));
 }
-// What no number of GaitParams may be.
+// Values that this number of GaitParams must not have.
 std::vector<double> bad_values(std::size_t number) {
   const ParamsRange& range = params_range();
   return {kNaN,

@@ -157,7 +157,7 @@ class Player {
   vec2 place() const { return {walker_.last().pelvis_m.x, walker_.last().pelvis_m.z}; }
   double heading_rad() const { return walker_.last().heading_rad; }
 
-  // The farthest that the hips were beside the path; far too much if it was not walked to its end.
+  // The greatest distance of the hips from the path; 9 m if the walk does not reach its end.
   double follow(const Path& path, double forward, double look_ahead_m) {
     std::size_t thought = 0, at = 0;
     double farthest = 0.0, eye = 0.0;

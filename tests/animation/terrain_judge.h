@@ -77,7 +77,7 @@ class TerrainJudge {
 
   double ground(const vec3& p) const { return ground_at(*model_.terrain, p.x, p.z).height_m; }
 
-  // How deep a point is in the ground: the shorter way out, up or through a riser's face.
+  // The depth of a point in the ground: the shorter way out, up or through a riser's face.
   double depth_mm(const vec3& p) const {
     const double up = ground(p) - p.y;
     if (up <= 0.0) return 0.0;

@@ -220,7 +220,7 @@ TEST(Terrain, RoughGroundKeepsItsAmplitudeAndItsSeed) {
 TEST(Terrain, AHeightFieldIsItsSamplesAndLevelBeyondThem) {
   const FieldSection section = field_section(0.1);
   const Terrain terrain = terrain_of({section});
-  // Where the fade is over; a B-spline takes the mean of a sample's neighbours with it.
+  // Beyond the fade the samples count fully; a B-spline takes in the mean of its neighbours.
   for (int c = 15; c < 25; ++c) {
     const double x = (0.5 * 39 - c) * 0.1;
     EXPECT_NEAR(ground_at(terrain, x, 3.0).height_m, section.field->height_m[30 * 40 + c], 3e-4);

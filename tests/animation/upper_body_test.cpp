@@ -58,7 +58,7 @@ class MadeBody : public MadeWalker {
     const vec3 upper = at(j.elbow) - at(j.shoulder), fore = at(j.wrist) - at(j.elbow);
     return gaitpad::acos(glm::dot(glm::normalize(upper), glm::normalize(fore))) / kDegree;
   }
-  // Of the upper arm against the walker's vertical, forward positive.
+  // Angle of the upper arm against the walker's vertical, forward positive.
   double swing(Side side) const {
     const ArmChain& j = model().body.arm[side].joints;
     const vec3 upper = rotation_y(-state().path.heading_rad) * (at(j.elbow) - at(j.shoulder));
@@ -202,7 +202,7 @@ TEST(WalkBody, LegsAndPelvisKeepTheirBits) {
 TEST(WalkBody, OfASkeletonWithoutArmsIsLeftAlone) {
   GaitCycle cycle = procedural_gait();
   Skeleton& s = cycle.skeleton;
-  // What was an arm is a stub now: its bones have no length.
+  // The arm becomes a stub: its bones have no length.
   for (Joint& joint : s.joints) {
     const bool is_arm =
         joint.name.find("Arm") != std::string::npos || joint.name.find("Hand") != std::string::npos;

@@ -1,4 +1,4 @@
-// What a game takes out of a walk: events, partial poses, poses in its own floats.
+// The output of a walk for a game: events, partial poses, poses in its own floats.
 #include "gaitpad/walk_output.h"
 
 #include <gtest/gtest.h>

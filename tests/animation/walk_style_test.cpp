@@ -1,4 +1,4 @@
-// What styles make of a walk: joints that flex less, hips that bounce, a trunk that leans.
+// The effects of styles on a walk: joints that flex less, hips that bounce, a trunk that leans.
 #include <gtest/gtest.h>
 
 #include <filesystem>
@@ -47,7 +47,7 @@ struct Steady {
   }
 };
 
-// How far the line from pelvis to shoulders leans, degrees: ahead and to the left.
+// The lean of the line from pelvis to shoulders, degrees: ahead and to the left.
 struct Lean {
   double ahead_deg = 0.0, left_deg = 0.0;
 };

@@ -66,8 +66,8 @@ class Hiker : public MadeWalker {
   TerrainJudge judge_;
 };
 
-// Soles sink by so many millimetres at most, a larger character's by as many more. A tenth beyond 5
-// is a heel's corner at a stair's edge, at full stick downwards.
+// The most that soles sink; a larger character's in proportion. A tenth beyond 5 mm is a heel's
+// corner at a stair's edge, at full stick downwards.
 constexpr double kMostSunk_mm = 5.2;
 void expect_sound(const TerrainWorst& worst, const std::string& what, double size = 1.0,
                   double most_jump_deg = 1.0) {
@@ -109,7 +109,7 @@ TEST(WalkTerrain, LevelGroundIsWalkedAsWithoutTerrain) {
     hiker->walk(0.4, 0.6, 600);
     hiker->walk(0.0, 0.0, 400);
   }
-  // Where hips lead, the last bits of a number are found by iteration.
+  // While hips lead, the last bits of a number are found by iteration.
   constexpr double kSame_m = 1e-5;
   for (Side side : {kLeftSide, kRightSide}) {
     EXPECT_LT(glm::distance(a.state().frame.heel_m[side], b.state().frame.heel_m[side]), kSame_m);
@@ -244,7 +244,7 @@ TEST(WalkTerrain, TheTrunkLeansIntoSlopesAndStairs) {
   EXPECT_NEAR(paper, 0.0, 1.0);
 }
 
-// How far the heel of a flying foot gets beyond the place where it lands, at worst.
+// The farthest that the heel of a flying foot gets beyond the place where it lands.
 double most_beyond_m(const WalkModel& model, double y, double until_m) {
   Hiker hiker(model);
   double farthest = -1e9, most = -1e9;

@@ -85,7 +85,7 @@ TEST(Walk, StandingStillChangesNothing) {
   EXPECT_EQ(walker.last().stage, Stage::idle);
 }
 
-// How far the pelvis turns to and fro.
+// The range of the pelvis' turn to and fro.
 double yaw_range_rad(const StyleValues& style) {
   MadeWalker walker;
   double left = -1e9, right = 1e9;

@@ -18,7 +18,7 @@ namespace {
 
 const std::string kConfig = kSourceFolder + "/config/";
 
-// Names of the files of a kind; at least so many.
+// The names of all files of a kind; there must be at least `least`.
 std::vector<std::string> names_of(const std::string& kind, std::size_t least) {
   std::vector<std::string> names;
   for (const std::string& path : files_in(kConfig + kind, ".toml"))

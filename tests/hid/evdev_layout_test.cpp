@@ -356,7 +356,7 @@ TEST(EvdevLayout, AJoystickIsStatedAsOne) {
   EXPECT_EQ(node.layout().descriptor.applications[0], usage::kJoystick);
   EXPECT_TRUE(node.layout().is_pad);
   node.set_axis(0, 1023);
-  node.set_axis(5, 0);  // its twist
+  node.set_axis(5, 0);  // the twist of a flight stick
   EXPECT_FLOAT_EQ(node.state().axis[kLeftX], 1.0f);
   EXPECT_FLOAT_EQ(node.state().axis[kRightX], 0.0f) << "a twist is no right stick";
 }

@@ -83,7 +83,7 @@ TEST(CalibrationImport, TriggersGetTheirEnds) {
   EXPECT_EQ(file.calibration.left_trigger.pressed, 1.0);
 }
 
-// Of a pad of hid-playstation the recording has the motion sensors, too: the same ids, other
+// The recording of a pad of hid-playstation also has the motion sensors: the same ids, other
 // ranges.
 const std::string kLibinput =
     "# libinput record\ndevices:\n"

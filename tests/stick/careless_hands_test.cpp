@@ -17,7 +17,7 @@ enum class Habit {
   none,
   turns_fast,     // three turns a second
   rests_briefly,  // 0.15 s
-  leads_back,     // the thumb brings the stick home
+  leads_back,     // the thumb leads the stick back to its rest
   turns_first,    // rests come last
   pushes_askew,   // by 35 degrees
   never_turns,

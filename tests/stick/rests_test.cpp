@@ -90,7 +90,7 @@ TEST(RestStatistics, DriftOfAStickThatOnlyRests) {
   }
 }
 
-// How a made stick is handled and released.
+// A hand's way to handle a made stick and to release it.
 struct Handling {
   std::string name;
   double hysteresis;

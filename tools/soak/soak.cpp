@@ -94,7 +94,8 @@ double stolen_s() {
   return ticks / static_cast<double>(::sysconf(_SC_CLK_TCK));
 }
 
-// How long the loop's threads could have run but got no processor (sched-stats.rst in the kernel).
+// The time for which the loop's threads could have run but got no processor (sched-stats.rst in the
+// kernel).
 class LoopWait {
  public:
   void look() {

@@ -34,8 +34,8 @@ enum class ZoneShape : std::uint8_t {
   axial,   // each axis by itself
   both,    // radial, then a narrower zone on the sideways axis: one can walk straight ahead
 };
-// How the raw axes lie under the thumb: which raw direction grows when the stick goes right, and
-// which one when it goes forward. One is an x, the other a y.
+// The orientation of the raw axes under the thumb: the raw direction that grows when the stick goes
+// right, and the one that grows when it goes forward. One is an x, the other a y.
 enum class RawDirection : std::uint8_t { plus_x, minus_x, plus_y, minus_y };
 constexpr bool is_along_x(RawDirection d) noexcept {
   return d == RawDirection::plus_x || d == RawDirection::minus_x;
@@ -154,7 +154,7 @@ Result<CalibrationFile> parse_calibration(std::string_view text, const std::stri
 // names that are no UTF-8. Numbers are as short as that allows; the text is never empty.
 std::string calibration_text(const CalibrationFile& file);
 
-// How well a file fits a device; 0: not at all, the greater the better. In this order: `*:*`,
+// Rates how well a file fits a device; 0: not at all, the greater the better. In this order: `*:*`,
 // `vvvv:*`, `vvvv:pppp`, the same three with the port, the unique id; among equals a file that
 // names the device's driver.
 int calibration_fit(const CalibrationFile& file, const DeviceIdentity& device);

@@ -59,7 +59,7 @@ struct ArrayOp {  // an array field: its value names a pressed button
   std::vector<std::uint32_t> button;  // bit of PadState::buttons by value - min
 };
 
-// How one report is read.
+// The layout of one report.
 struct ReportLayout {
   std::uint8_t report_id = 0;
   bool numbered = false;  // the report begins with its id
@@ -103,7 +103,7 @@ std::vector<std::size_t> pad_fields(const ReportDescriptor& descriptor);
 
 // Whether a report of this layout tells where the left stick is.
 bool tells_stick(const ReportLayout& layout) noexcept;
-// How this report is read. Null if it is too short, has an unknown id or is no input report.
+// The layout of this report. Null if it is too short, has an unknown id or is no input report.
 const ReportLayout* layout_of(const PadLayout& layout, const Report& report) noexcept;
 // Updates the controls that the report carries; the others keep their state. False, and `state` is
 // unchanged, if the report is too short, has an unknown id or is no input report.

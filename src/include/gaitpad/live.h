@@ -43,7 +43,7 @@ struct LiveStatus {
   // pace 1: median and 99th percentile; 0 if no frames are shown (LiveSession::end_frame()).
   double frame_us_p50 = 0.0, frame_us_p99 = 0.0;
   std::array<std::int64_t, kWaitClasses> wait_counts{};  // by kWaitClass_ns; the last: longer
-  // How the loop thread is scheduled: `SCHED_FIFO 20`, `normal priority`, `by hand`.
+  // The scheduling of the loop thread: `SCHED_FIFO 20`, `normal priority`, `by hand`.
   std::string time_policy;
   PadStreamCounts pads;
   std::int64_t streamed = 0;        // frames sent to other programs

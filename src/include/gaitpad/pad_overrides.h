@@ -28,9 +28,9 @@ enum class ButtonOrder {
 enum class AxisPart : std::uint8_t { whole, low, high };
 enum class StickSide : std::uint8_t { both, negative, positive };  // in HID's directions
 
-// Where a control comes from, as pad files write it: `0001:0031` (a usage), `-0001:0031`
-// (reversed), `0001:0030/4` (the fourth X), `000c:0081&1` (a bit of its value), `button 3`, `hat
-// up`; for a pad without a stick `negative button 20` (one side of a stick's axis).
+// The source of a control, as pad files write it: `0001:0031` (a usage), `-0001:0031` (reversed),
+// `0001:0030/4` (the fourth X), `000c:0081&1` (a bit of its value), `button 3`, `hat up`; for a pad
+// without a stick `negative button 20` (one side of a stick's axis).
 struct ControlSource {
   std::uint32_t usage = 0;
   std::uint32_t occurrence = 1;  // the n-th field with that usage in its report, from 1

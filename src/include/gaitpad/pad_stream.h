@@ -129,7 +129,7 @@ class PadStream {
   // Sleeps until there is something to read or the time is over. Not for the loop thread.
   void wait(std::chrono::milliseconds timeout);
 
-  // What is known of a device; valid once front() has given its first `added`, and unchanged
+  // The description of a device; valid once front() has given its first `added`, and unchanged
   // afterwards. For the reading thread, and for threads that it told of the device.
   const TraceDevice& device(std::uint16_t index) const noexcept;
   const PadLayout& layout(std::uint16_t index) const noexcept;

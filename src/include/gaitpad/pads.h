@@ -35,7 +35,7 @@ struct PadConfig {
 inline constexpr std::string_view kHatDrives =
     "while a pad's left stick has not moved, its D-pad drives (arcade sticks in D-pad mode)";
 
-// How often each button was pressed.
+// The number of presses of each button.
 using PressCounts = std::array<std::uint32_t, kButtonCount>;
 // Counts the buttons that are up in `before` and down in `now` (PadState::buttons).
 void count_presses(std::uint32_t before, std::uint32_t now, PressCounts& presses) noexcept;
@@ -88,15 +88,15 @@ class Pads {
   std::uint16_t driving() const noexcept { return driving_; }
   // The driving pad's uncalibrated state; at rest if there is no driving pad.
   const PadState& driving_state() const noexcept;
-  // What is known of the driving pad; null if there is none.
+  // The configuration of the driving pad; null if there is none.
   const PadConfig* driving_pad() const noexcept;
-  // How many reports of the driving pad came since the beginning, sound or not.
+  // The number of reports of the driving pad since the beginning, sound or not.
   std::uint64_t driving_reports() const noexcept;
   // Presses of each button of the pad that drove at that moment, since the beginning. Every report
   // counts, so that a press between two ticks is not missed. A button that is held while the pad is
   // plugged in counts with the first report.
   const PressCounts& presses() const noexcept { return presses_; }
-  // How often the driving pad's left stick began to move the character untouched.
+  // The number of times that the driving pad's left stick began to move the character untouched.
   std::int64_t untouched() const noexcept { return untouched_; }
 
  private:

@@ -16,7 +16,7 @@ namespace gaitpad {
 //
 // FILE|NAME is a path, or the name of a file in the folders of configuration.
 struct SessionSpec {
-  // Who walks, how, and where.
+  // The characters that walk, their styles, and the ground.
   struct Walk {
     std::string motion;                   // FILE|NAME; `procedural` or empty: the built-in walk
     std::vector<std::string> characters;  // FILE|NAME, one for each character
@@ -31,7 +31,7 @@ struct SessionSpec {
     // built-in motion has the adult's whatever stands here.
     std::optional<Pace> pace;
   };
-  // Which pad drives, and what its reports mean.
+  // The pad that drives, and the files that interpret its reports.
   struct Pad {
     PadWish wish;             // of a live session
     std::string map;          // pad file that goes before config/pads
@@ -82,7 +82,7 @@ struct SessionSpec {
 
 bool is_built_in(const SessionSpec& spec);  // the motion
 
-// What `spec.pad` and the folders of configuration say about pads. Reads files.
+// Everything that `spec.pad` and the folders of configuration say about pads. Reads files.
 Result<PadFiles> load_pad_files(const SessionSpec& spec);
 
 // The simulation that `spec.walk` describes, at this rate and without pads: the caller adds those.

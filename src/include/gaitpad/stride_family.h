@@ -48,8 +48,8 @@ using StrideCell = StrideCellOf<double>;
 template <class V>
 struct FootprintsOf {
   V stride_m{};
-  // Where the heels stand along the path: the left foot's after its strike near phase 0.5, the
-  // right foot's after phase 0.
+  // The places of the standing heels along the path: the left foot's after its strike near phase
+  // 0.5, the right foot's after phase 0.
   std::array<Vec<V>, 2> footprint_m{};
 };
 using Footprints = FootprintsOf<double>;

@@ -155,7 +155,7 @@ Stretch piece_at(const Terrain& terrain, double z_m) noexcept;
 bool is_flat(const Terrain& terrain) noexcept;
 // The shortest stretch between two risers; infinite where there are none.
 double least_tread_m(const Terrain& terrain) noexcept;
-// Where the last section ends; 0 without any.
+// The end of the last section along z; 0 without any.
 double length_m(const Terrain& terrain) noexcept;
 
 // Adds a section behind the others, or returns the cause why not: a number is not finite or out of

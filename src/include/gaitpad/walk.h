@@ -47,7 +47,7 @@ struct Placement {
 // A place in the world, and back.
 vec3 to_world(const Placement& placed, const vec3& place_m) noexcept;
 vec3 from_world(const Placement& placed, const vec3& world_m) noexcept;
-// Where `placed` lies after the world has been turned and shifted by `by`.
+// `placed` after the world has been turned and shifted by `by`.
 Placement moved(const Placement& by, const Placement& placed) noexcept;
 
 // The results of one tick, for export, tests and panels. World frame, metres: y up, floor 0,
@@ -185,7 +185,7 @@ struct UpperBodyState {
       per_s{};                                    // rates of `now`, per second
   int unsettled_ticks = 0;                        // until `now` is `goal`
   EasedOf<vec3, double> eased_chest, eased_head;  // turns in the walker's axes, rotation vectors
-  // How far the trunk leans in this tick, and how far the upper arms are spread; in paper mode not.
+  // The lean of the trunk in this tick, and the spread of the upper arms; not in paper mode.
   double forward_rad = 0.0, left_rad = 0.0;
   // Signs of a change that show before the feet can follow: the mean speed, the lean into another
   // one, and the angles by which chest and head are turned ahead, to the left positive.
@@ -269,8 +269,8 @@ template <class V>
 struct PathFlow {
   V heading_rad{};
   Vec<V> hips_m{};  // on the ground, without the data's oscillations
-  // The pelvis' place on the ground, upright, with its rate and acceleration per tick; and as it
-  // was a tick before.
+  // The pelvis' place on the ground, upright, with its rate and acceleration per tick; and the
+  // place one tick before.
   SmoothFade<Vec<V>> pelvis_m;
   Vec<V> last_pelvis_m{};
   Vec<V> rest_m{};  // where it comes to rest when stopping
@@ -339,8 +339,8 @@ WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noex
 WalkState standing(const WalkModel& model, const vec3& place_m, double heading_rad,
                    Pose& pose) noexcept;
 
-// Turns the walk about the world's vertical through the origin and shifts it, in the middle of a
-// step, too. Planted feet stay where they are in the moved frame.
+// Turns the walk about the world's vertical through the origin and shifts it, even in the middle of
+// a step. Planted feet stay where they are in the moved frame.
 void move_walk(const Placement& by, WalkState& state, Pose& pose) noexcept;
 // The same, so that the hips come to be over a place and face a heading.
 void put_walk(const vec3& place_m, double heading_rad, WalkState& state, Pose& pose) noexcept;

@@ -46,8 +46,8 @@ std::vector<float> legs_and_pelvis(const WalkModel& model);
 
 // Brings each joint of `own`, a pose of the same skeleton, to the walk's by its weight: 0 leaves
 // its rotation, 1 makes it the walk's, both to the bit; between them lies the shorter way round.
-// Weights beyond are clamped, one that is not a number counts as 0. The root's place goes by its
-// weight, too. Joints beyond the shortest of the three stay.
+// Weights beyond are clamped, one that is not a number counts as 0. The root's place follows the
+// root's weight. Joints beyond the shortest of the three stay.
 void mix_pose(std::span<const float> weights, const Pose& walk, Pose& own) noexcept;
 
 // Both write one entry a bone of the caller's: of joint `joints[i]`, or nothing where that is no

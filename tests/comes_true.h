@@ -1,4 +1,4 @@
-// Waiting for what other threads do.
+// Waits for the effects of other threads.
 #pragma once
 #include <chrono>
 #include <functional>
@@ -11,7 +11,7 @@ constexpr std::chrono::seconds kPatience{60};
 
 inline void sleep_for(int ms) { std::this_thread::sleep_for(std::chrono::milliseconds(ms)); }
 
-// Until it is so; false where patience ends first.
+// Waits until the condition is true; false if kPatience ends first.
 inline bool comes_true(const std::function<bool()>& condition) {
   const auto end = std::chrono::steady_clock::now() + kPatience;
   while (!condition()) {

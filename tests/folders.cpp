@@ -5,7 +5,7 @@
 namespace gaitpad {
 namespace {
 
-// No test sees the strides that whoever runs it keeps, nor adds to them.
+// Tests neither read the user's cache of strides nor add to it.
 [[maybe_unused]] const int own_cache = ::setenv("XDG_CACHE_HOME", GAITPAD_TEST_CACHE, 1);
 
 }  // namespace

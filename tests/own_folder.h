@@ -1,5 +1,5 @@
-// Files of a test's own and what a process is told by its environment: made anew for the test, gone
-// with it. Tests run side by side, each in its own process.
+// A folder of files and environment variables for one test: made for it, and removed after it.
+// Tests run side by side, each in its own process.
 #pragma once
 #include <gtest/gtest.h>
 #include <stdlib.h>
@@ -36,7 +36,7 @@ class OwnFolder {
   }
   // The path of a file or folder in it, whether it exists or not.
   std::string at(const std::string& name) const { return (path / name).string(); }
-  // Writes a file, and the folders that it needs; where it is.
+  // Writes a file, and the folders that it needs; returns its path.
   std::string write(const std::string& name, const std::string& text = "") const {
     std::filesystem::create_directories((path / name).parent_path());
     std::ofstream(path / name, std::ios::binary) << text;

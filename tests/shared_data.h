@@ -14,7 +14,7 @@ namespace gaitpad {
 inline const std::string kPadRecordings = kSharedData + "/hid/",
                          kCapturedMotions = kSharedData + "/mocap/";
 
-// Skips the test where they are not there.
+// Skips the test if the folder is not there.
 #define GAITPAD_NEEDS(folder) \
   if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << folder << " is not there"
 

@@ -20,7 +20,7 @@
 // C functions stand in no namespace.
 using namespace gaitpad;  // NOLINT(google-build-using-namespace)
 
-// The ground as C has it.
+// The ground as a function of the C API.
 struct AskedInC {
   gaitpad_ground ask = nullptr;
   const void* game = nullptr;
@@ -52,7 +52,7 @@ void tell(const std::string& sentence, char* error, size_t error_size) noexcept 
   error[length] = 0;
 }
 
-// Runs what may fail or throw; null and a sentence then.
+// Calls `make`, which may fail or throw; then it returns null and tells the cause.
 template <class T, class Make>
 T* made_or_null(const Make& make, char* error, size_t error_size) noexcept {
   try {
@@ -136,7 +136,7 @@ Result<std::unique_ptr<gaitpad_model>> model_of(const gaitpad_model_options* opt
   return std::make_unique<gaitpad_model>(gaitpad_model{shared});
 }
 
-// A stick that is no stick leaves the last one in force.
+// A stick out of -1 .. 1 leaves the last one in force.
 double sound_axis(double value, double last, int& bad) noexcept {
   if (value >= -1.0 && value <= 1.0) return value;
   ++bad;
@@ -173,7 +173,8 @@ std::optional<Error> start_problem(const gaitpad_model* model, const double* pla
   return range_problem(what + "heading_rad", heading_rad, -kFarthest_m, kFarthest_m);
 }
 
-// Whether a walk can be moved so; a null pointer and each number that is none count as bad.
+// Whether a walk can be moved by these numbers; a null pointer and each number that is too large or
+// not finite count as bad.
 bool is_sound_move(const double* place_m, double turn_rad, int& bad) noexcept {
   const auto is_bad = [](double value) { return !(std::abs(value) <= kFarthest_m); };
   const auto found =

@@ -24,7 +24,7 @@ void expect_same_pose(const Pose& a, std::span<const quat> local, const vec3& ro
       << "member " << member << ", tick " << tick;
 }
 
-// The hash of a walk with as many lanes.
+// The hash of a walk that is computed with this number of lanes.
 std::uint64_t hash_with(int lanes) {
   use_lanes(lanes);
   MadeCrowd made(kMembers);
@@ -54,8 +54,8 @@ TEST(Crowd, WalksAsItsMembersWouldAlone) {
   }
 }
 
-// Three of them leave lanes over, which are the last one again: also where its ankle bends up so
-// far that its foot is mended, here in an abrupt stop after a turn.
+// A block of three leaves lanes over, which repeat the last member. That has to hold as well when
+// its ankle bends too far and its leg is solved again, here in an abrupt stop after a turn.
 TEST(Crowd, WalksAsItsMembersWouldAloneWhereABlockIsNotFull) {
   const auto model =
       std::make_shared<const WalkModel>(value_of(walk_model(clean_cycle(procedural_gait()), {})));

@@ -22,7 +22,7 @@ Terrain slopes() {
 Ground ask_sections(const void* game, double x_m, double z_m) noexcept {
   return ground_at(*static_cast<const Terrain*>(game), x_m, z_m);
 }
-// The same, which now rises along +x: turned by a quarter.
+// The same ground turned by a quarter: it rises along +x.
 Ground ask_turned(const void* game, double x_m, double z_m) noexcept {
   Ground ground = ask_sections(game, -z_m, x_m);
   ground.normal = vec3(ground.normal.z, ground.normal.y, -ground.normal.x);
@@ -43,8 +43,8 @@ WalkModel model_on(AskedGround asked) {
   return model_on(std::move(terrain));
 }
 
-// Sections balance a sole over the ground; on a game's ground heel and ball touch it: some
-// millimetres in a pose.
+// Sections fit a plane to the ground under a sole, but on a game's ground heel and ball touch it:
+// the poses differ by some millimetres.
 TEST(AskedGround, GivesTheWalkOfTheSectionsThatItRepeats) {
   const Terrain sections = slopes();
   const WalkModel laid_model = model_on(sections),
@@ -88,8 +88,8 @@ vec3 ball_of(const WalkModel& model, const WalkState& state, Side side) {
                   pose.heel_m + pose.tilt * pose.yaw * (leg.ball_m - leg.model.heel_m));
 }
 
-// A walk in circles, put elsewhere by whole waves: planted feet do not move, and heel and ball of a
-// flat foot are on the ground.
+// A walk in circles that is put elsewhere, a whole number of waves away: planted feet do not move,
+// and heel and ball of a flat foot are on the ground.
 TEST(AskedGround, IsTheGroundOfThePlaceThatAWalkIsPutTo) {
   const WalkModel model = model_on({&ask_waves, nullptr});
   Pose pose;

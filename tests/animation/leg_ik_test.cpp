@@ -41,7 +41,7 @@ Leg random_leg(Random& random, double from_goal_rad, double off_m, double least_
   }
   leg.chain.dof[kHipY].link_m = vec3(0.0, -random.between(0.2, 0.6), 0.0);
   leg.chain.dof[kKneeX].link_m = vec3(0.0, -random.between(0.2, 0.6), 0.0);
-  leg.chain.dof[kKneeX].weight = 1.0;  // the largest
+  leg.chain.dof[kKneeX].weight = 1.0;  // the largest weight
   const vec3 heel(0.01, -0.08, -0.05), toe(0.03, -0.06, 0.14), line = toe - heel;
   const vec3 side = glm::normalize(glm::cross(kUp, line)), beside = heel + 0.1 * side;
   const IkFrame end = end_frame(leg.chain, pose);
@@ -163,7 +163,7 @@ TYPED_TEST(LegIk, AnInputThatIsNotFiniteFailsAloneAndEnds) {
 
 Vec3Of<double> parts(const vec3& v) { return {v.x, v.y, v.z}; }
 
-// Two legs that start so far from poses that they can take.
+// Two legs, each with a pose that it can take as its goal and a start `off_rad` away from it.
 struct ClosedLegs {
   std::array<IkChain, 2> chain;
   std::array<IkAngles, 2> pose{}, start{};

@@ -17,7 +17,7 @@ constexpr double kWindow_s = 1.0 / 14.0;
 constexpr double kGentle_m_s2 = 4.0, kGravity_m_s2 = 9.81;
 constexpr int kMoments = 24;
 constexpr int kJustLanding =
-    5;  // ticks, 21 ms: a foot that lands so soon is no step that is taken yet
+    5;  // ticks, 21 ms: a landing this soon belongs to a step that was taken before
 
 // A walker that also keeps its posed hips.
 struct Posed {
@@ -239,8 +239,8 @@ TEST(NaturalWalk, TheBodyLeansIntoATurnAsItsSpeedAsks) {
   EXPECT_NEAR(lean.body_deg, 0.0, 1.0);  // the data's spine is not quite mirrored
 }
 
-// Turns a slider at several moments of a walk. At most of them some joint is another within 100 ms
-// (what a factor of the sway multiplies goes through 0), and never does a leg jerk.
+// Moves a slider at several moments of a walk. At most of them some joint has changed within 100 ms
+// (not where the sway that a factor multiplies passes through 0), and no leg ever jerks.
 void expect_to_show_soon(const char* key, double value, double most_turn_deg = 1.0) {
   StyleValues style;
   ASSERT_TRUE(set_value(style, key, value)) << key;

@@ -126,7 +126,7 @@ TEST(SoundInput, ACrowdWithoutAModelOrAPlaceIsRefused) {
             "members[1].place_m.y is nan, outside [-1e+06, 1e+06]");
 }
 
-// Sticks, styles and limits of a stateless function: what comes of them is refused by the walk.
+// Sticks, styles and limits of a stateless function: the walk refuses what results from bad ones.
 TEST(SoundInput, BadSticksStylesAndLimitsReachNoPose) {
   const auto limits = gait_limits(adult());
   for (const double bad : {kNaN, kInfinity, -kInfinity, 1e300, -1e300}) {

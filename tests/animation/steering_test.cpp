@@ -1,6 +1,6 @@
-// Steering as a person meets it: a player, who sees the walk with a delay, keeps it on a path with
-// a thumb on a shipped calibration. After the players of prototypes of 2026: delays and gains of
-// people who follow a path, no measured person.
+// Tests steering by a simulated player, who sees the walk with a delay and keeps it on a path with
+// a thumb on a shipped calibration. Delays and gains are those of people who follow a path; no
+// person was measured.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,8 +26,8 @@ StickCalibration shipped() {
   return c;
 }
 
-// Goes where it is wished to with a lag of 35 ms, held askew, and trembles; an 8-bit stick reports
-// it.
+// A thumb that follows the wanted place with a lag of 35 ms, is held askew, and trembles; an 8-bit
+// stick reports it.
 class Thumb {
  public:
   Thumb(unsigned seed, double askew_rad) : random_(seed), askew_rad_(askew_rad) {}
@@ -118,7 +118,7 @@ std::size_t nearest(const Path& path, const vec2& place, std::size_t from) {
   }
   return best;
 }
-// A point so far ahead on the path, which goes on straight.
+// The point `way_m` ahead on the path; beyond its end the path goes on straight.
 vec2 ahead_of(const Path& path, std::size_t from, double way_m) {
   for (std::size_t i = from; i + 1 < path.size(); ++i) {
     way_m -= glm::distance(path[i], path[i + 1]);
@@ -129,12 +129,12 @@ vec2 ahead_of(const Path& path, std::size_t from, double way_m) {
 
 // --- The player ----------------------------------------------------------------------------------
 
-// Sees the walk 200 ms late and guesses where it is by now, but not how far it still turns.
+// A player who sees the walk 200 ms late and guesses its present place, but not its further turn.
 class Player {
  public:
   static constexpr double kDelay_s = 0.2, kGain_per_s = 2.0;
 
-  // `over_zone`: what the hand has learnt to give against the sideways zone.
+  // `over_zone`: the deflection that the hand has learnt to add against the sideways zone.
   Player(unsigned seed, double over_zone) : over_zone_(over_zone), thumb_(seed, askew_rad(seed)) {
     seen_.push_back(walker_.last());
   }

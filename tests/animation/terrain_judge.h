@@ -1,5 +1,5 @@
 // Judges a walk over terrain from its poses alone: own forward kinematics, the whole sole on a
-// grid, the ground asked point by point. What the walk says of itself is read for its stages only.
+// grid, the ground asked point by point. Only the stages are taken from the walk's report.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -21,7 +21,7 @@ struct TerrainWorst {
   double pelvis_mm = 0;    // second difference of the pelvis per tick
   double knee_min_deg = 180, knee_max_deg = 0;
   int failures = 0, landings = 0;
-  double jump_z_m = 0, sunk_z_m = 0;  // where
+  double jump_z_m = 0, sunk_z_m = 0;  // z of the worst place
   double end_z_m = 0;
 };
 

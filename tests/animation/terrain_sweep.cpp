@@ -21,7 +21,8 @@ using namespace gaitpad;
 namespace {
 
 constexpr double kLongest_s = 360.0, kRate = 240.0;
-constexpr double kPlainSpeed_m_s = 1.3;  // faster captured walks at the adult's leg: limits alone
+constexpr double kPlainSpeed_m_s = 1.3;  // captured walks that are faster on the adult's leg only
+                                         // keep the limits
 
 template <class T>
 T value_or_exit(Result<T> result) {
@@ -50,7 +51,7 @@ Result<GaitCycle> cycle_of(const std::string& motion) {
   return gait_cycle(*loaded);
 }
 
-// From one end to a stop behind the other.
+// Walks from one end of the terrain to a stop behind the other.
 TerrainWorst walk(const WalkModel& model, double stick_y, const Style& style) {
   const double far_m = length_m(*model.terrain) + 1.0;
   const bool backward = stick_y < 0.0;
@@ -68,11 +69,11 @@ TerrainWorst walk(const WalkModel& model, double stick_y, const Style& style) {
     advance(model, rest > 0 ? stop : go, IkMode::robust, 1.0 / kRate, state, pose);
     judge.see(state, pose);
   }
-  judge.worst.failures += rest < 400;  // it never came there
+  judge.worst.failures += rest < 400;  // it did not reach the end
   return judge.worst;
 }
 
-// The first issue's bound on second differences: 1 degree, 5 for captured walks at a high speed.
+// The bound on second differences: 1 degree, 5 for captured walks at a high speed.
 double most_jump_deg(const WalkModel& model, const std::string& motion, double stick_y) {
   const double size = model.leg_length_m / kReferenceLeg_m;
   const double speed = std::abs(stick_y) * gait_limits(model).max_speed_m_s;

@@ -191,7 +191,7 @@ double worst_gap_m(const Terrain& terrain, double sole_m) {
 
 TEST(Terrain, ASoleLiesOnItWithinFourMillimetres) {
   EXPECT_LE(worst_gap_m(everything(), kSole_m), 0.004);
-  // At the very bound: it is reached, so the bound is no idle one.
+  // A slope at the very bound reaches it, so the bound is tight.
   const Terrain bent = terrain_of({SlopeSection{2.0, 0.512 * 0.6, 0.6}});
   EXPECT_NEAR(worst_gap_m(bent, kSole_m), 0.004, 5e-5);
 }

@@ -433,7 +433,7 @@ TEST(WalkBody, InPaperModeItIsTheDatas) {
   }
 }
 
-// The elbow answers a stiff shoulder, the hand goes where it went.
+// The elbow makes up for a stiff shoulder, and the hand keeps its path.
 TEST(WalkBody, WeightsChangeTheJointsAndNotTheHandsPath) {
   const StyleValues stiff = style({{"left_arm.weight.shoulder", 0.15}});
   MadeBody plain, weighted;

@@ -68,8 +68,8 @@ TEST(WalkModel, LeavesTheSourcesCycleOfEventsAlone) {
   for (double share : plain.share) EXPECT_GT(share, 0.05);
 }
 
-// Joints keep their angles on legs of any length if hips and feet are where the legs want them:
-// from hip to ankle all is as long as the leg.
+// Joints keep their angles on legs of any length if the distance from hip to ankle scales with the
+// leg.
 TEST(WalkModel, LegsOfAnyLengthSpanAsMuchOfTheirLength) {
   const WalkModel plain = model_of(1.0);
   const auto span = [](const WalkModel& model, double phase, Side side) {
@@ -94,7 +94,8 @@ TEST(WalkModel, LegsOfAnyLengthSpanAsMuchOfTheirLength) {
   }
 }
 
-// config/README.md, Terrain: a sole and 2 cm of an adult, as the walker's size makes them.
+// config/README.md, Terrain: a tread has room for the sole and 2 cm (an adult's; scaled with the
+// walker).
 TEST(WalkModel, GroundGrowsUntilASoleAndSomeRoomFitItsTreads) {
   Terrain narrow, wide;
   ASSERT_FALSE(add_section(narrow, StairsSection{0.1, 0.2, 3}));

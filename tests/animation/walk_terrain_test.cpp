@@ -355,7 +355,7 @@ TEST(WalkTerrain, ShortFeetAreNotExpectedToReachBeyondTheirTips) {
   }
 }
 
-// A riser of a third of the leg, and a swing that folds the knee without it already.
+// A riser of a third of the leg, and a swing that folds the knee even on level ground.
 TEST(WalkTerrain, AChildThatStepsHighFoldsItsKneesNoFurtherThanTheyGo) {
   const WalkModel model = model_on(0.6, ground_of(stairs(0.17)));
   for (const double y : {0.4, 0.7}) {
@@ -417,13 +417,14 @@ TEST(WalkTerrain, NothingFailsWhereverTheStickLeadsOnStairs) {
       return low + (high - low) * (chance() >> 8) / double(1 << 24);
     };
     for (int k = 0; k < 60; ++k) {
-      // One after the other: compilers draw the arguments of a call in orders of their own.
+      // Drawn in separate statements: compilers evaluate the arguments of a call in different
+      // orders.
       const int ticks = 40 + static_cast<int>(chance() % 300);
       const double y = in(-0.3, 1.0), x = chance() % 2 ? 0.0 : in(-0.6, 0.6);
       hiker.walk(x, y, ticks);
     }
-    // Now and then a foot lands hard that was sent somewhere else in mid-flight, and the corner of
-    // a heel passes an edge by half a millimetre less.
+    // A tenth more for hard landings of feet whose landing place changed in mid-flight, and half a
+    // millimetre more for corners of heels at an edge.
     const std::string what =
         "random sticks, leg " + std::to_string(ratio) + " seed " + std::to_string(seed);
     expect_sound(hiker.worst(), what, 1.1, 1.5);

@@ -141,7 +141,7 @@ TEST(Walk, NeitherFailsNorJumpsNorLeavesItsLimitsOverRandomSticksAndStyles) {
     EXPECT_EQ(failures, 0) << ratio;
     for (const auto& legs_rad : walker.angles_rad()) ASSERT_TRUE(within_limits(model, legs_rad));
     EXPECT_LT(walker.drift_m(), 1e-4) << ratio;
-    // What a change may do, 0.8, and half of it: sticks and styles jump here.
+    // Half as much again as a single change may cause (0.8), because sticks and styles jump here.
     EXPECT_LT(walker.sharpest_turn_rad(), 1.2 * kDegree) << ratio;
   }
 }
@@ -255,7 +255,7 @@ TEST(Range, SidewaysAloneTurnsOnTheSpotWithSmallSteps) {
   EXPECT_EQ(walker.last().stage, Stage::idle);
 }
 
-// A start, a walk, a stop: what its ticks come to at 20 times a second.
+// A start, a walk and a stop, with the values of its ticks 20 times a second.
 struct RateRun {
   double walked_m = 0.0;
   std::vector<Pose> poses;

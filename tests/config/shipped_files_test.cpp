@@ -70,8 +70,8 @@ TEST(ShippedStyles, AreThoseOfFigure5) {
   }
 }
 
-// Section 3.3.3: low muscle tone low weights, strong muscles high ones. Even ones would say
-// nothing, since they count relative to the largest.
+// Section 3.3.3: low muscle tone low weights, strong muscles high ones. Even weights would have no
+// effect, since weights count relative to the largest.
 TEST(ShippedStyles, BuildsHaveLowAndHighWeightsThatDiffer) {
   const Style heavy = style("heavy_slack"), muscular = style("muscular");
   for (const Side side : {kLeftSide, kRightSide}) {

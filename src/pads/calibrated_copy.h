@@ -13,7 +13,7 @@ namespace gaitpad {
 class CalibratedCopy {
  public:
   // `pad`: by which the node's reports are decoded. An axis that is half a control, or one of
-  // several that are summed up to one, passes as it is.
+  // several that are summed up to one, is passed on unchanged.
   CalibratedCopy(const EvdevLayout& node, const PadLayout& pad);
 
   // The node's axes and keys under their codes. A stick's full deflection is kFullStick, whatever
@@ -22,15 +22,15 @@ class CalibratedCopy {
   std::vector<VirtualPadAxis> axes() const;
   std::vector<std::uint16_t> keys() const;
 
-  // What has changed since the last call, without the SYN_REPORT at the end.
+  // The events of all changes since the last call, without the SYN_REPORT at the end.
   std::vector<VirtualPadEvent> events(const EvdevState& raw, const VirtualPadState& calibrated);
-  // Of a pad that was unplugged: nothing is pressed or deflected.
+  // The events that release everything, for a pad that was unplugged.
   std::vector<VirtualPadEvent> rest();
 
  private:
   struct Axis {
     VirtualPadAxis shown;
-    int control = -1;       // of PadAxis; -1: passes as it is
+    int control = -1;       // of PadAxis; -1: passed on unchanged
     bool reversed = false;  // the control falls while the axis grows
   };
   std::vector<VirtualPadEvent> change_to(const EvdevState& next);

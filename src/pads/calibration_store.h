@@ -27,10 +27,9 @@ std::string calibration_path(const std::string& folder, const CalibrationFile& f
 std::optional<Error> save_calibration(const std::string& path, const CalibrationFile& file,
                                       const std::vector<std::string>& comments);
 
-// What has changed from `then` to `now`: sentences with both numbers ("left stick: the centre has
-// moved by 0.031 ...: more than half of the inner zone"). Empty if nothing relevant has changed. Of
-// `now` only measured values are compared; of `then` also the values that were not measured, since
-// they are in use.
+// The changes from `then` to `now`: sentences with both numbers ("left stick: the centre has moved
+// by 0.031 ...: more than half of the inner zone"). Empty if nothing relevant has changed. From
+// `now` only measured values are compared; from `then` all values, since they are in use.
 std::vector<std::string> changes_since(const CalibrationFile& then, const CalibrationFile& now);
 
 // One number of a stick in two files, as text; "-": the file does not have it.
@@ -38,8 +37,8 @@ struct ComparedNumber {
   std::string label;
   std::array<std::string, 2> values;
 };
-// What a repairer compares, raw: centre, reach, zones, and what was measured. `side`: 0 left, 1
-// right.
+// The numbers that a repairer compares, raw: centre, reach, zones, and what was measured. `side`: 0
+// left, 1 right.
 std::vector<ComparedNumber> compared_numbers(const CalibrationFile& a, const CalibrationFile& b,
                                              std::size_t side);
 

@@ -32,8 +32,8 @@ class GuidedCalibration {
   static Result<std::unique_ptr<GuidedCalibration>> start(const PadFiles& files,
                                                           const PadWish& wish);
 
-  // Takes in the reports that have come; if there are none, waits so long for one. At the end of a
-  // recording the steps that it did not show are skipped.
+  // Takes in the reports that have come; if there are none, waits for one, at most `timeout`. At
+  // the end of a recording the steps that it did not show are skipped.
   void look(std::chrono::milliseconds timeout);
   CalibrationGuide* guide() noexcept { return guide_ ? &*guide_ : nullptr; }  // null: no pad yet
   const DeviceInfo& pad() const noexcept { return info_; }                    // once there is one
@@ -41,7 +41,7 @@ class GuidedCalibration {
   std::int64_t plugged() const noexcept { return stream_->counts().plugged; }
   bool has_ended() const noexcept { return has_ended_; }  // the recording, and all of it was read
   std::vector<std::string> take_remarks();
-  // What the guide has learned. Ends the calibration.
+  // Ends the calibration and returns what the guide has learned.
   GuidedPad finish();
 
  private:

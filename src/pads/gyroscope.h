@@ -12,7 +12,8 @@
 
 namespace gaitpad {
 
-// Where a kind of pad has its rates: little-endian numbers of 16 bits, three for each sample.
+// The place of the rates in a kind of pad's reports: little-endian numbers of 16 bits, three for
+// each sample.
 struct GyroLayout {
   struct Axis {
     std::size_t number = 0;  // of the sample's three

@@ -16,7 +16,7 @@ namespace gaitpad {
 namespace {
 
 constexpr std::int64_t kSettled_ns = 300'000'000;  // without a move, before a step begins
-// Of half the logical range, from where the field was when the step began.
+// Distances from the field's place when the step began, in half logical ranges.
 constexpr double kPushed = 0.6, kReleased = 0.25;
 
 enum class Kind { stick, trigger, button };

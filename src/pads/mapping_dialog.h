@@ -19,7 +19,7 @@ class MappingDialog {
  public:
   static Result<std::unique_ptr<MappingDialog>> start(const PadFiles& files, const PadWish& wish);
 
-  // Takes in the reports that have come; if there are none, waits so long for one.
+  // Takes in the reports that have come; if there are none, waits for one, at most `timeout`.
   void look(std::chrono::milliseconds timeout);
 
   bool has_pad() const noexcept { return device_ != kNoDevice; }
@@ -37,7 +37,8 @@ class MappingDialog {
   void skip() noexcept;  // of a control that the pad does not have
 
   std::size_t found() const noexcept { return found_count_; }
-  // What the last control was found to be: "Rz (0001:0035), reversed"; empty: none was found yet.
+  // The source that was found for the last control: "Rz (0001:0035), reversed"; empty: none was
+  // found yet.
   const std::string& last_found() const noexcept { return last_found_; }
   bool has_left_stick() const noexcept;
   // Keeps what was found as a line of SDL's in that file, in place of an older line of the pad, and

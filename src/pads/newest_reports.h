@@ -14,8 +14,8 @@ inline std::uint8_t report_id_of(const PadLayout& layout, const Report& report) 
   return layout.descriptor.numbered && report.size > 0 ? report.bytes[0] : 0;
 }
 
-// Of each device and report id the waiting input report that a newer one may replace. It points to
-// reports that somebody else keeps. Devices are numbered below kMaxTraceDevices.
+// For each device and report id, the waiting input report that a newer one may replace. It points
+// to reports that the caller keeps. Devices are numbered below kMaxTraceDevices.
 class NewestReports {
  public:
   Report* find(std::uint16_t device, std::uint8_t id) const noexcept { return newest_[device][id]; }

@@ -33,7 +33,7 @@
 
 namespace gaitpad {
 
-// Sentences for the user from any thread, kept until somebody takes them.
+// Sentences for the user from any thread, kept until they are taken.
 class Remarks {
  public:
   void add(std::string sentence) {

@@ -24,8 +24,8 @@ using namespace std::chrono_literals;
 
 // --- from the I/O thread to the reader
 
-// The reports of all pads on their way to the one reader: a wait-free ring, and behind it what
-// found no room.
+// The reports of all pads on their way to the one reader: a wait-free ring, and behind it a queue
+// for reports that found no room.
 //
 // A reader that has fallen behind finds first what is in the ring, then the newest state of each
 // device: the last input report of each report id. Reports that were left out are counted. Plugging
@@ -40,7 +40,7 @@ class PadQueue {
   // Moves what waits into the ring. True: nothing waits any more.
   bool flush();
   bool is_waiting() const noexcept { return !waiting_.empty(); }
-  // So much waits that no more can be taken: sources must be left alone until flush().
+  // The queue is full: sources must be left alone until flush().
   bool is_blocked() const noexcept { return waiting_.size() >= kMaxWaiting; }
   // Wakes the reader if it sleeps in wait(); once for many reports.
   void wake_reader() noexcept;
@@ -142,7 +142,7 @@ struct PadCounters {
 
 constexpr int kReadsInRound = 64;  // of one device, then it is the turn of the others
 // More wakes without a report than any sound source makes (SDL's: one each millisecond). Such a
-// source would keep the thread busy for ever.
+// source would keep the thread busy all the time.
 constexpr int kMaxIdleWakes = 500;
 constexpr auto kIdleWindow = 100ms;
 constexpr int kMaxErrorWakes = 200;  // at any rate
@@ -153,8 +153,8 @@ constexpr auto kWatch = 500ms;
 constexpr double kMaxBusy = 0.8;  // of a processor, with real-time priority
 constexpr std::size_t kMaxCommands = 1024;
 constexpr std::int64_t kClockSlack_ns = 1'000'000'000;
-// Reports without a stick for so long, and so many: a pad that reports changes only may send a few
-// of another kind before its stick is touched.
+// A pad counts as one without a stick after this time and this number of reports: a pad that
+// reports changes only may send a few of another kind before its stick is touched.
 constexpr std::int64_t kStickWait_ns = 1'000'000'000;
 constexpr int kMinStickless = 20;
 
@@ -358,7 +358,7 @@ void PadIo::run() {
   handed_.clear();
 }
 
-// Until the next motor must stop or the full ring is looked at again; -1: for ever.
+// Until the next motor must stop or the full ring is looked at again; -1: no limit.
 int PadIo::timeout_ms(Clock::time_point now) const {
   auto wait = std::chrono::milliseconds(-1);
   const auto at_most = [&wait](std::chrono::milliseconds time) {
@@ -539,7 +539,7 @@ void PadIo::deliver(Pad& pad, Report& report) {
   queue_.push(report, report_id_of(*pad.opened.layout, report));
 }
 
-// A pad that sends and sends but never where its stick is would be a dead one without a word.
+// Warns about a pad whose reports never contain a stick: it would otherwise seem dead.
 void PadIo::await_stick(Pad& pad, const Report& report) {
   const ReportLayout* layout = layout_of(*pad.opened.layout, report);
   if (layout != nullptr && tells_stick(*layout)) {

@@ -13,7 +13,7 @@ constexpr int kYielding_s = 5;
 constexpr int kSilencesInSecond = 10;  // 100 ms each
 const PadState kAtRest;
 
-// Of the D-pad: fully deflected, or 0.
+// The D-pad as a stick: fully deflected, or 0.
 vec2 hat_position(const PadState& state) noexcept {
   const auto is_down = [&state](PadButton b) { return pressed(state, b) ? 1.0 : 0.0; };
   const vec2 place(is_down(kButtonDpadRight) - is_down(kButtonDpadLeft),
@@ -131,7 +131,7 @@ void Pads::remove_pad(std::uint16_t device) noexcept {
   if (has_lost_its_driver()) replace_driver();
 }
 
-// A pad at rest takes over at once: nobody may touch it for a while.
+// A pad at rest takes over at once, because it may not be touched for a while.
 void Pads::replace_driver() noexcept {
   int first = 0;
   for (std::size_t i = 0; i < pads_.size(); ++i) {

@@ -43,7 +43,7 @@ class StandIn {
   bool has_pad() const noexcept { return node_ != nullptr; }
   std::string node() const { return pad_ ? pad_->node() : ""; }  // of the virtual pad
 
-  // What to wait for. When one of them is ready: serve().
+  // The descriptors to poll. When one of them is ready, call serve().
   std::vector<pollfd> poll_fds() const;
   // Passes on everything that has come. When the real pad is gone, the virtual one comes to rest,
   // and keeps what programs have uploaded.

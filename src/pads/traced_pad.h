@@ -1,4 +1,4 @@
-// A pad out of recordings of it, in place of one that somebody guides.
+// Measures a pad from recordings of it, instead of a guided one.
 #pragma once
 #include <optional>
 #include <string>

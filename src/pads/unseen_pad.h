@@ -1,4 +1,4 @@
-// Why a pad may not be seen although it is plugged in.
+// The reason why a pad may not be seen although it is plugged in.
 #pragma once
 #include <string>
 

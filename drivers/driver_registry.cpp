@@ -31,8 +31,8 @@ namespace {
 #define GAITPAD_SDL(function) nullptr
 #endif
 
-// In the order of preference: hidraw has the pad's own bytes, evdev what the kernel made of them,
-// SDL reads evdev, and usb must take the pad away from the kernel.
+// The drivers in the order of preference: hidraw has the pad's own bytes, evdev what the kernel
+// made of them, SDL reads evdev, and usb must take the pad away from the kernel.
 constexpr DriverEntry kDrivers[] = {
     {.name = "hidraw",
      .library = "libhidapi-hidraw",

@@ -46,7 +46,7 @@ struct InputNode {
   bool may_write = false;
 };
 
-// In the version: set by kernel drivers that choose codes of their own (sony, playstation,
+// A bit in the version, set by kernel drivers that choose codes of their own (sony, playstation,
 // nintendo).
 constexpr int kArrangedByKernel = 0x8000;
 
@@ -79,7 +79,7 @@ Result<InputNode> open_input_node(const std::string& node, int mode) {
   opened.fd = OwnedFd(::open(node.c_str(), mode | O_NONBLOCK | O_CLOEXEC));
   if (opened.fd.get() < 0) return open_error(node, errno);
   opened.may_write = mode == O_RDWR;
-  // Before libevdev reads the state, because a change of clock drops queued events.
+  // Set before libevdev reads the state, because a change of clock drops queued events.
   int clock = CLOCK_MONOTONIC;
   if (::ioctl(opened.fd.get(), EVIOCSCLOCKID, &clock) != 0) return open_error(node, errno);
   libevdev_set_log_function(nullptr, nullptr);  // it would print to stderr about odd devices
@@ -389,8 +389,9 @@ struct Seen {
   std::string other;  // what it is if it is no pad
   std::vector<std::uint8_t> descriptor;
 };
-// By the sysfs path of the input device, whose number is never reused. Kept because all nodes are
-// looked at whenever anything is plugged in, and opening a HID pad takes the kernel 50 ms.
+// Nodes seen, by the sysfs path of the input device, whose number is never reused. They are kept
+// because all nodes are looked at whenever anything is plugged in, and opening a HID pad takes the
+// kernel 50 ms.
 using Memory = std::map<std::string, Seen>;
 
 // Looks at a node; error: why it cannot be opened.

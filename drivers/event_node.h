@@ -22,7 +22,8 @@ class EventNode : public Device, public EffectTarget {
   // The values that the newest report was made of.
   virtual const EvdevState& state() const noexcept = 0;
   virtual const EvdevLayout& layout() const noexcept = 0;
-  // Its codes of EV_FF: the kinds of effects, the gain. Empty: none, or the node may be read only.
+  // The node's codes of EV_FF: the kinds of effects, the gain. Empty: none, or the node may be read
+  // only.
   virtual std::vector<std::uint16_t> effect_codes() const = 0;
 };
 

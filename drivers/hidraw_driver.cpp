@@ -145,9 +145,9 @@ class HidrawPort final : public PadPort {
   bool is_numbered_;
 };
 
-// Its thread must not use the handle: hidapi writes its error text into it on every call. It shares
-// the one opening; a second opening would have a queue of reports that is never read. Null if the
-// descriptor is not known, or no thread can be started.
+// Sends packets from a thread. The thread must not use the handle: hidapi writes its error text
+// into it on every call. It shares the one opening; a second opening would have a queue of reports
+// that is never read. Null if the descriptor is not known, or no thread can be started.
 std::unique_ptr<PacketSender> hidraw_sender(int fd, bool is_numbered) {
   const auto own = std::make_shared<const OwnedFd>(fd < 0 ? -1 : ::fcntl(fd, F_DUPFD_CLOEXEC, 0));
   if (own->get() < 0) return nullptr;
@@ -191,7 +191,8 @@ class HidrawDevice final : public Device {
     HidrawPort port(handle_.get(), fd_, is_numbered_);
     quirks_->start(port, started);
     quirks_->amend(info_);
-    // Only on a cable: over Bluetooth a pad reports when it connects, and some block on requests.
+    // Asked only on a cable: over Bluetooth a pad reports when it connects, and some block on
+    // requests.
     if (info_.bus == BusType::usb) first_size_ = first_packet(port, info_.descriptor, buffer_);
     OutPacket still;
     quirks_->rumble({}, still);
@@ -346,7 +347,7 @@ StartedBy started_by(const std::string& kernel_driver) {
 
 }  // namespace
 
-// Without hid_enumerate(): it sees the same nodes and tells less about them, and a pad that is
+// hid_enumerate() is not used: it sees the same nodes and tells less about them, and a pad that is
 // plugged in between two lists would appear twice, once without a name.
 std::vector<DeviceListing> find_hidraw_devices() {
   std::vector<DeviceListing> listings;

@@ -42,7 +42,7 @@ vec2 in_disc(const vec2& wanted) noexcept {
   return length > 1.0 ? vec2(wanted.x / length, wanted.y / length) : wanted;
 }
 
-// In a straight line, so that the position stays in the disc.
+// Moves in a straight line, so that the position stays in the disc.
 vec2 moved(const vec2& from, const vec2& to, double time_s) noexcept {
   const vec2 way = to - from;
   const double distance = std::hypot(way.x, way.y);

@@ -29,8 +29,8 @@ struct JoystickCodes {
   std::vector<std::uint16_t> axes, buttons, hats;
   bool operator==(const JoystickCodes&) const = default;
 };
-// From the node's bits in sysfs (capabilities/abs, capabilities/key): hexadecimal words, the lowest
-// last. None if SDL has counted other numbers of controls.
+// The codes by the node's bits in sysfs (capabilities/abs, capabilities/key): hexadecimal words,
+// the lowest last. None if SDL has counted other numbers of controls.
 std::optional<JoystickCodes> node_codes(std::string_view abs_bits, std::string_view key_bits,
                                         const JoystickState& counted);
 // Plausible codes in SDL's order, for a joystick without a node; too many controls are left out.

@@ -58,9 +58,10 @@ struct Battery {
   std::string level;           // critical, low, normal, high, full; empty: unknown
   std::string status;          // charging, discharging, full, not charging; empty: unknown
 };
-// By the pad's path; none: it has no battery, or no kernel driver that asks for it.
+// The battery of the pad with this path; none: it has no battery, or no kernel driver that asks for
+// it.
 std::optional<Battery> battery_of(const std::string& pad_path);
-// By what a stream knows of an open device.
+// The same for a device that a stream has open.
 std::optional<Battery> battery_of(const DeviceInfo& device);
 // The reason why this user cannot open the node for reading and writing; empty: there is none.
 // `/dev/hidraw3: permission denied (owner 0, group 0, mode 0600); gaitpad doctor tells the fix`

@@ -34,7 +34,7 @@ struct Playback {
 
 Playback started_playback(Trace trace) {
   Playback playback;
-  // In a file with T: lines only the times of each single device are in order.
+  // If the file has T: lines, only the times of each single device are in order.
   const auto [first, last] = std::ranges::minmax_element(trace.events, {}, &TraceEvent::time_us);
   if (first != trace.events.end()) {
     playback.first_us = first->time_us;

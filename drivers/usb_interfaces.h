@@ -36,7 +36,7 @@ bool may_be_pad(const UsbInterface& interface) noexcept;
 // empty.
 std::string boot_device(const UsbInterface& interface);
 
-// As the kernel writes it (HIDIOCGRAWPHYS, EVIOCGPHYS): `usb-0000:00:14.0-1.2/input0`.
+// The port as the kernel writes it (HIDIOCGRAWPHYS, EVIOCGPHYS): `usb-0000:00:14.0-1.2/input0`.
 std::string usb_physical_path(const std::string& device_path, std::uint8_t interface_number);
 
 }  // namespace gaitpad

@@ -16,7 +16,7 @@ class ReattachWatcher {
  public:
   // Call it before detaching. `node`: the device's, /dev/bus/usb/BBB/DDD.
   static Result<ReattachWatcher> start(const std::string& node, std::uint8_t interface_number);
-  // Its end is like the death of this process: the watcher re-attaches.
+  // Destroying it is like the death of this process: the watcher re-attaches.
   ReattachWatcher(ReattachWatcher&&) noexcept = default;
   ReattachWatcher& operator=(ReattachWatcher&&) = delete;
 

@@ -12,7 +12,7 @@ namespace {
 // Not a USB vendor's id: it marks our own virtual pad.
 constexpr int kOwnVendor = 0x6761, kOwnProduct = 0x7470;
 
-// By PadButton, as far as Linux's gamepads name them.
+// Codes by PadButton, as far as Linux's gamepads name them.
 constexpr std::array<std::uint16_t, kButtonDpadUp> kCodes = {
     BTN_A,     BTN_B,      BTN_X,      BTN_Y,  BTN_SELECT, BTN_MODE,
     BTN_START, BTN_THUMBL, BTN_THUMBR, BTN_TL, BTN_TR,
@@ -38,7 +38,7 @@ std::int32_t counts(double value, int full) {
   return static_cast<std::int32_t>(std::lround(std::clamp(value, -1.0, 1.0) * full));
 }
 
-// In the order of kAxes.
+// The axes' values in the order of kAxes.
 std::array<std::int32_t, std::size(kAxes)> axis_values(const VirtualPadState& s, XboxKind kind) {
   const auto direction = [&s](PadButton towards, PadButton away) {
     return static_cast<int>(is_pressed(s, towards)) - static_cast<int>(is_pressed(s, away));

@@ -439,7 +439,8 @@ constexpr Switch2Command kStartSwitch2[] = {
     {0x03, 0x0d, 8, {0x01, 0x00, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff}}  // reports, by this interface
 };
 constexpr std::uint32_t kFactoryBlock = 0x013080, kUserBlock = 0x1fc040, kNextStick = 0x40;
-// In the answer to a reading of the flash memory: the block, and in it the calibration.
+// Places in the answer to a reading of the flash memory: of the block, and in it of the
+// calibration.
 constexpr std::size_t kBlockAt = 0x10, kFactoryAt = kBlockAt + 0x28, kAnswerBytes = 0x50;
 
 class Switch2Pad final : public PadQuirks {

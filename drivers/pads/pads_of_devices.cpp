@@ -118,7 +118,7 @@ struct PadCollection {
   std::set<std::uint8_t> ids;
 };
 
-// Those with X and Y; none if they share a report.
+// The pad collections with X and Y; none if they share a report.
 std::vector<PadCollection> pad_collections(const ReportDescriptor& d) {
   std::vector<PadCollection> all(d.applications.size());
   for (const Field& f : d.fields) {

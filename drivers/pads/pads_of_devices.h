@@ -45,7 +45,7 @@ inline constexpr std::uint8_t kPairLeft = 'L', kPairRight = 'R';
 // Whether a pad came to a receiver, or went, since the last packet.
 class PlugWatch {
  public:
-  // Then `report` says so.
+  // True if the plug's state has changed; then `report` says so.
   bool has_changed(const PadQuirks& quirks, Report& report) noexcept {
     if (quirks.is_plugged() == was_plugged_) return false;
     was_plugged_ = !was_plugged_;

@@ -142,7 +142,7 @@ class SonyQuirks : public PadQuirks {
   std::vector<std::string> remarks_;
 };
 
-// On USB it sends nothing until two features were read: Linux's hid-sony.c
+// On USB the pad sends nothing until two features were read: Linux's hid-sony.c
 // (sixaxis_set_operational_usb), whose third step makes some copies rumble without end.
 class DualShock3 final : public PadQuirks {
  public:
@@ -225,7 +225,7 @@ class DualShock4OfOthers final : public PadQuirks {
   bool has_motors_ = false;
 };
 
-// By its descriptor: the reports for abilities and effects, of exactly these sizes.
+// Told by its descriptor: the reports for abilities and effects, of exactly these sizes.
 bool is_dualshock4_of_others(const DeviceInfo& device) {
   if (device.bus != BusType::usb) return false;
   const auto d = parse_descriptor(device.descriptor);

@@ -416,7 +416,7 @@ IkAngles spread_start(const Problem& p, const IkAngles& given, int k) noexcept {
   return start;
 }
 
-// The one nearest to the goal of kCandidates starts, beginning with number `first`.
+// Of kCandidates starts, from number `first` on, the one that is nearest to the goal.
 IkAngles nearest_start(const Problem& p, const IkAngles& given, int first) noexcept {
   IkAngles nearest = given;
   double least = std::numeric_limits<double>::infinity();

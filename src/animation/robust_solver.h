@@ -186,7 +186,8 @@ inline RobustSolution<typename System::V> iterate(System& system, const RobustOp
     step.weight = system.weight;
     const V damping = std::max(options.damping * options.damping, kLeastDampingSquared) +
                       growth * min_of(best.squares, all_of<V>(most));
-    // By hand: of std::array's fill() the linker might take the one compiled for wider registers.
+    // Written by hand: for std::array's fill() the linker might take the copy compiled for wider
+    // registers.
     for (int r = 0; r < System::kRows; ++r) {
       step.give[r] = damping;
       step.error[r] = share * best.dx[r];

@@ -169,7 +169,7 @@ vec3 turn_of(const quat& world, const quat& standing, double heading_rad) noexce
   return rotation_vector(rotation_y(-heading_rad) * world * glm::conjugate(standing));
 }
 
-// That turn with its second difference bounded.
+// The segment's turn with its second difference bounded.
 vec3 eased_turn(const Tick& tick, const WalkState& state, const vec3& goal, double most_s2,
                 EasedOf<vec3, double>& eased) noexcept {
   const double changes = state.body.push_rad.x != 0.0 ? 1.0 : state.path.unsteady;
@@ -207,9 +207,9 @@ void spread_arms(const WalkModel& model, const WalkState& state, const PosePart&
 
 // --- Spine ---------------------------------------------------------------------------------------
 
-// By weighted half-Jacobian IK: its joints share the way to where the data carry the neck
-// and turn the shoulders. Three rows, all of positions: the neck's sideways and fore-aft place, and
-// how far ahead a point beside it is.
+// The spine is solved by weighted half-Jacobian IK: its joints share the way to where the data
+// carry the neck and turn the shoulders. Three rows, all of positions: the neck's sideways and
+// fore-aft place, and how far ahead a point beside it is.
 
 constexpr double kNeckLever_m = 0.2;          // of the point beside the neck
 constexpr double kMostBend = 60.0 * kDegree;  // of one joint
@@ -318,7 +318,7 @@ constexpr double kRailAhead_m = 0.15;  // of the shoulder, where a hand takes ho
 using ShoulderAngles = std::array<double, 3>;
 constexpr ShoulderAngles kCarrying = {-15.0 * kDegree, 12.0 * kDegree, -15.0 * kDegree};
 constexpr ShoulderAngles kAtRail = {25.0 * kDegree, 4.0 * kDegree, 5.0 * kDegree};
-// On top of the style's weights: shoulder and elbow bring a held hand to its place, not the wrist.
+// Factors on the style's weights: shoulder and elbow bring a held hand to its place, not the wrist.
 constexpr ArmWeights kHeldWeights = {1.0, 1.0, 0.7, 1.0, 0.25, 0.25};
 
 // One arm as it stands in a pose.
@@ -434,7 +434,7 @@ vec3 carried_place(const HandParams& hand, const UpperBodyModel& body, Side side
          shoulders.upright * (scale * vec3(sign_of(side) * hand.x_m, hand.y_m, hand.z_m));
 }
 
-// On a rail that runs along with the hips' path.
+// A place on a rail that runs along with the hips' path.
 vec3 rail_place(const WalkModel& model, const WalkState& state, const HandParams& hand,
                 Side side) noexcept {
   const double scale = model.body.shoulder_height_m / kReferenceShoulder_m;

@@ -400,7 +400,7 @@ void time_step_again(const Tick& tick, WalkState& state) noexcept {
 void time_closing_step(const Tick& tick, WalkState& state) noexcept {
   StepClock& clock = state.clock;
   const double scale = tick.model.time_scale;
-  // On stairs it takes as long as any other.
+  // On stairs a closing step takes as long as any other.
   const int least = state.path.foothold.next_rise > 0.0
                         ? clock.flight_ticks
                         : ticks_of(kLeastClosing_s * scale, tick.dt_s),

@@ -105,7 +105,7 @@ void set_limits(const LegBuild& leg, Limited& to) noexcept {
     to.min_rad[j] = all_of<V>(leg.chain.dof[j].min_rad);
     to.max_rad[j] = all_of<V>(leg.chain.dof[j].max_rad);
   }
-  // Without the ankle's limit first, so that the knee does not twist.
+  // Solves without the ankle's limit first, so that the knee does not twist.
   to.min_rad[kAnkleX] = all_of<V>(-kPi);
 }
 template <class V>
@@ -211,7 +211,7 @@ void set_room(const Tick& tick, const StateOf<V>& state, Side side, const V& flo
   shares.room_up_rad = room(heel_m, V(leg.foot_m * (1.0 - shares.on_heel)));
 }
 
-// Before the weights act: the running means, and how freely the foot may turn.
+// Prepares the weights: updates the running means and the foot's freedom to turn.
 template <class V>
 void advance_weighted_leg(const Tick& tick, const MomentOf<V>& at, Side side,
                           StateOf<V>& state) noexcept {

@@ -797,7 +797,7 @@ void lead_hips(const Tick& tick, MomentOf<V>& at, StateOf<V>& state, PlanOf<V>& 
     phase = settles ? gait.phase - gait.off_phase.x : phase;
     rate = settles ? V{} : rate;
   }
-  // Not led: the tables' place, its rate and acceleration by differences.
+  // If the hips do not lead: the tables' place, with its rate and acceleration by differences.
   const Vec<V> moved = by_tables - last, before = last - path.last_pelvis_m;
   // Bounded, because a landing that jumps to another tread moves the path.
   const double most = kMostBend_m_s2 * tick.dt_s * tick.dt_s;
@@ -970,7 +970,7 @@ V heel_rise(const WalkModel& model, const MomentOf<V>& at, Side side) noexcept {
   const double strike = side == kRightSide ? 0.0 : model.share[0] + model.share[1];
   const V p = at.phase - strike, own = p - floor_of(p);
   const double begin = std::max(kRiseBegin, model.share[side == kRightSide ? 0 : 2]);
-  // After the roll; less and less where a walk comes to rest.
+  // The heel rises after the roll, and less and less where a walk comes to rest.
   const V rises = smoothstep(begin, begin + kHeelRiseLasts, own),
           left = smootherstep(V(at.rest_ticks / at.closing_ticks));
   const auto rests = at.stopping & (not_of(at.started) | (at.closing & not_of(at.steps(side))));
@@ -1087,7 +1087,8 @@ Vec<V> short_flight(const MomentOf<V>& at, const StateOf<V>& state, const PlanOf
          side_of<V>(plan.lands) * ahead.x;
 }
 
-// Its heel goes a little higher than in such strides, so that the toe leaves the floor at once.
+// The height added to the heel of a foot that starts from rest or comes to rest: 0 at the ends of
+// its flight and greatest in its middle, so that the toe leaves the floor at once.
 template <class V>
 V short_lift(const WalkModel& model, const MomentOf<V>& at, const V& u) noexcept {
   const V x = 1.0 - u;
@@ -1111,15 +1112,15 @@ Vec<V> flight_heel(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& st
              (path.landing_m + turned<V>(plan.lands, from_next)) * gone;
   const auto is_short = at.starting | at.closing;
   if (any(is_short)) {
-    // Before it lands a first step is one of the walk.
+    // Before it lands, the foot of a first step flies as in a walk.
     const V lands =
         at.starting ? kLikeAStep * smootherstep(V((u - kWalksFrom) / (1.0 - kWalksFrom))) : V{};
     const Vec<V> short_m = short_flight<V>(at, state, plan, side, u),
                  walks = path.landing_m + turned<V>(plan.lands, from_next);
     p = chosen(is_short, short_m * (1.0 - lands) + walks * lands, p);
   }
-  // On an arc: not on its chord, which leads through the standing leg, nor on both directions
-  // mixed, which lead far out.
+  // The heel goes along an arc: the chord leads through the standing leg, and both directions mixed
+  // lead far out.
   const V turns = path.landing_heading_rad - foot.lift_yaw_rad;
   if (any(turns != V{})) {
     const Vec<V> way = path.landing_m - foot.heel_anchor_m;
@@ -1434,7 +1435,7 @@ PelvisOf<V> pelvis_over_ground(const WalkModel& model, const StateOf<V>& state,
   return pelvis;
 }
 
-// From hip to ankle, with a knee that is bent so far.
+// The distance from hip to ankle at this flexion of the knee.
 template <class V>
 V span_of(const LegModel& leg, const V& knee_rad) noexcept {
   const double a = leg.thigh_m, b = leg.shank_m;

@@ -138,7 +138,7 @@ PosedLegOf<V> pose_side(const Tick& tick, std::span<const Walking> walks, const 
 template <int kWidth>
 void advance_lanes(const WalkModel& model, double dt_s, std::span<const Walking> walks) noexcept {
   using V = Lanes<kWidth>;
-  // Its parameters are the first walk's: those of all of them are in `params`.
+  // The tick's parameters are the first walk's; those of all walks are in `params`.
   const Tick tick = {model, *walks[0].params, IkMode::robust, dt_s, true};
   const int count = static_cast<int>(walks.size());
   MomentOf<V> at;

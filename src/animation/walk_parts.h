@@ -134,7 +134,7 @@ struct PelvisOf {
   Vec<V> hip(const LegBuild& leg) const noexcept {
     return position_m + rotation * all_of<V>(leg.model.hip_m);
   }
-  // In the world, of a place in its frame from the hip joint.
+  // Converts a place from the pelvis' frame, counted from the hip joint, to the world.
   Vec<V> place(const LegBuild& leg, const Vec<V>& from_hip_m) const noexcept {
     return hip(leg) + rotation * from_hip_m;
   }

@@ -396,7 +396,7 @@ void lean_into_slope(const Tick& tick, WalkState& state) noexcept {
   state.path.slope_lean_rad.advance(lean, kSlopeLeanSmoothing * tick.model.time_scale, tick.dt_s);
 }
 
-// Such steps roll and rise like short ones.
+// Steps that the ground shortens roll and rise like short ones.
 void follow_ground(const Tick& tick, WalkState& state) noexcept {
   const Side swing = step_foot(state);
   const double wanted =

@@ -487,7 +487,7 @@ class LedCrowd {
     }
   }
 
-  // With workers: on all of their threads.
+  // Advances all members; with workers, on all of their threads.
   void advance_all(Workers* workers) {
     lead();
     if (workers) {
@@ -628,9 +628,9 @@ std::optional<Error> load(Result<GaitCycle> cycle, const std::string& cache) {
   return std::nullopt;
 }
 
-// From a motion in memory to a character: the built-in motion; the same as a captured clip, whose
-// halves are not assumed to be mirrored; the clip with its strides in a cache. Strides are solved
-// on several cores.
+// The work from a motion in memory to a character: the built-in motion; the same as a captured
+// clip, whose halves are not assumed to be mirrored; the clip with its strides in a cache. Strides
+// are solved on several cores.
 Result<std::vector<Work>> load_work() {
   const auto clip = std::make_shared<const Motion>(procedural_motion());
   const auto cache = cache_folder("strides");

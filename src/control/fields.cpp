@@ -209,7 +209,7 @@ std::optional<FoundField> field_of(std::string_view key) noexcept {
   return in_section(*section, key);
 }
 
-// Its words in the table, or its name: `weight.hip_x` is "hip x weight".
+// The words of a field in the table, or its name: `weight.hip_x` is "hip x weight".
 std::string words_of(const StyleField& field) {
   if (!field.words.empty()) return std::string(field.words);
   constexpr std::string_view kWeight = "weight.";

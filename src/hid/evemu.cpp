@@ -218,7 +218,8 @@ std::string EvemuWriter::header() const {
   append_mask(kKey, keys(), evdev::kKeyMax + 1, out);
   append_mask(kAbs, codes, evdev::kAbsMax + 1, out);
   for (const auto& [code, axis] : all) {
-    // hid-input's: 1/256 of a pad's range is noise, 1/16 is flat. Those of a node are not recorded.
+    // hid-input sets noise to 1/256 and flat to 1/16 of a pad's range. Those of a recorded node are
+    // not known.
     const bool is_flat = stated_by_ == StatedBy::device && axis.max - axis.min > 2;
     const std::int64_t range = is_flat ? axis.max - axis.min : 0;
     out +=

@@ -417,7 +417,7 @@ std::vector<int> joints_between(const Skeleton& skeleton, int from, int to) {
   return chain;
 }
 
-// From joint `from` to joint `to`, in the frame of `from`, with the locals given.
+// The vector from joint `from` to joint `to`, in the frame of `from`, with the locals given.
 vec3 link(const Skeleton& skeleton, const std::vector<quat>& local, int from, int to) {
   vec3 v = skeleton.joints[to].offset_m;
   for (int j = skeleton.joints[to].parent; j >= 0 && j != from; j = skeleton.joints[j].parent) {

@@ -303,7 +303,7 @@ double share_above(double above, double next, double limit) {
 // several limits.
 struct SwingSearch {
   Run run;
-  double scale = 1.0;          // of the leg, 1: an adult's
+  double scale = 1.0;          // the leg's length over an adult's
   int fastest_heel = 0;        // the search for the strike begins here
   int flat = 0;                // and ends here
   double standing_heel_m = 0;  // height at `flat`

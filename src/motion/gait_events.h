@@ -36,7 +36,7 @@ struct FeetTracks {
 struct FootSwing {
   Side side = kLeftSide;
   int range = 0;  // index into FeetTracks::ranges
-  // In samples, with fractions; none if the range cuts the swing there.
+  // Events in samples, with fractions; none if the range cuts the swing there.
   std::optional<double> toe_off, strike;
   // The samples where the ankle's speed rises and falls through the limit of moving. These agree
   // best between strides, because they do not depend on how the foot touches the ground.

@@ -100,7 +100,7 @@ void StandIn::send() noexcept {
     settling_.set(now_ns() + static_cast<std::int64_t>(JumpFilter::kSettled_s * 1e9));
 }
 
-// No report has followed the last one.
+// Ends the filter's delay if no report has followed the last one.
 void StandIn::settle() noexcept {
   filter_.settle();
   send();

@@ -327,7 +327,8 @@ struct Above {
   double apart_deg = 0.0;
   int back = 0;  // number of ticks in which the data's time runs backwards
 };
-// In robust mode without shoulders and elbows, because the speed sets the swing of the arms.
+// Measures the joints above the hips; in robust mode without shoulders and elbows, because the
+// speed sets the swing of the arms.
 Above above_the_hips(const WalkModel& model, IkMode mode) {
   std::vector<int> upper = upper_joints(model.cycle);
   if (mode == IkMode::robust) {

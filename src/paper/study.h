@@ -81,7 +81,7 @@ struct Ticks {  // [begin, end)
   std::size_t begin = 0, end = 0;
   std::size_t count() const noexcept { return end - begin; }
 };
-// From each strike of the foot to its next one.
+// The strides of a foot, each from one strike to the next.
 std::vector<Ticks> strides(const Walk& walk, Side side);
 // The first stride that begins after `time_s`; empty if there is none.
 Ticks stride_after(const Walk& walk, Side side, double time_s);

@@ -111,8 +111,9 @@ void Builder::stand() {
                      : hips_m_ + kUp * (kAdultTrunk_m * leg_);
 }
 
-// From the root to the head, or to the joint that carries the arms if there is no head. If several
-// joints are at one place, the last one is used, because it rotates the following bone.
+// Finds the joints from the root to the head, or to the joint that carries the arms if there is no
+// head. If several joints are at one place, the last one is used, because it rotates the following
+// bone.
 void Builder::find_trunk() {
   int top = joints_.head;
   if (top < 0 && !joints_.spine.empty()) top = joints_.spine.back();

@@ -47,7 +47,7 @@ void interpolate(const Pose& before, const Pose& pose, double share, Pose& shown
 // Draws no part below the ground under the feet; terrain null: level at height 0.
 void add_mannequin(const Mannequin& mannequin, const Pose& pose, const Terrain* terrain,
                    const Colour& colour, SceneContent& content);
-// Its highest point, for the name above it.
+// The highest point of the mannequin, for the name above it.
 vec3 head_m(const Mannequin& mannequin, const Pose& pose) noexcept;
 
 // The captured motion, without retargeting, as a stick figure: the source's pose at `phase`,

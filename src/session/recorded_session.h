@@ -37,8 +37,8 @@ struct UsedFile {
   std::uint64_t hash = 0;  // FNV-1a of its bytes
 };
 std::uint64_t bytes_hash(std::string_view bytes);
-// Those of the read files that the replay depends on: without styles that it does not name and
-// without entries for other pads.
+// The files, of those that were read, on which the replay depends: without styles that it does not
+// name and without entries for other pads.
 std::vector<UsedFile> used_files(const std::vector<InputFile>& read, const Trace& trace,
                                  const SimulationConfig& config, const PadOverrides& overrides);
 

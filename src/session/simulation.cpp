@@ -62,7 +62,7 @@ void follow_zones(Walker& w, const Terrain& terrain, std::span<const int> zone_s
   if (terrain.zones.empty()) return;
   const int zone = zone_at(terrain, w.state.path.hips_m);
   if (zone == w.zone.index) return;
-  // From one zone directly into another: keep the style from before both.
+  // When a walker goes from one zone directly into another, keep the style from before both.
   const bool has_own = w.zone.gives_back;
   const ZoneStyle before = w.zone;
   w.zone.index = zone;

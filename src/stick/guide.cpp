@@ -565,7 +565,8 @@ const char* direction_words(GuideStep step) noexcept {
   }
 }
 
-// In the directions of the raw axes: how they lie under the thumb is learned later, by the pushes.
+// The name of a side in the directions of the raw axes: their orientation under the thumb is
+// learned later, by the pushes.
 std::string side_name(const vec2& raw) {
   static constexpr const char* kNames[] = {"right", "front right", "front", "front left",
                                            "left",  "back left",   "back",  "back right"};

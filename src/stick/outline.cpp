@@ -170,7 +170,7 @@ Radii inside_of(const Radii& greatest, double sigma) {
   return inside;
 }
 
-// By angle; samples beside the seam (0 and 2 pi) are repeated beyond the other end.
+// Sorts by angle; samples beside the seam (0 and 2 pi) are repeated beyond the other end.
 std::vector<Polar> sort_by_angle(std::vector<Polar> samples) {
   const std::size_t count = samples.size();
   for (std::size_t i = 0; i < count; ++i) {
@@ -357,7 +357,7 @@ double radius_at(std::span<const Polar> rim, double direction, double sigma) {
   return best.error <= kGreatestError ? best.radius : 0.0;
 }
 
-// By straight lines in space: interpolated radii would make a side bulge.
+// Fills gaps by straight lines in space: interpolated radii would make a side bulge.
 void fill_gaps(Radii& radius) noexcept {
   const Radii seen = radius;
   const auto at = [&](int k) { return seen[around(k)]; };
@@ -601,7 +601,7 @@ double supported(const Outline& outline, int k, int side) noexcept {
 }  // namespace
 
 Reach reach_of(const Outline& outline) noexcept {
-  // By side: right, front, left, back.
+  // Reaches by side: right, front, left, back.
   std::array<double, 4> furthest;
   furthest.fill(-2.0);
   std::array<bool, 4> is_before{}, is_behind{};

@@ -764,7 +764,8 @@ RestStatistics rest_statistics(std::span<const StickTrack> tracks, const vec2& s
   result.hands_off = std::move(found.hands_off);
   for (const Still& push : found.pushes) result.pushes.push_back(push.mean);
   if (rests.empty()) {
-    // It never stood still: its centre is the middle of where it was by itself.
+    // A stick that never stood still: its centre is the middle of its places while it moved by
+    // itself.
     std::vector<vec2> places;
     for (const HandsOff& time : result.hands_off)
       places.insert(places.end(), time.places.begin(), time.places.end());

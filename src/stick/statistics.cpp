@@ -62,7 +62,7 @@ StickStatistics stick_statistics(std::span<const StickTrack> tracks, const vec2&
   add_rim(result, clean.tracks, extent);
   result.turns = turns_of(result, clean.tracks, extent);
   const vec2 repeats = repeats_expected(result);
-  // From the tracks as they came: a removed spike would be a repeated value.
+  // Measured on the tracks as they came: a removed spike would be a repeated value.
   const ReportTiming timing = report_timing(tracks, result.sigma ? repeats.x * repeats.y : 0.0);
   result.rate_hz = timing.rate_hz;
   result.jitter_ms = timing.jitter_ms;

@@ -255,7 +255,7 @@ bool is_spike(const StickTrack& track, std::size_t i, std::size_t length, const 
   return stands_out(least, steps_around(track, i, length, scale.interval_s));
 }
 
-// In reports; 0 if no spike begins at i.
+// The length of a spike in reports; 0 if none begins at i.
 std::size_t spike_length(const StickTrack& track, std::size_t i, const Scale& scale) {
   if (step_length(track, i) < scale.smallest) return 0;
   for (std::size_t length = 1; length <= 3 && i + length < track.size(); ++length) {
@@ -510,7 +510,8 @@ bool is_frozen(const StickTrack& track, std::size_t first, std::size_t last, con
     const double pause_s = seconds_between(track[last].time_ns, track[last + 1].time_ns);
     return is_beside && (is_out || jump > kSpring_per_s * pause_s + kSlack);
   }
-  // It was turned, or its noise was gone. A thumb that pauses slows down first, and has noise.
+  // The stick was turned, or its noise was gone. A thumb that pauses slows down first, and has
+  // noise.
   const bool has_room = std::min(std::fabs(place.x), std::fabs(place.y)) < kInside;
   if (is_out && has_room && quiet < kUnlikely) return true;
   return is_out && glm::length(track[first].raw - place_at(track, first, -kRun_s)) > kRunning &&

@@ -94,8 +94,8 @@ double reports_stood(double hold_s, double interval_s) noexcept;
 // ---- Cleaning
 
 struct CleanTracks {
-  // As many samples as before. A sample that does not count (no number, out of range, a spike)
-  // repeats the position before it; times never go back.
+  // Tracks with as many samples as before. A sample that does not count (no number, out of range, a
+  // spike) repeats the position before it; times never go back.
   std::vector<StickTrack> tracks;
   std::int64_t jumps = 0;       // spikes: to another place and back within three reports
   std::int64_t long_jumps = 0;  // those of them that a median of three reports lets through

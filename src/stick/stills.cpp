@@ -170,7 +170,7 @@ Still still_of(const StickTrack& track, std::size_t index, std::span<const Cell>
   return still;
 }
 
-// By track.
+// The cells of each track.
 std::vector<std::vector<Cell>> cells_of(std::span<const StickTrack> tracks, double interval_s) {
   std::vector<std::vector<Cell>> cells;
   std::size_t left = kMostCells;

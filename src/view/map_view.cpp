@@ -1,4 +1,4 @@
-// Press-to-map in the window, for pads with wrong axes or buttons.
+// The mapping dialog in the window, for pads with wrong axes or buttons.
 #include <fmt/format.h>
 #include <imgui.h>
 

@@ -137,7 +137,7 @@ std::optional<int> answer_shell(const CLI::App& app, int argc, char** argv) {
   return problem ? gaitpad::fail("__manual", problem->message) : 0;
 }
 
-// Prints help and version on standard output, wrong usage on standard error. It may quote
+// Prints help and version on standard output, wrong usage on standard error. The text may quote
 // arguments.
 int tell(const CLI::App& app, const CLI::ParseError& error) {
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {

@@ -38,7 +38,7 @@ std::optional<Swing> robust_flight(const Motion& motion, Side side);
 // from there the first - to + within 10 % of the lowest. `heel_off` repeats `lift`. None where a
 // target is not found.
 std::optional<Swing> paper_flight(const Motion& motion, Side side);
-// The same on bare heights.
+// The paper's rule on a list of heights.
 std::optional<Swing> paper_flight(const std::vector<double>& heights);
 
 }  // namespace gaitpad

@@ -68,8 +68,9 @@ struct GaitCycle {
   // drops none.
   double first_frame = 0.0, frames = 0.0;
   double turn_rad = 0.0;  // change of heading in it, + left; the cycle itself is straight
-  // By Side, measured on the heels while the feet stand flat: from the other foot's heel along the
-  // travel (the two add up to stride_m), and sideways from the pelvis' mean path (+ left).
+  // Step lengths and track widths by Side, measured on the heels while the feet stand flat: from
+  // the other foot's heel along the travel (the two add up to stride_m), and sideways from the
+  // pelvis' mean path (+ left).
   std::array<double, 2> step_m{};
   std::array<double, 2> track_m{};
   // Events as phases, in the order right strike, left toe-off, left strike, right toe-off. A foot

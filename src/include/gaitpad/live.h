@@ -23,7 +23,7 @@
 
 namespace gaitpad {
 
-// Since the beginning. Standing still (pace 0) counts neither as lateness nor as waiting.
+// Counted since the beginning. Standing still (pace 0) counts neither as lateness nor as waiting.
 struct LiveStatus {
   static constexpr std::size_t kWaitClasses = 32;
   static constexpr std::int64_t kWaitClass_ns = 250'000;
@@ -37,10 +37,10 @@ struct LiveStatus {
   double skipped_s = 0.0;      // time that the clock was set forward by
   double late_us_median = 0.0, late_us_max = 0.0;  // from when a tick was due to its begin
   double tick_us_median = 0.0, tick_us_max = 0.0;  // duration of a tick, without the sleep
-  // From the arrival of a report to the tick that uses it, at pace 1.
+  // Times from the arrival of a report to the tick that uses it, at pace 1.
   double wait_us_median = 0.0, wait_us_max = 0.0;
-  // From the arrival of a report to the hand-over of the first frame that shows what it did, at
-  // pace 1: median and 99th percentile; 0 if no frames are shown (LiveSession::end_frame()).
+  // Times from the arrival of a report to the hand-over of the first frame that shows what it did,
+  // at pace 1: median and 99th percentile; 0 if no frames are shown (LiveSession::end_frame()).
   double frame_us_p50 = 0.0, frame_us_p99 = 0.0;
   std::array<std::int64_t, kWaitClasses> wait_counts{};  // by kWaitClass_ns; the last: longer
   // The scheduling of the loop thread: `SCHED_FIFO 20`, `normal priority`, `by hand`.
@@ -99,9 +99,8 @@ class LiveSession {
   // The keyboard as a stick: where it should go, +x right, +y forward, at most 1 long. It moves
   // there smoothly.
   void steer(const vec2& wanted) noexcept;
-  // From any thread.
-  // `style limp_left`; the grammar: config/README.md, `C:`. A command that cannot be carried out
-  // gives a remark and counts as bad.
+  // Sends a command such as `style limp_left` (grammar: config/README.md, `C:`), from any thread. A
+  // command that cannot be carried out gives a remark and counts as bad.
   void command(std::string_view text);
   // A style that commands may name from now on, in cast() too; one of the same name is replaced.
   // From the viewing thread.

@@ -15,8 +15,8 @@ struct MotionFrame {
   vec3 root_m{0.0};  // world position of joint 0
   std::vector<quat>
       local;  // one a joint: turns its frame into its parent's, the root's into the world
-  // From the parent joint, in its frame: replaces Joint::offset_m in files that move joints below
-  // the root. Empty, or one a joint.
+  // Offsets from the parent joint, in its frame. They replace Joint::offset_m in files that move
+  // joints below the root. Empty, or one a joint.
   std::vector<vec3> translation_m;
 };
 

@@ -92,7 +92,7 @@ struct PadStreamOptions {
   std::size_t ring_reports = 1024;
 };
 
-// Since the beginning.
+// Counted since the beginning.
 struct PadStreamCounts {
   std::int64_t reports = 0;  // written to the ring
   std::int64_t lost = 0;     // reports that a source lost, and those that found the ring full

@@ -16,8 +16,8 @@ namespace gaitpad {
 
 class UntouchedWatch {
  public:
-  // In the order of time, each tick or report: the raw position and what the calibration made of
-  // it. True a quarter of a second after the output has begun untouched.
+  // Takes the raw position and the calibrated one, in the order of time, each tick or report. True
+  // a quarter of a second after the output has begun untouched.
   bool take(std::int64_t time_ns, const StickCalibration& calibration, const vec2& raw,
             const vec2& position) noexcept;
 

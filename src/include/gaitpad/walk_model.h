@@ -140,7 +140,7 @@ struct WalkModel {
 // kMaxBetween twist joints between two of its joints.
 Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character);
 
-// Its stride of one ratio in its lengths, at one phase. No heap.
+// A stride of the model at one ratio and one phase, in the character's lengths. No heap.
 StridePlace stride_of(const WalkModel& model, bool backward, double phase, double ratio) noexcept;
 
 // The limits of this character at full deflection, by the pace of its motion: the adult's for its

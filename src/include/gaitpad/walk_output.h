@@ -28,7 +28,8 @@ struct WalkEvent {
   vec3 place_m{0.0};  // world: where the heel is or was planted; toe_off: the toe
 };
 
-// In their order in time. A tick of at most kMostTick_s has each event of a foot once at most.
+// The events in their order in time. A tick of at most kMostTick_s has each event of a foot at most
+// once.
 struct WalkEvents {
   std::array<WalkEvent, 6> event;
   int count = 0;
@@ -40,8 +41,8 @@ struct WalkEvents {
 // event.
 WalkEvents walk_events(const WalkFrame& before, const WalkState& state) noexcept;
 
-// By joint of the model's skeleton: 1 for the legs, the pelvis and what it hangs on; else 0, so
-// that a game's own trunk, arms and head stay as they are, in the frame of the pelvis.
+// Weights by joint of the model's skeleton: 1 for the legs, the pelvis and what it hangs on; else
+// 0, so that a game's own trunk, arms and head stay as they are, in the frame of the pelvis.
 std::vector<float> legs_and_pelvis(const WalkModel& model);
 
 // Brings each joint of `own`, a pose of the same skeleton, to the walk's by its weight: 0 leaves

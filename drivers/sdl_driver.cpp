@@ -402,7 +402,7 @@ std::vector<DeviceListing> find_sdl_devices() {
     listings.push_back(listing_of(node, "sdl"));
     std::string& problem = listings.back().problem;
     problem = sdl.problem().empty() ? access_problem(node.node) : sdl.problem();
-    if (problem.empty()) problem = node.node + ": SDL does not take it for a pad";
+    if (problem.empty()) problem = node.node + ": SDL does not recognise it as a pad";
   }
   return listings;
 }
@@ -411,7 +411,7 @@ Result<std::unique_ptr<Device>> open_sdl_device(const DeviceListing& listing, De
   const Sdl& sdl = Sdl::started();
   if (!sdl.problem().empty()) return Error{listing.node + ": " + sdl.problem()};
   auto timer = millisecond_timer();
-  if (timer->fd() < 0) return Error{listing.node + ": no timer, too many open files"};
+  if (timer->fd() < 0) return Error{listing.node + ": no timer: too many open files"};
   update_joysticks();
   const JoystickLock lock;
   for (int i = 0; i < SDL_NumJoysticks(); ++i) {

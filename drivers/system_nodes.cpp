@@ -303,11 +303,11 @@ Result<HotplugMonitor> HotplugMonitor::create() {
   const bool has_udevd = ::access("/run/udev/control", F_OK) == 0;
   impl->monitor.reset(
       udev_monitor_new_from_netlink(impl->context.get(), has_udevd ? "udev" : "kernel"));
-  if (!impl->monitor) return Error{"udev: cannot be listened to, plugging in is not noticed"};
+  if (!impl->monitor) return Error{"udev: cannot be monitored, so plugging in is not noticed"};
   for (const char* subsystem : {"hidraw", "input", "usb"})
     udev_monitor_filter_add_match_subsystem_devtype(impl->monitor.get(), subsystem, nullptr);
   if (udev_monitor_enable_receiving(impl->monitor.get()) < 0)
-    return Error{"udev: cannot be listened to, plugging in is not noticed"};
+    return Error{"udev: cannot be monitored, so plugging in is not noticed"};
   return HotplugMonitor(std::move(impl));
 }
 

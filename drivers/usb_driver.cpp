@@ -53,8 +53,8 @@ struct CloseHandle {
   void operator()(libusb_device_handle* handle) const { libusb_close(handle); }
 };
 
-// Without discovery where libusb has that for one context: the devices are known from sysfs. Its
-// options for all contexts are the host's.
+// Starts libusb without discovery, if it can do that for one context: the devices are known from
+// sysfs. Its options for all contexts are the host's.
 int start_libusb(libusb_context*& context) {
 #if LIBUSB_API_VERSION >= 0x0100010A
   const libusb_init_option option = {LIBUSB_OPTION_NO_DEVICE_DISCOVERY, {0}};
@@ -116,15 +116,16 @@ Result<bool> ClaimedInterface::open(const std::string& node) {
 
 Result<bool> ClaimedInterface::detach_and_claim(const std::string& node,
                                                 const std::string& kernel_driver) {
-  // Also where no driver is bound now: one may have been until a program that had taken the pad,
-  // and the watcher of that program, were killed.
+  // The watcher runs even if no driver is bound now: one may have been until a program that had
+  // taken the pad, and the watcher of that program, were killed.
   auto watcher = ReattachWatcher::start(node, number_);
   if (!watcher) return watcher.error();
   watcher_ = std::make_unique<ReattachWatcher>(std::move(*watcher));
   if (!kernel_driver.empty()) {
     const int error = libusb_detach_kernel_driver(handle(), number_);
     if (error != LIBUSB_SUCCESS && error != LIBUSB_ERROR_NOT_FOUND) {
-      return usb_error(node, fmt::format("the kernel's driver {} stays", kernel_driver), error);
+      return usb_error(
+          node, fmt::format("the kernel's driver {} cannot be detached", kernel_driver), error);
     }
   }
   const int error = libusb_claim_interface(handle(), number_);
@@ -197,7 +198,7 @@ Result<PadDescription> describe_pad(const std::string& node, libusb_device_handl
   return Error{node + ": no endpoint to read reports from"};
 }
 
-// From the pad itself: the kernel's copy may be corrected for the kernel's driver.
+// Read from the pad itself: the kernel's copy may be corrected for the kernel's driver.
 std::vector<std::uint8_t> report_descriptor(libusb_device_handle* handle, std::uint8_t interface) {
   std::vector<std::uint8_t> bytes(kMaxDescriptorBytes);
   const int count = libusb_control_transfer(
@@ -449,7 +450,7 @@ Result<std::unique_ptr<Device>> open_pad(const std::string& node, const UsbInter
   if (!vendor.quirks) {
     vendor.descriptor = report_descriptor(handle, interface.number);
     if (vendor.descriptor.empty()) vendor.descriptor = interface.descriptor;
-    if (vendor.descriptor.empty()) return Error{node + ": the pad does not say what it sends"};
+    if (vendor.descriptor.empty()) return Error{node + ": the pad has no report descriptor"};
     libusb_control_transfer(handle, kToInterface, kSetIdle, 0, interface.number, nullptr, 0,
                             kControlTimeoutMs);
   }

@@ -52,7 +52,7 @@ void close_others(int kept) {
   for (int fd = 0; fd < kept; ++fd) ::close(fd);
 }
 
-// Without what a program or a sanitizer does at its end.
+// Ends the process without the cleanup of the program or of a sanitizer.
 [[noreturn]] void leave(int status) {
   for (;;) ::syscall(SYS_exit_group, status);
 }
@@ -77,14 +77,19 @@ void close_others(int kept) {
   leave(0);
 }
 
+Error start_error(const std::string& node, int error) {
+  return Error{
+      fmt::format("{}: no process can be started that gives the pad back to the kernel: {}", node,
+                  std::strerror(error))};
+}
+
 }  // namespace
 
 Result<ReattachWatcher> ReattachWatcher::start(const std::string& node,
                                                std::uint8_t interface_number) {
   int ends[2] = {-1, -1};
-  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0) {
-    return Error{fmt::format("{}: nothing can watch over it: {}", node, std::strerror(errno))};
-  }
+  if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
+    return start_error(node, errno);
   // All signals stay blocked in the child: no handler of the parent runs there.
   sigset_t all = {}, before = {};
   ::sigfillset(&all);
@@ -98,7 +103,7 @@ Result<ReattachWatcher> ReattachWatcher::start(const std::string& node,
   ::close(ends[0]);
   OwnedFd link(ends[1]);
   if (cause == 0) return ReattachWatcher(std::move(link));
-  return Error{fmt::format("{}: nothing can watch over it: {}", node, std::strerror(cause))};
+  return start_error(node, cause);
 }
 
 void ReattachWatcher::dismiss() noexcept {

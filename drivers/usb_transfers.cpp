@@ -44,7 +44,7 @@ Result<bool> UsbTransfers::allocate() {
   out_buffer_.resize(LIBUSB_CONTROL_SETUP_SIZE + OutPacket{}.bytes.size());
   out_ = libusb_alloc_transfer(0);
   if (!out_) return Error{"out of memory"};
-  if (timer_.fd() < 0) return Error{"no timer"};
+  if (timer_.fd() < 0) return Error{"no timer: too many open files"};
   poll_fds_.push_back({timer_.fd(), POLLIN, 0});
   const libusb_pollfd** fds = libusb_get_pollfds(context_);
   if (!fds) return Error{"out of memory"};

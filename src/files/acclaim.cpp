@@ -297,7 +297,7 @@ class AsfParser {
   // Orders the bones from the root down. Bones that are not reached have no parent or form a ring.
   bool in_depth_first_order() {
     if (bones_.size() < 2) return fail("no bones: not a skeleton (.asf)");
-    if (children_.size() != bones_.size()) return fail("no :hierarchy behind :bonedata");
+    if (children_.size() != bones_.size()) return fail("no :hierarchy after :bonedata");
     std::vector<std::pair<int, int>> open = {{0, -1}};  // bone, its parent's new index
     std::size_t leaves = 0;
     while (!open.empty()) {

@@ -29,7 +29,7 @@ Result<std::string> style_file_name(const std::string& wish) {
   std::string name(trimmed(wish, " "));
   if (name.empty()) return Error{"a style needs a name"};
   if (name.size() > kMaxNameBytes || !std::ranges::all_of(name, is_plain)) {
-    return Error{fmt::format("a style's name is of at most {} letters, digits, blanks, _ and -",
+    return Error{fmt::format("a style's name has at most {} letters, digits, blanks, _ and -",
                              kMaxNameBytes)};
   }
   return name;

@@ -319,7 +319,7 @@ std::optional<std::string> GltfWriter::finish() {
   add_animation(turning_, frames_, layout_.fps, doc);
   const std::string begin = head(doc.json, doc.bytes);
   if (frames_ > kMostFrames || begin.size() + doc.bytes > kMostBytes) {
-    return fmt::format("{} poses do not fit into a .glb (write fewer with --fps)", frames_);
+    return fmt::format("{} poses are too many for a .glb file; write fewer with --fps", frames_);
   }
   *out_ << begin << body;
   std::string times;

@@ -106,7 +106,7 @@ void read_identity(TomlTable& pad, PadOverride& result) {
   for (const double p :
        pad.numbers("products", 1, kMaxProducts, 0, 0xffff).value_or(std::vector<double>{})) {
     if (p != static_cast<double>(static_cast<std::uint16_t>(p))) {
-      pad.reject("products", "a product is a whole number");
+      pad.reject("products", "products are whole numbers");
     }
     result.products.push_back(static_cast<std::uint16_t>(p));
   }
@@ -141,7 +141,9 @@ void read_order(TomlTable& pad, PadOverride& result) {
     if (*text == name) result.order = order;
   }
   if (!result.order) {
-    pad.reject("button_order", "it is direct_input, top_first, android or xinput");
+    pad.reject("button_order", fmt::format("unknown button order {}; one of direct_input, android, "
+                                           "top_first, xinput",
+                                           in_quotes(*text)));
   }
 }
 

@@ -157,7 +157,7 @@ constexpr int kMaxDeviceIndex = 9999;
 constexpr std::size_t kMaxOptions = 256, kMaxFiles = 4096, kMaxFileNameBytes = 4096;
 
 Cause bad_time(std::string_view word) {
-  return fmt::format("{} is no time SECONDS.MICROSECONDS with six digits behind the point",
+  return fmt::format("{} is no time SECONDS.MICROSECONDS with six digits after the point",
                      in_quotes(word));
 }
 
@@ -221,9 +221,9 @@ Cause TraceReader::add_lettered(char letter, std::string_view text) {
 
 Cause TraceReader::version(Words words) {
   const auto version = decimal(words.next(), kTraceVersion);
-  if (!version || *version < 1) return "this version of the format is not known, 1 and 2 are";
+  if (!version || *version < 1) return "unknown version of the format; 1 and 2 are known";
   if (trace_.rate_hz || trace_.has_ticks || !trace_.events.empty())
-    return "a V: line stands first, once";
+    return "a V: line must be the first line, and only there";
   std::optional<int> rate_hz;
   while (!words.at_end()) {
     const std::string_view word = words.next();
@@ -253,7 +253,7 @@ Cause TraceReader::option(std::string_view text) {
   const auto pace = pace_named(word);
   if (!pace || !words.at_end()) return fmt::format("{} is no pace: own or adult", in_quotes(word));
   if (trace_.pace || !trace_.events.empty())
-    return "an O: line for the pace stands before events, once";
+    return "an O: line for the pace must come before events, and only once";
   trace_.pace = pace;
   return std::nullopt;
 }
@@ -385,20 +385,20 @@ Cause TraceReader::tick(Words words) {
   const std::string_view word = words.next();
   const auto tick = decimal(word, std::int64_t{1} << 50);
   if (!tick || !words.at_end()) return fmt::format("{} is no tick", in_quotes(word));
-  if (trace_.end_ticks) return "a line behind the end of the recording (Q:)";
+  if (trace_.end_ticks) return "a line after the end of the recording (Q:)";
   if (*tick < tick_) return fmt::format("tick {} comes after tick {}", *tick, tick_);
   const std::int64_t last = trace_.events.empty() ? 0 : trace_.events.back().tick;
   if (*tick - last > rate() * (kMaxTraceGapUs / 1'000'000)) {
     return fmt::format("a gap of more than ten minutes: tick {} after tick {}", *tick, last);
   }
-  if (!trace_.has_ticks && !trace_.events.empty()) return "the first T: line stands behind events";
+  if (!trace_.has_ticks && !trace_.events.empty()) return "the first T: line comes after events";
   trace_.has_ticks = true;
   tick_ = *tick;
   return std::nullopt;
 }
 
 Cause TraceReader::check_place(std::int64_t time_us, std::uint16_t device) const {
-  if (trace_.end_ticks) return "a line behind the end of the recording (Q:)";
+  if (trace_.end_ticks) return "a line after the end of the recording (Q:)";
   if (trace_.events.size() >= kMaxTraceEvents)
     return fmt::format("more than {} events", kMaxTraceEvents);
   return check_order(time_us, device);

@@ -15,7 +15,7 @@
 namespace gaitpad {
 namespace {
 
-constexpr std::int64_t kOnTheWayNs = 50'000'000;  // reports may take so long to arrive
+constexpr std::int64_t kOnTheWayNs = 50'000'000;  // the longest delay of a report
 
 }  // namespace
 
@@ -112,7 +112,7 @@ void take_what_holds(const PadFiles& files, const DeviceInfo& info, const std::s
       file.measured_on = old->measured_on;
       return;
     }
-    remarks.push_back(old.error().message + "; it counts for nothing");
+    remarks.push_back(old.error().message + "; it is ignored");
   }
   file.calibration =
       find_calibration(files.calibration_folders, identity_of(info)).file.calibration;

@@ -68,7 +68,8 @@ bool has_own_axes(const CalibrationFile& file) {
   return file.mapping.empty() && c.left.frame == StickFrame() && c.right.frame == StickFrame();
 }
 
-// What a recording keeps of a calibration: for which devices the file was does not matter there.
+// The part of a calibration that a recording keeps. The devices that the file was for do not matter
+// there.
 CalibrationFile recorded_calibration(const CalibrationFile& file) {
   CalibrationFile own;
   if (file.name.size() <= kMaxTraceTextBytes) own.name = file.name;
@@ -119,7 +120,7 @@ std::string user_mapping_file() {
 }
 
 Result<std::size_t> save_mappings(const std::string& path, const std::vector<std::string>& lines) {
-  if (path.empty()) return Error{"neither XDG_CONFIG_HOME nor HOME is a folder"};
+  if (path.empty()) return Error{"neither XDG_CONFIG_HOME nor HOME names a folder"};
   const auto lock = FolderLock::wait(path);
   if (!lock) return lock.error();
   std::vector<std::string> own;

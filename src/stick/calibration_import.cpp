@@ -112,8 +112,8 @@ struct Sticks {
 std::string apply_to_trigger(const Claim& claim, const AxisOp& op, Sticks& sticks) {
   const double a = (raw_of(op, claim.min) + 1.0) / 2.0, b = (raw_of(op, claim.max) + 1.0) / 2.0;
   if (std::fabs(b - a) < kLeastTriggerWay) {
-    return fmt::format("{}: {:g} to {:g} is next to nothing of the pad's {} to {}", claim.axis,
-                       claim.min, claim.max, op.bits.min, op.bits.max);
+    return fmt::format("{}: the range {:g} to {:g} is too small a part of the pad's {} to {}",
+                       claim.axis, claim.min, claim.max, op.bits.min, op.bits.max);
   }
   Calibration& c = sticks.calibration;
   (op.axis == kLeftTrigger ? c.left_trigger : c.right_trigger) = {std::min(a, b), std::max(a, b)};
@@ -131,17 +131,17 @@ std::string apply_to_stick(const Claim& claim, const AxisOp& op, Sticks& sticks)
   axis.centre = (zone[0] + zone[1]) / 2.0;
   const double nearest = std::min(axis.max - axis.centre, axis.centre - axis.min);
   if (nearest < kLeastImportedHalfRange) {
-    return fmt::format("{}: {:g} to {:g} about {:g} is next to nothing of the pad's {} to {}",
-                       claim.axis, claim.min, claim.max, (claim.low + claim.high) / 2.0,
-                       op.bits.min, op.bits.max);
+    return fmt::format(
+        "{}: the range {:g} to {:g} about {:g} is too small a part of the pad's {} to {}",
+        claim.axis, claim.min, claim.max, (claim.low + claim.high) / 2.0, op.bits.min, op.bits.max);
   }
   if (claim.is_zone_told) {
     double& inner = sticks.inner[is_left ? 0 : 1];
     inner = std::max(inner,
                      std::max(std::fabs(zone[1] - zone[0]) / 2.0 / nearest, kLeastImportedInner));
     if (inner > kMostInner) {
-      return fmt::format("{}: hardly anything is left beside its zone from {:g} to {:g}",
-                         claim.axis, claim.low, claim.high);
+      return fmt::format("{}: its dead zone from {:g} to {:g} leaves hardly any range", claim.axis,
+                         claim.low, claim.high);
     }
   }
   StickCalibration& stick = is_left ? sticks.calibration.left : sticks.calibration.right;
@@ -181,17 +181,18 @@ Result<Sticks> apply_ranges(const EvdevRecording& node, const std::string& sourc
     const auto where = [&source, &told](const std::string& cause) {
       return Error{fmt::format("{}:{}: {}", source, told.line, cause)};
     };
-    if (!(min < max)) return where(fmt::format("{}: {} to {} is no range", claim.axis, min, max));
+    if (!(min < max))
+      return where(fmt::format("{}: the range {} to {} is empty", claim.axis, min, max));
     // A wider range comes from a pad with another scale.
     const auto width = static_cast<double>(field.logical_max - field.logical_min);
     if (max - min > width * 1.01 + 1.0) {
-      return where(fmt::format("{}: {} to {} is more than the pad's {} to {}", claim.axis, min, max,
-                               field.logical_min, field.logical_max));
+      return where(fmt::format("{}: the range {} to {} is wider than the pad's {} to {}",
+                               claim.axis, min, max, field.logical_min, field.logical_max));
     }
     const std::string problem = apply(claim, layout, field, sticks);
     if (!problem.empty()) return where(problem);
   }
-  if (!sticks.is_any_told) return Error{source + ": no axis of a stick of this pad"};
+  if (!sticks.is_any_told) return Error{source + ": it states no axis of this pad's sticks"};
   return sticks;
 }
 
@@ -226,7 +227,7 @@ std::string mapping_problem(const std::string& line, const DeviceInfo& device) {
   }
   const auto platform = line.find(",platform:");
   if (platform != std::string::npos && line.compare(platform, 15, ",platform:Linux") != 0) {
-    return "SDL mapping: it is for another platform, which counts otherwise";
+    return "SDL mapping: it is for another platform, where controls have other numbers";
   }
   const bool is_node = stated_by(device.driver) == StatedBy::evdev_driver;
   const unsigned mark = is_node ? device.version & kCodesByKernel : 0;
@@ -254,7 +255,7 @@ Result<CalibrationFile> apply_recording(const std::vector<EvdevRecording>& nodes
     if (!first_problem) first_problem = sticks.error();
   }
   if (first_problem) return *first_problem;
-  return Error{fmt::format("{}: it is of {}, the pad is {}", source,
+  return Error{fmt::format("{}: it was recorded from {}, the pad is {}", source,
                            ids_text(nodes[0].info.vendor, nodes[0].info.product),
                            ids_text(device.vendor, device.product))};
 }

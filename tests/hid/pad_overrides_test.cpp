@@ -34,7 +34,9 @@ TEST(PadFile, BadFilesAreRefusedWithTheirLine) {
             "p.toml:3: unknown key \"left_z");
   EXPECT_EQ(cause("[[pad]]\n[pad.buttons]\na = \"cross\"\n").substr(0, 17), "p.toml:3: \"cross\"");
   EXPECT_EQ(cause("[[pad]]\nvendor = 70000\n").substr(0, 9), "p.toml:2:");
-  EXPECT_EQ(cause("[[pad]]\nbutton_order = \"sega\"\n").substr(0, 9), "p.toml:2:");
+  EXPECT_EQ(
+      cause("[[pad]]\nbutton_order = \"sega\"\n"),
+      "p.toml:2: unknown button order \"sega\"; one of direct_input, android, top_first, xinput");
   EXPECT_EQ(cause("[[pad]]\n[pad.replace]\nlengths = [3]\ndescriptor = \"c0\"\n").substr(0, 18),
             "p.toml:4: byte 0: ");
   EXPECT_EQ(cause("[[pad]]\n[pad.replace]\nlengths = [3]\n").substr(0, 9), "p.toml:2:");

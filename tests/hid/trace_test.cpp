@@ -187,21 +187,22 @@ TEST(Trace, DamageIsRefusedWithFileAndLine) {
   EXPECT_EQ(cause(good + "E: 000006.000000 1 0\n"),
             "t.hid:3: report: \"0\" is no byte of two hexadecimal digits");
   EXPECT_EQ(cause(good + "E: 6.5 1 00\n"),
-            "t.hid:3: \"6.5\" is no time SECONDS.MICROSECONDS with six digits behind the point");
+            "t.hid:3: \"6.5\" is no time SECONDS.MICROSECONDS with six digits after the point");
   EXPECT_EQ(cause(good + "E: 000006.000000 1025\n"),
             "t.hid:3: report: 1025 bytes, at most 1024 are read");
   EXPECT_EQ(cause(good + "C: 000006.000000\n"), "t.hid:3: a command without text");
   EXPECT_EQ(cause(good + "H: 000006.000000 gone\n"), "t.hid:3: \"gone\" is neither add nor remove");
   EXPECT_EQ(cause(good + "Q: 000006.000000 240\nE: 000006.000000 1 00\n"),
-            "t.hid:4: a line behind the end of the recording (Q:)");
+            "t.hid:4: a line after the end of the recording (Q:)");
   EXPECT_EQ(cause(good + "Q: 000001.000000 240\n"),
             "t.hid:3: the recording ends before its last event");
-  EXPECT_EQ(cause(good + "T: 4\n"), "t.hid:3: the first T: line stands behind events");
+  EXPECT_EQ(cause(good + "T: 4\n"), "t.hid:3: the first T: line comes after events");
   for (const char* version : {"0", "3", "x", ""})
     EXPECT_EQ(cause(std::string("V: ") + version + " rate_hz=240\n"),
-              "t.hid:1: this version of the format is not known, 1 and 2 are");
+              "t.hid:1: unknown version of the format; 1 and 2 are known");
   EXPECT_EQ(cause("V: 1 rate_hz=0\n"), "t.hid:1: \"rate_hz=0\" is no rate within 10 .. 10000");
-  EXPECT_EQ(cause("R: 1 c0\nT: 5\nV: 1 rate_hz=10\n"), "t.hid:3: a V: line stands first, once");
+  EXPECT_EQ(cause("R: 1 c0\nT: 5\nV: 1 rate_hz=10\n"),
+            "t.hid:3: a V: line must be the first line, and only there");
   EXPECT_EQ(cause("R: 1 c0\nT: 5\nT: 4\n"), "t.hid:3: tick 4 comes after tick 5");
   EXPECT_EQ(cause("R: 1 c0\nT: 144001\n"),
             "t.hid:2: a gap of more than ten minutes: tick 144001 after tick 0");
@@ -245,7 +246,7 @@ TEST(Trace, TheOLineIsThePaceOfTheSession) {
   EXPECT_EQ(parsed("O: weather rain\n" + kHeader).pace, std::nullopt);
   EXPECT_EQ(cause("O: pace fast\n"), "t.hid:1: \"fast\" is no pace: own or adult");
   EXPECT_EQ(cause("O: pace own\nO: pace own\n"),
-            "t.hid:2: an O: line for the pace stands before events, once");
+            "t.hid:2: an O: line for the pace must come before events, and only once");
 }
 
 TEST(Trace, NothingOfADamagedLineCounts) {

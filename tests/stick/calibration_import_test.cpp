@@ -142,8 +142,9 @@ TEST(CalibrationImport, AnSdlMappingIsKeptWordForWord) {
             "bug.txt:1: SDL mapping: it is for 045e:028e, the pad is 1209:0001");
   EXPECT_EQ(error_of(other + "\n" + other, pad),
             "bug.txt: none of its 2 SDL mappings is for 1209:0001");
-  EXPECT_EQ(error_of("\n" + mac, pad),
-            "bug.txt:2: SDL mapping: it is for another platform, which counts otherwise");
+  EXPECT_EQ(
+      error_of("\n" + mac, pad),
+      "bug.txt:2: SDL mapping: it is for another platform, where controls have other numbers");
   EXPECT_EQ(error_of("03000000091200000100000011010000,Node,a:q1,platform:Linux,", pad),
             "bug.txt:1: SDL mapping: unknown source \"q1\"");
   EXPECT_EQ(error_of("03000000091200000100000011010000,No\001de,a:b1,platform:Linux,", pad),
@@ -173,18 +174,19 @@ TEST(CalibrationImport, ErrorsNameTheDamagedLine) {
             "bug.txt:7: a second range for the axis 00");
   EXPECT_EQ(error("A: 00 0 x 0 15 0"),
             "bug.txt:6: an A: line holds a code, a minimum and a maximum");
-  EXPECT_EQ(error("A: 00 255 0 0 15 0"), "bug.txt:6: axis 00: 255 to 0 is no range");
+  EXPECT_EQ(error("A: 00 255 0 0 15 0"), "bug.txt:6: axis 00: the range 255 to 0 is empty");
   EXPECT_EQ(error("A: 00 -32768 32767 0 15 0"),
-            "bug.txt:6: axis 00: -32768 to 32767 is more than the pad's 0 to 255");
+            "bug.txt:6: axis 00: the range -32768 to 32767 is wider than the pad's 0 to 255");
   EXPECT_EQ(error("A: 00 126 130 0 0 0"),
-            "bug.txt:6: axis 00: 126 to 130 about 128 is next to nothing of the pad's 0 to 255");
+            "bug.txt:6: axis 00: the range 126 to 130 about 128 is too small a part of the pad's 0 "
+            "to 255");
   EXPECT_EQ(error("A: 00 20 230 0 104 0"),
-            "bug.txt:6: axis 00: hardly anything is left beside its zone from 21 to 229");
+            "bug.txt:6: axis 00: its dead zone from 21 to 229 leaves hardly any range");
   EXPECT_EQ(error("A: 00 300 500 0 0 0"),
             "bug.txt:6: axis 00: its centre 400 is outside of the pad's 0 to 255");
-  EXPECT_EQ(error("A: 10 -1 1 0 0 0"), "bug.txt: no axis of a stick of this pad");
+  EXPECT_EQ(error("A: 10 -1 1 0 0 0"), "bug.txt: it states no axis of this pad's sticks");
   EXPECT_EQ(error_of("# EVEMU 1.3\nI: 0003 054c 0ce6 8111\nA: 00 0 255 0 15 0", pad),
-            "bug.txt: it is of 054c:0ce6, the pad is 1209:0001");
+            "bug.txt: it was recorded from 054c:0ce6, the pad is 1209:0001");
   for (const char* nothing : {"", "\n\n# only a remark\n", "hello", "A: 00 0 255 0 15 0"}) {
     EXPECT_EQ(error_of(nothing, pad),
               "bug.txt: no SDL mapping, and not a recording of evemu, libinput or umockdev");

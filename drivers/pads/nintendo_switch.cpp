@@ -192,8 +192,8 @@ class SwitchPad final : public PadQuirks {
     if (product_ == kJoyConLeft || product_ == kJoyConRight || product_ == kChargingGrip)
       ask_kind(port);
     if (!has_stick(Side::left) && !has_stick(Side::right)) return;
-    // Linux's driver listens too, and while it waits for a reply it takes any reply for its own. So
-    // the memory is read with as few packets as possible.
+    // Linux's driver also listens, and while it waits for a reply it takes any reply for its own.
+    // So the memory is read with as few packets as possible.
     std::array<std::uint8_t, kFactoryBytes> factory{};
     std::array<std::uint8_t, kUserBytes> user{};
     const bool has_factory = read_flash(port, kFactoryAddress, factory);

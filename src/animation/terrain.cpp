@@ -9,9 +9,9 @@ namespace gaitpad {
 namespace {
 
 // A terrain is a row of sections. Each kind of section answers the same four questions: how long it
-// is, whether somebody can walk on it, how it grows with a scale, and what its surface is at a
-// place. Such a place has two coordinates: x as in the world, and u, the metres behind the
-// section's begin. Heights count from the height at which the section begins.
+// is, whether one can walk on it, how it grows with a scale, and what its surface is at a place.
+// Such a place has two coordinates: x as in the world, and u, the metres behind the section's
+// begin. Heights count from the height at which the section begins.
 
 constexpr double kMinLength_m = 0.1, kMaxLength_m = 1000.0;
 constexpr double kMinTread_m = 0.15, kMaxTread_m = 2.0, kMaxRise_m = 0.4;

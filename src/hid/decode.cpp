@@ -469,7 +469,7 @@ const Field* nth_field(const ReportDescriptor& d, std::uint8_t report_id, const 
 struct Wishes {
   std::optional<ButtonOrder> order;
   const ControlMap* controls = nullptr;      // of a pad file: the others keep their default
-  const ControlMap* all_controls = nullptr;  // of SDL's line: there are no others
+  const ControlMap* all_controls = nullptr;  // of SDL's mapping: there are no others
 };
 
 bool is_for(const Binding& b, ControlKind kind, int control) {
@@ -509,7 +509,7 @@ void drop_defaults_on(const ReportDescriptor& d, const ControlMap& controls,
 }
 
 // SDL's data base has some pads' axes as a D-pad, without any left stick: the default stick is
-// bound, so that such a pad can drive too.
+// bound, so that such a pad can drive as well.
 std::vector<Binding> sdl_bindings(const ReportDescriptor& d, const ControlMap& controls) {
   std::vector<Binding> bindings;
   for (int i = 0; i < kAxisCount; ++i) {

@@ -136,7 +136,7 @@ Wanted wanted_of(const std::string& pad) {
 Fit fit_of(const PadSighting& sighting, const Wanted& wanted) {
   const DeviceListing& listing = sighting.listing;
   if (listing.node == wanted.text || listing.node == wanted.node) return Fit::node;
-  if (sighting.driver->name == kTrace) return Fit::node;  // it is listed only if it is wished for
+  if (sighting.driver->name == kTrace) return Fit::node;  // it is listed only if the user names it
   if (is_model(wanted.text, listing.info)) return Fit::model;
   if (lower_case(listing.info.unique_id) == wanted.lower_text) return Fit::unique_id;
   const std::string name = lower_case(listing.info.name);
@@ -404,7 +404,7 @@ void PadFinder::look_no_later_than(Clock::time_point time) {
   next_look_ = std::min(next_look_, time);
 }
 
-// Answers start() as soon as it is known whether the wish makes sense.
+// Answers start() as soon as it is known whether the user's choice is possible.
 std::optional<Error> PadFinder::look(std::promise<std::optional<Error>>* first_look) {
   now_ = Clock::now();
   const auto answer = [first_look](std::optional<Error> error) {
@@ -725,7 +725,7 @@ void PadFinder::hand_over(const PadSighting& sighting, std::unique_ptr<Device> d
   hand_over_(std::move(opened));
 }
 
-// For each wished pad that no driver can open, reports the first driver's error.
+// For each chosen pad that no driver can open, reports the first driver's error.
 void PadFinder::tell_problems(const std::vector<PadSighting>& sightings,
                               const std::vector<PadSighting>& chosen) {
   const auto wished = wished_pads(sightings, options_.wish);

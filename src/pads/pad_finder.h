@@ -92,7 +92,8 @@ class PadFinder {
   PadFinder(Options options, HandOver hand_over, Release release, Remarks& remarks);
   ~PadFinder() { stop(); }
 
-  // Returns after the first look, before anything is opened. Error: the wish is wrong.
+  // Returns after the first look, before anything is opened. Error: the user's choice is
+  // impossible.
   std::optional<Error> start();
   void stop();  // waits for openings that are on their way
   // Any thread: this opening has come to its end. The finder thread closes the device.

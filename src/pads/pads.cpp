@@ -81,7 +81,7 @@ void Pads::add_pad(std::uint16_t device) noexcept {
   if (driving_ == kNoDevice || (is_fallback(driving_) && !is_fallback(device))) give_seat(device);
 }
 
-// The first report tells where the pad is, not that somebody has moved it.
+// The first report tells where the pad is, not that it was moved.
 bool Pads::take_movement(Pad& pad, std::uint32_t buttons_before) noexcept {
   const Stick stick = calibrated(pad);
   const bool is_elsewhere = has_moved(pad.moved_to, stick);

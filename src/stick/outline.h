@@ -1,5 +1,5 @@
 // The stick's gate: the line to which it can be pushed in every direction, found from tracks in
-// which somebody turned it along its rim.
+// which the stick was turned along its rim.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -53,7 +53,8 @@ std::string why_useless(const PadAnalysis& analysis);
 // pressed. The rest of the calibration that `file` holds stays: an unknown stick, the range of a
 // stick that was not turned along its rim, a trigger that was never pressed.
 void take_advice(const PadAnalysis& analysis, CalibrationFile& file);
-// The calibration `then` with all that was seen today, of unknown sticks too: for a comparison.
+// The calibration `then` with everything that was seen today, even of unknown sticks: for a
+// comparison.
 CalibrationFile seen_today(const PadAnalysis& analysis, const CalibrationFile& then);
 
 }  // namespace gaitpad

@@ -472,7 +472,7 @@ Evidence evidence_of(std::span<const StickTrack> tracks, std::span<const Still> 
 // ---- Drift
 
 // Logarithm of the odds of the rests with a trend to those without. 16 is one in ten million:
-// chance and the habits of a hand seldom look so much like a line. If noise explains the residual
+// chance and the habits of a hand seldom look that much like a line. If noise explains the residual
 // with the trend, the odds are measured against the noise, else against the residual.
 constexpr double kSure = 16.0, kSureOfOne = 12.0;
 double log_odds(double without, double with, double freedom, double noise) noexcept {
@@ -667,7 +667,7 @@ bool was_let_go(std::span<const StickTrack> tracks, std::span<const Release> rel
 double hysteresis_of(std::span<const vec2> places, double noise) noexcept {
   const double count = static_cast<double>(places.size());
   const double greatest = greatest_distance(places);
-  // Square of the distance that noise alone seldom exceeds between so many places.
+  // The square of the distance that noise alone seldom exceeds between this number of places.
   const double by_noise = 6.0 * noise * noise * (std::log(0.5 * count * (count - 1.0)) + 1.5);
   return std::sqrt(std::max(greatest * greatest - by_noise, 0.0));
 }

@@ -38,8 +38,8 @@ struct Stills {
   std::vector<HandsOff> hands_off;
 };
 // Finds the stills in the order of time, track by track; the first day of all tracks counts.
-// The limit on speed follows the noise that is present, so a noisy or slowly drifting stick has
-// stills too. The settling after a release is left out. There are no rests if the stick only moved
+// The limit on speed follows the noise that is present, so even a noisy or slowly drifting stick
+// has stills. The settling after a release is left out. There are no rests if the stick only moved
 // or was only held aside. `tracks`: clean ones (clean_tracks). `step`: of x and y, 0 if not known.
 // `interval_s`: typical_interval_s of the tracks.
 Stills stills(std::span<const StickTrack> tracks, const vec2& step, double interval_s);

@@ -74,7 +74,7 @@ TEST_F(Files, WritingReplacesTheFileAndLeavesNothingBeside) {
   EXPECT_EQ(own_.entries(), 2);
 }
 
-// If the name contained only the process id, somebody could put a link there beforehand.
+// If the name contained only the process id, another user could put a link there beforehand.
 TEST_F(Files, TemporaryNamesCannotBeGuessed) {
   const std::string one = temporary_beside(own_.at("a")), other = temporary_beside(own_.at("a"));
   EXPECT_NE(one, other);

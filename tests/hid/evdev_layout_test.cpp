@@ -487,7 +487,7 @@ class HidInput {
 constexpr std::uint32_t kPaddles =
     bit(kButtonPaddle1) | bit(kButtonPaddle2) | bit(kButtonPaddle3) | bit(kButtonPaddle4);
 
-// True if the pad map replaces the report's descriptor: the kernel reads something else.
+// True if an override replaces the report's descriptor: the kernel reads something else.
 bool is_replaced(const PadLayout& layout, const Report& report) {
   return std::any_of(layout.reports.begin(), layout.reports.end(), [&](const ReportLayout& r) {
     return std::find(r.exact_sizes.begin(), r.exact_sizes.end(), report.size) !=

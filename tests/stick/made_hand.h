@@ -69,7 +69,7 @@ struct MadeHand {
   std::array<double, 2> finger{};  // triggers 0..1
   std::mt19937 random{1};
   std::vector<std::uint8_t> last;
-  CalibrationGuide* copy = nullptr;  // takes the reports too, but no ticks
+  CalibrationGuide* copy = nullptr;  // also takes the reports, but no ticks
 
   std::int16_t word(double raw) {
     if (sigma > 0.0) raw += std::normal_distribution(0.0, sigma)(random);

@@ -1,6 +1,6 @@
 // libFuzzer target: two bytes of descriptor length, a descriptor, then reports of up to 64 bytes.
-// Parses the descriptor, builds the layout with and without the pad map, and decodes the reports.
-// The mapping that is written for it is read back.
+// Parses the descriptor, builds the layout with and without the shipped overrides, and decodes the
+// reports. The mapping that is written for it is read back.
 #include <algorithm>
 #include <cstdint>
 #include <cstdlib>

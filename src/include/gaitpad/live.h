@@ -102,7 +102,7 @@ class LiveSession {
   // Sends a command such as `style limp_left` (grammar: config/README.md, `C:`), from any thread. A
   // command that cannot be carried out gives a remark and counts as bad.
   void command(std::string_view text);
-  // A style that commands may name from now on, in cast() too; one of the same name is replaced.
+  // A style that commands may name from now on, also in cast(); one of the same name is replaced.
   // From the viewing thread.
   void add_style(const Style& style);
   void rumble() noexcept;  // one beat of the driving pad's motors

@@ -45,12 +45,12 @@ struct PadSighting {
 std::string pad_key(const PadSighting& sighting);
 
 enum class Drivers {
-  // SDL is asked only if it is wished for, or if no other driver of kernel devices was built: its
+  // SDL is asked only if the user chose it, or if no other driver of kernel devices was built: its
   // start takes up to a second.
   preferred,
   all,
 };
-// Every device that every driver, or the wished one, sees; pads first. If the wish names a
+// Every device that every driver, or the one that `wish` names, sees; pads first. If `wish` names a
 // recording: its devices alone. Blocks while drivers look; call it from one thread. Error: an
 // unknown driver, a driver that was not built, a damaged recording. `table`: other drivers, for
 // tests.
@@ -59,7 +59,7 @@ Result<std::vector<PadSighting>> pad_sightings(
     std::span<const DriverEntry> table = gaitpad::drivers());
 
 // The sightings to open, in the order of preference: each pad by the first driver in the order of
-// drivers() that can open it. usb counts only if it is wished for or if no kernel driver has the
+// drivers() that can open it. usb counts only if `wish` names it or if no kernel driver has the
 // pad. What one driver shows as several devices, such as an adapter with an input node for each of
 // its plugs, are several pads. Empty if nothing fits. Error: `wish.pad` is a part of the names of
 // several pads; the sentence names them.
@@ -115,8 +115,8 @@ struct PadStreamCounts {
 class PadStream {
  public:
   // Starts both threads. Pads that are plugged in already are announced like those plugged in
-  // later. If no device fits the wish, the stream waits for one. Error: an unknown driver, a
-  // damaged recording, a part of a name that fits several pads.
+  // later. If no device fits the user's choice, the stream waits for one. Error: an unknown driver,
+  // a damaged recording, a part of a name that fits several pads.
   static Result<std::unique_ptr<PadStream>> start(PadStreamOptions options);
   ~PadStream();  // closes every device and gives back what was taken from the kernel
 

@@ -25,7 +25,7 @@ struct PadConfig {
   Calibration calibration;
   bool is_usable = true;            // it has a stick that can drive
   bool is_present = true;           // plugged in at the start
-  bool streams = false;             // it reports while at rest too: silence means that it is gone
+  bool streams = false;             // it reports even while at rest: silence means that it is gone
   bool is_fallback = false;         // the keyboard: it drives only while no other pad is plugged in
   bool has_factory_sticks = false;  // live pads: it told its own calibration when it was opened
   std::optional<FactoryGyro> factory_gyro;  // the same for its gyroscope

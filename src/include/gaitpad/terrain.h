@@ -136,7 +136,7 @@ struct Terrain {
 // Whether all sections are as add_section() lays them out, and the zones' numbers are numbers.
 std::optional<Error> check(const Terrain& terrain);
 
-// The ground at a place. Every place has one, NaN too. The line of a riser belongs to the upper
+// The ground at a place. Every place has one, even NaN. The line of a riser belongs to the upper
 // tread. No heap.
 Ground ground_at(const Terrain& terrain, double x_m, double z_m) noexcept;
 // The same at several places, in one call of a game that answers several. `grounds` is as long.

@@ -148,7 +148,7 @@ StridePlace stride_of(const WalkModel& model, bool backward, double phase, doubl
 GaitLimits gait_limits(const WalkModel& model) noexcept;
 
 // The forward deflection that gives the data's speed, on the data's own legs. At the own pace that
-// is kOwnStick, and the steps are the data's too; at the adult's pace they are an adult's. Nothing
+// is kOwnStick, and the steps are also the data's; at the adult's pace they are an adult's. Nothing
 // if the data are faster than full stick.
 std::optional<double> own_stick(const GaitCycle& cycle) noexcept;
 

@@ -21,7 +21,7 @@ namespace {
 
 constexpr RobustOptions kRobustBody = {.tolerance_m = 1e-6, .max_iterations = 40, .max_tries = 1};
 constexpr double kSmoothing = 0.22;     // s at the reference leg
-constexpr double kSettled = 24.0;       // time constants: all but 1e-9 of a change is over
+constexpr double kSettled = 24.0;       // time constants until all but 1e-9 of a change is over
 constexpr double kRailProbe_m = 0.035;  // between two probes of the ground under a rail
 constexpr int kRailProbes = 15;  // to either side, 0.56 m: a mean over two treads rises evenly
 constexpr double kRailSmoothing = 0.06;

@@ -248,7 +248,7 @@ FootPlane plane_under(const Floor& terrain, const LegBuild& leg, const vec3& hee
   const vec3 sole = yaw * (leg.tip_m - leg.model.heel_m), across = yaw * leg.side;
   const double length = horizontal_length(sole), half = leg.half_width_m;
   const vec3 along = vec3(sole.x, 0.0, sole.z) / length;
-  const auto height = [&](double a, double c) {  // of the ground, shares of length and half width
+  const auto height = [&](double a, double c) {  // of the ground; a, c: along and across the sole
     const vec3 p = heel_m + along * (a * length) + across * (c * half);
     return ground_at(terrain, p.x,
                      std::clamp(p.z, piece.from_m + kBeside_m, piece.to_m - kBeside_m))

@@ -430,7 +430,7 @@ TEST(Pads, AFilteredStickIgnoresASingleReportAndIsNotBehindInSilence) {
   EXPECT_EQ(tick(kForward), vec2(0.0));
   EXPECT_EQ(after_silence(pads, 4).left, vec2(0.0));
   EXPECT_GT(after_silence(pads, 1).left.y, 0.9);  // 20 ms
-  for (const int report_hz : {20, 60, 125}) {     // nor a single report of a slow pad
+  for (const int report_hz : {20, 60, 125}) {     // one report of a slow pad is filtered as well
     Pads slow({config}, kRateHz);
     for (int n = 0; n < 20; ++n) {
       slow.take_report(made_report(kMiddle, n == 15 ? kForward : kMiddle));

@@ -7,7 +7,7 @@
 #include "pad_kinds.h"
 #include "pad_trace.h"
 
-// Guards everything here and `pad`.
+// Guards everything here and `pad`. "With pad_mutex": call the function with it locked.
 extern pthread_mutex_t pad_mutex;
 
 // Starts the thread. `pad` is set up; nothing is sent before `sender_enable`. `trace` is what
@@ -15,7 +15,7 @@ extern pthread_mutex_t pad_mutex;
 void start_sender(struct pad* pad, int in_endpoint, struct trace* trace);
 // The host has configured the device, or it is gone.
 void sender_enable(bool on);
-// A reply. With pad_mutex.
+// Queues a reply. With pad_mutex.
 void enqueue(const struct packet* packet);
 // Wakes the thread after a change of its inputs. With pad_mutex.
 void wake_sender(void);

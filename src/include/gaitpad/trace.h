@@ -19,7 +19,7 @@ inline constexpr int kDefaultRateHz = 240;
 inline constexpr int kLeastRateHz = 10;  // at fewer ticks a second a walk is too coarse to be
                                          // useful
 inline constexpr int kMaxRateHz = 10000;
-inline constexpr int kTraceVersion = 2;  // what it changed: PadRules
+inline constexpr int kTraceVersion = 2;  // PadRules names the changes of each version
 inline constexpr std::size_t kMaxTraceDevices = 16;
 inline constexpr std::size_t kMaxTraceBytes = std::size_t{512} << 20;  // of a file
 inline constexpr std::size_t kMaxTraceEvents = std::size_t{1} << 24;

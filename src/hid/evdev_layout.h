@@ -31,7 +31,7 @@ inline constexpr std::uint16_t kBtnMisc = 0x100, kBtnMouse = 0x110, kBtnJoystick
 }  // namespace evdev
 
 // Who wrote the descriptor: the device, so that the kernel chose the codes, or the evdev driver (or
-// the sdl driver, in the same way) from the codes. DeviceInfo::driver tells.
+// the sdl driver, with usages of the same codes). DeviceInfo::driver tells.
 enum class StatedBy { device, evdev_driver };
 constexpr StatedBy stated_by(std::string_view driver) noexcept {
   return driver == "evdev" || driver == "sdl" ? StatedBy::evdev_driver : StatedBy::device;

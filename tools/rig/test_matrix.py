@@ -34,9 +34,9 @@ NAMES_OF = {
     "xbox360": {name: name for name in BUTTONS + MIDDLE + ("guide",)},
     "xboxone": {name: name for name in BUTTONS + MIDDLE}}
 # Buttons that are missing on the pad's event node: a click of the touchpad belongs to the touchpad's node, Mute is the
-# driver's own switch, and SDL has no name for the generic pad's spare buttons.
-KEPT = {("ds4", "evdev"): {"touchpad"}, ("ds4", "sdl"): {"touchpad"}, ("dualsense", "evdev"): {"touchpad", "misc1"},
-        ("dualsense", "sdl"): {"touchpad", "misc1"}}
+# driver's own switch. SDL has no names for the generic pad's spare buttons, accelerator and brake.
+KEPT = {("generic", "sdl"): {"x", "button6", "lt", "rt"}, ("ds4", "evdev"): {"touchpad"}, ("ds4", "sdl"): {"touchpad"},
+        ("dualsense", "evdev"): {"touchpad", "misc1"}, ("dualsense", "sdl"): {"touchpad", "misc1"}}
 HAS_HAT = ("generic", "ds4", "dualsense")  # 0 up, clockwise; 8 released. The others have four bits.
 NAMES = {"lx": "left_x", "ly": "left_y", "rx": "right_x", "ry": "right_y", "lt": "left_trigger",
          "rt": "right_trigger"}
@@ -56,17 +56,18 @@ def at_rest(kind):
 def states(kind, driver):
     """The states to send in order: sticks at both extremes and between, triggers, each button, the D-pad in eight
     directions."""
-    v, rest = VALUES[kind], at_rest(kind)
+    v, rest, kept = VALUES[kind], at_rest(kind), KEPT.get((kind, driver), ())
     yield {**rest, **dict(zip(STICKS, v["some"]))}
     for stick in STICKS:
         yield {**rest, stick: v["low"]}
         yield {**rest, stick: v["high"]}
-    if kind != "switch":
+    if kind != "switch" and "lt" not in kept:
         yield {**rest, "lt": v["trigger"] // 2, "rt": v["trigger"]}
-    yield {**rest, "lt": v["trigger"]}
-    yield {**rest, "rt": v["trigger"]}
+    for control in ("lt", "rt"):
+        if control not in kept:
+            yield {**rest, control: v["trigger"]}
     for button in NAMES_OF[kind]:
-        if button not in KEPT.get((kind, driver), ()):
+        if button not in kept:
             yield {**rest, button: 1}
     for eighth in range(8):
         yield {**rest, **({"hat": eighth} if kind in HAS_HAT else dict.fromkeys(directions(eighth), 1))}

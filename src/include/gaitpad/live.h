@@ -86,8 +86,8 @@ class LiveSession {
   // The oldest sample that was not taken yet; false if there is none. When nobody takes samples the
   // newest are dropped.
   bool take_sample(TickSample& sample) noexcept;
-  // The oldest that was not taken yet, of a session with SessionSpec::Live::report_times. The
-  // newest are dropped when nobody takes them.
+  // The oldest that was not taken yet, in a program that does not call end_frame(), which takes
+  // those that its frame shows. The newest are dropped when nobody takes them.
   bool take_report_time(ReportTime& time) noexcept;
   // Ticks in a second of the clock over the rate: 0 stands still, 1 is real time, 0.25 slow motion,
   // at most 8; less than 1/1024 stands still. A tick computes the same at every pace. Takes effect

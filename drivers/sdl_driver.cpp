@@ -15,17 +15,18 @@
 #include <cstdint>
 #include <cstdlib>
 #include <deque>
+#include <iterator>
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "base/files.h"
 #include "drivers/driver_rows.h"
 #include "drivers/posix.h"
 #include "drivers/system_nodes.h"
-#include "gaitpad/driver_registry.h"
-#include "gaitpad/trace.h"
 #include "hid/sdl_lines.h"
 
 namespace gaitpad {

@@ -1,50 +1,52 @@
-// Joysticks of SDL2, where a user asks for the driver `sdl`. SDL has
-// one list of joysticks, one set of hints and one queue of events for the whole program, which may
-// belong to a host program. So hints are only set if the program has no joysticks, and nothing of
-// others is taken off the queue: an event watch sees each joystick event when SDL creates it, on
-// any thread, and stores it for the open device. SDL has nothing to poll(): it looks at its
-// joysticks when it is asked to, here once a millisecond.
+// Game controllers of SDL2, where a user asks for the driver `sdl`. SDL names their controls, by
+// its own data base and the user's; here they are one constant HID pad. SDL has one list of
+// joysticks, one set of hints and one queue of events for the whole program, which may be a host
+// program. So hints are only set if the program has no joysticks, and nothing of others is taken off
+// the queue: an event watch sees each joystick event when SDL creates it, on any thread, and stores
+// the controller's state for the open device. SDL has nothing to poll(): it looks at its joysticks
+// when it is asked to, here once a millisecond.
 #include <SDL2/SDL.h>
 #include <dlfcn.h>
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <cstdlib>
+#include <deque>
+#include <iterator>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "base/files.h"
 #include "drivers/driver_rows.h"
 #include "drivers/posix.h"
-#include "drivers/sdl_reports.h"
 #include "drivers/system_nodes.h"
-#include "gaitpad/driver_registry.h"
-#include "gaitpad/trace.h"
-#include "hid/evdev_layout.h"
 #include "hid/sdl_lines.h"
 
 namespace gaitpad {
 namespace {
-
-constexpr std::size_t kMaxAxes = 64, kMaxButtons = 255, kMaxHats = 4;
 
 // SDL's functions under their own names. Its library is loaded when this driver is first asked for:
 // with the forty that it needs, that takes longer than to replay a recording.
 // clang-format off
 #define GAITPAD_SDL_FUNCTIONS(each) \
   each(SDL_AddEventWatch) each(SDL_DelEventWatch) each(SDL_Delay) each(SDL_FilterEvents) \
-  each(SDL_GameControllerMappingForDeviceIndex) each(SDL_GetError) each(SDL_GetRevision) \
-  each(SDL_InitSubSystem) each(SDL_JoystickClose) each(SDL_JoystickFromInstanceID) \
-  each(SDL_JoystickGetAxis) each(SDL_JoystickGetAxisInitialState) each(SDL_JoystickGetButton) \
+  each(SDL_GameControllerClose) each(SDL_GameControllerGetAxis) \
+  each(SDL_GameControllerGetButton) each(SDL_GameControllerGetJoystick) \
+  each(SDL_GameControllerOpen) each(SDL_GameControllerRumble) each(SDL_GetError) \
+  each(SDL_GetRevision) each(SDL_InitSubSystem) each(SDL_IsGameController) \
   each(SDL_JoystickGetDeviceGUID) each(SDL_JoystickGetDeviceInstanceID) \
   each(SDL_JoystickGetDeviceProduct) each(SDL_JoystickGetDeviceProductVersion) \
-  each(SDL_JoystickGetDeviceVendor) each(SDL_JoystickGetHat) each(SDL_JoystickInstanceID) \
-  each(SDL_JoystickNameForIndex) each(SDL_JoystickNumAxes) each(SDL_JoystickNumButtons) \
-  each(SDL_JoystickNumHats) each(SDL_JoystickOpen) each(SDL_JoystickPathForIndex) \
-  each(SDL_JoystickRumble) each(SDL_JoystickUpdate) each(SDL_LockJoysticks) \
+  each(SDL_JoystickGetDeviceVendor) each(SDL_JoystickInstanceID) each(SDL_JoystickNameForIndex) \
+  each(SDL_JoystickPathForIndex) each(SDL_JoystickUpdate) each(SDL_LockJoysticks) \
   each(SDL_NumJoysticks) each(SDL_QuitSubSystem) each(SDL_SetHint) each(SDL_TLSCleanup) \
-  each(SDL_UnlockJoysticks) each(SDL_WasInit) each(SDL_free)
+  each(SDL_UnlockJoysticks) each(SDL_WasInit)
 // clang-format on
 // NOLINTNEXTLINE(bugprone-macro-parentheses): a declared name
 #define GAITPAD_SDL_POINTER(name) decltype(&::name) name = nullptr;
@@ -77,9 +79,6 @@ const std::string& library_problem() {
   return problem;
 }
 
-using Change = JoystickReports::Change;
-using Control = JoystickReports::Control;
-
 // When to look at SDL's joysticks: once a millisecond. All open devices share the timer; whichever
 // finds it expired updates SDL for all of them.
 std::shared_ptr<Timer> millisecond_timer() {
@@ -91,6 +90,136 @@ std::shared_ptr<Timer> millisecond_timer() {
   running = timer = std::make_shared<Timer>();
   timer->set(1, 1'000'000);
   return timer;
+}
+
+constexpr int kAxes = SDL_CONTROLLER_AXIS_TRIGGERRIGHT + 1,
+              kButtons = SDL_CONTROLLER_BUTTON_TOUCHPAD + 1;
+static_assert(kAxes == 6 && kButtons == 21, "the descriptor below states as many");
+
+// Every controller: SDL's axes and buttons in SDL's order.
+constexpr std::uint8_t kDescriptor[] = {
+    0x05, 0x01, 0x09, 0x05, 0xa1, 0x01,              // game pad
+    0x09, 0x30, 0x09, 0x31, 0x09, 0x33, 0x09, 0x34,  // X Y Rx Ry, the sticks:
+    0x16, 0x00, 0x80, 0x26, 0xff, 0x7f, 0x75, 0x10, 0x95, 0x04, 0x81, 0x02,  // -32768 .. 32767
+    0x09, 0x32, 0x09, 0x35, 0x15, 0x00, 0x95, 0x02, 0x81, 0x02,  // Z Rz, the triggers: from 0
+    0x05, 0x09, 0x19, 0x01, 0x29, 0x15, 0x25, 0x01, 0x75, 0x01, 0x95, 0x15, 0x81, 0x02,  // buttons
+    0x95, 0x03, 0x81, 0x03, 0xc0};
+// Buttons are b0, b1 ..., axes are counted by their usages: X Y Z Rx Ry Rz.
+constexpr const char* kMapping =
+    "00000000000000000000000000000000,SDL game controller,"
+    "a:b0,b:b1,x:b2,y:b3,back:b4,guide:b5,start:b6,leftstick:b7,rightstick:b8,leftshoulder:b9,"
+    "rightshoulder:b10,dpup:b11,dpdown:b12,dpleft:b13,dpright:b14,misc1:b15,paddle1:b16,"
+    "paddle2:b17,paddle3:b18,paddle4:b19,touchpad:b20,"
+    "leftx:a0,lefty:a1,lefttrigger:a2,rightx:a3,righty:a4,righttrigger:a5,platform:Linux,";
+
+struct ControllerState {
+  std::array<Sint16, kAxes> axes{};
+  std::uint32_t buttons = 0;  // a bit each
+};
+
+ControllerState current_state(SDL_GameController* controller) {
+  ControllerState state;
+  for (int i = 0; i < kAxes; ++i)
+    state.axes[static_cast<std::size_t>(i)] =
+        SDL_GameControllerGetAxis(controller, static_cast<SDL_GameControllerAxis>(i));
+  for (int i = 0; i < kButtons; ++i) {
+    const auto button = static_cast<SDL_GameControllerButton>(i);
+    state.buttons |= std::uint32_t{SDL_GameControllerGetButton(controller, button)} << i;
+  }
+  return state;
+}
+
+// A bit for each control that differs.
+std::uint32_t difference(const ControllerState& a, const ControllerState& b) noexcept {
+  std::uint32_t bits = a.buttons ^ b.buttons;
+  for (std::size_t i = 0; i < kAxes; ++i)
+    if (a.axes[i] != b.axes[i]) bits |= std::uint32_t{1} << (kButtons + i);
+  return bits;
+}
+
+// False while the left stick is in a corner that no stick reaches: the kernel says 0, the end of
+// most axes, until the pad has sent something.
+bool is_known(const ControllerState& state) noexcept {
+  const auto is_end = [](int value) { return std::abs(value) >= 32767; };
+  return !is_end(state.axes[0]) || !is_end(state.axes[1]);
+}
+
+void write(const ControllerState& state, std::int64_t time_ns, Report& report) noexcept {
+  report.time_ns = time_ns;
+  report.kind = ReportKind::input;
+  report.size = 0;
+  const auto put = [&report](unsigned byte) {
+    report.bytes[report.size++] = static_cast<std::uint8_t>(byte);
+  };
+  for (const Sint16 value : state.axes) {
+    const auto bits = static_cast<std::uint16_t>(value);
+    put(bits & 0xffu);
+    put(bits >> 8u);
+  }
+  for (int i = 0; i < kButtons; i += 8) put(state.buttons >> i & 0xffu);
+}
+
+// The states of one open controller that its device has not read yet.
+struct Inbox {
+  struct Entry {
+    std::int64_t time_ns = 0;
+    ControllerState state;
+  };
+  SDL_GameController* controller = nullptr;
+  SDL_JoystickID id = -1;
+  ControllerState before;  // the first entry
+  std::deque<Entry> entries;
+  bool removed = false;
+  std::int64_t lost = 0;  // the oldest entries, if the reader is too slow
+
+  const ControllerState& newest() const { return entries.empty() ? before : entries.back().state; }
+  void drop_oldest() {
+    before = entries.front().state;
+    entries.pop_front();
+  }
+  void put(std::int64_t time_ns);
+  void mark_removed();
+  bool take(Entry& entry);
+};
+
+void Inbox::put(std::int64_t time_ns) {
+  constexpr std::size_t kMaxEntries = 8192;
+  const ControllerState state = current_state(controller);
+  if (removed || difference(newest(), state) == 0) return;
+  if (entries.size() >= kMaxEntries) {
+    drop_oldest();
+    ++lost;
+  }
+  entries.push_back({time_ns, state});
+}
+
+// Just before SDL reports a joystick as removed, it lets go of all controls, of the axes to where
+// they were first seen (one end, if the pad had sent nothing yet). These entries are dropped: what
+// they changed is as SDL left it.
+void Inbox::mark_removed() {
+  removed = true;
+  const ControllerState left = current_state(controller);
+  while (!entries.empty()) {
+    const ControllerState last = entries.back().state;
+    const ControllerState& previous =
+        entries.size() > 1 ? entries[entries.size() - 2].state : before;
+    if ((difference(previous, last) & difference(last, left)) != 0) break;
+    entries.pop_back();
+  }
+}
+
+// The next state: SDL reports each control by itself, so entries are joined up to the second change
+// of one control, so that no change is lost. False: there is none.
+bool Inbox::take(Entry& entry) {
+  std::uint32_t changed = 0;
+  while (!entries.empty()) {
+    const std::uint32_t next = difference(before, entries.front().state);
+    if ((changed & next) != 0) break;
+    changed |= next;
+    entry = entries.front();
+    drop_oldest();
+  }
+  return changed != 0;
 }
 
 // SDL's joysticks, started on first use: that takes up to a second.
@@ -107,11 +236,28 @@ class Sdl {
   ~Sdl() {
     if (!problem_.empty()) return;
     SDL_DelEventWatch(&Sdl::watch, this);
-    SDL_QuitSubSystem(SDL_INIT_JOYSTICK);
+    SDL_QuitSubSystem(SDL_INIT_GAMECONTROLLER);
   }
 
   const std::string& problem() const { return problem_; }  // empty: it runs
-  JoystickInboxes inboxes;                                 // of all open devices
+
+  // The caller has locked SDL's joysticks, so that no change is lost between state and inbox.
+  void add(Inbox& inbox) {
+    const std::lock_guard lock(mutex_);
+    inboxes_.push_back(&inbox);
+  }
+  void remove(const Inbox& inbox) noexcept {
+    const std::lock_guard lock(mutex_);
+    std::erase(inboxes_, &inbox);
+  }
+  // Calls `use` with the inbox of each open device of that joystick, filled by any thread that
+  // updates SDL's joysticks.
+  template <typename Use>
+  void with_inboxes(SDL_JoystickID id, Use use) {
+    const std::lock_guard lock(mutex_);
+    for (Inbox* inbox : inboxes_)
+      if (inbox->id == id) use(*inbox);
+  }
 
  private:
   struct ThreadStorage {  // SDL allocates some for each thread that it did not start
@@ -125,11 +271,13 @@ class Sdl {
   static int SDLCALL is_of_others(void* self, SDL_Event* event);
   std::string problem_;
   bool has_host_ = false;  // the program had started SDL's events before
+  std::mutex mutex_;
+  std::vector<Inbox*> inboxes_;  // of all open devices
 };
 
-// Joysticks only. HIDAPI is off because its drivers send packets to pads while they look for them.
-// Buttons are named by position: the one that Nintendo labels A is our b. A program that has
-// started SDL's joysticks itself keeps its own hints.
+// HIDAPI is off because its drivers send packets to pads while they look for them. Buttons are
+// named by position: the one that Nintendo labels A is our b. A program that has started SDL's
+// joysticks itself keeps its own hints.
 Sdl::Sdl() : problem_(library_problem()) {
   if (!problem_.empty()) return;
   has_host_ = SDL_WasInit(SDL_INIT_EVENTS) != 0;
@@ -141,49 +289,44 @@ Sdl::Sdl() : problem_(library_problem()) {
   if (SDL_WasInit(SDL_INIT_JOYSTICK) == 0) {
     for (const auto& [name, value] : kHints) SDL_SetHint(name, value);
   }
-  if (SDL_InitSubSystem(SDL_INIT_JOYSTICK) != 0) {
+  if (SDL_InitSubSystem(SDL_INIT_GAMECONTROLLER) != 0) {
     problem_ = fmt::format("SDL does not start: {}", SDL_GetError());
     return;
   }
   SDL_AddEventWatch(&Sdl::watch, this);
 }
 
-// Just before SDL reports a joystick as removed, it resets all controls, the axes to where they
-// were first seen (one end, if the pad had sent nothing yet). These changes are dropped.
-void mark_removed(JoystickInboxes& inboxes, SDL_JoystickID id) {
-  SDL_Joystick* joystick = SDL_JoystickFromInstanceID(id);
-  inboxes.mark_removed(id, [joystick](const Change& change) {
-    Sint16 rest = 0;
-    if (change.control == Control::axis) {
-      SDL_JoystickGetAxisInitialState(joystick, change.number, &rest);
-    }
-    return change.value == rest;
-  });
-}
-
-// SDL calls this from SDL_JoystickUpdate() with its joysticks locked.
-int SDLCALL Sdl::watch(void* self, SDL_Event* event) {
-  JoystickInboxes& inboxes = static_cast<Sdl*>(self)->inboxes;
-  const auto put = [&](SDL_JoystickID id, Control control, Uint8 number, Sint16 value) {
-    inboxes.put(id, {now_ns(), control, number, value});
-  };
-  switch (event->type) {
+// The joystick of an event about a control or about unplugging; -1: another event.
+SDL_JoystickID joystick_of(const SDL_Event& event) noexcept {
+  switch (event.type) {
     case SDL_JOYAXISMOTION:
-      put(event->jaxis.which, Control::axis, event->jaxis.axis, event->jaxis.value);
-      break;
+      return event.jaxis.which;
     case SDL_JOYBUTTONDOWN:
     case SDL_JOYBUTTONUP:
-      put(event->jbutton.which, Control::button, event->jbutton.button, event->jbutton.state);
-      break;
+      return event.jbutton.which;
     case SDL_JOYHATMOTION:
-      put(event->jhat.which, Control::hat, event->jhat.hat, event->jhat.value);
-      break;
+      return event.jhat.which;
     case SDL_JOYDEVICEREMOVED:
-      mark_removed(inboxes, event->jdevice.which);
-      break;
+      return event.jdevice.which;
+    case SDL_CONTROLLERAXISMOTION:
+      return event.caxis.which;
+    case SDL_CONTROLLERBUTTONDOWN:
+    case SDL_CONTROLLERBUTTONUP:
+      return event.cbutton.which;
     default:
-      break;
+      return -1;
   }
+}
+
+// SDL calls this from SDL_JoystickUpdate() with its joysticks locked, after it has changed the
+// state.
+int SDLCALL Sdl::watch(void* self, SDL_Event* event) {
+  static_cast<Sdl*>(self)->with_inboxes(joystick_of(*event), [event](Inbox& inbox) {
+    if (event->type == SDL_JOYDEVICEREMOVED)
+      inbox.mark_removed();
+    else
+      inbox.put(now_ns());
+  });
   return 1;
 }
 
@@ -194,18 +337,11 @@ struct JoystickLock {
 };
 
 int SDLCALL Sdl::is_of_others(void* self, SDL_Event* event) {
-  const JoystickInboxes& inboxes = static_cast<Sdl*>(self)->inboxes;
-  switch (event->type) {
-    case SDL_JOYAXISMOTION:
-      return !inboxes.has(event->jaxis.which);
-    case SDL_JOYBUTTONDOWN:
-    case SDL_JOYBUTTONUP:
-      return !inboxes.has(event->jbutton.which);
-    case SDL_JOYHATMOTION:
-      return !inboxes.has(event->jhat.which);
-    default:
-      return 1;
+  int is_ours = 0;
+  if (event->type != SDL_JOYDEVICEREMOVED) {
+    static_cast<Sdl*>(self)->with_inboxes(joystick_of(*event), [&is_ours](Inbox&) { is_ours = 1; });
   }
+  return 1 - is_ours;
 }
 
 void Sdl::clear_queue() noexcept {
@@ -219,107 +355,78 @@ void update_joysticks() {
   Sdl::started().clear_queue();
 }
 
-JoystickState current_state(SDL_Joystick* joystick) {
-  const auto sized = [](int count, std::size_t max) {
-    return std::min(static_cast<std::size_t>(std::max(count, 0)), max);
-  };
-  JoystickState state;
-  state.axes.resize(sized(SDL_JoystickNumAxes(joystick), kMaxAxes));
-  state.buttons.resize(sized(SDL_JoystickNumButtons(joystick), kMaxButtons));
-  state.hats.resize(sized(SDL_JoystickNumHats(joystick), kMaxHats));
-  const auto read_all = [joystick](auto& values, auto value_of) {
-    for (std::size_t i = 0; i < values.size(); ++i) {
-      values[i] = value_of(joystick, static_cast<int>(i));
-    }
-  };
-  read_all(state.axes, SDL_JoystickGetAxis);
-  read_all(state.buttons, SDL_JoystickGetButton);
-  read_all(state.hats, SDL_JoystickGetHat);
-  return state;
-}
-
-struct JoystickClosing {
-  void operator()(SDL_Joystick* joystick) const noexcept { SDL_JoystickClose(joystick); }
+struct ControllerClosing {
+  void operator()(SDL_GameController* controller) const noexcept {
+    SDL_GameControllerClose(controller);
+  }
 };
-using JoystickHandle = std::unique_ptr<SDL_Joystick, JoystickClosing>;
+using ControllerHandle = std::unique_ptr<SDL_GameController, ControllerClosing>;
 
 class SdlDevice : public Device {
  public:
   // The caller has locked SDL's joysticks, so that no change is lost between state and inbox.
-  SdlDevice(JoystickHandle joystick, const DeviceListing& listing, std::shared_ptr<Timer> timer)
-      : joystick_(std::move(joystick)),
+  SdlDevice(ControllerHandle controller, const DeviceListing& listing, std::shared_ptr<Timer> timer)
+      : controller_(std::move(controller)),
         info_(listing.info),
-        reports_(joystick_reports(current_state(joystick_.get()), listing.node, info_.version)),
         timer_(std::move(timer)),
         poll_fd_{timer_->fd(), POLLIN, 0} {
-    info_.descriptor = reports_.layout().descriptor;
-    inbox_.joystick = SDL_JoystickInstanceID(joystick_.get());
-    Sdl::started().inboxes.add(inbox_);
+    info_.descriptor.assign(std::begin(kDescriptor), std::end(kDescriptor));
+    inbox_.controller = controller_.get();
+    inbox_.id = SDL_JoystickInstanceID(SDL_GameControllerGetJoystick(controller_.get()));
+    inbox_.before = current_state(controller_.get());
+    if (is_known(inbox_.before)) first_ = inbox_.before;
+    Sdl::started().add(inbox_);
   }
-  ~SdlDevice() override { Sdl::started().inboxes.remove(inbox_); }
+  ~SdlDevice() override { Sdl::started().remove(inbox_); }
 
   const DeviceInfo& info() const noexcept override { return info_; }
   std::span<const pollfd> poll_fds() const noexcept override { return {&poll_fd_, 1}; }
-  std::int64_t lost() const noexcept override { return lost_; }
+  std::int64_t lost() const noexcept override { return read_.lost; }
   Status read(Report& report) noexcept override;
   // SDL stops the motors after 65 seconds.
   bool rumble(const Rumble& motors) noexcept override {
     constexpr std::uint32_t kLongest_ms = 0xffff;
-    return SDL_JoystickRumble(joystick_.get(), motors.strong, motors.weak, kLongest_ms) == 0;
+    return SDL_GameControllerRumble(controller_.get(), motors.strong, motors.weak, kLongest_ms) ==
+           0;
   }
 
  private:
   void fetch() noexcept;
 
-  JoystickHandle joystick_;
+  ControllerHandle controller_;
   DeviceInfo info_;
-  JoystickReports reports_;
   std::shared_ptr<Timer> timer_;
   pollfd poll_fd_;
-  JoystickInbox inbox_;
-  bool has_reported_ = false, removed_ = false;
-  std::int64_t lost_ = 0;
+  std::optional<ControllerState> first_;  // at the opening, if it is known
+  Inbox inbox_;                           // filled by the watch
+  Inbox read_;                            // what was taken from it
 };
 
-// SDL does not report the first small movement of an axis, so the axes are also read; locked, so
+// SDL does not report the first small movement of an axis, so the state is also read; locked, so
 // that no event comes in between.
 void SdlDevice::fetch() noexcept {
   if (timer_->take()) update_joysticks();
   const JoystickLock lock;
-  JoystickInbox inbox = Sdl::started().inboxes.take(inbox_);
-  removed_ = inbox.removed;
-  lost_ = inbox.lost;
-  reports_.changes = std::move(inbox.changes);
-  if (removed_) return;
-  const std::int64_t time_ns = now_ns();
-  for (std::size_t i = 0; i < reports_.state().axes.size(); ++i) {
-    const auto number = static_cast<std::uint8_t>(i);
-    const std::int16_t value = SDL_JoystickGetAxis(joystick_.get(), static_cast<int>(i));
-    reports_.changes.push_back({time_ns, Control::axis, number, value});
-  }
+  Sdl::started().with_inboxes(inbox_.id, [this](Inbox& inbox) {
+    if (&inbox != &inbox_) return;
+    inbox.put(now_ns());
+    read_ = std::move(inbox);
+    inbox = {read_.controller, read_.id, read_.newest(), {}, read_.removed, read_.lost};
+  });
 }
 
 // First the state at the opening, if it is known, then every change.
 Device::Status SdlDevice::read(Report& report) noexcept {
-  if (!has_reported_ && reports_.is_known()) {
-    has_reported_ = true;
-    reports_.write(now_ns(), report);
+  if (const auto first = std::exchange(first_, std::nullopt)) {
+    write(*first, now_ns(), report);
     return Status::report;
   }
-  if (reports_.changes.empty()) fetch();
-  if (reports_.next(report)) {
-    has_reported_ = true;
+  if (read_.entries.empty()) fetch();
+  if (Inbox::Entry entry; read_.take(entry)) {
+    write(entry.state, entry.time_ns, report);
     return Status::report;
   }
-  return removed_ ? Status::gone : Status::nothing;
-}
-
-// Copies a string that SDL allocated, and frees it.
-std::string take_text(char* line) {
-  std::string text = line ? line : "";
-  SDL_free(line);
-  if (text.size() > kMaxTraceTextBytes) text.clear();
-  return text;
+  return read_.removed ? Status::gone : Status::nothing;
 }
 
 // SDL's path of the device with this index; the joysticks are locked.
@@ -340,10 +447,12 @@ DeviceListing listing_of(int index, const SystemNode* system) {
   info.product = SDL_JoystickGetDeviceProduct(index);
   info.version = SDL_JoystickGetDeviceProductVersion(index);
   if (const char* name = SDL_JoystickNameForIndex(index)) info.name = name;
-  // The codes of a node tell more than SDL's guess.
-  info.mapping =
-      system ? sdl_mapping_of(info) : take_text(SDL_GameControllerMappingForDeviceIndex(index));
+  info.mapping = kMapping;
   listing.node = node_of(index);
+  if (SDL_IsGameController(index) == SDL_FALSE) {
+    listing.problem =
+        listing.node + ": SDL has no mapping for it; --driver evdev and hidraw need none";
+  }
   if (listing.pad_path.empty()) listing.pad_path = listing.node;
   return listing;
 }
@@ -416,10 +525,10 @@ Result<std::unique_ptr<Device>> open_sdl_device(const DeviceListing& listing, De
   const JoystickLock lock;
   for (int i = 0; i < SDL_NumJoysticks(); ++i) {
     if (node_of(i) != listing.node) continue;
-    JoystickHandle joystick(SDL_JoystickOpen(i));
-    if (!joystick) return Error{fmt::format("{}: {}", listing.node, SDL_GetError())};
+    ControllerHandle controller(SDL_GameControllerOpen(i));
+    if (!controller) return Error{fmt::format("{}: {}", listing.node, SDL_GetError())};
     return std::unique_ptr<Device>(
-        std::make_unique<SdlDevice>(std::move(joystick), listing, std::move(timer)));
+        std::make_unique<SdlDevice>(std::move(controller), listing, std::move(timer)));
   }
   return Error{listing.node + ": SDL has no such joystick"};
 }

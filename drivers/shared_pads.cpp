@@ -22,10 +22,7 @@ class WritingPort final : public PadPort {
   explicit WritingPort(PacketSource& source) : source_(source) {}
   bool write(std::span<const std::uint8_t> packet) noexcept override {
     OutPacket out;
-    if (packet.size() > out.bytes.size()) return false;
-    std::copy(packet.begin(), packet.end(), out.bytes.begin());
-    out.size = packet.size();
-    return source_.send(out);
+    return out.set(packet) && source_.send(out);
   }
   std::size_t read(std::span<std::uint8_t>, std::chrono::milliseconds) noexcept override {
     return 0;

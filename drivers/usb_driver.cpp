@@ -281,10 +281,7 @@ class StartPort final : public PadPort {
 
   bool write(std::span<const std::uint8_t> packet) noexcept override {
     OutPacket out;
-    if (packet.size() > out.bytes.size()) return false;
-    std::copy(packet.begin(), packet.end(), out.bytes.begin());
-    out.size = packet.size();
-    return transfers_.send(out) && transfers_.flush(milliseconds(200));
+    return out.set(packet) && transfers_.send(out) && transfers_.flush(milliseconds(200));
   }
 
   std::size_t read(std::span<std::uint8_t> packet, milliseconds timeout) noexcept override {

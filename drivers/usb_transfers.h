@@ -46,7 +46,6 @@ class UsbTransfers {
   std::span<const pollfd> poll_fds() const noexcept { return poll_fds_; }
   // Receives and sends packets; waits at most `timeout`.
   void handle_events(std::chrono::milliseconds timeout) noexcept;
-  bool has_packet() const noexcept { return filled_count_ > 0; }
   // Takes the oldest packet that has arrived: bytes, size, time. False: none.
   bool take_packet(Report& packet) noexcept;
   // Queues the packet. False: the pad cannot be written to.

@@ -2,6 +2,7 @@
 // it, packets that are no input, rumble. Bytes only; the drivers that carry packets (hidraw, usb)
 // share the quirks.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstddef>
@@ -44,6 +45,14 @@ struct OutPacket {
   bool is_feature = false;  // a feature report (HID pads only), which begins with its id, or 0
   // Sent again after this time until another packet follows; 0: sent once.
   std::chrono::milliseconds repeat{0};
+
+  // False: they are too many.
+  bool set(std::span<const std::uint8_t> packet) noexcept {
+    if (packet.size() > bytes.size()) return false;
+    std::copy(packet.begin(), packet.end(), bytes.begin());
+    size = packet.size();
+    return true;
+  }
 };
 
 // The one who started the pad: some start-up packets are only for a pad without a kernel driver.

@@ -594,6 +594,11 @@ std::string name_text(const std::string& name, std::size_t max_bytes) {
 }  // namespace
 
 std::string kernel_numbers_problem(const DeviceInfo& device, const ReportDescriptor& descriptor) {
+  if (device.driver == "sdl") {
+    return device.name +
+           ": SDL names its controls and does not tell their numbers; give its event node "
+           "(/dev/input/event...)";
+  }
   if (stated_by(device.driver) == StatedBy::evdev_driver) return {};
   constexpr std::uint32_t kVendorPads[] = {usage_of(0xff5d, 0x01), usage_of(0xff47, 0xd0)};
   const auto is_vendor_pad = [&descriptor](std::uint32_t u) {

@@ -56,7 +56,7 @@ Result<std::string> sdl_mapping_text(const DeviceInfo& device, const PadLayout& 
                                      const StickAxes& sticks = kAxesAsLaidOut);
 
 // Why the codes of the pad's event node do not follow from its descriptor: a kernel driver for this
-// pad chose them. One sentence; empty: they follow.
+// pad chose them, or SDL hides them. One sentence; empty: they follow.
 std::string kernel_numbers_problem(const DeviceInfo& device, const ReportDescriptor& descriptor);
 
 }  // namespace gaitpad

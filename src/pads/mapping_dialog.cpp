@@ -56,6 +56,8 @@ std::size_t MappingDialog::step_count() noexcept { return steps().size(); }
 
 Result<std::unique_ptr<MappingDialog>> MappingDialog::start(const PadFiles& files,
                                                             const PadWish& wish) {
+  if (wish.driver == "sdl")
+    return Error{"the driver sdl has named the controls already: take evdev or hidraw"};
   auto stream = PadStream::start({files, wish});
   if (!stream) return stream.error();
   std::unique_ptr<MappingDialog> mapping(new MappingDialog());

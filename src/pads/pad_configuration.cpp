@@ -94,15 +94,18 @@ CalibrationFile calibration_in_force(const PadFiles& files, const DeviceInfo& in
   return std::move(found.file);
 }
 
+// SDL has already applied its lines and the user's to the controls that its driver reads.
+bool names_its_controls(const DeviceInfo& info) { return info.driver == "sdl"; }
+
 // The user's line or SDL's, if config/pads has no entry for the pad. Empty also if a recording
 // cannot hold the line or if it does not fit the descriptor.
 std::string sdl_line_of(const PadFiles& files, const DeviceInfo& info) {
+  if (names_its_controls(info)) return info.mapping;
   DeviceInfo mapped = info;
-  const bool is_asked = info.mapping.empty() && info.driver != "sdl";
-  if (is_asked && find_override(files.overrides, info) != nullptr) return {};
+  if (info.mapping.empty() && find_override(files.overrides, info) != nullptr) return {};
   if (std::string own = fitting_mapping(files.mappings, info); !own.empty())
     mapped.mapping = std::move(own);
-  else if (is_asked)
+  else if (info.mapping.empty())
     mapped.mapping = sdl_mapping_of(info);
   if (mapped.mapping.size() > kMaxTraceTextBytes) return {};
   return pad_layout(mapped, files.overrides) ? mapped.mapping : std::string();
@@ -228,6 +231,7 @@ RecordedDevice recorded_device(const PadFiles& files, const DeviceInfo& info,
   RecordedDevice recorded;
   if (!files.mapping_problem.empty()) remarks.push_back(files.mapping_problem);
   recorded.calibration = recorded_calibration(calibration_in_force(files, info, factory, remarks));
+  if (names_its_controls(info)) recorded.calibration.mapping.clear();
   const std::string& mapping = recorded.calibration.mapping;
   DeviceInfo& kept = recorded.device.info;
   kept = info;

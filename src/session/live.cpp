@@ -96,10 +96,7 @@ std::optional<Error> LiveSession::Impl::open_recording() {
 void LiveSession::Impl::start_loop() {
   // Recorded as a command, so that a replay needs no option.
   if (spec.walk.stick == StickMeans::points) pads->command("stick points");
-  const LiveLoop::Options options = {rate_hz,
-                                     spec.live.rumble,
-                                     spec.live.frame_ticks,
-                                     spec.live.report_times,
+  const LiveLoop::Options options = {rate_hz, spec.live.rumble, spec.live.frame_ticks,
                                      stream ? &stream->newest() : nullptr,
                                      forward ? &forward->mail() : nullptr};
   loop = std::make_unique<LiveLoop>(options, script, simulation, *pads, recording.get());

@@ -105,6 +105,15 @@ double TimeHistogram::max_us() const noexcept {
   return static_cast<double>(max_ns_.load(std::memory_order_relaxed)) / 1000.0;
 }
 
+void TimeHistogram::count_steps(std::int64_t width_ns,
+                                std::span<std::int64_t> counts) const noexcept {
+  for (std::size_t i = 0; i < kClasses; ++i) {
+    const auto step = static_cast<std::size_t>(middle_ns(i) / static_cast<double>(width_ns));
+    counts[std::min(step, counts.size() - 1)] +=
+        static_cast<std::int64_t>(counts_[i].load(std::memory_order_relaxed));
+  }
+}
+
 // --- TickReports
 
 TickReports::TickReports(PadStream& pads, Simulation& simulation)
@@ -203,7 +212,7 @@ namespace {
 
 constexpr std::int64_t kNap_ns = 20'000'000;  // longest sleep between two looks at the orders
 constexpr std::size_t kSamples = 1024;        // samples that wait to be taken: 4 s
-constexpr std::size_t kUnshown = 4096;        // reports that wait for a frame: over 1 s
+constexpr std::size_t kUsed = 4096;           // reports that wait for a frame: over 1 s
 constexpr std::int64_t kDueWait_ns = 2'000'000, kDueNap_ns = 100'000;
 constexpr std::chrono::milliseconds kBeat{80};
 constexpr double kFullBeatSpeed_m_s = 1.5;
@@ -235,8 +244,7 @@ LiveLoop::LiveLoop(const Options& options, const Script& script, Simulation& sim
       clock_(options.rate_hz, 0),
       reports_(pads, simulation),
       samples_(kSamples),
-      report_times_(options.report_times ? kUnshown : 1),
-      unshown_(kUnshown) {
+      used_(kUsed) {
   frames_.each([&](SessionFrame& frame) { frame.crowd = simulation.followers().shown(); });
 }
 
@@ -371,24 +379,14 @@ void LiveLoop::follow_script(std::int64_t now_ns) noexcept {
 }
 
 void LiveLoop::use(std::span<const Report> reports, std::int64_t now_ns) noexcept {
-  const bool is_real_time = clock_.pace() == 1.0;
   for (const Report& report : reports) {
     if (recording_ != nullptr) recording_->add(tick_, report);
     if (report.kind != ReportKind::input) continue;
-    if (options_.report_times)
-      static_cast<void>(report_times_.push({tick_, report.time_ns, now_ns, report.device}));
-    if (is_real_time && report.time_ns >= real_time_ns_) count_wait(report.time_ns, now_ns);
+    const bool is_real_time = clock_.pace() == 1.0 && report.time_ns >= real_time_ns_;
+    if (is_real_time) wait_times_.add(now_ns - report.time_ns);
+    // If the ring is full, nobody shows frames: the report is left out of the measurement.
+    static_cast<void>(used_.push({{tick_, report.time_ns, now_ns, report.device}, is_real_time}));
   }
-}
-
-// If the ring is full, no viewer shows frames: the report is left out of the measurement.
-void LiveLoop::count_wait(std::int64_t report_ns, std::int64_t now_ns) noexcept {
-  const std::int64_t wait_ns = now_ns - report_ns;
-  static_cast<void>(unshown_.push({tick_, report_ns}));
-  wait_times_.add(wait_ns);
-  const std::int64_t last = static_cast<std::int64_t>(wait_counts_.size()) - 1;
-  const std::int64_t place = std::clamp<std::int64_t>(wait_ns / LiveStatus::kWaitClass_ns, 0, last);
-  count(wait_counts_[static_cast<std::size_t>(place)]);
 }
 
 void LiveLoop::publish(std::int64_t shown_ns) noexcept {
@@ -457,11 +455,19 @@ const SessionFrame& LiveLoop::latest_due() noexcept {
 
 void LiveLoop::end_frame(FrameEnd end) noexcept {
   const std::int64_t time_ns = now_ns();
-  for (const UnshownReport* report = unshown_.front();
-       report != nullptr && report->tick <= viewed_tick_; report = unshown_.front()) {
-    if (end == FrameEnd::handed_over) frame_times_.add(time_ns - report->time_ns);
-    unshown_.pop();
+  for (const UsedReport* report = used_.front();
+       report != nullptr && report->time.tick <= viewed_tick_; report = used_.front()) {
+    if (end == FrameEnd::handed_over && report->is_real_time)
+      frame_times_.add(time_ns - report->time.arrival_ns);
+    used_.pop();
   }
+}
+
+bool LiveLoop::take_report_time(ReportTime& time) noexcept {
+  UsedReport report;
+  if (!used_.pop(report)) return false;
+  time = report.time;
+  return true;
 }
 
 LiveStatus LiveLoop::status() const noexcept {
@@ -482,8 +488,7 @@ LiveStatus LiveLoop::status() const noexcept {
   status.wait_us_max = wait_times_.max_us();
   status.frame_us_p50 = frame_times_.median_us();
   status.frame_us_p99 = frame_times_.percentile_us(0.99);
-  for (std::size_t i = 0; i < wait_counts_.size(); ++i)
-    status.wait_counts[i] = wait_counts_[i].load(kRelaxed);
+  wait_times_.count_steps(LiveStatus::kWaitClass_ns, status.wait_counts);
   return status;
 }
 

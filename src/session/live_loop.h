@@ -79,6 +79,8 @@ class TimeHistogram {
   double percentile_us(double share) const noexcept;
   double median_us() const noexcept { return percentile_us(0.5); }
   double max_us() const noexcept;
+  // How many durations lie in each step of `width_ns`, the longer ones in the last, within 1 %.
+  void count_steps(std::int64_t width_ns, std::span<std::int64_t> counts) const noexcept;
 
  private:
   static constexpr int kStepBits = 6;              // classes in an octave: 64
@@ -146,7 +148,6 @@ class LiveLoop {
     int rate_hz = kDefaultRateHz;
     bool rumble = true;
     int frame_ticks = 1;  // as in SessionSpec::Live
-    bool report_times = false;
     // Receives each tick for other programs; may be null.
     Latest<StreamedTick>* stream = nullptr;
     ForwardMail* forward = nullptr;
@@ -167,7 +168,7 @@ class LiveLoop {
   const SessionFrame& latest_due() noexcept;
   void end_frame(FrameEnd end) noexcept;
   bool take_sample(TickSample& sample) noexcept { return samples_.pop(sample); }
-  bool take_report_time(ReportTime& time) noexcept { return report_times_.pop(time); }
+  bool take_report_time(ReportTime& time) noexcept;
   void set_pace(double pace) noexcept;
   void step(int ticks) noexcept;
   // Takes effect at the next tick, before its commands. Swaps `styles`, which must outlive the
@@ -198,7 +199,6 @@ class LiveLoop {
   void run_tick(std::int64_t now_ns, std::int64_t shown_ns) noexcept;
   void follow_script(std::int64_t now_ns) noexcept;
   void use(std::span<const Report> reports, std::int64_t now_ns) noexcept;
-  void count_wait(std::int64_t report_ns, std::int64_t now_ns) noexcept;
   void publish(std::int64_t shown_ns) noexcept;
   void sample(std::int64_t took_ns) noexcept;
   void beat() noexcept;
@@ -222,13 +222,13 @@ class LiveLoop {
   Latest<SessionFrame> frames_;
   TickSample sample_;
   SpscRing<TickSample> samples_;
-  SpscRing<ReportTime> report_times_;
 
-  // Reports used by a tick and not yet shown in a frame.
-  struct UnshownReport {
-    std::int64_t tick, time_ns;
+  // Reports that a tick has used and no frame has shown yet.
+  struct UsedReport {
+    ReportTime time;
+    bool is_real_time = false;  // arrived and was used at pace 1
   };
-  SpscRing<UnshownReport> unshown_;
+  SpscRing<UsedReport> used_;
   std::int64_t viewed_tick_ = -1, viewed_ns_ = 0;  // last frame read; viewing thread only
 
   std::atomic<bool> is_stopping_{false}, has_ended_{false};
@@ -240,7 +240,6 @@ class LiveLoop {
   std::atomic<std::int64_t> recorded_ticks_{-1};
   std::atomic<std::int64_t> start_ns_{0}, end_ns_{0};  // of run(); 0: not yet
   std::atomic<std::int64_t> ticks_{0}, overruns_{0}, standstills_{0}, overloads_{0}, skipped_ns_{0};
-  std::array<std::atomic<std::int64_t>, LiveStatus::kWaitClasses> wait_counts_{};
   TimeHistogram tick_times_, wait_times_, late_times_, frame_times_;
 };
 

@@ -305,6 +305,7 @@ Result<CalibrationFile> calibration_import(std::string_view text, const std::str
     return Error{
         fmt::format("{}: {} bytes, at most {} are read", source, text.size(), kMaxTextBytes)};
   }
+  if (device.driver == "sdl") return Error{kernel_numbers_problem(device, layout.descriptor)};
   if (!is_evdev_recording(text)) {
     const auto mappings = mapping_lines_of(text, source);
     if (!mappings) return mappings.error();

@@ -7,6 +7,8 @@
 #include <iterator>
 #include <utility>
 
+#include "base/numeric.h"
+
 namespace gaitpad {
 
 // ---- Watching one control
@@ -154,10 +156,7 @@ void TurnWatch::add_position(const vec2& from_rest, double rim) noexcept {
 double TurnWatch::least_radius() const noexcept {
   std::array<double, kTurnBins> sorted = radius_;
   const auto end = std::remove(sorted.begin(), sorted.end(), 0.0);
-  if (end == sorted.begin()) return rim_;
-  const auto middle = sorted.begin() + (end - sorted.begin()) / 2;
-  std::nth_element(sorted.begin(), middle, end);
-  return std::max(rim_, kOfMedianRim * *middle);
+  return std::max(rim_, kOfMedianRim * median({sorted.begin(), end}));
 }
 
 double TurnWatch::radius_towards(const vec2& to) const noexcept {

@@ -12,6 +12,7 @@
 #include "drivers/driver_rows.h"
 #include "gaitpad/decode.h"
 #include "gaitpad/driver_registry.h"
+#include "hid/evdev_layout.h"
 #include "hid/sdl_lines.h"
 #include "tests/value_of.h"
 
@@ -31,11 +32,10 @@ class VirtualPad {
     desc.version = SDL_VIRTUAL_JOYSTICK_DESC_VERSION;
     desc.type = static_cast<Uint16>(type);
     desc.naxes = 6;
-    desc.nbuttons = 11;
-    desc.nhats = 1;
+    desc.nbuttons = SDL_CONTROLLER_BUTTON_MAX;
     desc.vendor_id = 0x1209;
     desc.product_id = 0x0001;
-    desc.button_mask = 0x7ff;
+    desc.button_mask = (1u << SDL_CONTROLLER_BUTTON_MAX) - 1;
     desc.axis_mask = 0x3f;
     desc.name = name;
     desc.userdata = &motors;
@@ -144,15 +144,68 @@ TEST(SdlDriver, AxesButtonsAndHatsAreDecodedByItsMapping) {
   EXPECT_EQ(state.buttons, 1u << kButtonA | 1u << kButtonStart);
 }
 
-TEST(SdlDriver, AJoystickWithoutMappingHasAWorkingLeftStick) {
-  VirtualPad pad("Plain Joystick", SDL_JOYSTICK_TYPE_UNKNOWN);
-  const auto device = opened("Plain Joystick");
-  EXPECT_EQ(device->info().mapping, "");
-  SDL_JoystickSetVirtualAxis(pad.joystick, 1, -32768);
-  SDL_JoystickSetVirtualHat(pad.joystick, 0, SDL_HAT_LEFTUP);
+// Our names are SDL's, by its own numbers; SDL's triggers are 0 .. 32767. A virtual joystick has no
+// touchpad.
+TEST(SdlDriver, EveryControlOfSdlsGameControllerHasItsName) {
+  VirtualPad pad("Full Pad");
+  const auto device = opened("Full Pad");
+  reports_of(*device);
+  for (int i = 0; i < SDL_CONTROLLER_BUTTON_TOUCHPAD; ++i) {
+    SDL_JoystickSetVirtualButton(pad.joystick, i, 1);
+    const PadState state = decoded(*device, reports_of(*device));
+    const char* name =
+        SDL_GameControllerGetStringForButton(static_cast<SDL_GameControllerButton>(i));
+    const auto* ours =
+        std::find(std::begin(kButtonNames), std::end(kButtonNames), std::string(name));
+    ASSERT_NE(ours, std::end(kButtonNames)) << name;
+    EXPECT_EQ(state.buttons, 1u << (ours - std::begin(kButtonNames))) << name;
+    SDL_JoystickSetVirtualButton(pad.joystick, i, 0);
+    reports_of(*device);
+  }
+  SDL_JoystickSetVirtualAxis(pad.joystick, SDL_CONTROLLER_AXIS_TRIGGERLEFT, 0);
   const PadState state = decoded(*device, reports_of(*device));
-  EXPECT_EQ(state.axis[kLeftY], 1.0f);
-  EXPECT_EQ(state.hat, Hat::up_left);
+  EXPECT_NEAR(state.axis[kLeftTrigger], 0.5f, 1e-4f);
+}
+
+TEST(SdlDriver, AJoystickWithoutMappingNamesTheDriversThatNeedNone) {
+  VirtualPad pad("Plain Joystick", SDL_JOYSTICK_TYPE_UNKNOWN);
+  const auto listing = listing_of("Plain Joystick");
+  ASSERT_TRUE(listing);
+  EXPECT_EQ(listing->problem,
+            listing->node + ": SDL has no mapping for it; --driver evdev and hidraw need none");
+  EXPECT_FALSE(open_sdl_device(*listing, Detach::never));
+}
+
+// The kernel says 0, the end of both axes, until the pad has sent something.
+TEST(SdlDriver, AStickInACornerAtTheOpeningIsNotReported) {
+  VirtualPad pad("Silent Pad");
+  SDL_JoystickSetVirtualAxis(pad.joystick, SDL_CONTROLLER_AXIS_LEFTX, -32768);
+  SDL_JoystickSetVirtualAxis(pad.joystick, SDL_CONTROLLER_AXIS_LEFTY, -32768);
+  SDL_JoystickUpdate();
+  const auto device = opened("Silent Pad");
+  EXPECT_TRUE(reports_of(*device).empty());
+  SDL_JoystickSetVirtualAxis(pad.joystick, SDL_CONTROLLER_AXIS_LEFTX, 0);
+  SDL_JoystickSetVirtualAxis(pad.joystick, SDL_CONTROLLER_AXIS_LEFTY, 0);
+  EXPECT_EQ(reports_of(*device).size(), 1u);
+}
+
+// SDL reports one control after the other.
+TEST(SdlDriver, ChangesAreOneReportButTheSecondOfAControlBeginsAnother) {
+  VirtualPad pad("Quick Pad");
+  const auto device = opened("Quick Pad");
+  reports_of(*device);
+  SDL_JoystickSetVirtualAxis(pad.joystick, SDL_CONTROLLER_AXIS_LEFTX, 20000);
+  SDL_JoystickSetVirtualButton(pad.joystick, SDL_CONTROLLER_BUTTON_A, 1);
+  SDL_JoystickUpdate();
+  SDL_JoystickSetVirtualAxis(pad.joystick, SDL_CONTROLLER_AXIS_LEFTY, 20000);
+  SDL_JoystickSetVirtualButton(pad.joystick, SDL_CONTROLLER_BUTTON_A, 0);
+  SDL_JoystickUpdate();
+  const auto reports = reports_of(*device);
+  ASSERT_EQ(reports.size(), 2u);
+  EXPECT_EQ(decoded(*device, {reports[0]}).buttons, 1u << kButtonA);
+  EXPECT_GT(decoded(*device, {reports[0]}).axis[kLeftX], 0.6f);
+  EXPECT_EQ(decoded(*device, {reports[1]}).buttons, 0u);
+  EXPECT_LT(decoded(*device, {reports[1]}).axis[kLeftY], -0.6f);
 }
 
 // Every change arrives, even if another thread (a window's loop) updates SDL.
@@ -338,7 +391,6 @@ TEST(SdlDriver, LinesThatCountTheKernelsCodesAreForNodesOnly) {
     return line.find(",a:b0,") != std::string::npos ? "a" : line.empty() ? "none" : "x";
   };
   EXPECT_STREQ(first("evdev"), "a");
-  EXPECT_STREQ(first("sdl"), "a");
   EXPECT_STREQ(first("hidraw"), "x");
   device.version = 0x0111;
   EXPECT_STREQ(first("evdev"), "x");
@@ -377,13 +429,19 @@ TEST(SdlDriver, EveryLineOfTheDataBaseIsUnderstood) {
 // moves like the pad in that frame.
 TEST(SdlDriver, SdlReadsTheLineThatIsWritten) {
   VirtualPad pad("Written Pad");
-  const auto device = opened("Written Pad");
-  const auto layout = pad_layout(device->info(), {});
+  EvdevAbilities abilities;
+  for (std::uint16_t code = 0; code < 6; ++code) abilities.axes.push_back({code, -32768, 32767});
+  for (std::uint16_t i = 0; i < 11; ++i)
+    abilities.keys.push_back(static_cast<std::uint16_t>(evdev::kBtnGamepad + i));
+  DeviceInfo info = listing_of("Written Pad").value().info;
+  info.driver = "evdev";
+  info.mapping.clear();
+  info.descriptor = evdev_layout(abilities, {}).descriptor;
+  const auto layout = pad_layout(info, {});
   ASSERT_TRUE(layout);
   StickAxes sticks = kAxesAsLaidOut;
   sticks[kLeftX] = {kLeftY, false};
   sticks[kLeftY] = {kLeftX, true};
-  DeviceInfo info = device->info();
   info.product = 0x0077;  // SDL keeps every line: other tests use other ids
   auto line = sdl_mapping_text(info, *layout, sticks);
   ASSERT_TRUE(line) << line.error().message;

@@ -406,6 +406,37 @@ TEST(SdlMapping, HostileLinesDoNoHarm) {
   }
 }
 
+// The driver sdl of version 0.2 stated the event node that SDL reads. Such a recording brings its
+// descriptor and its line of the data base: here a Switch Pro Controller in the rig.
+TEST(SdlMapping, ARecordingOfTheFormerSdlDriverIsReadAsItWas) {
+  const std::string text =
+      "R: 124 05 01 09 05 a1 01 05 01 09 30 16 00 80 26 ff 7f 75 10 95 01 81 02 05 01 09 "
+      "31 16 00 80 26 ff 7f 75 10 95 01 81 02 05 01 09 33 16 00 80 26 ff 7f 75 10 95 01 81 "
+      "02 05 01 09 34 16 00 80 26 ff 7f 75 10 95 01 81 02 05 01 09 39 15 00 25 07 35 00 46 "
+      "3b 01 75 04 95 01 81 42 45 00 75 04 95 01 81 03 15 00 25 01 05 09 19 01 29 02 19 04 "
+      "29 0f 75 01 95 0e 81 02 75 02 95 01 81 03 c0\n"
+      "N: Nintendo Switch Pro Controller\n"
+      "I: 3 057e 2009\n"
+      "B: sdl 8111\n"
+      "M: 030000007e0500000920000011810000,Nintendo Switch Pro Controller,a:b0,b:b1,"
+      "back:b9,dpdown:h0.4,dpleft:h0.8,dpright:h0.2,dpup:h0.1,guide:b11,leftshoulder:b5,"
+      "leftstick:b12,lefttrigger:b7,leftx:a0,lefty:a1,misc1:b4,rightshoulder:b6,"
+      "rightstick:b13,righttrigger:b8,rightx:a2,righty:a3,start:b10,x:b3,y:b2,"
+      "hint:!SDL_GAMECONTROLLER_USE_BUTTON_LABELS:=1,\n"
+      "E: 000000.139410 11 ff 5f aa 2d ab a8 55 da 08 00 00\n"
+      "E: 000000.509746 11 00 00 ff 7f 00 00 00 00 08 00 00\n"
+      "E: 000000.996556 11 00 00 00 00 00 00 00 00 08 02 00\n";
+  const Trace trace = value_of(parse_trace(text, "old.hid"));
+  const PadLayout layout = value_of(pad_layout(trace.devices.at(0).info, shipped_pads()));
+  std::vector<PadState> states(3);
+  for (std::size_t i = 0; i < states.size(); ++i)
+    ASSERT_TRUE(decode(layout, report_of(trace, trace.events.at(i)), states[i]));
+  EXPECT_FLOAT_EQ(states[0].axis[kLeftX], (2.0f * 0x5fff + 1) / 65535);
+  EXPECT_FLOAT_EQ(states[0].axis[kRightX], (2.0f * (0xa8ab - 0x10000) + 1) / 65535);
+  EXPECT_EQ(states[1].axis[kLeftY], -1.0f) << "towards the player";
+  EXPECT_EQ(names_of(states[2].buttons), "b");
+}
+
 // ---- Writing. A written line must agree with SDL's data base on the same pads (lines made by
 // other people on other machines) and with what the reader reads back.
 
@@ -663,6 +694,11 @@ TEST(SdlMappingWrite, WhatTheKernelsOwnDriverNumbersIsNotGuessed) {
             "(/dev/input/event...)");
   pad.device.version = 0x0111;
   EXPECT_TRUE(sdl_mapping_text(pad.device, pad.layout));
+  pad.device.driver = "sdl";
+  EXPECT_EQ(
+      sdl_mapping_text(pad.device, pad.layout).error().message,
+      "PS5 Controller: SDL names its controls and does not tell their numbers; give its event "
+      "node (/dev/input/event...)");
 }
 
 // ---- Choosing a line

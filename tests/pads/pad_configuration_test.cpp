@@ -298,13 +298,13 @@ TEST_F(PadConfiguration, DamagedFilesAreErrorsThatNameThem) {
   EXPECT_FALSE(load_pad_files({folder_}, "/nonexistent.toml", ""));
 }
 
-TEST_F(PadConfiguration, TheUsersDataBaseNamesTheControlsOfLivePadsOnEveryDriver) {
+TEST_F(PadConfiguration, TheUsersDataBaseNamesTheControlsOfLivePads) {
   const std::string guid = "03000000091200000100000000000000,Mine,";
   const std::string in_file = guid + "leftx:a2,lefty:a3,platform:Linux,",
                     in_line = guid + "leftx:a1,lefty:a0,platform:Linux,";
   const std::string db = write("db.txt", "# x\n" + in_file + "\n");
   const Environment file("SDL_GAMECONTROLLERCONFIG_FILE", db.c_str());
-  for (const char* driver : {"hidraw", "evdev", "usb", "sdl"}) {
+  for (const char* driver : {"hidraw", "evdev", "usb"}) {
     DeviceInfo info = made_pad();
     info.driver = driver;
     EXPECT_EQ(recorded(files(), info).info.mapping, in_file) << driver;
@@ -315,6 +315,24 @@ TEST_F(PadConfiguration, TheUsersDataBaseNamesTheControlsOfLivePadsOnEveryDriver
   // A mapping cannot express everything in config/pads.
   const PadFiles mapped = files(write("map.toml", "[[pad]]\nvendor = 0x1209\n"));
   EXPECT_TRUE(recorded(mapped, made_pad()).info.mapping.empty());
+}
+
+// SDL has applied them: the driver's own line names the controls that SDL has named.
+TEST_F(PadConfiguration, LinesOfTheDataBaseAndOfCalibrationsDoNotCountForTheDriverSdl) {
+  const std::string guid = "03000000091200000100000000000000,Mine,";
+  const Environment line("SDL_GAMECONTROLLERCONFIG", (guid + "leftx:a1,platform:Linux,").c_str());
+  DeviceInfo info = made_pad();
+  info.driver = "sdl";
+  info.mapping = guid + "leftx:a0,lefty:a1,";
+  const PadFiles all = files();
+  EXPECT_EQ(recorded(all, info).info.mapping, info.mapping);
+  PadFiles own = all;
+  own.calibration.emplace();
+  own.calibration->mapping = guid + "leftx:a2,";
+  EXPECT_EQ(recorded(own, info).info.mapping, info.mapping);
+  EXPECT_EQ(recorded(own, info).calibration.find("a2"), std::string::npos);
+  info.driver = "evdev";
+  EXPECT_EQ(recorded(own, info).info.mapping, own.calibration->mapping);
 }
 
 TEST_F(PadConfiguration, ADataBaseThatCannotBeReadIsToldOf) {

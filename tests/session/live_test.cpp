@@ -122,6 +122,38 @@ TEST_F(Live, WithoutAPadItStandsAndNothingIsRecorded) {
   EXPECT_FALSE(fs::exists(options_.live.record));
 }
 
+// Under ThreadSanitizer: nothing that pads, loop, stream, recorder and viewer share is unguarded.
+TEST_F(Live, FourPadsAStreamAndARecordingRunAtOnce) {
+  Trace trace;
+  for (int i = 0; i < 4; ++i) {
+    TraceDevice& device = trace.devices.emplace_back();
+    device.index = i;
+    device.info = made_pad();
+    device.info.unique_id = std::to_string(i);
+  }
+  for (int ms = 0; ms <= 1000; ms += 8) {
+    for (std::uint16_t i = 0; i < 4; ++i)
+      add_event(trace, ms * 1000, made_report(0x80, ms < 80 ? 0x80 : 0x10 + (ms + i) % 23, i));
+  }
+  for (std::uint16_t i = 1; i < 4; ++i)
+    add_event(trace, 1'000'000, made_plug(ReportKind::removed, i));
+  ASSERT_TRUE(write_trace(trace, options_.pad.wish.pad));
+  options_.live.stream = "json://127.0.0.1:39599";  // nobody listens
+  auto session = started();
+  EXPECT_TRUE(comes_true([&] {
+    bool is_new = false;
+    static_cast<void>(session->latest(is_new));
+    static_cast<void>(session->status());
+    return session->has_ended();
+  }));
+  const RunSummary run = stopped(*session);
+  EXPECT_GE(run.reports, 4 * 126);
+  const LiveStatus status = session->status();
+  EXPECT_EQ(status.pads.plugged, 4);
+  EXPECT_GT(status.streamed, 0);
+  EXPECT_EQ(status.recording_lost, 0);
+}
+
 TEST_F(Live, DestroyingASessionCompletesItsRecording) {
   {
     auto session = started();

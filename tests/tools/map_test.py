@@ -62,3 +62,8 @@ def test_without_the_left_stick_nothing_is_kept(refuse, run, person, tmp_path):
     done = run("map", person([held(3, 0xFF)]), "--out", tmp_path / "lines.txt", status=1)
     assert "nothing is kept" in done.stderr and done.stdout == ""
     assert not (tmp_path / "lines.txt").exists()
+
+
+def test_through_sdl_nothing_is_left_to_name(run):
+    done = run("map", "--driver", "sdl", status=1)
+    assert "the driver sdl has named the controls already: take evdev or hidraw" in done.stderr

@@ -36,15 +36,15 @@ struct PlayArguments {
   bool no_window = false, no_rumble = false, json = false, takes_commands = false;
 };
 
-std::string status_text(const LiveStatus& status, const SessionFrame& frame, int rate_hz) {
+std::string status_text(const LiveStatus& status, const TickSample& last, int rate_hz) {
   const PadStreamCounts& pads = status.pads;
   return fmt::format(
       "{:.1f} s  pads {}  stick {:+.2f} {:+.2f}  reports {}  lost {}  tick {:.0f} us  wait {:.0f} "
       "us"
       "  overruns {}",
-      static_cast<double>(status.ticks) / rate_hz, pads.plugged - pads.unplugged,
-      frame.stick.left.x, frame.stick.left.y, pads.reports, pads.lost, status.tick_us_median,
-      status.wait_us_median, status.overruns);
+      static_cast<double>(status.ticks) / rate_hz, pads.plugged - pads.unplugged, last.stick_x,
+      last.stick_y, pads.reports, pads.lost, status.tick_us_median, status.wait_us_median,
+      status.overruns);
 }
 
 // Writes a row for each input report: its arrival, and the begin of the tick that used it.
@@ -75,6 +75,7 @@ void walk_without_window(const PlayArguments& arguments, RunEnd& end, LiveSessio
   MissingPad missing(kPlayCommand, arguments.spec.pad.wish);
   const int rate_hz = session.cast().rate_hz;
   InputLines input;
+  TickSample last;
   while (!end.is_reached() && !session.has_ended()) {
     print_remarks(kPlayCommand, session.take_remarks(), &line);
     missing.look(session.status().pads.plugged, line);
@@ -82,9 +83,9 @@ void walk_without_window(const PlayArguments& arguments, RunEnd& end, LiveSessio
       for (const std::string& command : input.take_lines()) session.command(command);
     }
     times.write(session);
-    bool is_new = false;
-    if (line.is_terminal())
-      line.show(status_text(session.status(), session.latest(is_new), rate_hz));
+    while (session.take_sample(last)) {
+    }
+    if (line.is_terminal()) line.show(status_text(session.status(), last, rate_hz));
     const pollfd stdin_fd = input.fd();
     end.wait(kLook, std::span(&stdin_fd, arguments.takes_commands ? 1 : 0));
   }
@@ -144,8 +145,7 @@ int run_without_window(const PlayArguments& arguments) {
     return fail(kPlayCommand, write_error(arguments.report_times, errno).message);
   SessionSpec unseen = arguments.spec;
   unseen.walk.shows_crowd = false;
-  constexpr int kStatusTicks = kDefaultRateHz / 20;
-  unseen.live.frame_ticks = StatusLine(2).is_terminal() ? kStatusTicks : 0;
+  unseen.live.frame_ticks = 0;
   auto session = LiveSession::start(unseen);
   if (!session) return fail(kPlayCommand, session.error().message);
   end.end_after(arguments.seconds);
@@ -241,7 +241,6 @@ int run_with_window(const PlayArguments& arguments) {
 
 int run(PlayArguments& arguments) {
   arguments.spec.live.rumble = !arguments.no_rumble;
-  arguments.spec.live.report_times = !arguments.report_times.empty();
 #ifdef GAITPAD_HAS_WINDOW
   if (!arguments.no_window) return run_with_window(arguments);
 #endif

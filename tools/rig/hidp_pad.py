@@ -107,7 +107,8 @@ class HidpPad(HidPad):
         assert self.kind.bus == BUS_BLUETOOTH
 
     def _open(self):
-        ids = ["%04x" % number for number in (*self.kind.ids, 0x0100)]
+        version = 0x0001 if self.kind.ids[0] == 0x057e else 0x0100  # as the pads of Nintendo and Sony say; SDL looks at it
+        ids = ["%04x" % number for number in (*self.kind.ids, version)]
         self._link = subprocess.Popen([LINK, str(2 * self.index), str(2 * self.index + 1), *ids, self.kind.name, self.kind.descriptor.hex()],
                                       stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0)
         word, _, self.uniq = self._link.stdout.readline().decode().strip().partition(" ")

@@ -139,6 +139,19 @@ def test_a_pad_is_not_taken_from_the_kernel_unasked():
         assert node and pad.joystick == node, "xpad was detached"
 
 
+@pytest.mark.timeout(120)
+def test_looking_at_pads_grabs_no_node(tmp_path):
+    """Another program that reads the node would miss what comes meanwhile."""
+    calls = tmp_path / "calls"
+    with Pad("xbox360") as pad:
+        for command in (["doctor"], ["pads"]):
+            subprocess.run(["strace", "-f", "-e", "trace=openat,ioctl", "-o", calls, PROGRAM, *command], stdin=subprocess.DEVNULL,
+                           stdout=subprocess.DEVNULL, timeout=60, check=False)
+            text = calls.read_text()
+            assert pad.events[0] in text, "it did not look at the node"
+            assert "EVIOCGRAB" not in text, command
+
+
 @pytest.mark.timeout(200)
 def test_two_equal_pads_are_kept_apart():
     with Pad("dualsense", 0) as first, Pad("dualsense", 1) as second:

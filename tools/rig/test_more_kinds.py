@@ -12,6 +12,8 @@ from session import Session, remark
 from test_matrix import DPAD, directions
 
 TOLERANCE = 0.01  # counts of a stick, and what the kernel's driver rounds
+# What SDL 2.26 calls otherwise: it has no name for Share, and takes the kernel's north of an unknown pad for x.
+NAMES_OF_SDL = {"xboxseries": {"misc1": None}, "edge": {"x": "y", "y": "x"}}
 
 
 def at_rest(kind):
@@ -20,13 +22,13 @@ def at_rest(kind):
     return rest | ({"hat": 8} if kind.has_hat else {})
 
 
-def states(kind):
+def states(kind, names):
     rest = at_rest(kind)
     for field, (axis, middle, span, _) in kind.axes.items():
         yield {**rest, field: round(middle + span)}
         if "trigger" not in axis:
             yield {**rest, field: round(middle - span)}
-    for field in kind.buttons:
+    for field in names:
         yield {**rest, field: 1}
     for eighth in range(8 if kind.has_hat else 0):
         yield {**rest, "hat": eighth}
@@ -37,10 +39,10 @@ def states(kind):
     yield rest
 
 
-def expected(kind, state):
+def expected(kind, names, state):
     axes = {axis: max(-1.0, min(1.0, sign * (state[field] - middle) / span))
             for field, (axis, middle, span, sign) in kind.axes.items()}
-    buttons = {name for field, name in kind.buttons.items() if state[field]}
+    buttons = {name for field, name in names.items() if state[field]}
     if kind.has_hat and state["hat"] < 8:
         buttons |= directions(state["hat"])
     return axes | dict.fromkeys(kind.still, 0.0), buttons
@@ -56,12 +58,14 @@ def is_as_sent(row, axes, buttons, names):
 def test_every_control_is_decoded_as_meant(cell):
     name, driver = cell.split("-")
     kind = MORE[name]
-    names = set(kind.buttons.values()) | set(DPAD)
+    names = kind.buttons | (NAMES_OF_SDL.get(name, {}) if driver == "sdl" else {})
+    names = {field: known for field, known in names.items() if known}
+    seen = set(names.values()) | set(DPAD)
     with plug(kind) as pad:
         with Session(kind.ids, "--driver", driver, name=f"more-{cell}") as session:
             pad.set(**at_rest(kind))
             time.sleep(0.3)
-            sent = list(states(kind))
+            sent = list(states(kind, names))
             for state in sent:
                 session.show(driver, pad, 0.04, **state)
             pad.set(**{**at_rest(kind), "ly": forward(kind)})
@@ -70,8 +74,8 @@ def test_every_control_is_decoded_as_meant(cell):
             time.sleep(0.2)
         rows, position = session.decoded(), 0
         for number, state in enumerate(sent):
-            axes, buttons = expected(kind, state)
-            found = next((i for i in range(position, len(rows)) if is_as_sent(rows[i], axes, buttons, names)), None)
+            axes, buttons = expected(kind, names, state)
+            found = next((i for i in range(position, len(rows)) if is_as_sent(rows[i], axes, buttons, seen)), None)
             assert found is not None, (f"state {number} {state} was not decoded: {axes} {buttons}; from there on came "
                                        f"{[(row['axes'], row['buttons']) for row in rows[position:position + 8]]}")
             position = found

@@ -86,8 +86,9 @@ class LiveSession {
   // Takes the oldest sample; false if there is none. If samples are not taken, new ones are
   // dropped.
   bool take_sample(TickSample& sample) noexcept;
-  // Takes the oldest time, in a session with SessionSpec::Live::report_times; false if there is
-  // none. If times are not taken, new ones are dropped.
+  // Takes the oldest report time; false if there is none. For a program that does not call
+  // end_frame(), which takes those that its frame shows. If times are not taken, new ones are
+  // dropped.
   bool take_report_time(ReportTime& time) noexcept;
   // Sets the pace, ticks per second over the rate: 0 stands still, 1 is real time, 0.25 slow
   // motion, at most 8; less than 1/1024 stands still. A tick computes the same at every pace. Takes

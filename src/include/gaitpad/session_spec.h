@@ -42,11 +42,10 @@ struct SessionSpec {
     std::string record;     // FILE.hid to write the session to
     bool keyboard = false;  // a pad that LiveSession::steer() moves, used while no pad is deflected
     int frame_ticks = 1;    // ticks from one LiveSession::latest() to the next; 0: there is none
-    bool report_times = false;  // for LiveSession::take_report_time()
-    bool rumble = true;         // a beat at each heel strike, stronger the faster the walk
-    std::string stream;         // osc://HOST:PORT or json://HOST:PORT to send the poses to
-    int stream_fps = 60;        // poses sent a second
-    bool forward = false;       // a virtual pad has the driving pad's calibrated state
+    bool rumble = true;     // a beat at each heel strike, stronger the faster the walk
+    std::string stream;     // osc://HOST:PORT or json://HOST:PORT to send the poses to
+    int stream_fps = 60;    // poses sent a second
+    bool forward = false;   // a virtual pad has the driving pad's calibrated state
     // by_hand: no loop thread, ticks run in LiveSession::advance() alone; for pictures and videos.
     enum class Clock { real_time, by_hand } clock = Clock::real_time;
   };

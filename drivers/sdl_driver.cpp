@@ -1,10 +1,10 @@
 // Game controllers of SDL2, where a user asks for the driver `sdl`. SDL names their controls, by
 // its own data base and the user's; here they are one constant HID pad. SDL has one list of
 // joysticks, one set of hints and one queue of events for the whole program, which may be a host
-// program. So hints are only set if the program has no joysticks, and nothing of others is taken off
-// the queue: an event watch sees each joystick event when SDL creates it, on any thread, and stores
-// the controller's state for the open device. SDL has nothing to poll(): it looks at its joysticks
-// when it is asked to, here once a millisecond.
+// program. So hints are only set if the program has no joysticks, and nothing of others is taken
+// off the queue: an event watch sees each joystick event when SDL creates it, on any thread, and
+// stores the controller's state for the open device. SDL has nothing to poll(): it looks at its
+// joysticks when it is asked to, here once a millisecond.
 #include <SDL2/SDL.h>
 #include <dlfcn.h>
 #include <fmt/format.h>

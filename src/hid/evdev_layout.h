@@ -30,8 +30,8 @@ inline constexpr std::uint16_t kBtnMisc = 0x100, kBtnMouse = 0x110, kBtnJoystick
                                kBtnTriggerHappy = 0x2c0, kKeyMax = 0x2ff;
 }  // namespace evdev
 
-// The author of the descriptor: the device, so that the kernel chose the codes, or the evdev driver (or
-// the sdl driver, with usages of the same codes). DeviceInfo::driver tells.
+// The author of the descriptor: the device, so that the kernel chose the codes, or the evdev driver
+// (or the sdl driver, with usages of the same codes). DeviceInfo::driver tells.
 enum class StatedBy { device, evdev_driver };
 constexpr StatedBy stated_by(std::string_view driver) noexcept {
   return driver == "evdev" || driver == "sdl" ? StatedBy::evdev_driver : StatedBy::device;

@@ -73,7 +73,7 @@ void print_rest(const StickStatistics& s) {
   print_row("drift", trend.empty() ? kUnknown : *s.drift_per_s > 0.0 ? trend : "     none", from);
   if (s.wander > 0.0)
     print_row("wander", fmt::format("{:>9.4f} a second", s.wander),
-              fmt::format("{:.1f} s in which nobody held it", seconds_of(s.hands_off)));
+              fmt::format("{:.1f} s without hands on it", seconds_of(s.hands_off)));
   if (s.displaced > 0) {
     print_row("displaced rests", fmt::format("{:>9}", s.displaced),
               fmt::format("up to {:.3f} off the centre", s.displaced_by));

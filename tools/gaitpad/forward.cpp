@@ -4,7 +4,6 @@
 // signals. A timer runs only while the calibration filters jumps, or while a present pad cannot be
 // grabbed.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -17,6 +16,7 @@
 
 #include "base/files.h"
 #include "base/text.h"
+#include "doctor/user_unit.h"
 #include "drivers/system_nodes.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/pad_stream.h"
@@ -129,45 +129,16 @@ std::optional<Error> Forward::run(RunEnd& end, HotplugMonitor& changes) {
 
 // --- as a user's service
 
-// A word of ExecStart=, quoted for systemd.
-std::string unit_word(const std::string& word) {
-  std::string text = "\"";
-  for (const char c : word) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x20 || byte == 0x7f) {
-      text += fmt::format("\\x{:02x}", byte);
-      continue;
-    }
-    if (c == '"' || c == '\\') text += '\\';
-    if (c == '%' || c == '$') text += c;
-    text += c;
-  }
-  return text + '"';
-}
-
-std::string unit_text(const ForwardArguments& arguments) {
-  std::vector<std::string> words = {fs::read_symlink("/proc/self/exe").string(), kForward};
+// The arguments of `gaitpad` that start the same with any current folder.
+std::vector<std::string> unit_arguments(const ForwardArguments& arguments) {
+  std::vector<std::string> words = {kForward};
   if (!arguments.pad.empty()) words.push_back(arguments.pad);
   if (!arguments.as.empty()) words.insert(words.end(), {"--as", arguments.as});
   if (!arguments.map.empty())
     words.insert(words.end(), {"--map", fs::absolute(arguments.map).string()});
   if (!arguments.calibration.empty())
     words.insert(words.end(), {"--calibration", fs::absolute(arguments.calibration).string()});
-  std::vector<std::string> quoted;
-  for (const std::string& word : words) quoted.push_back(unit_word(word));
-  return fmt::format(
-      "[Unit]\n"
-      "Description=A calibrated pad in place of the real one, for every program\n"
-      "Documentation=man:gaitpad-forward(1)\n"
-      "\n"
-      "[Service]\n"
-      "ExecStart={}\n"
-      "Restart=on-failure\n"
-      "RestartSec=5\n"
-      "\n"
-      "[Install]\n"
-      "WantedBy=default.target\n",
-      fmt::join(quoted, " "));
+  return words;
 }
 
 std::string rules_command() { return fmt::format("sudo {} forward --install-rules", program()); }
@@ -177,7 +148,7 @@ int install_unit(const ForwardArguments& arguments) {
   if (folder.empty())
     return fail(kForward, "neither XDG_CONFIG_HOME nor HOME names a folder for the unit");
   const std::string path = (fs::path(folder).parent_path() / "systemd/user" / kUnit).string();
-  if (const auto problem = write_file(path, unit_text(arguments)))
+  if (const auto problem = write_file(path, user_unit_text(unit_arguments(arguments))))
     return fail(kForward, problem->message);
   say("{} is written. It runs as you, without root. Start it, now and at each login:\n"
       "  systemctl --user daemon-reload && systemctl --user enable --now {}\n",

@@ -82,9 +82,8 @@ void add_max_hours_option(CLI::App& command, std::optional<double>& hours) {
 }
 
 void add_user_styles_option(CLI::App& command, bool& user_styles) {
-  command.add_flag(
-      "--user-styles", user_styles,
-      "commands may name styles of your own folder, too; another machine has them not");
+  command.add_flag("--user-styles", user_styles,
+                   "commands may also name styles of your own folder, which another machine lacks");
 }
 
 Result<PadFiles> pad_files(const std::string& map, const std::string& calibration) {
@@ -114,7 +113,7 @@ void add_pace_option(CLI::App& command, std::optional<Pace>& pace) {
   command
       .add_option_function<std::string>(
           "--pace", [&pace](const std::string& name) { pace = pace_named(name); },
-          "whose speed and step the stick means: the motion's own (at 0.8 forward) or an adult's "
+          "scales speed and step to the motion's own (at 0.8 forward) or to an adult's "
           "(default: what the recording or the motion's description says, else own)")
       ->check(CLI::IsMember(kPaceNames));
 }
@@ -134,8 +133,9 @@ void add_session_options(CLI::App& command, SessionSpec& spec, const std::string
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command
-      .add_option("--crowd", walk.crowd,
-                  "so many more walk behind the first, each with its own build and style")
+      .add_option(
+          "--crowd", walk.crowd,
+          "number of further characters behind the first, each with its own build and style")
       ->check(CLI::Range(0, kMaxFollowers));
   command.add_option("--terrain", walk.terrain, "the ground, FILE|NAME; without it flat");
   command.add_option("--script", walk.script, "commands at given times, FILE");

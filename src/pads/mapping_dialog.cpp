@@ -55,8 +55,8 @@ const std::vector<MappingDialog::Step>& MappingDialog::steps() noexcept {
 std::size_t MappingDialog::step_count() noexcept { return steps().size(); }
 
 Result<std::unique_ptr<MappingDialog>> MappingDialog::start(const PadFiles& files,
-                                                            const PadWish& wish) {
-  auto stream = PadStream::start({files, wish});
+                                                            const PadSelector& selector) {
+  auto stream = PadStream::start({files, selector});
   if (!stream) return stream.error();
   std::unique_ptr<MappingDialog> mapping(new MappingDialog());
   mapping->stream_ = std::move(*stream);

@@ -17,7 +17,8 @@ namespace gaitpad {
 // From one thread.
 class MappingDialog {
  public:
-  static Result<std::unique_ptr<MappingDialog>> start(const PadFiles& files, const PadWish& wish);
+  static Result<std::unique_ptr<MappingDialog>> start(const PadFiles& files,
+                                                      const PadSelector& selector);
 
   // Takes in the reports that have come; if there are none, waits so long for one.
   void look(std::chrono::milliseconds timeout);

@@ -64,7 +64,7 @@ std::optional<Error> write_plot(const std::string& path, const std::vector<Bench
       all_cores.points.emplace_back(row.work->characters, row.median());
   if (!all_cores.points.empty()) curves.push_back(std::move(all_cores));
   const auto add_line = [&](const char* work, const char* name, unsigned colour) {
-    const double ns = median_of(rows, work, 0, 0);
+    const double ns = median_ns(rows, work, 0, 0);
     curves.push_back({name, colour, true, {{1.0, ns}, {largest, ns}}});
   };
   add_line("playback", "bare playback, scalar", colour::kInk);

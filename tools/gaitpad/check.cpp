@@ -40,7 +40,7 @@ std::string shard_problem(const std::string& text) {
 }
 
 // --shard, else GAITPAD_SHARD_INDEX and GAITPAD_SHARD_TOTAL, else all.
-Result<Shard> wished_shard(const std::string& option) {
+Result<Shard> asked_shard(const std::string& option) {
   if (!option.empty()) return *parse_shard(option);
   const char *index = std::getenv("GAITPAD_SHARD_INDEX"),
              *total = std::getenv("GAITPAD_SHARD_TOTAL");
@@ -80,7 +80,7 @@ int tell_of_left_out(const CheckArguments& arguments, const std::vector<std::str
 }
 
 int run(const CheckArguments& arguments) {
-  const auto shard = wished_shard(arguments.shard);
+  const auto shard = asked_shard(arguments.shard);
   if (!shard) return fail(kCheckCommand, shard.error().message), kWrongUsage;
   auto found = found_traces(arguments.paths, arguments.updates);
   if (!found) return fail(kCheckCommand, found.error().message);

@@ -51,21 +51,23 @@ std::string config_problem() {
   return fmt::format("GAITPAD_CONFIG is {}, which is no folder", in_quotes(folder));
 }
 
-bool is_choosy(const PadWish& wish) { return !wish.pad.empty() || !wish.driver.empty(); }
+bool is_choosy(const PadSelector& selector) {
+  return !selector.pad.empty() || !selector.driver.empty();
+}
 
-void add_driver_option(CLI::App& command, PadWish& wish) {
+void add_driver_option(CLI::App& command, PadSelector& selector) {
   command
-      .add_option("--driver", wish.driver,
+      .add_option("--driver", selector.driver,
                   "only this driver's devices (usb takes a pad from the kernel while it is open)")
       ->check(CLI::IsMember(driver_names()));
 }
 
-void add_pad_options(CLI::App& command, PadWish& wish) {
+void add_pad_options(CLI::App& command, PadSelector& selector) {
   command.add_option(
-      "PAD", wish.pad,
+      "PAD", selector.pad,
       "a node, a recording (.hid), a vid:pid, a unique id, or a part of one pad's name "
       "(default: the first usable)");
-  add_driver_option(command, wish);
+  add_driver_option(command, selector);
 }
 
 void add_seconds_option(CLI::App& command, double& seconds) {
@@ -102,8 +104,9 @@ void MissingPad::tell(std::int64_t plugged, std::string_view what, StatusLine& l
   if (is_told_ || plugged > 0) return;
   is_told_ = true;
   std::vector<std::string> remarks = {
-      fmt::format("{} {}", wish_.pad.empty() ? "the pad" : in_quotes(wish_.pad), what)};
-  for (const std::string& other : is_choosy(wish_) ? pads_of_system() : std::vector<std::string>())
+      fmt::format("{} {}", selector_.pad.empty() ? "the pad" : in_quotes(selector_.pad), what)};
+  for (const std::string& other :
+       is_choosy(selector_) ? pads_of_system() : std::vector<std::string>())
     remarks.push_back(other);
   remarks.emplace_back("gaitpad doctor finds why a pad does not work");
   print_remarks(command_, remarks, &line);

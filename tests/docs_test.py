@@ -112,6 +112,16 @@ def test_the_glossary_has_thirty_terms_and_its_banned_words_occur_nowhere():
             assert not (found := words.search(" ".join(text_of(path).split()))), f"{path}: {found.group()}"
 
 
+def test_the_help_has_no_banned_word(program, tmp_path):
+    """The manual pages are made of the help."""
+    subprocess.run([program, "__manual", tmp_path], check=True)
+    words = re.compile(r"\b(?:" + "|".join(banned_words()) + r")\b", flags=re.I)
+    manuals = sorted(tmp_path.glob("*.1"))
+    assert len(manuals) > 15
+    for manual in manuals:
+        assert not (found := words.search(" ".join(manual.read_text().split()))), f"{manual.name}: {found.group()}"
+
+
 SABOTAGES = [  # page, what it says, what is false
     ("docs/path.md", "`Pads::take_report()`", "`Pads::take_packet()`"),
     ("docs/path.md", "`assign_ticks()`", "`assign_tick()`"),
@@ -124,7 +134,7 @@ SABOTAGES = [  # page, what it says, what is false
     ("docs/pads.md", "`frame_us_p99`", "`frame_ms_p99`"),
     ("docs/pads.md", "`quirks_of()`", "`quirks_for()`"),
     ("docs/pads.md", "`sony.cpp`", "`dualshock.cpp`"),
-    ("docs/library.md", "`PadWish::driver`", "`PadWish::drivers`"),
+    ("docs/library.md", "`PadSelector::driver`", "`PadSelector::drivers`"),
     ("docs/library.md", "`gaitpad::session`", "`gaitpad::sitting`"),
     ("docs/ci.md", "`GAITPAD_SHARD_TOTAL`", "`GAITPAD_SHARD_COUNT`"),
     ("docs/ci.md", "`--strict`", "`--severe`"),
@@ -290,6 +300,14 @@ def test_every_sentence_of_a_verdict_is_explained():
         for words in re.split(r"\{[^}]*\}", text):
             words = words.strip(" ,(%)")
             assert len(words.split()) < 2 or words in page, f"{text!r}: no {words!r} in docs/calibration.md"
+
+
+def test_the_page_on_the_paper_tells_of_each_claim_that_robust_mode_fails():
+    page = (ROOT / "docs/paper.md").read_text()
+    table, end = page[page.index("<!-- claims -->"):].split("<!-- end of claims -->")
+    robust = {int(number) for number in re.findall(r"^\| (\d+) .* \| \*\*[^|]+\*\* \|$", table, flags=re.M)}
+    told = end[:end.index("`tools/paper_table.py")]
+    assert robust == {int(number) for group in re.findall(r"\(([\d, ]+)\)", told) for number in group.split(",")}
 
 
 def test_the_measured_page_is_what_the_script_writes():

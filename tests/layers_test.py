@@ -39,7 +39,7 @@ ROOMS = {
     "src/scene": ([], ["fmt/", "epoxy/", "glm/"]),
     "src/view": (["scene", "stick_picture", "selftest"], ["fmt/", "SDL2/", "SDL", "imgui", "backends/imgui_impl", "epoxy/", "cairo/", "nlohmann/"]),
     "src/paper": ([], ["fmt/", "cairo/", "nlohmann/"]),
-    "src/check": ([], ["fmt/"]),
+    "src/check": ([], ["fmt/", "nlohmann/"]),
     "src/selftest": ([], ["fmt/", "nlohmann/"]),
     "src/terminal": ([], ["fmt/"]),
     "src/doctor": ([], ["fmt/"]),

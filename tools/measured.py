@@ -591,7 +591,7 @@ that others made. Each stick is turned round in one of them and rests in the oth
 The pad reports 8 bits, so one step is 0.0078: the sticks rest up to 2.5 counts of 256 off the
 middle and come back to within 4 counts, and a step hides their noise. The range is full on all
 sides. A circularity error of 7 to 10 % is normal: Sony's sticks reach further than a circle
-between the axes. What pressing hard adds (0.03) does not count. The jitter is that of the
+between the axes. The further 0.03 of a stick that is pressed hard do not count. The jitter is that of the
 recorder's stamps. The inner zone is the least one; without a calibration it is 0.12. With the
 zones found in the two recordings that turn a stick, the calibrated stick is exactly 0 in every
 other recording, except in the two in which the left hand moves it (`build/tests/test_stick

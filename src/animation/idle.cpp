@@ -15,21 +15,21 @@ constexpr double kBeginsAfter_s = 1.0, kBegins_s = 2.0, kEnds_s = 0.8;
 constexpr double kBreath_Hz = 0.235, kBreath_rad = 0.6 * kDegree;
 // Quiet stance sways by 3 to 5 mm (standard deviation of the centre of pressure, Winter 1995),
 // below 0.5 Hz.
-struct Swing {
+struct Sway {
   double size_m, rate_Hz, begin_rad;
 };
-constexpr Swing kAside[] = {{0.0035, 0.13, 0.0}, {0.0020, 0.31, 1.0}};
-constexpr Swing kAhead[] = {{0.0030, 0.19, 2.0}, {0.0015, 0.43, 0.5}};
+constexpr Sway kAside[] = {{0.0035, 0.13, 0.0}, {0.0020, 0.31, 1.0}};
+constexpr Sway kAhead[] = {{0.0030, 0.19, 2.0}, {0.0015, 0.43, 0.5}};
 // A glance every seven seconds: when it begins, how far it goes, how long it is held.
 constexpr double kGlanceEvery_s = 7.0, kGlanceFirst_s = 1.0, kGlanceLast_s = 3.5;
 constexpr double kGlanceTurns_s = 0.6, kGlanceBack_s = 0.7, kHeldLeast_s = 0.6, kHeldMost_s = 1.6;
 constexpr double kLeastGlance = 8.0 * kDegree, kMostGlance = 26.0 * kDegree,
                  kMostNod = 6.0 * kDegree;
 
-double swings(std::span<const Swing> of, double time_s) noexcept {
+double swings(std::span<const Sway> of, double time_s) noexcept {
   double sum = 0.0;
-  for (const Swing& swing : of)
-    sum += swing.size_m * sin_cos(2.0 * kPi * swing.rate_Hz * time_s + swing.begin_rad).sin;
+  for (const Sway& sway : of)
+    sum += sway.size_m * sin_cos(2.0 * kPi * sway.rate_Hz * time_s + sway.begin_rad).sin;
   return sum;
 }
 

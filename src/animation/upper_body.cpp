@@ -561,7 +561,7 @@ constexpr double kLevelFrom = 0.15, kLevelTo = 0.4;
 constexpr double kNeckShare = 0.45;
 constexpr double kLead_s = 0.6;  // how far ahead of the walk a leading head looks
 
-double within(double x, double most, double soft) noexcept {
+double soft_limited(double x, double most, double soft) noexcept {
   return soft_max(soft_min(x, most, soft), -most, soft);
 }
 
@@ -578,8 +578,8 @@ Gaze gaze(const UpperBodyModel& body, const quat& trunk, const vec3& direction) 
   Gaze to;
   to.share = (1.0 - smoothstep(kBesideYaw, kBehindYaw, std::abs(yaw))) *
              smoothstep(kLevelFrom, kLevelTo, level);
-  const SinCos y = sin_cos(within(yaw, kMostYaw, kSoftYaw));
-  const SinCos p = sin_cos(within(pitch, kMostPitch, kSoftHeadPitch));
+  const SinCos y = sin_cos(soft_limited(yaw, kMostYaw, kSoftYaw));
+  const SinCos p = sin_cos(soft_limited(pitch, kMostPitch, kSoftHeadPitch));
   const vec3 ahead = trunk * vec3(p.cos * y.sin, p.sin, p.cos * y.cos);
   const vec3 left = glm::normalize(glm::cross(kUp, ahead));
   to.head = from_axes(left, glm::cross(ahead, left), ahead) * body.head_standing;

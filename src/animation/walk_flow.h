@@ -1141,7 +1141,7 @@ Vec<V> flight_heel(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& st
   base_m = V{};
   if constexpr (kAlone<V>) {
     if (!tick.flat) {
-      const Climb climb = climb_of(tick.model, state, side, p, u);
+      const GroundLine climb = ground_line_of(tick.model, state, side, p, u);
       base_m = climb.base_m;
       lifted = more * mix(1.0, kLiftUp, smoothstep(kHighUp, kHighestUp, climb.rise_legs));
     }

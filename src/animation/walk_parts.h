@@ -219,11 +219,11 @@ void follow_ground(const Tick& tick, WalkState& state) noexcept;
 void advance_base(const Tick& tick, WalkState& state) noexcept;
 
 // The height of the ground line under a flying heel at `place_m`, and how far the flight rises.
-struct Climb {
+struct GroundLine {
   double base_m = 0.0, rise_legs = 0.0;
 };
-Climb climb_of(const WalkModel& model, const WalkState& state, Side side, const vec3& place_m,
-               double u) noexcept;
+GroundLine ground_line_of(const WalkModel& model, const WalkState& state, Side side,
+                          const vec3& place_m, double u) noexcept;
 // Tilts a flying foot from the plane that it left to the one that it will land on. `gone` is the
 // share of the flight that is over, smoothed.
 void tilt_in_flight(const WalkState& state, Side side, double gone, FlightPoint& point) noexcept;

@@ -594,15 +594,15 @@ constexpr double kReplan_m = 0.005;  // a landing moved by more is planned for a
 // The share of the climb, from one plane's height to the other's, that a flying foot has behind it:
 // the same as the share of its way over the ground, or of its time where it flies in place. It is 0
 // where a riser is crossed: then FlightRoom raises the foot.
-struct Ascent {
+struct ClimbShare {
   vec3 along_1_m{0.0};
   double by_time = 0.0;
   double at(const vec3& gone_m, double u) const noexcept {
     return glm::dot(gone_m, along_1_m) + by_time * (1.0 - h00(u));
   }
 };
-Ascent ascent(const WalkModel& model, const FootState& foot, const vec3& way_m) noexcept {
-  Ascent a;
+ClimbShare climb_share(const WalkModel& model, const FootState& foot, const vec3& way_m) noexcept {
+  ClimbShare a;
   if (foot.crosses_riser) return a;
   const double square = way_m.x * way_m.x + way_m.z * way_m.z;
   const double in_place = kInPlace_m * kInPlace_m * model.size * model.size;
@@ -965,13 +965,13 @@ void plan_room(const Tick& tick, WalkState& state, Side side) noexcept {
   }
 }
 
-Climb climb_of(const WalkModel& model, const WalkState& state, Side side, const vec3& place_m,
-               double u) noexcept {
+GroundLine ground_line_of(const WalkModel& model, const WalkState& state, Side side,
+                          const vec3& place_m, double u) noexcept {
   const FootState& foot = state.foot[side];
   const vec3 way = state.path.landing_m - foot.heel_anchor_m;
   const double begin_m = height_on(foot.plane, foot.heel_anchor_m),
                rise = state.path.landing_m.y - begin_m;
-  const Ascent risen = ascent(model, foot, way);
+  const ClimbShare risen = climb_share(model, foot, way);
   return {begin_m + rise * risen.at(place_m - foot.heel_anchor_m, u), rise / model.leg_length_m};
 }
 

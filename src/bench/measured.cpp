@@ -106,7 +106,7 @@ std::string processor_name() {
   return "unknown processor";
 }
 
-double median_of(const std::vector<BenchRow>& rows, std::string_view name, int characters,
+double median_ns(const std::vector<BenchRow>& rows, std::string_view name, int characters,
                  int width) {
   for (const BenchRow& row : rows) {
     const Work& work = *row.work;
@@ -134,7 +134,7 @@ ordered_json json_of(const BenchRow& row, const std::vector<BenchRow>& rows) {
     is_met = is_met && value <= most;
   };
   if (!work.over.empty()) {
-    const double ratio = ns / median_of(rows, work.over, 0, 0);
+    const double ratio = ns / median_ns(rows, work.over, 0, 0);
     json["over"] = work.over;
     json["ratio"] = ratio;
     if (work.most_ratio > 0.0) add_bound("bound_ratio", ratio, work.most_ratio);
@@ -145,13 +145,13 @@ ordered_json json_of(const BenchRow& row, const std::vector<BenchRow>& rows) {
     json["ratio_to_limit"] = ns / work.most_ns;
   }
   if (work.name == "crowd" && work.characters > kGrowsFrom &&
-      !std::isnan(median_of(rows, "crowd", kGrowsFrom, work.width))) {
-    const double growth = ns / median_of(rows, "crowd", kGrowsFrom, work.width);
+      !std::isnan(median_ns(rows, "crowd", kGrowsFrom, work.width))) {
+    const double growth = ns / median_ns(rows, "crowd", kGrowsFrom, work.width);
     json["growth"] = growth;
     add_bound("bound_growth", growth, kMostGrowth);
   }
   if (work.width > 0) {
-    const double alone_ns = median_of(rows, "crowd_alone", 0, 0);
+    const double alone_ns = median_ns(rows, "crowd_alone", 0, 0);
     if (!std::isnan(alone_ns)) json["ratio_alone"] = ns / alone_ns;
   }
   if (work.width > 0 || work.name == "character_even")

@@ -55,7 +55,7 @@ std::vector<BenchRow> measured(const std::vector<Work>& works, int rounds, const
 
 // Median of the first row with this name, number of characters and lanes; 0 matches any. Nothing if
 // there is none.
-double median_of(const std::vector<BenchRow>& rows, std::string_view name, int characters,
+double median_ns(const std::vector<BenchRow>& rows, std::string_view name, int characters,
                  int width);
 
 std::string processor_name();

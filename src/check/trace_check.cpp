@@ -385,4 +385,28 @@ void check_all(const std::vector<CheckedTrace>& traces, const CheckOptions& opti
   if (thrown) std::rethrow_exception(thrown);
 }
 
+std::optional<Shard> parse_shard(std::string_view text) {
+  constexpr int kMaxShards = 100'000;
+  Shard shard;
+  shard.index = parse_number<int>(take_part(text, '/')).value_or(0);
+  shard.total = parse_number<int>(text).value_or(0);
+  const bool is_sound = shard.index >= 1 && shard.index <= shard.total && shard.total <= kMaxShards;
+  return is_sound ? std::optional(shard) : std::nullopt;
+}
+
+std::vector<CheckedTrace> part_of(const std::vector<CheckedTrace>& traces, const Shard& shard) {
+  std::vector<CheckedTrace> part;
+  for (std::size_t i = shard.index - 1; i < traces.size(); i += shard.total)
+    part.push_back(traces[i]);
+  return part;
+}
+
+std::string picture_path(const std::string& folder, const CheckedTrace& trace) {
+  std::filesystem::path place = folder;
+  for (const std::filesystem::path& part : std::filesystem::path(trace.path).lexically_normal()) {
+    if (part != ".." && part != "." && !part.is_absolute()) place /= part;
+  }
+  return place.string() + ".png";
+}
+
 }  // namespace gaitpad

@@ -4,6 +4,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "gaitpad/result.h"
@@ -34,6 +35,18 @@ struct FoundTraces {
 // A file is a recording or its expectation. Folders are searched, without hidden folders and links;
 // recordings without an expectation count only if `updates` is set. Error: a path does not exist.
 Result<FoundTraces> found_traces(const std::vector<std::string>& paths, bool updates);
+
+// A run's part of the recordings: every `total`-th, from number `index`, counted from 1.
+struct Shard {
+  int index = 1, total = 1;
+};
+// Parses `2/8`. Nothing if it is not I/N with 1 <= I <= N.
+std::optional<Shard> parse_shard(std::string_view text);
+std::vector<CheckedTrace> part_of(const std::vector<CheckedTrace>& traces, const Shard& shard);
+
+// The path of a trace's picture in `folder`. Keeps the recording's own folders, but stays inside
+// `folder`: `../walks/round` becomes `walks/round.png`.
+std::string picture_path(const std::string& folder, const CheckedTrace& trace);
 
 // Two curves of a joint over all kept ticks: its rotation vector in degrees in its parent's frame,
 // or the root's place in metres.

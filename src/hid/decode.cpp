@@ -466,7 +466,7 @@ const Field* nth_field(const ReportDescriptor& d, std::uint8_t report_id, const 
 }
 
 // Facts about the controls beside the descriptor: from a pad file, or from SDL.
-struct Wishes {
+struct KnownControls {
   std::optional<ButtonOrder> order;
   const ControlMap* controls = nullptr;      // of a pad file: the others keep their default
   const ControlMap* all_controls = nullptr;  // of SDL's mapping: there are no others
@@ -530,11 +530,11 @@ std::vector<Binding> sdl_bindings(const ReportDescriptor& d, const ControlMap& c
   return bindings;
 }
 
-std::vector<Binding> bindings_of(const ReportDescriptor& d, const Wishes& wishes) {
-  if (wishes.all_controls) return sdl_bindings(d, *wishes.all_controls);
-  std::vector<Binding> bindings = default_bindings(d, wishes.order);
-  if (!wishes.controls) return bindings;
-  const ControlMap& controls = *wishes.controls;
+std::vector<Binding> bindings_of(const ReportDescriptor& d, const KnownControls& known) {
+  if (known.all_controls) return sdl_bindings(d, *known.all_controls);
+  std::vector<Binding> bindings = default_bindings(d, known.order);
+  if (!known.controls) return bindings;
+  const ControlMap& controls = *known.controls;
   drop_defaults_on(d, controls, bindings);
   for (int i = 0; i < kAxisCount; ++i) {
     if (!controls.axes[i]) continue;
@@ -602,7 +602,7 @@ void add_button_numbers(const ReportDescriptor& d, const Field& f, ButtonOrder o
 }
 
 // One layout for each input report, as long as the descriptor says.
-std::vector<ReportLayout> report_layouts(const ReportDescriptor& d, const Wishes& wishes) {
+std::vector<ReportLayout> report_layouts(const ReportDescriptor& d, const KnownControls& known) {
   std::vector<ReportLayout> layouts;
   for (const ReportLength& r : d.reports) {
     if (r.kind != FieldKind::input || (d.numbered && r.report_id == 0)) continue;
@@ -617,14 +617,14 @@ std::vector<ReportLayout> report_layouts(const ReportDescriptor& d, const Wishes
     return std::find_if(layouts.begin(), layouts.end(),
                         [id](const ReportLayout& l) { return l.report_id == id; });
   };
-  for (const Binding& b : bindings_of(d, wishes)) {
+  for (const Binding& b : bindings_of(d, known)) {
     const Field& f = d.fields[b.field];
     const auto it = layout_of(f.report_id);
     if (it != layouts.end() && f.bit_size <= kMaxControlBits) add_binding(f, b, *it);
   }
   for (ReportLayout& layout : layouts) find_sums(layout);
   const std::vector<std::size_t> fields = pad_fields(d);
-  const ButtonOrder order = wishes.order.value_or(likely_button_order(d, fields));
+  const ButtonOrder order = known.order.value_or(likely_button_order(d, fields));
   for (const std::size_t i : fields) {
     const Field& f = d.fields[i];
     const auto it = layout_of(f.report_id);
@@ -704,10 +704,10 @@ Result<PadLayout> pad_layout(const DeviceInfo& device, const PadOverrides& overr
     layout.reports = report_layouts(*replaced, {o->order, &o->replacement.controls});
     for (ReportLayout& r : layout.reports) r.exact_sizes = o->replacement.lengths;
   }
-  Wishes wishes = o ? Wishes{o->order, &o->controls} : Wishes{};
+  KnownControls known = o ? KnownControls{o->order, &o->controls} : KnownControls{};
   const auto sdl = sdl_map(device, layout.descriptor, o);
-  if (sdl) wishes.all_controls = &*sdl;
-  std::vector<ReportLayout> own = report_layouts(layout.descriptor, wishes);
+  if (sdl) known.all_controls = &*sdl;
+  std::vector<ReportLayout> own = report_layouts(layout.descriptor, known);
   std::move(own.begin(), own.end(), std::back_inserter(layout.reports));
   layout.unnamed = unnamed_buttons(layout);
   return layout;

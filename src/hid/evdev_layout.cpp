@@ -211,41 +211,43 @@ bool is_ignored(std::uint16_t page) noexcept {
 }
 
 // The code that hid-input wants for a usage; it may be taken already.
-struct Wish {
+struct WantedCode {
   EvdevCode code;
   bool is_shared = false;  // gets the code even if it is taken
 };
 
-std::optional<Wish> unknown_wish(const Field& f) noexcept {
-  if (f.bit_size == 1) return Wish{key(evdev::kBtnMisc)};
+std::optional<WantedCode> code_of_unknown(const Field& f) noexcept {
+  if (f.bit_size == 1) return WantedCode{key(evdev::kBtnMisc)};
   if (f.is_relative) return std::nullopt;
-  return Wish{axis(0x28)};  // ABS_MISC
+  return WantedCode{axis(0x28)};  // ABS_MISC
 }
 
-std::optional<Wish> wish_of(const Field& f, std::uint32_t u, std::uint32_t application) noexcept {
+std::optional<WantedCode> wanted_code(const Field& f, std::uint32_t u,
+                                      std::uint32_t application) noexcept {
   const std::uint16_t page = page_of(u);
   if (is_ignored(page) || u == evdev::kBatteryStrength) return std::nullopt;
   if (page == usage::kButtonPage) {
     const auto code = button_code(id_of(u), application);
-    return code ? std::optional<Wish>(Wish{*code}) : std::nullopt;
+    return code ? std::optional<WantedCode>(WantedCode{*code}) : std::nullopt;
   }
-  if (u == usage::kHatSwitch || evdev::row_of(evdev::kDpad, u)) return Wish{axis(evdev::kAbsHat0X)};
-  if (const evdev::Row* row = evdev::row_of(evdev::kKeys, u)) return Wish{row->code, true};
+  if (u == usage::kHatSwitch || evdev::row_of(evdev::kDpad, u))
+    return WantedCode{axis(evdev::kAbsHat0X)};
+  if (const evdev::Row* row = evdev::row_of(evdev::kKeys, u)) return WantedCode{row->code, true};
   const evdev::Row* shared = evdev::row_of(evdev::kSharedAxes, u);
   const evdev::Row* row = shared ? shared : evdev::row_of(evdev::kAxes, u);
   if (row && f.is_relative) return std::nullopt;
-  if (row) return Wish{row->code, shared != nullptr};
-  if (page == evdev::kConsumer && id_of(u) != 0) return Wish{key(evdev::kKeyUnknown), true};
+  if (row) return WantedCode{row->code, shared != nullptr};
+  if (page == evdev::kConsumer && id_of(u) != 0) return WantedCode{key(evdev::kKeyUnknown), true};
   if (page == evdev::kConsumer || page == evdev::kSimulation) return std::nullopt;
-  return unknown_wish(f);
+  return code_of_unknown(f);
 }
 
 // Assigns the codes of an input node as hid-input does.
 class LaidOutNode {
  public:
-  bool take(const Wish& wish) {
-    if (wish.code.type == EvdevType::key) return take(keys_, wish);
-    return take(axes_, wish);
+  bool take(const WantedCode& wanted) {
+    if (wanted.code.type == EvdevType::key) return take(keys_, wanted);
+    return take(axes_, wanted);
   }
   // Assigns both codes of the pair. The D-pad usages share one pair, hats do not.
   bool take_hat(bool is_dpad) {
@@ -258,10 +260,10 @@ class LaidOutNode {
 
  private:
   template <std::size_t N>
-  static bool take(std::bitset<N>& taken, const Wish& wish) {
-    const bool was_taken = taken[wish.code.code];
-    taken.set(wish.code.code);
-    return !was_taken || wish.is_shared;
+  static bool take(std::bitset<N>& taken, const WantedCode& wanted) {
+    const bool was_taken = taken[wanted.code.code];
+    taken.set(wanted.code.code);
+    return !was_taken || wanted.is_shared;
   }
   std::bitset<evdev::kKeyMax + 1> keys_;
   std::bitset<evdev::kAbsMax + 1> axes_;
@@ -304,7 +306,7 @@ void take_array(const ReportDescriptor& d, const Field& f, LaidOutNode& node) {
   for (std::uint32_t i = 0; i < f.range_count; ++i) {
     const UsageRange& range = d.ranges[f.first_range + i];
     for (std::uint32_t u = range.first; u <= range.last && u >= range.first; ++u) {
-      if (const auto wish = wish_of(f, u, application_of(d, f))) node.take(*wish);
+      if (const auto wanted = wanted_code(f, u, application_of(d, f))) node.take(*wanted);
     }
   }
 }
@@ -358,11 +360,11 @@ Codes kernel_codes(const ReportDescriptor& d) {
       last_array = f.first_range;
       continue;
     }
-    const auto wish = wish_of(f, f.usage, application_of(d, f));
-    if (!wish) continue;
-    const bool is_hat = wish->code == axis(evdev::kAbsHat0X);
-    const bool is_mine = is_hat ? node.take_hat(f.usage != usage::kHatSwitch) : node.take(*wish);
-    if (is_mine) codes[i] = wish->code;
+    const auto wanted = wanted_code(f, f.usage, application_of(d, f));
+    if (!wanted) continue;
+    const bool is_hat = wanted->code == axis(evdev::kAbsHat0X);
+    const bool is_mine = is_hat ? node.take_hat(f.usage != usage::kHatSwitch) : node.take(*wanted);
+    if (is_mine) codes[i] = wanted->code;
   }
   keep_one_of_each(d, codes);
   return codes;

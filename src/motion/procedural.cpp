@@ -303,14 +303,15 @@ void fill_locals(GaitCycle& cycle) {
 // The length at which the standing foot stays in place: the heel from foot flat to mid-stance, then
 // the ball until it leaves.
 double stride_length(const GaitCycle& cycle) {
-  constexpr int kFlat = kCycleSamples * 6 / 100, kMiddle = kCycleSamples * 30 / 100,
-                kRise = kCycleSamples * 55 / 100;
+  constexpr int kFlatSample = kCycleSamples * 6 / 100, kMiddleSample = kCycleSamples * 30 / 100,
+                kRiseSample = kCycleSamples * 55 / 100;
   const auto point = [&](int i) {
     const LegPose p = pose_of(cycle, kRightSide, cycle.samples[i]);
     return vec2(p.heel_m.z, p.toe_m.z) - vec2(cycle.samples[i].pelvis_m.z);
   };
-  const double back_m = (point(kFlat) - point(kMiddle)).x + (point(kMiddle) - point(kRise)).y;
-  return back_m * kCycleSamples / (kRise - kFlat);
+  const double back_m =
+      (point(kFlatSample) - point(kMiddleSample)).x + (point(kMiddleSample) - point(kRiseSample)).y;
+  return back_m * kCycleSamples / (kRiseSample - kFlatSample);
 }
 
 }  // namespace

@@ -20,10 +20,10 @@ constexpr std::int64_t kOnTheWayNs = 50'000'000;  // the longest delay of a repo
 }  // namespace
 
 Result<std::unique_ptr<GuidedCalibration>> GuidedCalibration::start(const PadFiles& files,
-                                                                    const PadWish& wish) {
+                                                                    const PadSelector& selector) {
   PadStreamOptions options;
   options.files = files;
-  options.wish = wish;
+  options.selector = selector;
   auto stream = PadStream::start(std::move(options));
   if (!stream) return stream.error();
   std::unique_ptr<GuidedCalibration> calibration(new GuidedCalibration());

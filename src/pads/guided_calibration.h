@@ -30,7 +30,7 @@ struct GuidedPad {
 class GuidedCalibration {
  public:
   static Result<std::unique_ptr<GuidedCalibration>> start(const PadFiles& files,
-                                                          const PadWish& wish);
+                                                          const PadSelector& selector);
 
   // Takes in the reports that have come; if there are none, waits for one, at most `timeout`. At
   // the end of a recording the steps that it did not show are skipped.

@@ -55,10 +55,10 @@ const std::vector<MappingDialog::Step>& MappingDialog::steps() noexcept {
 std::size_t MappingDialog::step_count() noexcept { return steps().size(); }
 
 Result<std::unique_ptr<MappingDialog>> MappingDialog::start(const PadFiles& files,
-                                                            const PadWish& wish) {
-  if (wish.driver == "sdl")
+                                                            const PadSelector& selector) {
+  if (selector.driver == "sdl")
     return Error{"the driver sdl has named the controls already: take evdev or hidraw"};
-  auto stream = PadStream::start({files, wish});
+  auto stream = PadStream::start({files, selector});
   if (!stream) return stream.error();
   std::unique_ptr<MappingDialog> mapping(new MappingDialog());
   mapping->stream_ = std::move(*stream);

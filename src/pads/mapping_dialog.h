@@ -17,7 +17,8 @@ namespace gaitpad {
 // From one thread.
 class MappingDialog {
  public:
-  static Result<std::unique_ptr<MappingDialog>> start(const PadFiles& files, const PadWish& wish);
+  static Result<std::unique_ptr<MappingDialog>> start(const PadFiles& files,
+                                                      const PadSelector& selector);
 
   // Takes in the reports that have come; if there are none, waits for one, at most `timeout`.
   void look(std::chrono::milliseconds timeout);

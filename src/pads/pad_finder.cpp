@@ -26,8 +26,8 @@ namespace {
 
 constexpr std::string_view kTrace = "trace", kUsb = "usb", kSdl = "sdl";
 
-Result<const DriverEntry*> wished_driver(const std::string& name,
-                                         std::span<const DriverEntry> table) {
+Result<const DriverEntry*> driver_named(const std::string& name,
+                                        std::span<const DriverEntry> table) {
   std::string known;
   for (const DriverEntry& entry : table) {
     if (name == entry.name && entry.find != nullptr) return &entry;
@@ -95,14 +95,14 @@ void ask_the_others(std::vector<PadSighting>& sightings) {
   }
 }
 
-Result<std::vector<PadSighting>> recorded_pads(const PadFiles& files, const PadWish& wish,
+Result<std::vector<PadSighting>> recorded_pads(const PadFiles& files, const PadSelector& selector,
                                                std::span<const DriverEntry> table) {
-  if (!wish.driver.empty() && wish.driver != kTrace)
+  if (!selector.driver.empty() && selector.driver != kTrace)
     return Error{
-        fmt::format("{}: a recording is not for the driver \"{}\"", wish.pad, wish.driver)};
-  auto driver = wished_driver(std::string(kTrace), table);
+        fmt::format("{}: a recording is not for the driver \"{}\"", selector.pad, selector.driver)};
+  auto driver = driver_named(std::string(kTrace), table);
   if (!driver) return driver.error();
-  auto listings = trace_listings(wish.pad);
+  auto listings = trace_listings(selector.pad);
   if (!listings) return listings.error();
   std::vector<PadSighting> sightings;
   for (DeviceListing& listing : *listings)
@@ -136,7 +136,7 @@ Wanted wanted_of(const std::string& pad) {
 Fit fit_of(const PadSighting& sighting, const Wanted& wanted) {
   const DeviceListing& listing = sighting.listing;
   if (listing.node == wanted.text || listing.node == wanted.node) return Fit::node;
-  if (sighting.driver->name == kTrace) return Fit::node;  // it is listed only if the user names it
+  if (sighting.driver->name == kTrace) return Fit::node;  // it is listed only if it is asked for
   if (is_model(wanted.text, listing.info)) return Fit::model;
   if (lower_case(listing.info.unique_id) == wanted.lower_text) return Fit::unique_id;
   const std::string name = lower_case(listing.info.name);
@@ -188,13 +188,13 @@ bool is_recording(const std::string& pad) {
   return pad.ends_with(".hid") || std::filesystem::is_regular_file(pad, ignored);
 }
 
-Result<std::vector<PadSighting>> pad_sightings(const PadFiles& files, const PadWish& wish,
+Result<std::vector<PadSighting>> pad_sightings(const PadFiles& files, const PadSelector& selector,
                                                Drivers drivers,
                                                std::span<const DriverEntry> table) {
-  if (is_recording(wish.pad)) return recorded_pads(files, wish, table);
+  if (is_recording(selector.pad)) return recorded_pads(files, selector, table);
   const DriverEntry* only = nullptr;
-  if (!wish.driver.empty()) {
-    auto found = wished_driver(wish.driver, table);
+  if (!selector.driver.empty()) {
+    auto found = driver_named(selector.driver, table);
     if (!found) return found.error();
     only = *found;
   }
@@ -209,8 +209,8 @@ Result<std::vector<PadSighting>> pad_sightings(const PadFiles& files, const PadW
   return sightings;
 }
 
-Result<std::vector<PadSighting>> wished_pads(const std::vector<PadSighting>& sightings,
-                                             const PadWish& wish) {
+Result<std::vector<PadSighting>> matching_pads(const std::vector<PadSighting>& sightings,
+                                               const PadSelector& selector) {
   std::vector<PadSighting> pads;
   std::ranges::copy_if(sightings, std::back_inserter(pads), &PadSighting::is_pad);
   // By driver; a pair before its parts.
@@ -218,9 +218,9 @@ Result<std::vector<PadSighting>> wished_pads(const std::vector<PadSighting>& sig
     if (one.driver != other.driver) return std::less<>()(one.driver, other.driver);
     return !one.listing.parts.empty() && other.listing.parts.empty();
   });
-  if (wish.pad.empty()) return pads;
+  if (selector.pad.empty()) return pads;
 
-  const Wanted wanted = wanted_of(wish.pad);
+  const Wanted wanted = wanted_of(selector.pad);
   std::vector<PadSighting> fitting;
   Fit best = Fit::none;
   for (const PadSighting& s : pads) {
@@ -231,7 +231,7 @@ Result<std::vector<PadSighting>> wished_pads(const std::vector<PadSighting>& sig
     fitting.push_back(s);
   }
   if (best == Fit::part_of_name || best == Fit::name) {
-    if (auto error = ambiguity(fitting, wish.pad)) return *error;
+    if (auto error = ambiguity(fitting, selector.pad)) return *error;
   }
   if (best == Fit::none || best == Fit::node) return fitting;
   // Drivers give the same pad different names and ids. A text that fits one of them means the pad.
@@ -243,15 +243,15 @@ Result<std::vector<PadSighting>> wished_pads(const std::vector<PadSighting>& sig
 }
 
 Result<std::vector<PadSighting>> chosen_pads(const std::vector<PadSighting>& sightings,
-                                             const PadWish& wish) {
-  auto pads = wished_pads(sightings, wish);
+                                             const PadSelector& selector) {
+  auto pads = matching_pads(sightings, selector);
   if (!pads) return pads.error();
-  const Wanted wanted = wanted_of(wish.pad);
+  const Wanted wanted = wanted_of(selector.pad);
   std::vector<PadSighting> chosen;
   for (PadSighting& s : *pads) {
-    const bool is_wished = wish.driver == kUsb || fit_of(s, wanted) == Fit::node;
+    const bool is_asked_for = selector.driver == kUsb || fit_of(s, wanted) == Fit::node;
     const bool is_taken = s.driver->name == kUsb && !s.listing.kernel_driver.empty();
-    if (!s.problem.empty() || (is_taken && !is_wished)) continue;
+    if (!s.problem.empty() || (is_taken && !is_asked_for)) continue;
     const auto is_served = [&s](const PadSighting& c) {
       return (c.driver != s.driver && pad_key(c) == pad_key(s)) || is_part(c, s);
     };
@@ -319,7 +319,7 @@ PadFinder::PadFinder(Options options, HandOver hand_over, Release release, Remar
       hand_over_(std::move(hand_over)),
       release_(std::move(release)),
       remarks_(remarks),
-      is_recording_(is_recording(options_.wish.pad)) {
+      is_recording_(is_recording(options_.selector.pad)) {
   if (options_.first) indices_.push_back({*options_.first, true});
 }
 
@@ -404,7 +404,7 @@ void PadFinder::look_no_later_than(Clock::time_point time) {
   next_look_ = std::min(next_look_, time);
 }
 
-// Answers start() as soon as it is known whether the user's choice is possible.
+// Answers start() as soon as it is known whether the selector makes sense.
 std::optional<Error> PadFinder::look(std::promise<std::optional<Error>>* first_look) {
   now_ = Clock::now();
   const auto answer = [first_look](std::optional<Error> error) {
@@ -414,14 +414,14 @@ std::optional<Error> PadFinder::look(std::promise<std::optional<Error>>* first_l
   next_look_ = now_ + (monitor_ || options_.changes_fd >= 0 ? kIdleLook : kLookWithoutUdev);
   if (open_.empty()) look_no_later_than(now_ + kLookWithoutPads);
   auto sightings =
-      pad_sightings(options_.files, options_.wish, Drivers::preferred, options_.drivers);
+      pad_sightings(options_.files, options_.selector, Drivers::preferred, options_.drivers);
   if (!sightings) return answer(sightings.error());
   remember(*sightings);
-  auto chosen = chosen_pads(*sightings, options_.wish);
+  auto chosen = chosen_pads(*sightings, options_.selector);
   if (!chosen) return answer(chosen.error());
   if (is_recording_) {
     if (chosen->empty())
-      return answer(Error{options_.wish.pad + ": none of its devices is a pad with a stick"});
+      return answer(Error{options_.selector.pad + ": none of its devices is a pad with a stick"});
     awaited_ends_ = static_cast<int>(chosen->size());
   }
   answer(std::nullopt);
@@ -543,7 +543,7 @@ std::chrono::milliseconds PadFinder::patience(const PadSighting& sighting,
                                               const Candidate& candidate) const {
   const std::string_view driver = sighting.driver->name;
   if (lacks_its_id(sighting)) return kIdPatience;
-  if (is_recording_ || !options_.wish.driver.empty()) return 0ms;
+  if (is_recording_ || !options_.selector.driver.empty()) return 0ms;
   if (driver == "usb") return kKernelPatience;
   const DeviceInfo& info = sighting.listing.info;
   const bool was_here = std::ranges::any_of(indices_, [&info, driver](const Index& known) {
@@ -574,7 +574,7 @@ void PadFinder::consider(const PadSighting& sighting) {
 
 // The devices of a recording are opened in their order.
 void PadFinder::open(const PadSighting& sighting) {
-  const Detach detach = detach_asked(options_.wish);
+  const Detach detach = detach_asked(options_.selector);
   if (is_recording_) return settle(sighting, sighting.driver->open(sighting.listing, detach));
   Opening& opening = *openings_.emplace_back(std::make_unique<Opening>());
   opening.sighting = sighting;
@@ -679,7 +679,7 @@ std::optional<std::string> PadFinder::set_up(const PadSighting& sighting, Device
   auto config = has_own_calibration ? pad_config(options_.files, recorded, name)
                                     : pad_config(options_.files, recorded.info, calibration, name);
   if (!config) return config.error().message;
-  if (!config->is_usable) return options_.wish.pad.empty() ? "" : name + ": no stick";
+  if (!config->is_usable) return options_.selector.pad.empty() ? "" : name + ": no stick";
   config->is_present = false;  // until the reader sees `added`
   config->has_factory_sticks = factory.has_value();
   config->factory_gyro = device.factory_gyro();
@@ -725,18 +725,18 @@ void PadFinder::hand_over(const PadSighting& sighting, std::unique_ptr<Device> d
   hand_over_(std::move(opened));
 }
 
-// For each chosen pad that no driver can open, reports the first driver's error.
+// For each requested pad that no driver can open, reports the first driver's error.
 void PadFinder::tell_problems(const std::vector<PadSighting>& sightings,
                               const std::vector<PadSighting>& chosen) {
-  const auto wished = wished_pads(sightings, options_.wish);
-  if (!wished) return;
+  const auto matching = matching_pads(sightings, options_.selector);
+  if (!matching) return;
   std::vector<std::string> settled;
   for (const PadSighting& s : chosen) {
     settled.push_back(pad_key(s));
     const auto& parts = s.listing.parts;
     settled.insert(settled.end(), parts.begin(), parts.end());
   }
-  for (const PadSighting& s : *wished) {
+  for (const PadSighting& s : *matching) {
     const std::string pad = pad_key(s);
     if (s.problem.empty() || is_open(s) || std::ranges::count(settled, pad) > 0) continue;
     const Candidate& candidate = candidates_.at(key_of(s));

@@ -81,7 +81,7 @@ class PadFinder {
  public:
   struct Options {
     PadFiles files;
-    PadWish wish;
+    PadSelector selector;
     std::span<const DriverEntry> drivers;
     bool is_raw = false;
     int changes_fd = -1;              // for tests, in place of udev; one read() makes it silent
@@ -92,8 +92,7 @@ class PadFinder {
   PadFinder(Options options, HandOver hand_over, Release release, Remarks& remarks);
   ~PadFinder() { stop(); }
 
-  // Returns after the first look, before anything is opened. Error: the user's choice is
-  // impossible.
+  // Returns after the first look, before anything is opened. Error: the selector is wrong.
   std::optional<Error> start();
   void stop();  // waits for openings that are on their way
   // Any thread: this opening has come to its end. The finder thread closes the device.

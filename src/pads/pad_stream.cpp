@@ -226,7 +226,7 @@ class PadIo {
     int stickless = 0;
     std::int64_t stickless_since_ns = 0;
   };
-  struct MotorWish {
+  struct MotorRequest {
     std::uint16_t device;
     Rumble rumble;
     std::int32_t duration_ms;
@@ -239,7 +239,7 @@ class PadIo {
   void take_pads();
   void take_releases();
   void take_commands();
-  void take_motor_wishes();
+  void take_motor_requests();
   void stop_motors(Clock::time_point now);
   void read_all();
   Reading read(Pad& pad);
@@ -267,7 +267,7 @@ class PadIo {
   std::vector<std::uint64_t> released_;
   std::deque<std::string> commands_;
   std::atomic<std::int64_t> commands_left_out_{0};
-  SpscRing<MotorWish> motor_wishes_{64};
+  SpscRing<MotorRequest> motor_requests_{64};
 
   // The I/O thread's own.
   std::vector<std::unique_ptr<Pad>> pads_;
@@ -328,7 +328,7 @@ void PadIo::command(std::string_view text) {
 void PadIo::rumble(std::uint16_t device, const Rumble& rumble,
                    std::chrono::milliseconds duration) noexcept {
   const auto ms = std::clamp<std::chrono::milliseconds>(duration, 0ms, kMaxRumble).count();
-  if (motor_wishes_.push({device, rumble, static_cast<std::int32_t>(ms)})) bell_.ring();
+  if (motor_requests_.push({device, rumble, static_cast<std::int32_t>(ms)})) bell_.ring();
 }
 
 void PadIo::run() {
@@ -341,7 +341,7 @@ void PadIo::run() {
       take_pads();
       take_releases();
       take_commands();
-      take_motor_wishes();
+      take_motor_requests();
     }
     if (!queue_.is_blocked()) read_all();
     queue_.flush();
@@ -453,15 +453,15 @@ void PadIo::take_commands() {
   }
 }
 
-void PadIo::take_motor_wishes() {
-  MotorWish wish;
-  while (motor_wishes_.pop(wish)) {
+void PadIo::take_motor_requests() {
+  MotorRequest request;
+  while (motor_requests_.pop(request)) {
     for (auto& pad : pads_) {
-      if (pad->opened.index != wish.device) continue;
-      const bool is_start = wish.duration_ms > 0;
-      if (is_start && !pad->opened.device->rumble(wish.rumble)) continue;
+      if (pad->opened.index != request.device) continue;
+      const bool is_start = request.duration_ms > 0;
+      if (is_start && !pad->opened.device->rumble(request.rumble)) continue;
       pad->is_running = pad->is_running || is_start;
-      pad->motor_end = Clock::now() + std::chrono::milliseconds(wish.duration_ms);
+      pad->motor_end = Clock::now() + std::chrono::milliseconds(request.duration_ms);
     }
   }
 }
@@ -654,7 +654,7 @@ struct PadStream::Impl {
               finder.tell_stickless(id, sentence);
             }),
         finder(
-            {std::move(options.files), std::move(options.wish), options.drivers, options.is_raw,
+            {std::move(options.files), std::move(options.selector), options.drivers, options.is_raw,
              options.changes_fd,
              keyboard ? std::optional(keyboard->known->device.info) : std::nullopt},
             [this](OpenedPad pad) { io.take_over(std::move(pad)); },

@@ -140,7 +140,7 @@ double stride_difference(const Walk& walk, const Ticks& a, const Ticks& b) {
 
 // Assertion 24: walking straight or in a turn.
 
-constexpr double kForward = 0.6, kHalf = 0.5;  // stick
+constexpr double kForwardStick = 0.6, kHalf = 0.5;  // stick
 constexpr std::array<double, 3> kSideways = {0.25, kHalf, 0.8};
 constexpr double kTurning_s = 4.0;  // the turn is steady this long after the start
 
@@ -148,7 +148,7 @@ Walk turning(const WalkModel& model, IkMode mode, double x, double end_s) {
   WalkCase what;
   what.model = &model;
   what.ik = mode;
-  what.stick = {{0.5, vec2(x, kForward)}};
+  what.stick = {{0.5, vec2(x, kForwardStick)}};
   what.end_s = end_s;
   return walked(what);
 }

@@ -246,10 +246,10 @@ void Builder::add_trunk() {
 void Builder::add_head() {
   if (joints_.head < 0) return;
   constexpr double kHeight_m = 0.224;
-  const double wish_m = at(joints_.head_top).y - at(joints_.head).y;
-  const bool is_likely = wish_m > 0.16 * size_ && wish_m < 0.27 * size_;
+  const double own_m = at(joints_.head_top).y - at(joints_.head).y;
+  const bool is_likely = own_m > 0.16 * size_ && own_m < 0.27 * size_;
   // Skeletons measure the height from the joint below the skull; the chin is lower.
-  const double from_joint = (is_likely ? wish_m : 0.222 * size_) / kHeight_m;
+  const double from_joint = (is_likely ? own_m : 0.222 * size_) / kHeight_m;
   const double part = 1.13 * from_joint;
   vec3 base = at(joints_.head);
   base.y = std::max(base.y, shoulders_m_.y + 0.075 * size_) - (part - from_joint) * kHeight_m;

@@ -90,8 +90,8 @@ vec3 across(const vec3& axis, const vec3& wide) {
   const double length = glm::length(axis);
   const vec3 along = length > 1e-9 ? axis / length : kUp;
   const vec3 least = std::abs(along.x) < 0.7 ? kLeft : kForward;
-  for (const vec3& wish : {wide, least}) {
-    const vec3 side = wish - along * glm::dot(wish, along);
+  for (const vec3& towards : {wide, least}) {
+    const vec3 side = towards - along * glm::dot(towards, along);
     if (glm::length(side) > 1e-6) return glm::normalize(side);
   }
   return kLeft;
@@ -305,8 +305,8 @@ class CrowdScene {
 std::optional<Error> CrowdScene::open() {
   bodies_.add(GlRows::Of::instance, {{1, 4}, {2, 4}, {3, 4}, {4, 4}, {5, 1}});
   shades_.add(GlRows::Of::instance, {{1, 4}, {2, 4}, {3, 1}});
-  if (auto problem = body_.link("crowd", shader::kFlatVertex,
-                                std::string(shader::kLight) + shader::kFlatFragment))
+  if (auto problem = body_.link("crowd", shader::kCrowdVertex,
+                                std::string(shader::kLight) + shader::kCrowdFragment))
     return problem;
   return shade_.link("crowd's shades", shader::kShadeVertex, shader::kShadeFragment);
 }

@@ -80,7 +80,7 @@ void main() {
 // --- the crowd -----------------------------------------------------------------------------------
 // A rectangle from one ball's far end to the other's, turned around the capsule's axis to the eye.
 // Its width depends on the visible side.
-inline constexpr const char* kFlatVertex = R"(#version 330 core
+inline constexpr const char* kCrowdVertex = R"(#version 330 core
 layout(location = 1) in vec4 a_radius;
 layout(location = 2) in vec4 b_radius;
 layout(location = 3) in vec4 wide_width_a;
@@ -128,7 +128,7 @@ void main() {
 )";
 
 // The same light, with cheaper powers.
-inline constexpr const char* kFlatFragment = R"(
+inline constexpr const char* kCrowdFragment = R"(
 in float height;
 in vec2 spot;
 flat in vec3 aside;

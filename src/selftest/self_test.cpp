@@ -88,8 +88,8 @@ void leave_identity_out(Trace& trace) {
 
 class OpenPad {
  public:
-  static Result<std::unique_ptr<OpenPad>> open(const PadFiles& files, const PadWish& wish) {
-    auto stream = PadStream::start({files, wish});
+  static Result<std::unique_ptr<OpenPad>> open(const PadFiles& files, const PadSelector& selector) {
+    auto stream = PadStream::start({files, selector});
     if (!stream) return stream.error();
     return std::unique_ptr<OpenPad>(new OpenPad(std::move(*stream)));
   }
@@ -397,7 +397,7 @@ class SelfTest {
   SelfTestPerson& person_;
   std::string folder_;
   std::vector<PadSighting> ways_;  // to the same pad, one for each driver
-  PadWish wish_;                   // its ids, which find it again after unplugging
+  PadSelector selector_;           // its ids, which find it again after unplugging
   std::string driver_;             // the first driver that opened it
   std::unique_ptr<OpenPad> pad_;
   CalibrationFile calibration_;
@@ -408,11 +408,11 @@ class SelfTest {
 };
 
 std::optional<Error> SelfTest::find_pad() {
-  if (is_recording(options_.wish.pad))
-    return Error{options_.wish.pad + ": is a recording; the test needs the pad itself"};
-  auto all = pad_sightings(options_.files, options_.wish, Drivers::all);
+  if (is_recording(options_.selector.pad))
+    return Error{options_.selector.pad + ": is a recording; the test needs the pad itself"};
+  auto all = pad_sightings(options_.files, options_.selector, Drivers::all);
   if (!all) return all.error();
-  auto mine = wished_pads(*all, options_.wish);
+  auto mine = matching_pads(*all, options_.selector);
   if (!mine) return mine.error();
   const auto usable = std::ranges::find_if(
       *mine, [](const PadSighting& s) { return s.is_pad && s.problem.empty(); });
@@ -425,14 +425,14 @@ std::optional<Error> SelfTest::find_pad() {
     if (pad_key(way) == key && way.is_pad && !is_known) ways_.push_back(std::move(way));
   }
   const DeviceInfo& info = ways_.front().listing.info;
-  wish_.pad = fmt::format("{:04x}:{:04x}", info.vendor, info.product);
+  selector_.pad = fmt::format("{:04x}:{:04x}", info.vendor, info.product);
   return std::nullopt;
 }
 
 std::optional<Error> SelfTest::make_folder() {
   folder_ = options_.folder;
   if (folder_.empty()) {
-    std::string ids = wish_.pad;
+    std::string ids = selector_.pad;
     std::ranges::replace(ids, ':', '-');
     folder_ = fmt::format("selftest-{}-{:%Y%m%d-%H%M%S}", ids, fmt::localtime(std::time(nullptr)));
   }
@@ -461,7 +461,7 @@ Answer SelfTest::ask(SelfTestPrompt& prompt, const LookOn& look_on) {
 // `is_open`: false if this driver cannot use the pad, with a remark.
 bool SelfTest::open(const std::string& driver, bool& is_open) {
   is_open = false;
-  auto pad = OpenPad::open(options_.files, {wish_.pad, driver});
+  auto pad = OpenPad::open(options_.files, {selector_.pad, driver});
   if (!pad) {
     problem_ = pad.error();
     return false;
@@ -756,7 +756,7 @@ bool SelfTest::walk_straight() {
   if (pad_ && !close("controls.hid")) return false;
   if (!has_way()) return true;
   SessionSpec spec;
-  spec.pad.wish = {wish_.pad, driver_};
+  spec.pad.selector = {selector_.pad, driver_};
   spec.pad.map = options_.map;
   if (has_calibration_) spec.pad.calibration = path_of("calibration.toml");
   spec.live.record = path_of("walk.hid");
@@ -766,7 +766,7 @@ bool SelfTest::walk_straight() {
     problem_ = session.error();
     return false;
   }
-  constexpr double kLong_s = 5.0, kForward = 0.9, kMostAside = 0.02;
+  constexpr double kLong_s = 5.0, kForwardStick = 0.9, kMostAside = 0.02;
   constexpr int kLeastSteps = 4;
   std::int64_t frames = 0, straight = 0, first_tick = -1, tick = -1;
   vec3 from_m{0.0}, to_m{0.0};
@@ -777,7 +777,7 @@ bool SelfTest::walk_straight() {
     bool is_new = false;
     const SessionFrame& frame = (*session)->latest(is_new);
     p.seen = fmt::format("stick {:+.2f} {:+.2f}", frame.stick.left.x, frame.stick.left.y);
-    if (static_cast<double>(frame.stick.left.y) < kForward) {  // start again
+    if (static_cast<double>(frame.stick.left.y) < kForwardStick) {  // start again
       first_tick = -1, frames = straight = 0;
       p.done = 0.0;
       return false;

@@ -39,7 +39,7 @@ class SelfTestPerson {
 
 struct SelfTestOptions {
   PadFiles files;
-  PadWish wish;
+  PadSelector selector;
   std::vector<std::string> config_folders;
   std::string map;      // pad file; empty: none
   std::string folder;   // must not exist; empty: a new one in the working directory

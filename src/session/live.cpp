@@ -210,7 +210,8 @@ Result<std::unique_ptr<LiveSession>> LiveSession::start(const std::shared_ptr<Pr
   live->impl_ = std::make_unique<Impl>(*prepared);
   Impl& impl = *live->impl_;
   if (impl.spec.live.keyboard) impl.keyboard = std::make_shared<KeyboardStick>();
-  auto pads = PadStream::start({std::move(prepared->pad_files), impl.spec.pad.wish, impl.keyboard});
+  auto pads =
+      PadStream::start({std::move(prepared->pad_files), impl.spec.pad.selector, impl.keyboard});
   if (!pads) return pads.error();
   impl.pads = std::move(*pads);
   if (impl.spec.live.forward) {

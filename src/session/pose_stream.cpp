@@ -248,7 +248,7 @@ void PoseStream::run() {
 void PoseStream::send(const StreamedTick& tick) {
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     const Source& source = sources_[i];
-    const StreamedTick::Walker& walker = tick.walkers[i];
+    const StreamedTick::Character& walker = tick.walkers[i];
     const vec3& hips_m = walker.pose.root_m;
     const BonePose root = {vec3(hips_m.x, 0.0, hips_m.z), rotation_y(walker.heading_rad)};
     humanoid_pose(source.humanoid, source.model->cycle.skeleton, walker.pose, root, bones_);

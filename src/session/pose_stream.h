@@ -34,13 +34,13 @@ struct StreamAddress {
 
 // The poses of one tick, as the loop publishes them for the stream.
 struct StreamedTick {
-  struct Walker {
+  struct Character {
     Pose pose;
     double heading_rad = 0.0;
   };
   std::int64_t tick = -1;  // -1: none yet
   int walker_count = 0;
-  std::array<Walker, kMaxWalkers> walkers;
+  std::array<Character, kMaxWalkers> walkers;
 };
 void copy_tick(const Simulation& simulation, StreamedTick& streamed) noexcept;
 

@@ -508,10 +508,11 @@ std::optional<StickFrame> frame_of_pushes(std::span<const vec2> pushes,
                                           std::span<const vec2> asked) {
   std::optional<RawDirection> right, forward;
   for (std::size_t i = 0; i < std::min(pushes.size(), asked.size()); ++i) {
-    const std::optional<RawDirection> went = direction_of(pushes[i]), wish = direction_of(asked[i]);
-    if (!went || !wish) continue;
-    const RawDirection told = is_negative(*wish) ? opposite(*went) : *went;
-    std::optional<RawDirection>& known = is_along_x(*wish) ? right : forward;
+    const std::optional<RawDirection> went = direction_of(pushes[i]),
+                                      meant = direction_of(asked[i]);
+    if (!went || !meant) continue;
+    const RawDirection told = is_negative(*meant) ? opposite(*went) : *went;
+    std::optional<RawDirection>& known = is_along_x(*meant) ? right : forward;
     if (known && *known != told) return std::nullopt;
     known = told;
   }

@@ -29,7 +29,7 @@ constexpr double kLeastStandingKnee = 5.0 * kDegree;
 // Share of the data's knee and ankle angles in steps of length 0: the foot still has to leave the
 // floor.
 constexpr double kLeastLift = 0.3;
-constexpr double kFlat = 0.2;  // phase for which a foot stands flat after its roll
+constexpr double kFlatPhase = 0.2;  // phase for which a foot stands flat after its roll
 // Limits of valid input. A step is shorter than two legs, so a stride is shorter than four.
 constexpr double kLeastBone_m = 0.01, kMostLegs = 4.0, kMostAngle = 2.0 * kPi;
 
@@ -86,7 +86,7 @@ struct Builder {
       int count = 0;
       for (int i = 0; i < kCycleSamples; ++i) {
         const double own = fraction(double(i) / kCycleSamples - cycle.strike[side]);
-        if (own < roll || own > roll + kFlat) continue;
+        if (own < roll || own > roll + kFlatPhase) continue;
         const CycleSample& s = cycle.samples[i];
         sum += pose_of(cycle, side, s).heel_m;
         sum.z += cycle.stride_m * (cycle.strike[side] + own);

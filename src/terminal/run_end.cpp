@@ -30,11 +30,11 @@ sigset_t ending_signals() noexcept {
 constexpr double kMaxSeconds = 1e9;
 
 // A second signal within this time counts as the first: a terminal and `timeout` may both send one.
-constexpr std::int64_t kOneWish_ns = 1'000'000'000;
+constexpr std::int64_t kOneRequest_ns = 1'000'000'000;
 std::atomic<std::int64_t> end_began_ns{0};
 
 void end_at_once(int signal) {
-  if (now_ns() - end_began_ns.load() > kOneWish_ns) ::_exit(128 + signal);
+  if (now_ns() - end_began_ns.load() > kOneRequest_ns) ::_exit(128 + signal);
 }
 
 // After this call a signal interrupts the calling thread, even while it waits.

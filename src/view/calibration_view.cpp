@@ -293,7 +293,7 @@ PadDialog::State CalibrationView::draw(Ui& ui, const ImVec2& window_px,
 Result<std::unique_ptr<PadDialog>> start_calibration(const PadDialogOptions& options) {
   auto files = load_pad_files(options.config_folders, options.map, "");
   if (!files) return files.error();
-  auto guided = GuidedCalibration::start(*files, options.wish);
+  auto guided = GuidedCalibration::start(*files, options.selector);
   if (!guided) return guided.error();
   return std::unique_ptr<PadDialog>(
       new CalibrationView(options, std::move(*files), std::move(*guided)));

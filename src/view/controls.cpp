@@ -204,7 +204,7 @@ std::span<const HelpLine> walking_help() noexcept { return kWalkingHelp; }
 void Controls::handle_event(const SDL_Event& event, const TakenInput& taken) {
   switch (event.type) {
     case SDL_QUIT:
-      wishes_.actions.push_back(Action::quit);
+      requests_.actions.push_back(Action::quit);
       break;
     case SDL_KEYDOWN:
     case SDL_KEYUP:
@@ -220,14 +220,14 @@ void Controls::handle_event(const SDL_Event& event, const TakenInput& taken) {
     case SDL_MOUSEWHEEL:
       if (!taken.mouse) {
         const double steps = event.wheel.preciseY != 0.0f ? event.wheel.preciseY : event.wheel.y;
-        wishes_.dolly *= std::pow(kDollyAStep, std::clamp(steps, -20.0, 20.0));
+        requests_.dolly *= std::pow(kDollyAStep, std::clamp(steps, -20.0, 20.0));
       }
       break;
     case SDL_WINDOWEVENT:
       handle_window_event(event.window);
       break;
     case SDL_DROPFILE:
-      if (event.drop.file) wishes_.files.emplace_back(event.drop.file);
+      if (event.drop.file) requests_.files.emplace_back(event.drop.file);
       break;
     default:
       break;
@@ -243,11 +243,11 @@ void Controls::handle_key(const SDL_KeyboardEvent& key, const TakenInput& taken)
     for (const Chord& chord : kChords) {
       const bool has_shift = (key.keysym.mod & KMOD_SHIFT) != 0;
       if (chord.key == code && chord.has_shift == has_shift)
-        wishes_.actions.push_back(chord.action);
+        requests_.actions.push_back(chord.action);
     }
   }
   if (is_down && !taken.keys && !is_chord) {
-    if (key.repeat == 0) wishes_.keys.push_back(code);
+    if (key.repeat == 0) requests_.keys.push_back(code);
     if (navigate(code, (key.keysym.mod & KMOD_SHIFT) != 0, taken)) return;
   }
   const auto walking = std::ranges::find(kWalkingKeys, code);
@@ -259,7 +259,7 @@ void Controls::handle_key(const SDL_KeyboardEvent& key, const TakenInput& taken)
   if (!is_down || taken.keys || is_chord || code == SDLK_UNKNOWN) return;
   for (const ActionInfo& info : actions()) {
     if (info.key != code && info.second_key != code) continue;
-    if (key.repeat == 0 || info.action == Action::step) wishes_.actions.push_back(info.action);
+    if (key.repeat == 0 || info.action == Action::step) requests_.actions.push_back(info.action);
     return;
   }
 }
@@ -267,23 +267,23 @@ void Controls::handle_key(const SDL_KeyboardEvent& key, const TakenInput& taken)
 // True if the key was used to move between buttons and sliders; it then has no other effect.
 bool Controls::navigate(SDL_Keycode key, bool is_back, const TakenInput& taken) {
   if (!taken.navigates && !(taken.is_modal && key == SDLK_TAB)) return false;
-  NavigationInput& wish = wishes_.navigation;
+  NavigationInput& input = requests_.navigation;
   switch (key) {
     case SDLK_TAB:
-      wish.steps += is_back ? -1 : 1;
+      input.steps += is_back ? -1 : 1;
       return true;
     case SDLK_DOWN:
     case SDLK_UP:
-      wish.steps += key == SDLK_UP ? -1 : 1;
+      input.steps += key == SDLK_UP ? -1 : 1;
       return true;
     case SDLK_LEFT:
     case SDLK_RIGHT:
-      wish.sideways += key == SDLK_LEFT ? -1 : 1;
+      input.sideways += key == SDLK_LEFT ? -1 : 1;
       return true;
     case SDLK_SPACE:
     case SDLK_RETURN:
     case SDLK_KP_ENTER:
-      wish.press = true;
+      input.press = true;
       return true;
     default:
       return false;
@@ -304,8 +304,8 @@ void Controls::handle_mouse_button(const SDL_MouseButtonEvent& button, const Tak
 
 void Controls::handle_mouse_motion(const SDL_MouseMotionEvent& motion) {
   const vec2 place(motion.x, motion.y);
-  if (drag_ == Drag::orbit) wishes_.orbit_px += place - mouse_.place_px;
-  if (drag_ == Drag::pan) wishes_.pan_px += place - mouse_.place_px;
+  if (drag_ == Drag::orbit) requests_.orbit_px += place - mouse_.place_px;
+  if (drag_ == Drag::pan) requests_.pan_px += place - mouse_.place_px;
   mouse_.place_px = place;
   mouse_.is_inside = true;
 }
@@ -321,14 +321,14 @@ void Controls::handle_window_event(const SDL_WindowEvent& window) {
       mouse_.is_inside = drag_ != Drag::none;
       break;
     case SDL_WINDOWEVENT_CLOSE:
-      wishes_.actions.push_back(Action::quit);
+      requests_.actions.push_back(Action::quit);
       break;
     default:
       break;
   }
 }
 
-Wishes Controls::take_wishes() { return std::exchange(wishes_, {}); }
+UserRequests Controls::take_requests() { return std::exchange(requests_, {}); }
 
 vec2 Controls::walk() const noexcept {
   const auto held = [this](std::size_t a, std::size_t b) {

@@ -113,8 +113,8 @@ struct NavigationInput {
   bool press = false;
 };
 
-// Requests since the last call of take_wishes().
-struct Wishes {
+// Requests since the last call of take_requests().
+struct UserRequests {
   std::vector<Action> actions;
   std::vector<std::string> files;  // dropped
   std::vector<SDL_Keycode> keys;   // pressed, by the engraved letter; without those typed as text
@@ -126,7 +126,7 @@ struct Wishes {
 class Controls {
  public:
   void handle_event(const SDL_Event& event, const TakenInput& taken);
-  Wishes take_wishes();
+  UserRequests take_requests();
 
   // Direction of the walking keys, +x right, +y forward, of length 1 at most.
   vec2 walk() const noexcept;
@@ -141,7 +141,7 @@ class Controls {
   void handle_mouse_motion(const SDL_MouseMotionEvent& motion);
   void handle_window_event(const SDL_WindowEvent& window);
 
-  Wishes wishes_;
+  UserRequests requests_;
   std::array<bool, 8> is_held_{};  // W A S D, up left down right
   bool is_shifted_ = false;
   Mouse mouse_;

@@ -20,8 +20,8 @@ namespace gaitpad {
 namespace {
 
 constexpr double kBodyPixels = 14.5, kSmallPixels = 12.0, kTickPixels = 10.5, kTitlePixels = 17.0;
-constexpr double kLeastScale = 0.5, kMaxWish = 4.0;
-constexpr double kMaxScale = kMaxWish * kMostTypeSize;
+constexpr double kLeastScale = 0.5, kMaxAsked = 4.0;
+constexpr double kMaxScale = kMaxAsked * kMostTypeSize;
 constexpr double kMaxDisplayScale = 3.0;  // a larger value of the display is assumed wrong
 constexpr double kUsualDotsPerInch = 96.0;
 constexpr std::size_t kMaxFontBytes = 64 << 20;
@@ -157,11 +157,11 @@ void apply_style(const Theme& theme, double scale) {
   ImGui::GetStyle() = style;
 }
 
-double display_scale(double wish, double dots_per_inch) noexcept {
-  if (wish > 0.0) return std::min(bounded(wish), kMaxWish);
+double display_scale(double asked, double dots_per_inch) noexcept {
+  if (asked > 0.0) return std::min(bounded(asked), kMaxAsked);
   if (const char* text = std::getenv("GDK_SCALE"); text != nullptr) {
     if (const double scale = std::strtod(text, nullptr); scale > 0.0)
-      return std::min(bounded(scale), kMaxWish);
+      return std::min(bounded(scale), kMaxAsked);
   }
   if (!(dots_per_inch > 0.0) || !std::isfinite(dots_per_inch)) return 1.0;
   return std::clamp(dots_per_inch / kUsualDotsPerInch, 1.0, kMaxDisplayScale);

@@ -26,9 +26,9 @@ struct Fonts {
 Fonts load_fonts(double scale);
 void apply_style(const Theme& theme, double scale);
 
-// Returns `wish` if it is positive, else $GDK_SCALE, else (display's dots per inch) / 96 within
+// Returns `asked` if it is positive, else $GDK_SCALE, else (display's dots per inch) / 96 within
 // 1 .. 3; 1 if all are unknown.
-double display_scale(double wish, double dots_per_inch) noexcept;
+double display_scale(double asked, double dots_per_inch) noexcept;
 
 class Gui {
  public:

@@ -84,7 +84,7 @@ PadDialog::State MapView::draw(Ui& ui, const ImVec2& window_px,
 Result<std::unique_ptr<PadDialog>> start_mapping(const PadDialogOptions& options) {
   const auto files = load_pad_files(options.config_folders, options.map, "");
   if (!files) return files.error();
-  auto mapping = MappingDialog::start(*files, options.wish);
+  auto mapping = MappingDialog::start(*files, options.selector);
   if (!mapping) return mapping.error();
   return std::unique_ptr<PadDialog>(new MapView(std::move(*mapping)));
 }

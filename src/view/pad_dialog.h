@@ -32,7 +32,7 @@ bool key_button(Ui& ui, std::string_view id, std::string_view label, SDL_Keycode
                 const ButtonLook& look = {});
 
 struct PadDialogOptions {
-  PadWish wish;
+  PadSelector selector;
   std::string map;  // a pad file; empty: none
   std::vector<std::string> config_folders;
   std::string calibration_folder;  // for the calibration's file; empty: the user's own

@@ -78,7 +78,7 @@ void give_back(Ui& ui, const Controlled& c, std::optional<GaitKey> key) {
   if (!c.is_set(key)) return;
   const std::string name(info_of(*key).name);
   send(ui, "gait", name + " stick");
-  forget_wish(ui, "gait " + name);
+  forget_pending(ui, "gait " + name);
 }
 
 // "does 0.37", for both feet "does 0.64 | 0.31", for walkers that differ "does 0.31 to 0.64". Empty
@@ -151,14 +151,14 @@ void draw_slider(Ui& ui, GaitKey key, const Controlled& c, float width, std::str
   look.is_enabled = ui.is_live();
   look.width = width;
   look.letter = letter;
-  const auto now = wished_value(
+  const auto now = pending_value(
       ui, "gait " + name,
       shared_value(c.walkers, [key](const WalkerFrame& w) { return asked_value(w, key); }));
   look.is_mixed = !now;
   double value = now.value_or(look.min);
   if (slider(ui, "slider " + name, value, look)) {
     send(ui, "gait", name, value);
-    remember_wish(ui, "gait " + name, value);
+    remember_pending(ui, "gait " + name, value);
   }
 }
 
@@ -258,14 +258,14 @@ void draw_value(Ui& ui, const StyleKey& key, float width, std::string_view lette
   look.width = width;
   look.letter = letter;
   const auto now =
-      wished_value(ui, "set " + key.name, shared_value(walkers, [&key](const WalkerFrame& walker) {
-                     return value_of(walker.style, key.name).value_or(key.min);
-                   }));
+      pending_value(ui, "set " + key.name, shared_value(walkers, [&key](const WalkerFrame& walker) {
+                      return value_of(walker.style, key.name).value_or(key.min);
+                    }));
   look.is_mixed = !now;
   double value = now.value_or(look.min);
   if (slider(ui, "style slider " + key.name, value, look)) {
     send(ui, "set", key.name, value);
-    remember_wish(ui, "set " + key.name, value);
+    remember_pending(ui, "set " + key.name, value);
   }
 }
 
@@ -282,7 +282,7 @@ void give_own_back(Ui& ui, const StyleKey* key) {
     ui.out.commands.push_back(fmt::format("set {} {} {}", number_of(ui, walker), key->name,
                                           *own_value(ui, walker, *key)));
   }
-  forget_wish(ui, "set " + key->name);
+  forget_pending(ui, "set " + key->name);
 }
 
 void draw_row(Ui& ui, const StyleRow& row) {
@@ -373,7 +373,7 @@ void draw_choice(Ui& ui) {
                {x, at.y + ui.px(18) + line * static_cast<float>(l)}, lines[l], room);
     if (is_pressed) {
       send(ui, "style", name);
-      forget_wish(ui, "");
+      forget_pending(ui, "");
     }
   }
   ImGui::EndChild();
@@ -452,9 +452,9 @@ void draw_exaggerate(Ui& ui) {
   look.decimals = 1;
   look.is_enabled = ui.is_live() && one != walkers.end();
   const double now = one == walkers.end() ? 1.0 : exaggeration(ui, *one).value_or(1.0);
-  double times = wished_value(ui, "exaggerate", std::clamp(now, look.min, look.max)).value_or(1.0);
+  double times = pending_value(ui, "exaggerate", std::clamp(now, look.min, look.max)).value_or(1.0);
   if (!slider(ui, "exaggerate", times, look)) return;
-  remember_wish(ui, "exaggerate", times);
+  remember_pending(ui, "exaggerate", times);
   for (const WalkerFrame& walker : walkers) {
     each_deviation(ui, walker, [&](const StyleKey& key, double own, double even) {
       const double value = std::clamp(even + times * (own - even), key.min, key.max);
@@ -507,7 +507,7 @@ void draw_buttons(Ui& ui) {
     for (const WalkerFrame& walker : ui.selected())
       ui.out.commands.push_back(
           fmt::format("style {} {}", number_of(ui, walker), style_name(ui, walker.style_index)));
-    forget_wish(ui, "");
+    forget_pending(ui, "");
   }
   ImGui::SameLine(0.0f, gap);
   look.is_enabled = true;
@@ -543,7 +543,7 @@ void draw_control_panel(Ui& ui) {
     look.height = std::round(ui.px(22));
     if (button(ui, "give back all", "give all back to the stick", look)) {
       send(ui, "gait", "stick");
-      forget_wish(ui, "");
+      forget_pending(ui, "");
     }
   }
   ImGui::PopStyleVar();

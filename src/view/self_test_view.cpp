@@ -133,8 +133,9 @@ PadDialog::State SelfTestView::draw(Ui& ui, const ImVec2& window_px,
 Result<std::unique_ptr<PadDialog>> start_self_test(const PadDialogOptions& options) {
   auto files = load_pad_files(options.config_folders, options.map, "");
   if (!files) return files.error();
-  return std::unique_ptr<PadDialog>(new SelfTestView(
-      {std::move(*files), options.wish, options.config_folders, options.map, "", options.program}));
+  return std::unique_ptr<PadDialog>(
+      new SelfTestView({std::move(*files), options.selector, options.config_folders, options.map,
+                        "", options.program}));
 }
 
 }  // namespace gaitpad

@@ -49,8 +49,8 @@ void set_hints(bool is_hidden) {
 // The reason why SDL's video driver cannot open a window; empty if it can.
 std::string display_problem(const SurfaceOptions& options) {
   if (options.is_hidden || !is_offscreen(SDL_GetCurrentVideoDriver())) return {};
-  const char* wish = std::getenv("SDL_VIDEODRIVER");
-  if (wish && is_offscreen(wish)) return {};
+  const char* asked = std::getenv("SDL_VIDEODRIVER");
+  if (asked && is_offscreen(asked)) return {};
   return fmt::format("no display to open a window on; {}, {}", options.without_display, kPictures);
 }
 

@@ -26,7 +26,7 @@ struct Fonts;  // view/gui.h
 // State of draw_ui() between frames.
 struct UiMemory {
   // A moved slider shows the user's value until the session has applied it.
-  struct Wish {
+  struct PendingValue {
     std::string name;
     int walker = -1;
     double value = 0.0;
@@ -37,7 +37,7 @@ struct UiMemory {
   };
   std::string focus;          // the item that keys and pad press; empty: no navigation
   bool is_focus_new = false;  // scroll to it
-  std::vector<Wish> wishes;
+  std::vector<PendingValue> pending;
   double held = 0.0;                    // the last value of the slider being dragged
   std::vector<StickPlace> stick_trail;  // oldest first
   std::int64_t stick_tick = -1;

@@ -81,8 +81,8 @@ void draw_button_face(Ui& ui, const ImVec2& min, const ImVec2& max, std::string_
   put_text(list, font, text, {x + front, middle - font->FontSize / 2.0f}, label, content + 1.0f);
 }
 
-constexpr std::int64_t kWishTicks = 60;  // a command takes effect within a few ticks
-constexpr double kKnobPixels = 5.0;      // half its width, and the slider's margin
+constexpr std::int64_t kPendingTicks = 60;  // a command takes effect within a few ticks
+constexpr double kKnobPixels = 5.0;         // half its width, and the slider's margin
 
 double value_under_mouse(Ui& ui, float left, float right, const SliderLook& look) {
   const float margin = ui.px(kKnobPixels);
@@ -477,30 +477,30 @@ bool slider(Ui& ui, std::string_view id, double& value, const SliderLook& look) 
   return is_moved;
 }
 
-std::optional<double> wished_value(Ui& ui, const std::string& name, std::optional<double> value) {
-  auto& wishes = ui.state.memory.wishes;
+std::optional<double> pending_value(Ui& ui, const std::string& name, std::optional<double> value) {
+  auto& pending = ui.state.memory.pending;
   const std::int64_t now = ui.in.frame.tick;
-  std::erase_if(wishes, [&](const UiMemory::Wish& w) {
-    return now < w.tick || now > w.tick + kWishTicks ||
+  std::erase_if(pending, [&](const UiMemory::PendingValue& w) {
+    return now < w.tick || now > w.tick + kPendingTicks ||
            (w.name == name && w.walker == ui.state.walker && w.value == value && now > w.tick);
   });
-  for (const UiMemory::Wish& w : wishes) {
+  for (const UiMemory::PendingValue& w : pending) {
     if (w.name == name && w.walker == ui.state.walker) return w.value;
   }
   return value;
 }
 
-void remember_wish(Ui& ui, const std::string& name, double value) {
-  auto& wishes = ui.state.memory.wishes;
-  std::erase_if(wishes, [&](const UiMemory::Wish& w) {
+void remember_pending(Ui& ui, const std::string& name, double value) {
+  auto& pending = ui.state.memory.pending;
+  std::erase_if(pending, [&](const UiMemory::PendingValue& w) {
     return w.name == name && w.walker == ui.state.walker;
   });
-  wishes.push_back({name, ui.state.walker, value, ui.in.frame.tick});
+  pending.push_back({name, ui.state.walker, value, ui.in.frame.tick});
 }
 
-void forget_wish(Ui& ui, const std::string& name) {
-  std::erase_if(ui.state.memory.wishes,
-                [&](const UiMemory::Wish& w) { return name.empty() || w.name == name; });
+void forget_pending(Ui& ui, const std::string& name) {
+  std::erase_if(ui.state.memory.pending,
+                [&](const UiMemory::PendingValue& w) { return name.empty() || w.name == name; });
 }
 
 bool is_menu_open() noexcept { return ImGui::GetCurrentContext()->OpenPopupStack.Size > 0; }

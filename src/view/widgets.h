@@ -102,9 +102,9 @@ bool slider(Ui& ui, std::string_view id, double& value, const SliderLook& look);
 
 // The value to show for `name`: the user's until the session has applied it, then `value`. None:
 // the characters have different values.
-std::optional<double> wished_value(Ui& ui, const std::string& name, std::optional<double> value);
-void remember_wish(Ui& ui, const std::string& name, double value);
-void forget_wish(Ui& ui, const std::string& name);  // "": all
+std::optional<double> pending_value(Ui& ui, const std::string& name, std::optional<double> value);
+void remember_pending(Ui& ui, const std::string& name, double value);
+void forget_pending(Ui& ui, const std::string& name);  // "": all
 // Sends `VERB 2 KEY VALUE` to the session, without the number if all characters are selected. The
 // value has the fewest digits that read back exactly.
 void send(Ui& ui, std::string_view verb, std::string_view rest);

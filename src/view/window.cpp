@@ -138,10 +138,10 @@ class WindowLoop {
   void show_progress() const;
   bool is_modal() const noexcept { return browser_.is_open() || pad_dialog_ != nullptr; }
   void handle_events();
-  void follow_wishes(Wishes wishes);
+  void follow_requests(UserRequests requests);
   void add_button_actions(std::vector<Action>& wanted);
   bool navigates(Action action);
-  void move_camera(const Wishes& wishes);
+  void move_camera(const UserRequests& requests);
   void call_script();
   void apply_layout(const UiState& layout);
   void fail_without_display();
@@ -157,7 +157,7 @@ class WindowLoop {
   void draw_browser(Ui& ui, const ImVec2& window_px);
   void draw_pad_dialog(Ui& ui, const ImVec2& window_px);
   void reset_camera(const Viewport& viewport);
-  Framing wished_framing(const Viewport& viewport) const;
+  Framing wanted_framing(const Viewport& viewport) const;
   void turn_to_risers(double passed_s);
   void set_type_size(double size);
   double scale() const { return surface_->scale() * state_.type_size; }
@@ -350,7 +350,7 @@ bool WindowLoop::draw_frame() {
   clock_.begin_frame(now_ns());
   call_script();
   handle_events();
-  follow_wishes(controls_.take_wishes());
+  follow_requests(controls_.take_requests());
   if (options_.take_commands)
     for (const std::string& command : options_.take_commands()) show_->command(command);
   update_show();
@@ -420,22 +420,22 @@ void WindowLoop::handle_events() {
   }
 }
 
-void WindowLoop::follow_wishes(Wishes wishes) {
+void WindowLoop::follow_requests(UserRequests requests) {
   navigation_ = {};
-  if (show_->is_live() && !makes_pictures()) add_button_actions(wishes.actions);
-  for (const Action action : wishes.actions) {
+  if (show_->is_live() && !makes_pictures()) add_button_actions(requests.actions);
+  for (const Action action : requests.actions) {
     const bool is_always = action == Action::back || action == Action::quit ||
                            action == Action::screenshot || action == Action::fullscreen;
     if (is_always || !is_modal()) run_action(action);
   }
-  for (const std::string& file : wishes.files) open_file(file);
+  for (const std::string& file : requests.files) open_file(file);
   if (is_modal()) controls_.release_all();
   show_->steer(controls_.walk());
-  move_camera(wishes);
-  keys_ = std::move(wishes.keys);
-  navigation_.steps += wishes.navigation.steps;
-  navigation_.sideways += wishes.navigation.sideways;
-  navigation_.press |= wishes.navigation.press;
+  move_camera(requests);
+  keys_ = std::move(requests.keys);
+  navigation_.steps += requests.navigation.steps;
+  navigation_.sideways += requests.navigation.sideways;
+  navigation_.press |= requests.navigation.press;
 }
 
 // A recording that plays as the pad steers and moves the camera, but its buttons cannot record,
@@ -443,7 +443,7 @@ void WindowLoop::follow_wishes(Wishes wishes) {
 void WindowLoop::add_button_actions(std::vector<Action>& wanted) {
   std::vector<Action> pressed;
   presses_.add_new_presses(show_->frame(), pressed);
-  if (is_recording(show_->options().pad.wish.pad)) {
+  if (is_recording(show_->options().pad.selector.pad)) {
     std::erase_if(pressed, [](Action action) {
       return action == Action::record || action == Action::screenshot ||
              action == Action::open_file || action == Action::calibrate || action == Action::quit;
@@ -463,16 +463,16 @@ bool WindowLoop::navigates(Action action) {
   return button == kButtonA || (button >= kButtonDpadUp && button <= kButtonDpadRight);
 }
 
-void WindowLoop::move_camera(const Wishes& wishes) {
+void WindowLoop::move_camera(const UserRequests& requests) {
   const double rad = kOrbitMouse_rad / scale();
-  is_camera_moved_ = is_camera_moved_ || wishes.orbit_px != vec2(0.0);
-  orbit(camera_, -wishes.orbit_px.x * rad, wishes.orbit_px.y * rad);
-  if (wishes.pan_px != vec2(0.0)) {
+  is_camera_moved_ = is_camera_moved_ || requests.orbit_px != vec2(0.0);
+  orbit(camera_, -requests.orbit_px.x * rad, requests.orbit_px.y * rad);
+  if (requests.pan_px != vec2(0.0)) {
     int width_px = 0, height_px = 0;
     surface_->size(width_px, height_px);
-    pan(camera_, wishes.pan_px, height_px);
+    pan(camera_, requests.pan_px, height_px);
   }
-  if (wishes.dolly != 1.0) dolly(camera_, wishes.dolly);
+  if (requests.dolly != 1.0) dolly(camera_, requests.dolly);
   if (!show_->is_live() || makes_pictures()) return;
   const vec2& stick = show_->frame().stick.right;
   if (glm::length(stick) < kStickRest) return;
@@ -557,7 +557,7 @@ void WindowLoop::draw_window(bool is_last) {
   if (std::exchange(is_camera_new_, false)) reset_camera(viewport);
   const double passed_s = makes_pictures() ? 1.0 / kPictureRateHz : clock_.passed_s();
   follow(camera_, ensemble_->focus_m(-1), passed_s);
-  approach(camera_, wished_framing(viewport), passed_s);
+  approach(camera_, wanted_framing(viewport), passed_s);
   turn_to_risers(passed_s);
   aim_stick();
   ensemble_->stand_on_ground(camera_);
@@ -574,12 +574,12 @@ void WindowLoop::draw_window(bool is_last) {
 }
 
 // Frames all characters beside the panels. Zooming in moves the target to the selected character.
-Framing WindowLoop::wished_framing(const Viewport& viewport) const {
-  Framing wish = ensemble_->framing(camera_, viewport, state_, scale());
+Framing WindowLoop::wanted_framing(const Viewport& viewport) const {
+  Framing wanted = ensemble_->framing(camera_, viewport, state_, scale());
   const double zoomed = std::clamp(2.0 * (1.0 - camera_.distance_m / camera_.framed_m), 0.0, 1.0);
   if (state_.walker >= 0)
-    wish.target_m = glm::mix(wish.target_m, ensemble_->focus_m(state_.walker), zoomed);
-  return wish;
+    wanted.target_m = glm::mix(wanted.target_m, ensemble_->focus_m(state_.walker), zoomed);
+  return wanted;
 }
 
 void WindowLoop::reset_camera(const Viewport& viewport) {
@@ -674,7 +674,7 @@ UiInput WindowLoop::ui_input() {
   }
   if (makes_pictures()) return in;
   if (clock_.now_ns() < change_ns_ + kChange_ns) in.change = change_;
-  in.can_rumble = has_pad && !is_recording(show_->options().pad.wish.pad);
+  in.can_rumble = has_pad && !is_recording(show_->options().pad.selector.pad);
   in.pad_rate_hz = clock_.rate_hz(frame.pad.reports);
   in.frames_per_second = clock_.frames_per_second();
   if (state_.is_open[static_cast<std::size_t>(Panel::loop)])
@@ -915,7 +915,7 @@ void WindowLoop::send_again(const std::vector<std::string>& commands, const char
   if (is_read_only()) return;
   if (commands.empty()) return say_change(fmt::format("nothing can be {}", what));
   for (const std::string& command : commands) show_->command(command);
-  state_.memory.wishes.clear();
+  state_.memory.pending.clear();
   say_change(fmt::format("{}: {}", what, fmt::join(commands, ", ")));
 }
 
@@ -1136,7 +1136,7 @@ void WindowLoop::begin_calibration() {
 
 void WindowLoop::begin_pad_dialog(PadDialogStart& start) {
   const SessionSpec& spec = show_->options();
-  auto dialog = start({spec.pad.wish, spec.pad.map, spec.config_folders,
+  auto dialog = start({spec.pad.selector, spec.pad.map, spec.config_folders,
                        options_.calibration_folder, options_.program});
   pad_dialog_state_ = PadDialog::State::goes_on;
   if (dialog) {

@@ -31,13 +31,13 @@ StickCalibration shipped() {
 class Thumb {
  public:
   Thumb(unsigned seed, double askew_rad) : random_(seed), askew_rad_(askew_rad) {}
-  vec2 move(const vec2& wish) {
+  vec2 move(const vec2& aim) {
     constexpr double kLag_s = 0.035, kStep_s = 1.0 / (6.0 * kPlayerRate_hz);
     for (int n = 0; n < 6; ++n) {
-      rate_ += ((wish - place_) / (kLag_s * kLag_s) - 2.0 * rate_ / kLag_s) * kStep_s;
+      rate_ += ((aim - place_) / (kLag_s * kLag_s) - 2.0 * rate_ / kLag_s) * kStep_s;
       place_ += rate_ * kStep_s;
     }
-    const double trembles = wish == vec2(0.0) ? 0.0 : 0.012 + 0.004 * glm::length(rate_);
+    const double trembles = aim == vec2(0.0) ? 0.0 : 0.012 + 0.004 * glm::length(rate_);
     for (int k : {0, 1}) noise_[k] = 0.9 * noise_[k] + 0.436 * trembles * normal_(random_);
     const SinCos turn = sin_cos(askew_rad_);
     const vec2 held = place_ + noise_;
@@ -149,8 +149,8 @@ class Player {
     const double turn =
         std::clamp(kGain_per_s * wrapped(heading_rad - seen().heading_rad), -1.0, 1.0);
     const double right = std::clamp(-turn - over_zone_ * std::tanh(turn / 0.06), -0.98, 0.98);
-    const vec2 wish(right, std::min(forward, std::sqrt(std::max(0.0, 1.1 - right * right))));
-    const vec2 stick = thumb_.move(wish);
+    const vec2 aim(right, std::min(forward, std::sqrt(std::max(0.0, 1.1 - right * right))));
+    const vec2 stick = thumb_.move(aim);
     walker_.walk(stick.x, stick.y, kTicksASeen);
     see();
   }

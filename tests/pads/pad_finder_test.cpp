@@ -22,12 +22,12 @@ class PadChoice : public testing::Test {
     bus_.show(driver, pad);
     return pad;
   }
-  std::vector<PadSighting> sightings(const PadWish& wish = {}) {
-    return value_of(pad_sightings({}, wish, Drivers::preferred, FakeBus::table()));
+  std::vector<PadSighting> sightings(const PadSelector& selector = {}) {
+    return value_of(pad_sightings({}, selector, Drivers::preferred, FakeBus::table()));
   }
   // The nodes to open, each followed by a blank.
-  std::string chosen(const PadWish& wish = {}) {
-    auto pads = chosen_pads(sightings(wish), wish);
+  std::string chosen(const PadSelector& selector = {}) {
+    auto pads = chosen_pads(sightings(selector), selector);
     if (!pads) return pads.error().message;
     std::string nodes;
     for (const PadSighting& s : *pads) nodes += s.listing.node + " ";
@@ -76,12 +76,13 @@ TEST_F(PadChoice, APadIsNamedByNodeModelUniqueIdOrAPartOfItsName) {
   auto other = see(kHidraw, "DD:EE:FF", "p2", "Example Gamepad");
   other->listing.info.vendor = 0x0abc;
   other->listing.info.product = 0x001f;
-  for (const char* wish : {"/dev/hidraw-p2", "0abc:001f", "ABC:1F", "dd:ee:ff", "Example Gamepad",
-                           "example", "GAMEP"}) {
-    EXPECT_EQ(chosen({wish, ""}), "/dev/hidraw-p2 ") << wish;
+  for (const char* selector : {"/dev/hidraw-p2", "0abc:001f", "ABC:1F", "dd:ee:ff",
+                               "Example Gamepad", "example", "GAMEP"}) {
+    EXPECT_EQ(chosen({selector, ""}), "/dev/hidraw-p2 ") << selector;
   }
-  for (const char* wish : {"/dev/hidraw-p3", "0abc:0020", "dd:ee", "0abc:001f0", ":", "Gamepads"})
-    EXPECT_EQ(chosen({wish, ""}), "") << wish;
+  for (const char* selector :
+       {"/dev/hidraw-p3", "0abc:0020", "dd:ee", "0abc:001f0", ":", "Gamepads"})
+    EXPECT_EQ(chosen({selector, ""}), "") << selector;
 }
 
 TEST_F(PadChoice, APartThatFitsSeveralPadsIsAnErrorThatNamesThem) {
@@ -174,17 +175,17 @@ TEST_F(PadChoice, SdlIsAskedOnlyWhereItMustBe) {
 
 TEST_F(PadChoice, ARecordingGivesItsDevicesAlone) {
   see(kHidraw, "A", "p1");
-  const PadWish wish{kSourceFolder + "/tests/data/pads/046d_c216.hid", ""};
-  auto seen = pad_sightings({}, wish, Drivers::preferred);
+  const PadSelector selector{kSourceFolder + "/tests/data/pads/046d_c216.hid", ""};
+  auto seen = pad_sightings({}, selector, Drivers::preferred);
   ASSERT_TRUE(seen) << seen.error().message;
   ASSERT_EQ(seen->size(), 1u);
   EXPECT_STREQ(seen->front().driver->name, "trace");
   EXPECT_TRUE(seen->front().is_pad);
-  auto pads = chosen_pads(*seen, wish);
+  auto pads = chosen_pads(*seen, selector);
   ASSERT_TRUE(pads);
   EXPECT_EQ(pads->size(), 1u);
-  EXPECT_EQ(pad_sightings({}, {wish.pad, "evdev"}, Drivers::preferred).error().message,
-            wish.pad + ": a recording is not for the driver \"evdev\"");
+  EXPECT_EQ(pad_sightings({}, {selector.pad, "evdev"}, Drivers::preferred).error().message,
+            selector.pad + ": a recording is not for the driver \"evdev\"");
   EXPECT_EQ(pad_sightings({}, {"/nonexistent.hid", ""}, Drivers::preferred).error().message,
             "/nonexistent.hid: there is no such file");
 }
@@ -403,12 +404,12 @@ TEST_F(PadStreamTest, APadHasItsUsersCalibrationAndSaysWhetherItBringsItsOwn) {
   EXPECT_FALSE(other_config.has_factory_sticks);
 }
 
-TEST_F(PadStreamTest, AWishThatMakesNoSenseIsAnErrorAtOnceAndOneThatNothingFitsWaits) {
+TEST_F(PadStreamTest, ASelectorThatMakesNoSenseIsAnErrorAtOnceAndOneThatNothingFitsWaits) {
   bus_.plug(kHidraw, "A", "port1");
   bus_.plug(kHidraw, "B", "port2");
-  const auto cause = [this](PadWish wish) -> std::string {
+  const auto cause = [this](PadSelector selector) -> std::string {
     PadStreamOptions options;
-    options.wish = std::move(wish);
+    options.selector = std::move(selector);
     options.drivers = FakeBus::table();
     options.changes_fd = bus_.changes_fd();
     return cause_of(PadStream::start(std::move(options)));
@@ -473,8 +474,8 @@ TEST_F(PadStreamTest, ARecordersPadHandsOnEveryPacket) {
 class RecordingAsPad : public PadStreamTest {
  protected:
   void play(const Trace& trace, PadStreamOptions options = {}) {
-    options.wish.pad = own_.at("pad.hid");
-    ASSERT_TRUE(write_trace(trace, options.wish.pad));
+    options.selector.pad = own_.at("pad.hid");
+    ASSERT_TRUE(write_trace(trace, options.selector.pad));
     stream_ = value_of(PadStream::start(std::move(options)));
   }
   static Trace made_trace() {
@@ -522,10 +523,10 @@ TEST_F(RecordingAsPad, WithoutAnyStickIsAnError) {
   Trace trace = made_trace();
   trace.devices[0].info.descriptor = {0x05, 0x01, 0x09, 0x06, 0xa1, 0x01, 0xc0};
   PadStreamOptions options;
-  options.wish.pad = own_.at("pad.hid");
-  ASSERT_TRUE(write_trace(trace, options.wish.pad));
+  options.selector.pad = own_.at("pad.hid");
+  ASSERT_TRUE(write_trace(trace, options.selector.pad));
   EXPECT_EQ(cause_of(PadStream::start(options)),
-            options.wish.pad + ": none of its devices is a pad with a stick");
+            options.selector.pad + ": none of its devices is a pad with a stick");
 }
 
 // --- pads that are joined, and pads that do not tell their stick
@@ -541,7 +542,7 @@ struct JoinedPads {
   FakeBus::Pad left, right, pair;
 };
 
-TEST_F(PadChoice, APairIsChosenForBothItsPartsUnlessOneIsWished) {
+TEST_F(PadChoice, APairIsChosenForBothItsPartsUnlessOneIsAskedFor) {
   const JoinedPads pads(bus_);
   bus_.show(kHidraw, pads.pair);
   bus_.show(kHidraw, pads.left);

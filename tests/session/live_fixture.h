@@ -49,9 +49,9 @@ class Live : public testing::Test {
   void SetUp() override {
     options_.config_folders = {kSourceFolder + "/config"};
     options_.walk.styles = {"even", "limp_left"};
-    options_.pad.wish.pad = (folder_ / "pads.hid").string();
+    options_.pad.selector.pad = (folder_ / "pads.hid").string();
     options_.live.record = (folder_ / "session.hid").string();
-    ASSERT_TRUE(write_trace(two_pads_trace(), options_.pad.wish.pad));
+    ASSERT_TRUE(write_trace(two_pads_trace(), options_.pad.selector.pad));
   }
 
   std::unique_ptr<LiveSession> started() { return value_of(LiveSession::start(options_)); }

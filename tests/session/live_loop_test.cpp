@@ -330,7 +330,7 @@ LoopParts made_loop(PadStreamOptions options, const std::string& record) {
 
 TEST_F(LiveLoopTest, TheLoopThreadUsesNoHeap) {
   PadStreamOptions options;
-  options.wish = options_.pad.wish;
+  options.selector = options_.pad.selector;
   LoopParts parts = made_loop(std::move(options), options_.live.record);
   int uses = -1;
   std::thread loop([&] {

@@ -111,7 +111,7 @@ TEST_F(Live, TicksMissedInAStandstillAreNotMadeUp) {
 }
 
 TEST_F(Live, WithoutAPadItStandsAndNothingIsRecorded) {
-  options_.pad.wish.pad = "0001:fffe";
+  options_.pad.selector.pad = "0001:fffe";
   auto session = started();
   sleep_for(200);
   bool is_new = false;
@@ -194,7 +194,7 @@ class LiveKeyboard : public Live {
   void SetUp() override {
     Live::SetUp();
     options_.live.keyboard = true;
-    options_.pad.wish.pad = "0001:fffe";  // no such pad exists
+    options_.pad.selector.pad = "0001:fffe";  // no such pad exists
   }
   static double distance_m(LiveSession& session) {
     bool is_new = false;
@@ -270,7 +270,7 @@ TEST_F(LiveKeyboard, ACalibrationOfAPadDoesNotApply) {
 }
 
 TEST_F(LiveKeyboard, ARecordingAsPadStillEndsTheSession) {
-  options_.pad.wish.pad = (folder_ / "pads.hid").string();
+  options_.pad.selector.pad = (folder_ / "pads.hid").string();
   auto session = started();
   session->steer(vec2(1.0, 0.0));
   EXPECT_TRUE(comes_true([&] { return session->has_ended(); }));
@@ -289,8 +289,8 @@ Trace late_pad_trace() {
 }
 
 TEST_F(LiveKeyboard, DrivesWhileThePadRests) {
-  options_.pad.wish.pad = (folder_ / "late.hid").string();
-  ASSERT_TRUE(write_trace(late_pad_trace(), options_.pad.wish.pad));
+  options_.pad.selector.pad = (folder_ / "late.hid").string();
+  ASSERT_TRUE(write_trace(late_pad_trace(), options_.pad.selector.pad));
   auto session = started();
   session->steer(vec2(0.0, 1.0));
   vec2 stick(0.0);

@@ -147,7 +147,7 @@ TEST_F(RecordedSessionTest, NoNameLeadsOutOfARecording) {
 TEST_F(RecordedSessionTest, ADamagedStyleThatNobodyNamesIsLeftOutWithARemark) {
   own_.write("config/styles/broken.toml", "hip_sway = \n");
   SessionSpec spec = options_;
-  spec.replay.trace = options_.pad.wish.pad;
+  spec.replay.trace = options_.pad.selector.pad;
   const auto result = value_of(replay(spec));
   ASSERT_EQ(result.remarks.size(), 1u);
   EXPECT_EQ(result.remarks[0].find(own_.at("config/styles/broken.toml") + ":1: "), 0u);

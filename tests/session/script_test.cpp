@@ -126,7 +126,7 @@ class Scripted : public Live {
     Live::SetUp();
     options_.live.clock = SessionSpec::Live::Clock::by_hand;
     options_.live.keyboard = true;
-    options_.pad.wish.pad = "0001:fffe";  // no such pad exists: only the script drives the walk
+    options_.pad.selector.pad = "0001:fffe";  // no such pad exists: only the script drives the walk
   }
   std::string write(const std::string& name, const std::string& text) {
     return own_.write(name, text);

@@ -94,7 +94,7 @@ SDL_Event window(Uint8 what) {
 std::vector<Action> actions_of(const SDL_Event& event, const TakenInput& taken = {}) {
   Controls controls;
   controls.handle_event(event, taken);
-  return controls.take_wishes().actions;
+  return controls.take_requests().actions;
 }
 
 TEST(Controls, EveryKeyOfTheTableAsksForItsActionAndForNoOther) {
@@ -160,7 +160,7 @@ TEST(Controls, FocusLossLetsEverythingGo) {
     controls.handle_event(motion(50, 50), {});
     EXPECT_EQ(controls.walk(), vec2(0.0));
     EXPECT_FALSE(controls.mouse().is_down[0]);
-    EXPECT_EQ(controls.take_wishes().orbit_px, vec2(0.0));
+    EXPECT_EQ(controls.take_requests().orbit_px, vec2(0.0));
   }
 }
 
@@ -173,7 +173,7 @@ TEST(Controls, ADragOrbitsWithAnotherButtonOrShiftItPans) {
     controls.handle_event(motion(130, 90), {});
     controls.handle_event(button(SDL_MOUSEBUTTONUP, number, 130, 90), {});
     controls.handle_event(motion(200, 200), {});  // after the release: no effect
-    return controls.take_wishes();
+    return controls.take_requests();
   };
   EXPECT_EQ(dragged(SDL_BUTTON_LEFT, false).orbit_px, vec2(30, -10));
   EXPECT_EQ(dragged(SDL_BUTTON_LEFT, false).pan_px, vec2(0, 0));
@@ -192,9 +192,9 @@ TEST(Controls, AboveAPanelTheMouseIsThePanels) {
   wheel.wheel.y = 1;
   controls.handle_event(wheel, {.mouse = true});
   EXPECT_TRUE(controls.mouse().is_down[0]);
-  const Wishes wishes = controls.take_wishes();
-  EXPECT_EQ(wishes.orbit_px, vec2(0.0));
-  EXPECT_EQ(wishes.dolly, 1.0);
+  const UserRequests requests = controls.take_requests();
+  EXPECT_EQ(requests.orbit_px, vec2(0.0));
+  EXPECT_EQ(requests.dolly, 1.0);
 }
 
 TEST(Controls, TheWheelGoesNearerAndBackToWhereItWas) {
@@ -203,11 +203,11 @@ TEST(Controls, TheWheelGoesNearerAndBackToWhereItWas) {
   wheel.type = SDL_MOUSEWHEEL;
   wheel.wheel.y = 2;
   controls.handle_event(wheel, {});
-  const double nearer = controls.take_wishes().dolly;
+  const double nearer = controls.take_requests().dolly;
   EXPECT_LT(nearer, 1.0);
   wheel.wheel.y = -2;
   controls.handle_event(wheel, {});
-  EXPECT_NEAR(nearer * controls.take_wishes().dolly, 1.0, 1e-12);
+  EXPECT_NEAR(nearer * controls.take_requests().dolly, 1.0, 1e-12);
 }
 
 // On a QWERTZ keyboard Y is at the place of QWERTY's Z; the engraved letter counts.
@@ -218,11 +218,11 @@ TEST(Controls, KeysAreTakenByWhatIsEngravedOnThem) {
   event.key.keysym.scancode = SDL_SCANCODE_Z;
   Controls controls;
   controls.handle_event(event, {});
-  EXPECT_EQ(controls.take_wishes().keys, std::vector<SDL_Keycode>{SDLK_y});
+  EXPECT_EQ(controls.take_requests().keys, std::vector<SDL_Keycode>{SDLK_y});
   TakenInput typing;
   typing.keys = true;
   controls.handle_event(event, typing);
-  EXPECT_TRUE(controls.take_wishes().keys.empty());
+  EXPECT_TRUE(controls.take_requests().keys.empty());
 }
 
 TEST(Controls, WhileKeysNavigateTheyNeitherWalkNorAct) {
@@ -236,11 +236,11 @@ TEST(Controls, WhileKeysNavigateTheyNeitherWalkNorAct) {
     controls.handle_event(event, taken);
   }
   EXPECT_EQ(controls.walk(), vec2(0.0));
-  const Wishes wishes = controls.take_wishes();
-  EXPECT_TRUE(wishes.actions.empty());
-  EXPECT_EQ(wishes.navigation.steps, 2);
-  EXPECT_EQ(wishes.navigation.sideways, 2);
-  EXPECT_TRUE(wishes.navigation.press);
+  const UserRequests requests = controls.take_requests();
+  EXPECT_TRUE(requests.actions.empty());
+  EXPECT_EQ(requests.navigation.steps, 2);
+  EXPECT_EQ(requests.navigation.sideways, 2);
+  EXPECT_TRUE(requests.navigation.press);
 }
 
 SessionFrame pressed_times(int button, std::uint32_t times) {

@@ -72,7 +72,7 @@ TEST_F(FontTest, StyleIsScaledFromItsBeginningEachTime) {
             imgui_colour(theme_of(ThemeName::light).text).x);
 }
 
-TEST(DisplayScale, IsTheWishElseTheEnvironmentsElseTheDisplays) {
+TEST(DisplayScale, IsTheAskedOneElseTheEnvironmentsElseTheDisplays) {
   ::unsetenv("GDK_SCALE");
   EXPECT_EQ(display_scale(1.5, 192.0), 1.5);
   EXPECT_EQ(display_scale(0.0, 192.0), 2.0);

@@ -128,11 +128,11 @@ TEST_F(PanelTest, ASliderStaysWhereItWasLetGoUntilTheSessionFollows) {
   move_to("slider hip_bounce", 0.75);
   release();
   draw();  // the session has not run yet
-  ASSERT_EQ(state.memory.wishes.size(), 1u);
-  const double asked = state.memory.wishes[0].value;
+  ASSERT_EQ(state.memory.pending.size(), 1u);
+  const double asked = state.memory.pending[0].value;
   step(2, {"gait hip_bounce " + std::to_string(asked)});
   draw();
-  EXPECT_TRUE(state.memory.wishes.empty());
+  EXPECT_TRUE(state.memory.pending.empty());
   EXPECT_NEAR(frame->walkers[0].overrides.value[static_cast<std::size_t>(GaitKey::hip_bounce)],
               asked, 1e-9);
 }
@@ -144,7 +144,7 @@ TEST_F(PanelTest, WhatASessionRefusesIsNotShownForEver) {
   release();
   step(240);
   draw();
-  EXPECT_TRUE(state.memory.wishes.empty());
+  EXPECT_TRUE(state.memory.pending.empty());
 }
 
 TEST_F(PanelTest, WhatIsOverriddenCanBeGivenBack) {

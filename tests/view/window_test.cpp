@@ -208,7 +208,7 @@ class Window : public testing::Test {
     fs::current_path(folder_);
     options_.session.config_folders = {kSourceFolder + "/config"};
     options_.session.walk.styles = {"even", "stiff_hip", "stiff_knee", "limp_left"};
-    options_.session.pad.wish.pad = "no pad of this machine";
+    options_.session.pad.selector.pad = "no pad of this machine";
     options_.scale = 1.0;
     options_.width = 960;  // fewer pixels are drawn faster
     options_.height = 540;
@@ -969,7 +969,7 @@ std::string odd_pad_trace() {
 }
 
 TEST_F(WindowFiles, TheSelfTestNeedsThePadItselfAndTheSessionGoesOnWithoutIt) {
-  options_.session.pad.wish.pad = make("thumb.hid", thumb_trace());
+  options_.session.pad.selector.pad = make("thumb.hid", thumb_trace());
   Script script;
   script.until("it runs", runs);
   script.tap(SDLK_F8);
@@ -983,7 +983,7 @@ TEST_F(WindowFiles, TheSelfTestNeedsThePadItselfAndTheSessionGoesOnWithoutIt) {
 }
 
 TEST_F(WindowFiles, ControlsThatAreWrongAreAskedForAndKept) {
-  options_.session.pad.wish.pad = make("odd.hid", odd_pad_trace());
+  options_.session.pad.selector.pad = make("odd.hid", odd_pad_trace());
   Script script;
   script.until("it runs", runs);
   script.tap(SDLK_F8);
@@ -999,7 +999,7 @@ TEST_F(WindowFiles, ControlsThatAreWrongAreAskedForAndKept) {
 }
 
 TEST_F(WindowFiles, ACalibrationIsMeasuredShownSavedAndInForce) {
-  options_.session.pad.wish.pad = make("thumb.hid", thumb_trace());
+  options_.session.pad.selector.pad = make("thumb.hid", thumb_trace());
   options_.calibration_folder = (folder_ / "config/gaitpad/calibration").string();
   Script script;
   script.until("it runs", runs);
@@ -1024,7 +1024,7 @@ TEST_F(WindowFiles, ACalibrationIsMeasuredShownSavedAndInForce) {
 }
 
 TEST_F(WindowFiles, TheGuideOfACalibrationFitsInASmallWindow) {
-  options_.session.pad.wish.pad = make("thumb.hid", thumb_trace());
+  options_.session.pad.selector.pad = make("thumb.hid", thumb_trace());
   options_.width = 640;
   options_.height = 400;
   Script script;

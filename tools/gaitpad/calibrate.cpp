@@ -32,7 +32,7 @@ namespace gaitpad {
 namespace {
 
 struct CalibrateArguments {
-  PadWish wish;
+  PadSelector selector;
   std::vector<std::string> traces, pushes, compare;
   std::string out, plot, check, import, map;
   bool as_json = false, exports_sdl = false, is_lenient = false;
@@ -73,7 +73,7 @@ void print_rest(const StickStatistics& s) {
   print_row("drift", trend.empty() ? kUnknown : *s.drift_per_s > 0.0 ? trend : "     none", from);
   if (s.wander > 0.0)
     print_row("wander", fmt::format("{:>9.4f} a second", s.wander),
-              fmt::format("{:.1f} s in which nobody held it", seconds_of(s.hands_off)));
+              fmt::format("{:.1f} s without hands on it", seconds_of(s.hands_off)));
   if (s.displaced > 0) {
     print_row("displaced rests", fmt::format("{:>9}", s.displaced),
               fmt::format("up to {:.3f} off the centre", s.displaced_by));
@@ -258,14 +258,14 @@ Result<std::string> import_text(const std::string& source) {
 }
 
 // Opens the pad only to identify it.
-Result<GuidedPad> live_pad(const PadWish& wish, const PadFiles& files,
+Result<GuidedPad> live_pad(const PadSelector& selector, const PadFiles& files,
                            std::vector<std::string>& remarks) {
-  auto sightings = pad_sightings(files, wish, Drivers::preferred);
+  auto sightings = pad_sightings(files, selector, Drivers::preferred);
   if (!sightings) return sightings.error();
-  auto chosen = chosen_pads(*sightings, wish);
+  auto chosen = chosen_pads(*sightings, selector);
   if (!chosen) return chosen.error();
   if (chosen->empty()) return Error{"there is no usable pad; gaitpad doctor finds out why"};
-  auto device = chosen->front().driver->open(chosen->front().listing, detach_asked(wish));
+  auto device = chosen->front().driver->open(chosen->front().listing, detach_asked(selector));
   if (!device) return device.error();
   const auto factory = (*device)->factory_sticks();
   GuidedPad pad;
@@ -280,7 +280,7 @@ Result<GuidedPad> live_pad(const PadWish& wish, const PadFiles& files,
 Result<GuidedPad> named_pad(const CalibrateArguments& arguments, const PadFiles& files) {
   std::vector<std::string> remarks;
   auto pad = arguments.traces.empty()
-                 ? live_pad(arguments.wish, files, remarks)
+                 ? live_pad(arguments.selector, files, remarks)
                  : traced_pad(arguments.traces,
                               arguments.is_lenient ? Damage::skip : Damage::refuse, files, remarks);
   print_remarks(kCalibrateCommand, remarks);
@@ -324,7 +324,7 @@ int import_calibration(const CalibrateArguments& arguments, const PadFiles& file
   auto given = import_text(arguments.import);
   if (!given) return fail(kCalibrateCommand, given.error().message);
   const bool is_for_a_pad =
-      !arguments.wish.pad.empty() || !arguments.traces.empty() || !arguments.out.empty();
+      !arguments.selector.pad.empty() || !arguments.traces.empty() || !arguments.out.empty();
   if (const auto lines = mapping_lines(*given); !is_for_a_pad && is_data_base(lines))
     return import_data_base(origin, lines);
   auto pad = named_pad(arguments, files);
@@ -545,7 +545,7 @@ int run(const CalibrateArguments& arguments) {
   if (arguments.traces.empty()) {
     if (const auto problem = problem_beforehand(arguments))
       return fail(kCalibrateCommand, problem->message);
-    const auto pad = guided_pad(*files, arguments.wish, end);
+    const auto pad = guided_pad(*files, arguments.selector, end);
     if (!pad) return fail(kCalibrateCommand, pad.error().message);
     if (!*pad) return fail(kCalibrateCommand, "left before the end; nothing written");
     return finish(arguments, *files, **pad, &end);
@@ -571,7 +571,7 @@ std::string png_problem([[maybe_unused]] const std::string& path) {
 
 // Options of measuring and of the result.
 void add_measuring(CLI::App& command, CalibrateArguments& arguments) {
-  add_pad_options(command, arguments.wish);
+  add_pad_options(command, arguments.selector);
   auto* trace = command.add_option("--trace", arguments.traces,
                                    "a recording instead of a guided session; again for more");
   trace->allow_extra_args(false);

@@ -143,9 +143,9 @@ std::string name_of(const DeviceInfo& info) {
   return name.empty() ? fmt::format("{:04x}:{:04x}", info.vendor, info.product) : name;
 }
 
-enum class Wish { go_on, give_up };
+enum class Next { go_on, give_up };
 
-Wish obey(char key, CalibrationGuide& guide, GuideScreen& screen) {
+Next obey(char key, CalibrationGuide& guide, GuideScreen& screen) {
   switch (key) {
     case '\n':
     case 's':
@@ -167,28 +167,28 @@ Wish obey(char key, CalibrationGuide& guide, GuideScreen& screen) {
       break;
     case 'q':
     case 'Q':
-      return Wish::give_up;
+      return Next::give_up;
     default:
       break;
   }
-  return Wish::go_on;
+  return Next::go_on;
 }
 
 // Before a pad has come only q has an effect.
-Wish obey_keys(TerminalKeys& keys, CalibrationGuide* guide, GuideScreen& screen) {
+Next obey_keys(TerminalKeys& keys, CalibrationGuide* guide, GuideScreen& screen) {
   while (const std::optional<char> key = keys.take_key()) {
-    if (guide && guide->step() == GuideStep::done) return Wish::go_on;
+    if (guide && guide->step() == GuideStep::done) return Next::go_on;
     const bool is_quit = *key == 'q' || *key == 'Q';
-    if (guide ? obey(*key, *guide, screen) == Wish::give_up : is_quit) return Wish::give_up;
+    if (guide ? obey(*key, *guide, screen) == Next::give_up : is_quit) return Next::give_up;
   }
-  return keys.is_at_end() ? Wish::give_up : Wish::go_on;
+  return keys.is_at_end() ? Next::give_up : Next::go_on;
 }
 
 // True: the guide is finished. False: the user gave up.
-Result<bool> run_guide(GuidedCalibration& calibration, const PadWish& wish, RunEnd& end) {
+Result<bool> run_guide(GuidedCalibration& calibration, const PadSelector& selector, RunEnd& end) {
   GuideScreen screen;
   TerminalKeys keys;  // destroyed before the stream, which may take long to close
-  MissingPad missing(kCalibrateCommand, wish);
+  MissingPad missing(kCalibrateCommand, selector);
   while (!end.is_reached()) {
     const bool was_there = calibration.guide() != nullptr;
     calibration.look(kGuideWait);
@@ -200,7 +200,7 @@ Result<bool> run_guide(GuidedCalibration& calibration, const PadWish& wish, RunE
         return Error{name_of(calibration.pad()) + ": has no stick to calibrate"};
       print_remarks(kCalibrateCommand, driver_remarks(calibration.pad()), &screen.line());
     }
-    if (obey_keys(keys, guide, screen) == Wish::give_up) return false;
+    if (obey_keys(keys, guide, screen) == Next::give_up) return false;
     if (!guide && calibration.has_ended()) return false;
     if (!guide) continue;
     screen.show(*guide, {calibration.pad(), calibration.is_plugged()});
@@ -217,11 +217,11 @@ std::vector<std::string> driver_remarks(const DeviceInfo& info) {
   return {name_of(info) + ": " + remark};
 }
 
-Result<std::optional<GuidedPad>> guided_pad(const PadFiles& files, const PadWish& wish,
+Result<std::optional<GuidedPad>> guided_pad(const PadFiles& files, const PadSelector& selector,
                                             RunEnd& end) {
-  auto calibration = GuidedCalibration::start(files, wish);
+  auto calibration = GuidedCalibration::start(files, selector);
   if (!calibration) return calibration.error();
-  const auto is_done = run_guide(**calibration, wish, end);
+  const auto is_done = run_guide(**calibration, selector, end);
   if (!is_done) return is_done.error();
   if (!*is_done) return std::optional<GuidedPad>();
   return std::optional((*calibration)->finish());

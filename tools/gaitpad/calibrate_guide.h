@@ -16,8 +16,8 @@ inline constexpr const char* kCalibrateCommand = "calibrate";
 
 // Runs the guided steps on the first matching pad. Returns nothing if the user gave up (q, Ctrl-C,
 // SIGTERM, end of input); then no file must be written. The end of a recording skips the remaining
-// steps. Error: `wish` is invalid, or the pad has no stick.
-Result<std::optional<GuidedPad>> guided_pad(const PadFiles& files, const PadWish& wish,
+// steps. Error: `selector` is invalid, or the pad has no stick.
+Result<std::optional<GuidedPad>> guided_pad(const PadFiles& files, const PadSelector& selector,
                                             RunEnd& end);
 
 // A remark if the driver may show other values than the pad sends; else empty.

@@ -4,15 +4,14 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <filesystem>
 #include <memory>
 #include <string>
 #include <vector>
 
 #include "base/files.h"
+#include "check/check_report.h"
 #include "check/trace_check.h"
 #include "session/workers.h"
 #include "terminal/run_end.h"
@@ -26,12 +25,7 @@ namespace {
 
 constexpr const char* kCheckCommand = "check";
 constexpr int kWrongUsage = 2;  // exit status
-constexpr int kMaxShards = 100'000, kMaxJobs = 1024;
-
-// This run's part of the recordings: every `total`-th, from number `index`, counted from 1.
-struct Shard {
-  int index = 1, total = 1;
-};
+constexpr int kMaxJobs = 1024;
 
 struct CheckArguments {
   std::vector<std::string> paths;
@@ -41,123 +35,20 @@ struct CheckArguments {
   std::optional<double> max_hours;
 };
 
-// Parses `2/8`.
-std::optional<Shard> shard_of(std::string_view text) {
-  Shard shard;
-  shard.index = parse_number<int>(take_part(text, '/')).value_or(0);
-  shard.total = parse_number<int>(text).value_or(0);
-  const bool is_sound = shard.index >= 1 && shard.index <= shard.total && shard.total <= kMaxShards;
-  return is_sound ? std::optional(shard) : std::nullopt;
-}
-
 std::string shard_problem(const std::string& text) {
-  return shard_of(text) ? "" : in_quotes(text) + " is not I/N with 1 <= I <= N, such as 2/8";
+  return parse_shard(text) ? "" : in_quotes(text) + " is not I/N with 1 <= I <= N, such as 2/8";
 }
 
 // --shard, else GAITPAD_SHARD_INDEX and GAITPAD_SHARD_TOTAL, else all.
-Result<Shard> wished_shard(const std::string& option) {
-  if (!option.empty()) return *shard_of(option);
+Result<Shard> asked_shard(const std::string& option) {
+  if (!option.empty()) return *parse_shard(option);
   const char *index = std::getenv("GAITPAD_SHARD_INDEX"),
              *total = std::getenv("GAITPAD_SHARD_TOTAL");
   if (index == nullptr && total == nullptr) return Shard{};
   const std::string text = fmt::format("{}/{}", index ? index : "", total ? total : "");
-  if (const auto shard = shard_of(text)) return *shard;
+  if (const auto shard = parse_shard(text)) return *shard;
   return Error{"GAITPAD_SHARD_INDEX/GAITPAD_SHARD_TOTAL: " + shard_problem(text)};
 }
-
-// --- TAP (testanything.org, version 14)
-
-std::string tap_description(const std::string& path) {
-  std::string text;
-  for (const char c : printable(path)) {
-    if (c == '#' || c == '\\') text += '\\';
-    text += c;
-  }
-  return text;
-}
-
-std::string yaml_string(const std::string& text) {
-  return nlohmann::json(text).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
-}
-
-void print_tap(std::size_t number, const CheckedTrace& trace, const CheckResult& result,
-               bool updates) {
-  fmt::print("{}ok {} - {}\n", result.is_met ? "" : "not ", number,
-             tap_description(trace.recording()));
-  if (updates && result.is_met) {
-    fmt::print("# {}\n", result.verdict);
-    for (const std::string& line : result.details) fmt::print("# {}\n", printable(line));
-  } else if (!result.is_met) {
-    fmt::print("  ---\n  message: {}\n", yaml_string(result.verdict));
-    if (!result.details.empty()) fmt::print("  details:\n");
-    for (const std::string& line : result.details) fmt::print("    - {}\n", yaml_string(line));
-    fmt::print("  ...\n");
-  }
-  std::fflush(stdout);
-}
-
-// --- JUnit
-
-// XML 1.0 allows only valid UTF-8 without control characters.
-std::string xml_text(std::string_view text) {
-  std::string out;
-  while (!text.empty()) {
-    const std::size_t bytes = character_bytes(text);
-    const std::string_view c = text.substr(0, std::max<std::size_t>(bytes, 1));
-    text.remove_prefix(c.size());
-    const auto code = static_cast<unsigned char>(c.front());
-    if (c == "&") {
-      out += "&amp;";
-    } else if (c == "<") {
-      out += "&lt;";
-    } else if (c == ">") {
-      out += "&gt;";
-    } else if (c == "\"") {
-      out += "&quot;";
-    } else if (c == "\n") {
-      out += "&#10;";
-    } else if (bytes == 0 || code < 0x20 || code == 0x7f || c == "\xef\xbf\xbe" ||
-               c == "\xef\xbf\xbf") {
-      out += '?';
-    } else {
-      out += c;
-    }
-  }
-  return out;
-}
-
-class JunitReport {
- public:
-  void add(const CheckedTrace& trace, const CheckResult& result) {
-    ++tests_;
-    seconds_ += result.seconds;
-    cases_ += fmt::format("    <testcase classname=\"gaitpad.check\" name=\"{}\" time=\"{:.3f}\"",
-                          xml_text(trace.recording()), result.seconds);
-    if (result.is_met) {
-      cases_ += "/>\n";
-      return;
-    }
-    ++failures_;
-    std::string details;
-    for (const std::string& line : result.details) details += line + "\n";
-    cases_ += fmt::format(">\n      <failure message=\"{}\">{}</failure>\n    </testcase>\n",
-                          xml_text(result.verdict), xml_text(details));
-  }
-  std::string text() const {
-    const std::string counts = fmt::format(
-        "tests=\"{}\" failures=\"{}\" errors=\"0\" time=\"{:.3f}\"", tests_, failures_, seconds_);
-    return fmt::format(
-        "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites {0}>\n"
-        "  <testsuite name=\"gaitpad check\" {0} skipped=\"0\">\n{1}  "
-        "</testsuite>\n</testsuites>\n",
-        counts, cases_);
-  }
-
- private:
-  std::string cases_;
-  int tests_ = 0, failures_ = 0;
-  double seconds_ = 0.0;
-};
 
 // --- the picture of two curves
 
@@ -175,15 +66,6 @@ std::optional<Error> draw_curves(const JointCurves&, const std::string&, const s
 std::string joints_plot_problem(const std::string&) { return missing_window(); }
 #endif
 
-// Keeps the recording's own folders inside `folder`: `../walks/round` becomes `walks/round.png`.
-std::string picture_path(const std::string& folder, const CheckedTrace& trace) {
-  std::filesystem::path place = folder;
-  for (const std::filesystem::path& part : std::filesystem::path(trace.path).lexically_normal()) {
-    if (part != ".." && part != "." && !part.is_absolute()) place /= part;
-  }
-  return place.string() + ".png";
-}
-
 // --- the command
 
 // Printed last, so that it is seen. Returns the exit status.
@@ -198,7 +80,7 @@ int tell_of_left_out(const CheckArguments& arguments, const std::vector<std::str
 }
 
 int run(const CheckArguments& arguments) {
-  const auto shard = wished_shard(arguments.shard);
+  const auto shard = asked_shard(arguments.shard);
   if (!shard) return fail(kCheckCommand, shard.error().message), kWrongUsage;
   auto found = found_traces(arguments.paths, arguments.updates);
   if (!found) return fail(kCheckCommand, found.error().message);
@@ -208,9 +90,7 @@ int run(const CheckArguments& arguments) {
                     ? "no recording is there"
                     : "no recording has an expectation beside it; --update writes them");
   }
-  std::vector<CheckedTrace> traces;
-  for (std::size_t i = shard->index - 1; i < found->traces.size(); i += shard->total)
-    traces.push_back(found->traces[i]);
+  const std::vector<CheckedTrace> traces = part_of(found->traces, *shard);
 
   const CheckOptions options = {config_folders(), arguments.updates, !arguments.plot.empty(),
                                 arguments.max_hours, arguments.user_styles};
@@ -225,7 +105,8 @@ int run(const CheckArguments& arguments) {
     const CheckedTrace& trace = traces[i];
     failures += !result.is_met;
     progress.clear();
-    print_tap(i + 1, trace, result, arguments.updates);
+    fmt::print("{}", tap_result(i + 1, trace, result, arguments.updates));
+    std::fflush(stdout);
     progress.show(++done / static_cast<double>(traces.size()));
     junit.add(trace, result);
     if (!result.curves) return;
@@ -264,14 +145,16 @@ void add_check(CLI::App& app, int& status) {
       ->add_flag("--strict", arguments->is_strict,
                  "a recording without an expectation is a failure, so that no test gets lost")
       ->excludes("--update");
-  command->add_option("-j,--jobs", arguments->jobs, "so many at once (default: a core each)")
+  command
+      ->add_option("-j,--jobs", arguments->jobs,
+                   "number of parallel jobs (default: the number of cores)")
       ->check(CLI::Range(1, kMaxJobs));
   command
       ->add_option("--shard", arguments->shard,
                    "I/N: the I-th of N equal parts, from 1 on (default: $GAITPAD_SHARD_INDEX of "
                    "$GAITPAD_SHARD_TOTAL, else all)")
       ->check(shard_problem);
-  command->add_option("--junit", arguments->junit, "writes the results as JUnit's XML, too, FILE");
+  command->add_option("--junit", arguments->junit, "also writes the results as JUnit's XML, FILE");
   command
       ->add_option("--plot", arguments->plot,
                    "folder for a picture of each pose that differs: both courses of the joint")

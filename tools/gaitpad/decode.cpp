@@ -187,7 +187,7 @@ bool print_report(DecodedDevice& device, const Report& report, OutputForm form) 
 // --- the command
 
 struct DecodeArguments {
-  PadWish wish;
+  PadSelector selector;
   std::string map;
   double seconds = 0.0;
   bool descriptor_only = false, as_json = false, lenient = false;
@@ -236,7 +236,8 @@ bool is_trace(const std::string& source) {
 }
 
 int run_trace(const DecodeArguments& arguments, const PadOverrides& overrides) {
-  auto trace = read_trace(arguments.wish.pad, arguments.lenient ? Damage::skip : Damage::refuse);
+  auto trace =
+      read_trace(arguments.selector.pad, arguments.lenient ? Damage::skip : Damage::refuse);
   if (!trace) return fail("decode", trace.error().message);
   accept_packets(*trace);
   auto devices = devices_of(*trace, overrides);
@@ -248,22 +249,23 @@ int run_trace(const DecodeArguments& arguments, const PadOverrides& overrides) {
 }
 
 // A device with that node, pad or not; else the device that play would choose.
-Result<PadSighting> sighting_of(const PadFiles& files, const PadWish& wish) {
-  auto sightings = pad_sightings(files, wish, Drivers::preferred);
+Result<PadSighting> sighting_of(const PadFiles& files, const PadSelector& selector) {
+  auto sightings = pad_sightings(files, selector, Drivers::preferred);
   if (!sightings) return sightings.error();
   std::error_code ignored;
-  const std::string node = std::filesystem::canonical(wish.pad, ignored).string();
+  const std::string node = std::filesystem::canonical(selector.pad, ignored).string();
   for (const PadSighting& sighting : *sightings) {
     if (!node.empty() && sighting.listing.node == node) return sighting;
   }
-  auto chosen = chosen_pads(*sightings, wish);
+  auto chosen = chosen_pads(*sightings, selector);
   if (!chosen) return chosen.error();
   if (!chosen->empty()) return chosen->front();
-  const auto wished = wished_pads(*sightings, wish);
-  const bool is_told = wished && !wished->empty() && !wished->front().problem.empty();
+  const auto matching = matching_pads(*sightings, selector);
+  const bool is_told = matching && !matching->empty() && !matching->front().problem.empty();
   if (is_told)
-    return wished->front();  // opening it gives the reason, and its descriptor may be readable
-  return Error{fmt::format("{}: no driver sees such a device; gaitpad pads lists them", wish.pad)};
+    return matching->front();  // opening it gives the reason, and its descriptor may be readable
+  return Error{
+      fmt::format("{}: no driver sees such a device; gaitpad pads lists them", selector.pad)};
 }
 
 // Prints reports as they arrive, with times since the first one. Returns when the device is gone.
@@ -299,12 +301,12 @@ Result<DecodedDevice> decoded_device(const DeviceInfo& info, const PadFiles& fil
 
 int run_live(const DecodeArguments& arguments, const PadFiles& files) {
   RunEnd end;
-  const auto sighting = sighting_of(files, arguments.wish);
+  const auto sighting = sighting_of(files, arguments.selector);
   if (!sighting) return fail("decode", sighting.error().message);
   std::unique_ptr<Device> device;
   // The system shows most descriptors even to users without access to the device.
   if (!arguments.descriptor_only || sighting->listing.info.descriptor.empty()) {
-    auto opened = sighting->driver->open(sighting->listing, detach_asked(arguments.wish));
+    auto opened = sighting->driver->open(sighting->listing, detach_asked(arguments.selector));
     if (!opened) return fail("decode", opened.error().message);
     device = std::move(*opened);
   }
@@ -322,7 +324,7 @@ int run_live(const DecodeArguments& arguments, const PadFiles& files) {
 int run(const DecodeArguments& arguments) {
   const auto files = pad_files(arguments.map, "");
   if (!files) return fail("decode", files.error().message);
-  return arguments.wish.driver.empty() && is_trace(arguments.wish.pad)
+  return arguments.selector.driver.empty() && is_trace(arguments.selector.pad)
              ? run_trace(arguments, files->overrides)
              : run_live(arguments, *files);
 }
@@ -335,10 +337,10 @@ void add_decode(CLI::App& app, int& status) {
       "decode",
       "shows report descriptors and each report decoded, of a recording or a live device");
   command
-      ->add_option("TRACE", arguments->wish.pad,
+      ->add_option("TRACE", arguments->selector.pad,
                    "a recording (.hid), a node such as /dev/hidraw0, or a pad as for play")
       ->required();
-  add_driver_option(*command, arguments->wish);
+  add_driver_option(*command, arguments->selector);
   add_seconds_option(*command, arguments->seconds);
   command->add_flag("--descriptor", arguments->descriptor_only, "only the descriptors");
   command->add_flag("--json", arguments->as_json, "one JSON object a line");

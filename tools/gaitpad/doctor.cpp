@@ -51,7 +51,7 @@ void print_text(const std::vector<Finding>& list) {
 }
 
 Result<Machine> look(const RulesFile& shipped) {
-  const PadWish any;
+  const PadSelector any;
   auto files = pad_files("", "");
   if (!files) return files.error();
   auto sightings = pad_sightings(*files, any, Drivers::preferred);

@@ -4,7 +4,6 @@
 // signals. A timer runs only while the calibration filters jumps, or while a present pad cannot be
 // grabbed.
 #include <fmt/format.h>
-#include <fmt/ranges.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -17,6 +16,7 @@
 
 #include "base/files.h"
 #include "base/text.h"
+#include "doctor/user_unit.h"
 #include "drivers/system_nodes.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/pad_stream.h"
@@ -31,7 +31,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr const char* kForward = "forward";
+constexpr const char* kForwardCommand = "forward";
 constexpr const char* kUnit = "gaitpad-forward.service";
 constexpr int kForever_ms = -1, kRetry_ms = 1000;
 
@@ -45,7 +45,7 @@ struct ForwardArguments {
 class Forward {
  public:
   Forward(const ForwardArguments& arguments, PadFiles files)
-      : wish_{arguments.pad, "evdev"},
+      : selector_{arguments.pad, "evdev"},
         files_(files),
         stand_in_({.look = arguments.as.empty() ? StandIn::Look::own : StandIn::Look::xbox_360,
                    .files = std::move(files)}) {}
@@ -58,10 +58,10 @@ class Forward {
   Result<Found> look_for_the_pad();
   // Prints a sentence once, though a retry repeats it.
   void tell(const std::string& sentence) {
-    if (told_.insert(sentence).second) print_remarks(kForward, {sentence});
+    if (told_.insert(sentence).second) print_remarks(kForwardCommand, {sentence});
   }
 
-  const PadWish wish_;
+  const PadSelector selector_;
   const PadFiles files_;
   StandIn stand_in_;
   std::set<std::string> told_;
@@ -70,9 +70,9 @@ class Forward {
 
 // Takes the first pad that matches and can be grabbed.
 Result<Forward::Found> Forward::look_for_the_pad() {
-  const auto sightings = pad_sightings(files_, wish_, Drivers::preferred);
+  const auto sightings = pad_sightings(files_, selector_, Drivers::preferred);
   if (!sightings) return sightings.error();
-  auto pads = wished_pads(*sightings, wish_);
+  auto pads = matching_pads(*sightings, selector_);
   if (!pads && std::exchange(is_first_look_, false)) return pads.error();
   is_first_look_ = false;
   if (!pads) {
@@ -88,8 +88,8 @@ Result<Forward::Found> Forward::look_for_the_pad() {
       const auto refusal = stand_in_.plug(pad.listing);
       if (!refusal) {
         told_.clear();
-        print_remarks(kForward, stand_in_.take_remarks());
-        print_remarks(kForward,
+        print_remarks(kForwardCommand, stand_in_.take_remarks());
+        print_remarks(kForwardCommand,
                       {fmt::format("{} ({}) is {} to other programs", pad.listing.info.name,
                                    pad.listing.node, stand_in_.node())});
         return Found::taken;
@@ -100,8 +100,8 @@ Result<Forward::Found> Forward::look_for_the_pad() {
     tell(problem);
   }
   if (found == Found::nothing)
-    tell(wish_.pad.empty() ? "no pad is there; waiting for one"
-                           : in_quotes(wish_.pad) + " is not there; waiting for it");
+    tell(selector_.pad.empty() ? "no pad is there; waiting for one"
+                               : in_quotes(selector_.pad) + " is not there; waiting for it");
   return found;
 }
 
@@ -123,51 +123,22 @@ std::optional<Error> Forward::run(RunEnd& end, HotplugMonitor& changes) {
     const bool has_changed = ready > 0 && fds[1].revents != 0 && changes.has_changed();
     if (stand_in_.has_pad()) continue;
     looks = has_changed || had_pad || ready == 0;
-    if (had_pad) print_remarks(kForward, stand_in_.take_remarks());
+    if (had_pad) print_remarks(kForwardCommand, stand_in_.take_remarks());
   }
 }
 
 // --- as a user's service
 
-// A word of ExecStart=, quoted for systemd.
-std::string unit_word(const std::string& word) {
-  std::string text = "\"";
-  for (const char c : word) {
-    const auto byte = static_cast<unsigned char>(c);
-    if (byte < 0x20 || byte == 0x7f) {
-      text += fmt::format("\\x{:02x}", byte);
-      continue;
-    }
-    if (c == '"' || c == '\\') text += '\\';
-    if (c == '%' || c == '$') text += c;
-    text += c;
-  }
-  return text + '"';
-}
-
-std::string unit_text(const ForwardArguments& arguments) {
-  std::vector<std::string> words = {fs::read_symlink("/proc/self/exe").string(), kForward};
+// The arguments of `gaitpad` that start the same with any current folder.
+std::vector<std::string> unit_arguments(const ForwardArguments& arguments) {
+  std::vector<std::string> words = {kForwardCommand};
   if (!arguments.pad.empty()) words.push_back(arguments.pad);
   if (!arguments.as.empty()) words.insert(words.end(), {"--as", arguments.as});
   if (!arguments.map.empty())
     words.insert(words.end(), {"--map", fs::absolute(arguments.map).string()});
   if (!arguments.calibration.empty())
     words.insert(words.end(), {"--calibration", fs::absolute(arguments.calibration).string()});
-  std::vector<std::string> quoted;
-  for (const std::string& word : words) quoted.push_back(unit_word(word));
-  return fmt::format(
-      "[Unit]\n"
-      "Description=A calibrated pad in place of the real one, for every program\n"
-      "Documentation=man:gaitpad-forward(1)\n"
-      "\n"
-      "[Service]\n"
-      "ExecStart={}\n"
-      "Restart=on-failure\n"
-      "RestartSec=5\n"
-      "\n"
-      "[Install]\n"
-      "WantedBy=default.target\n",
-      fmt::join(quoted, " "));
+  return words;
 }
 
 std::string rules_command() { return fmt::format("sudo {} forward --install-rules", program()); }
@@ -175,10 +146,10 @@ std::string rules_command() { return fmt::format("sudo {} forward --install-rule
 int install_unit(const ForwardArguments& arguments) {
   const std::string folder = user_config_folder();
   if (folder.empty())
-    return fail(kForward, "neither XDG_CONFIG_HOME nor HOME names a folder for the unit");
+    return fail(kForwardCommand, "neither XDG_CONFIG_HOME nor HOME names a folder for the unit");
   const std::string path = (fs::path(folder).parent_path() / "systemd/user" / kUnit).string();
-  if (const auto problem = write_file(path, unit_text(arguments)))
-    return fail(kForward, problem->message);
+  if (const auto problem = write_file(path, user_unit_text(unit_arguments(arguments))))
+    return fail(kForwardCommand, problem->message);
   say("{} is written. It runs as you, without root. Start it, now and at each login:\n"
       "  systemctl --user daemon-reload && systemctl --user enable --now {}\n",
       printable(path), kUnit);
@@ -192,21 +163,21 @@ int install_unit(const ForwardArguments& arguments) {
 int run(const ForwardArguments& arguments) {
   if (arguments.installs_rules) {
     const auto shipped = shipped_rules(config_folders(), kUinputRules);
-    if (!shipped) return fail(kForward, shipped.error().message);
-    return install_rules(kForward, kUinputRules, shipped->text, arguments.is_agreed,
+    if (!shipped) return fail(kForwardCommand, shipped.error().message);
+    return install_rules(kForwardCommand, kUinputRules, shipped->text, arguments.is_agreed,
                          rules_command());
   }
   if (is_recording(arguments.pad))
-    return fail(kForward, printable(arguments.pad) +
-                              ": is a recording; gaitpad replay --to uinput plays one");
+    return fail(kForwardCommand, printable(arguments.pad) +
+                                     ": is a recording; gaitpad replay --to uinput plays one");
   auto files = pad_files(arguments.map, arguments.calibration);
-  if (!files) return fail(kForward, files.error().message);
+  if (!files) return fail(kForwardCommand, files.error().message);
   if (arguments.installs_unit) return install_unit(arguments);
   RunEnd end;
   auto changes = HotplugMonitor::create();
-  if (!changes) return fail(kForward, changes.error().message);
+  if (!changes) return fail(kForwardCommand, changes.error().message);
   const auto problem = Forward(arguments, std::move(*files)).run(end, *changes);
-  return problem ? fail(kForward, problem->message) : 0;
+  return problem ? fail(kForwardCommand, problem->message) : 0;
 }
 
 }  // namespace

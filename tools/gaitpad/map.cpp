@@ -20,10 +20,10 @@ constexpr std::chrono::milliseconds kMapWait{20};
 
 // Asks for one control after the other until all are done or the recording ends. False: the user
 // gave up.
-bool ask(MappingDialog& mapping, const PadWish& wish, RunEnd& end) {
+bool ask(MappingDialog& mapping, const PadSelector& selector, RunEnd& end) {
   InputLines input;
   StatusLine line(2);
-  MissingPad missing(kMapCommand, wish);
+  MissingPad missing(kMapCommand, selector);
   bool is_pad_told = false;
   const char* told = nullptr;  // the prompt that was printed last
   std::size_t found = 0;
@@ -55,13 +55,13 @@ bool ask(MappingDialog& mapping, const PadWish& wish, RunEnd& end) {
   return end.cut_off_status() == 0;
 }
 
-int run(const PadWish& wish, const std::string& out) {
+int run(const PadSelector& selector, const std::string& out) {
   RunEnd end;
   const auto files = pad_files("", "");
   if (!files) return fail(kMapCommand, files.error().message);
-  const auto mapping = MappingDialog::start(*files, wish);
+  const auto mapping = MappingDialog::start(*files, selector);
   if (!mapping) return fail(kMapCommand, mapping.error().message);
-  if (!ask(**mapping, wish, end)) {
+  if (!ask(**mapping, selector, end)) {
     const int status = fail(kMapCommand, "given up; nothing is kept");
     return end.cut_off_status() != 0 ? end.cut_off_status() : status;
   }
@@ -80,7 +80,7 @@ int run(const PadWish& wish, const std::string& out) {
 
 void add_map(CLI::App& app, int& status) {
   struct Arguments {
-    PadWish wish;
+    PadSelector selector;
     std::string out;
   };
   const auto arguments = std::make_shared<Arguments>();
@@ -89,9 +89,9 @@ void add_map(CLI::App& app, int& status) {
   command->footer(
       "Keeps the answers for this pad in gamecontrollerdb.txt in the user's folder, which every\n"
       "driver reads first, and prints the line: games that use SDL read it too.");
-  add_pad_options(*command, arguments->wish);
+  add_pad_options(*command, arguments->selector);
   command->add_option("--out", arguments->out, "another file of SDL's lines to keep it in");
-  command->callback([arguments, &status] { status = run(arguments->wish, arguments->out); });
+  command->callback([arguments, &status] { status = run(arguments->selector, arguments->out); });
 }
 
 }  // namespace gaitpad

@@ -159,7 +159,7 @@ constexpr std::int64_t kSecondNs = 1'000'000'000;
 constexpr std::int64_t kRewriteNs = kSecondNs / 60;
 
 struct MonitorArguments {
-  PadWish wish;
+  PadSelector selector;
   std::string map, calibration;
   double seconds = 0.0;
   bool as_json = false;
@@ -228,12 +228,12 @@ int run(const MonitorArguments& arguments) {
   RunEnd end;
   auto files = pad_files(arguments.map, arguments.calibration);
   if (!files) return fail("monitor", files.error().message);
-  auto stream = PadStream::start({std::move(*files), arguments.wish});
+  auto stream = PadStream::start({std::move(*files), arguments.selector});
   if (!stream) return fail("monitor", stream.error().message);
   end.end_after(arguments.seconds);
   MonitoredPads pads;
   Display display(arguments);
-  MissingPad missing("monitor", arguments.wish);
+  MissingPad missing("monitor", arguments.selector);
   while (!end.is_reached() && !(*stream)->has_ended()) {
     (*stream)->wait(std::chrono::milliseconds(20));
     for (; const Report* report = (*stream)->front(); (*stream)->pop()) {
@@ -264,7 +264,7 @@ int run(const MonitorArguments& arguments) {
 void add_monitor(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("monitor", "shows live sticks, buttons, rate and latency");
   const auto arguments = std::make_shared<MonitorArguments>();
-  add_pad_options(*command, arguments->wish);
+  add_pad_options(*command, arguments->selector);
   add_seconds_option(*command, arguments->seconds);
   command->add_option("--calibration", arguments->calibration, "calibration file of the stick");
   command->add_option("--map", arguments->map, "pad file that overrides config/pads");

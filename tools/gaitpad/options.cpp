@@ -51,21 +51,23 @@ std::string config_problem() {
   return fmt::format("GAITPAD_CONFIG is {}, which is no folder", in_quotes(folder));
 }
 
-bool is_choosy(const PadWish& wish) { return !wish.pad.empty() || !wish.driver.empty(); }
+bool is_choosy(const PadSelector& selector) {
+  return !selector.pad.empty() || !selector.driver.empty();
+}
 
-void add_driver_option(CLI::App& command, PadWish& wish) {
+void add_driver_option(CLI::App& command, PadSelector& selector) {
   command
-      .add_option("--driver", wish.driver,
+      .add_option("--driver", selector.driver,
                   "only this driver's devices (usb takes a pad from the kernel while it is open)")
       ->check(CLI::IsMember(driver_names()));
 }
 
-void add_pad_options(CLI::App& command, PadWish& wish) {
+void add_pad_options(CLI::App& command, PadSelector& selector) {
   command.add_option(
-      "PAD", wish.pad,
+      "PAD", selector.pad,
       "a node, a recording (.hid), a vid:pid, a unique id, or a part of one pad's name "
       "(default: the first usable)");
-  add_driver_option(command, wish);
+  add_driver_option(command, selector);
 }
 
 void add_seconds_option(CLI::App& command, double& seconds) {
@@ -82,9 +84,8 @@ void add_max_hours_option(CLI::App& command, std::optional<double>& hours) {
 }
 
 void add_user_styles_option(CLI::App& command, bool& user_styles) {
-  command.add_flag(
-      "--user-styles", user_styles,
-      "commands may name styles of your own folder, too; another machine has them not");
+  command.add_flag("--user-styles", user_styles,
+                   "commands may also name styles of your own folder, which another machine lacks");
 }
 
 Result<PadFiles> pad_files(const std::string& map, const std::string& calibration) {
@@ -103,8 +104,9 @@ void MissingPad::tell(std::int64_t plugged, std::string_view what, StatusLine& l
   if (is_told_ || plugged > 0) return;
   is_told_ = true;
   std::vector<std::string> remarks = {
-      fmt::format("{} {}", wish_.pad.empty() ? "the pad" : in_quotes(wish_.pad), what)};
-  for (const std::string& other : is_choosy(wish_) ? pads_of_system() : std::vector<std::string>())
+      fmt::format("{} {}", selector_.pad.empty() ? "the pad" : in_quotes(selector_.pad), what)};
+  for (const std::string& other :
+       is_choosy(selector_) ? pads_of_system() : std::vector<std::string>())
     remarks.push_back(other);
   remarks.emplace_back("gaitpad doctor finds why a pad does not work");
   print_remarks(command_, remarks, &line);
@@ -114,7 +116,7 @@ void add_pace_option(CLI::App& command, std::optional<Pace>& pace) {
   command
       .add_option_function<std::string>(
           "--pace", [&pace](const std::string& name) { pace = pace_named(name); },
-          "whose speed and step the stick means: the motion's own (at 0.8 forward) or an adult's "
+          "scales speed and step to the motion's own (at 0.8 forward) or to an adult's "
           "(default: what the recording or the motion's description says, else own)")
       ->check(CLI::IsMember(kPaceNames));
 }
@@ -134,8 +136,9 @@ void add_session_options(CLI::App& command, SessionSpec& spec, const std::string
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command
-      .add_option("--crowd", walk.crowd,
-                  "so many more walk behind the first, each with its own build and style")
+      .add_option(
+          "--crowd", walk.crowd,
+          "number of further characters behind the first, each with its own build and style")
       ->check(CLI::Range(0, kMaxFollowers));
   command.add_option("--terrain", walk.terrain, "the ground, FILE|NAME; without it flat");
   command.add_option("--script", walk.script, "commands at given times, FILE");

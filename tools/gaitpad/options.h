@@ -23,10 +23,10 @@ std::string config_problem();
 
 // --- the pad, and the time
 
-void add_driver_option(CLI::App& command, PadWish& wish);
-void add_pad_options(CLI::App& command, PadWish& wish);  // PAD and --driver
+void add_driver_option(CLI::App& command, PadSelector& selector);
+void add_pad_options(CLI::App& command, PadSelector& selector);  // PAD and --driver
 // True if a certain pad is asked for, not just any.
-bool is_choosy(const PadWish& wish);
+bool is_choosy(const PadSelector& selector);
 void add_seconds_option(CLI::App& command, double& seconds);
 void add_max_hours_option(CLI::App& command, std::optional<double>& hours);  // of a recording
 void add_user_styles_option(CLI::App& command, bool& user_styles);           // of a replay
@@ -38,7 +38,8 @@ Result<PadFiles> pad_files(const std::string& map, const std::string& calibratio
 // the pads of the system and what to do.
 class MissingPad {
  public:
-  MissingPad(std::string_view command, const PadWish& wish) : command_(command), wish_(wish) {}
+  MissingPad(std::string_view command, const PadSelector& selector)
+      : command_(command), selector_(selector) {}
   // `plugged`: number of pads that have come so far.
   void look(std::int64_t plugged, StatusLine& line);
   void finish(std::int64_t plugged, StatusLine& line);
@@ -47,7 +48,7 @@ class MissingPad {
   void tell(std::int64_t plugged, std::string_view what, StatusLine& line);
 
   std::string command_;
-  PadWish wish_;
+  PadSelector selector_;
   std::int64_t start_ns_ = now_ns();
   bool is_told_ = false;
 };

@@ -18,7 +18,7 @@ namespace {
 using nlohmann::ordered_json;
 
 struct PadsArguments {
-  PadWish wish;
+  PadSelector selector;
   std::string map;
   bool as_json = false;
 };
@@ -104,19 +104,19 @@ ordered_json row_json(const PadRow& row) {
 }
 
 // Drivers that this build lacks, each with its problem.
-std::vector<std::pair<std::string, std::string>> missing_drivers(const PadWish& wish) {
+std::vector<std::pair<std::string, std::string>> missing_drivers(const PadSelector& selector) {
   std::vector<std::pair<std::string, std::string>> missing;
   for (const DriverEntry& entry : drivers()) {
-    if (entry.find || (!wish.driver.empty() && wish.driver != entry.name)) continue;
+    if (entry.find || (!selector.driver.empty() && selector.driver != entry.name)) continue;
     missing.emplace_back(entry.name, fmt::format("built without {}", entry.library));
   }
   return missing;
 }
 
-void print_rows_json(const std::vector<PadRow>& rows, const PadWish& wish) {
+void print_rows_json(const std::vector<PadRow>& rows, const PadSelector& selector) {
   ordered_json list = ordered_json::array();
   for (const PadRow& row : rows) list.push_back(row_json(row));
-  for (const auto& [driver, problem] : missing_drivers(wish))
+  for (const auto& [driver, problem] : missing_drivers(selector))
     list.push_back({{"driver", driver}, {"problem", problem}});
   print_json(list);
 }
@@ -125,7 +125,7 @@ std::string joined(const std::vector<std::string>& texts) {
   return fmt::format("{}", fmt::join(texts, " "));
 }
 
-void print_text(const std::vector<PadRow>& rows, const PadWish& wish) {
+void print_text(const std::vector<PadRow>& rows, const PadSelector& selector) {
   std::vector<TableRow> table = {{"", "driver", "path", "bus", "vid:pid", "name", "unique id",
                                   "usages", "rate", "kernel", "usable"}};
   for (const PadRow& row : rows) {
@@ -144,7 +144,7 @@ void print_text(const std::vector<PadRow>& rows, const PadWish& wish) {
   } else {
     print_table(table);
   }
-  for (const auto& [driver, problem] : missing_drivers(wish))
+  for (const auto& [driver, problem] : missing_drivers(selector))
     say("{}: {}\n", driver, printable(problem));
   if (std::ranges::any_of(rows, &PadRow::is_chosen))
     say("* is the one that play takes until another is moved; {}\n", kHatDrives);
@@ -153,18 +153,18 @@ void print_text(const std::vector<PadRow>& rows, const PadWish& wish) {
 int run(const PadsArguments& arguments) {
   const auto files = pad_files(arguments.map, "");
   if (!files) return fail("pads", files.error().message);
-  auto sightings = pad_sightings(*files, arguments.wish, Drivers::all);
+  auto sightings = pad_sightings(*files, arguments.selector, Drivers::all);
   if (!sightings) {
-    if (missing_drivers(arguments.wish).empty()) return fail("pads", sightings.error().message);
+    if (missing_drivers(arguments.selector).empty()) return fail("pads", sightings.error().message);
     sightings = std::vector<PadSighting>{};
   }
-  const auto chosen = chosen_pads(*sightings, arguments.wish);
+  const auto chosen = chosen_pads(*sightings, arguments.selector);
   if (!chosen) return fail("pads", chosen.error().message);
   const std::vector<PadRow> rows = rows_of(*sightings, *chosen);
   if (arguments.as_json) {
-    print_rows_json(rows, arguments.wish);
+    print_rows_json(rows, arguments.selector);
   } else {
-    print_text(rows, arguments.wish);
+    print_text(rows, arguments.selector);
   }
   return 0;
 }
@@ -174,7 +174,7 @@ int run(const PadsArguments& arguments) {
 void add_pads(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("pads", "lists every device that every driver sees");
   const auto arguments = std::make_shared<PadsArguments>();
-  add_driver_option(*command, arguments->wish);
+  add_driver_option(*command, arguments->selector);
   command->add_option("--map", arguments->map, "pad file that overrides config/pads");
   command->add_flag("--json", arguments->as_json, "a list of objects");
   command->callback([arguments, &status] { status = run(*arguments); });

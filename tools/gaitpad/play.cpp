@@ -72,7 +72,7 @@ class ReportTimes {
 void walk_without_window(const PlayArguments& arguments, RunEnd& end, LiveSession& session,
                          ReportTimes& times) {
   StatusLine line(2);
-  MissingPad missing(kPlayCommand, arguments.spec.pad.wish);
+  MissingPad missing(kPlayCommand, arguments.spec.pad.selector);
   const int rate_hz = session.cast().rate_hz;
   InputLines input;
   TickSample last;
@@ -130,7 +130,7 @@ void add_status(const LiveStatus& status, ordered_json& summary) {
 
 // 1 if the requested pad never came or a command was invalid.
 int status_of(const PlayArguments& arguments, const LiveStatus& status, const RunSummary& run) {
-  const bool is_alone = is_choosy(arguments.spec.pad.wish) && status.pads.plugged == 0;
+  const bool is_alone = is_choosy(arguments.spec.pad.selector) && status.pads.plugged == 0;
   const std::int64_t wrong = run.bad_commands + status.pads.commands_left_out;
   const bool is_wrong = arguments.takes_commands && wrong > 0;
   if (is_wrong)
@@ -168,7 +168,7 @@ int run_without_window(const PlayArguments& arguments) {
 
 // Pictures of a recording show its exact walk, independent of the clock.
 bool is_playback(const PlayArguments& arguments) {
-  return makes_pictures(arguments.window) && is_recording(arguments.spec.pad.wish.pad);
+  return makes_pictures(arguments.window) && is_recording(arguments.spec.pad.selector.pad);
 }
 
 #ifdef GAITPAD_HAS_WINDOW
@@ -185,7 +185,7 @@ WindowOptions options_of_window(const PlayArguments& arguments, InputLines& inpu
   WindowOptions options = window_options(arguments.window, has_end);
   options.session = arguments.spec;
   take_default_cast(options.session.walk);
-  if (is_playback(arguments)) options.session.replay.trace = arguments.spec.pad.wish.pad;
+  if (is_playback(arguments)) options.session.replay.trace = arguments.spec.pad.selector.pad;
   if (makes_pictures(arguments.window) && options.frames == 0 && arguments.seconds > 0.0)
     options.frames = static_cast<int>(std::clamp(arguments.seconds * kPictureRateHz, 1.0, 1e8));
   if (arguments.takes_commands) options.take_commands = [&input] { return input.take_lines(); };
@@ -232,8 +232,8 @@ int run_with_window(const PlayArguments& arguments) {
   }
   if (!result.status) return 0;
   StatusLine line(2);
-  if (const PadWish& wish = arguments.spec.pad.wish; is_choosy(wish))
-    MissingPad(kPlayCommand, wish).finish(result.status->pads.plugged, line);
+  if (const PadSelector& selector = arguments.spec.pad.selector; is_choosy(selector))
+    MissingPad(kPlayCommand, selector).finish(result.status->pads.plugged, line);
   return status_of(arguments, *result.status, result.summary);
 }
 
@@ -252,7 +252,7 @@ int run(PlayArguments& arguments) {
 void add_play(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("play", "walks characters by a live pad");
   const auto arguments = std::make_shared<PlayArguments>();
-  add_pad_options(*command, arguments->spec.pad.wish);
+  add_pad_options(*command, arguments->spec.pad.selector);
   auto* no_window =
       command->add_flag("--no-window", arguments->no_window,
                         "walk without a window: one character, unless more are given");

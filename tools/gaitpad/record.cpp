@@ -18,7 +18,7 @@ namespace {
 constexpr std::chrono::milliseconds kRecordWait{20};  // longest sleep until the end is noticed
 
 struct RecordArguments {
-  PadWish wish;
+  PadSelector selector;
   std::string out, map, calibration;
   double seconds = 0.0;
   bool as_json = false;
@@ -51,10 +51,10 @@ std::string status_text(const Recorded& recorded, const PadStream& stream) {
                      stream.counts().lost);
 }
 
-Recorded record(const PadWish& wish, RunEnd& end, PadStream& stream, Recording& recording) {
+Recorded record(const PadSelector& selector, RunEnd& end, PadStream& stream, Recording& recording) {
   Recorded recorded;
   StatusLine line(2);
-  MissingPad missing("record", wish);
+  MissingPad missing("record", selector);
   const auto take_all = [&] {
     for (; const Report* report = stream.front(); stream.pop())
       take_report(*report, recording, recorded);
@@ -97,7 +97,7 @@ int run(const RecordArguments& arguments) {
   auto files = pad_files(arguments.map, arguments.calibration);
   if (!files) return fail("record", files.error().message);
   // The stream outlives the recording, which asks the stream for its devices.
-  PadStreamOptions options{std::move(*files), arguments.wish};
+  PadStreamOptions options{std::move(*files), arguments.selector};
   options.is_raw = true;
   auto stream = PadStream::start(std::move(options));
   if (!stream) return fail("record", stream.error().message);
@@ -107,7 +107,7 @@ int run(const RecordArguments& arguments) {
   if (!recording) return fail("record", recording.error().message);
   end.end_after(arguments.seconds);
 
-  const Recorded recorded = record(arguments.wish, end, **stream, **recording);
+  const Recorded recorded = record(arguments.selector, end, **stream, **recording);
   print_remarks("record", (*stream)->take_remarks());
   const auto remarks = (*recording)->finish(0, std::max(recorded.last_ns, now_ns()));
   if (!remarks) return fail("record", remarks.error().message);
@@ -122,7 +122,7 @@ int run(const RecordArguments& arguments) {
 void add_record(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("record", "records a device into a trace (.hid)");
   const auto arguments = std::make_shared<RecordArguments>();
-  add_pad_options(*command, arguments->wish);
+  add_pad_options(*command, arguments->selector);
   command->add_option("--out", arguments->out, "the file to write (.hid)")->required();
   add_seconds_option(*command, arguments->seconds);
   command->add_option("--calibration", arguments->calibration,

@@ -112,8 +112,9 @@ void add_replay(CLI::App& app, int& status) {
                    "poses a second in pose.bvh and pose.glb (default: every tick)")
       ->check(CLI::Range(1, kMaxRateHz));
   command
-      ->add_option("--crowd-files", wanted.crowd_files,
-                   "of the crowd the first so many get files in --out, too (default: 32)")
+      ->add_option(
+          "--crowd-files", wanted.crowd_files,
+          "number of followers that also get files in --out, from the first on (default: 32)")
       ->check(CLI::Range(0, kMaxCrowdFiles))
       ->needs(out);
   command->add_flag("--lenient", arguments->is_lenient, "skip damaged lines and count them");

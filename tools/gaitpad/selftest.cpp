@@ -122,11 +122,11 @@ void add_selftest(CLI::App& app, int& status) {
       "selftest", "tests a real pad with you: each control, driver, unplugging, rumble, a walk");
   const auto arguments = std::make_shared<SelfTestArguments>();
   arguments->options.program = "gaitpad " GAITPAD_VERSION;
-  add_pad_options(*command, arguments->options.wish);
+  add_pad_options(*command, arguments->options.selector);
   command->add_option("--out", arguments->options.folder,
                       "the folder to make (default: selftest-VENDOR-PRODUCT-DATE-TIME)");
   command->add_option("--map", arguments->options.map, "pad file that overrides config/pads");
-  command->add_flag("--json", arguments->as_json, "the report, which report.json holds, too");
+  command->add_flag("--json", arguments->as_json, "print the report, as in report.json");
   command->callback([arguments, &status] { status = run(*arguments); });
 }
 

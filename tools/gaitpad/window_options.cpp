@@ -47,7 +47,7 @@ std::vector<std::string> scene_part_names() {
 
 std::vector<CLI::Option*> add_window_options(CLI::App& command, WindowArguments& arguments) {
   return {
-      command.add_option("--frames", arguments.frames, "end after so many drawn frames")
+      command.add_option("--frames", arguments.frames, "end after this number of drawn frames")
           ->check(CLI::Range(1, kMaxFrames)),
       command
           .add_option("--screenshot", arguments.screenshot,

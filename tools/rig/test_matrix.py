@@ -144,7 +144,7 @@ def test_found_decoded_recorded_and_replayed(case, monkeypatch):
 
 
 @pytest.mark.parametrize("kind", ["generic", "ds4", "dualsense", "switch", "xbox360", "xboxone"])
-def test_without_a_wish_the_best_driver_serves_it(kind):
+def test_without_a_choice_the_best_driver_serves_it(kind):
     with Pad(kind):
         rows = json.loads(run("gaitpad", "pads", "--json").stdout)
         chosen = [row["driver"] for row in rows if row.get("chosen")]

@@ -309,7 +309,7 @@ int run(double seconds, const std::string& record, const std::vector<std::string
   WindowOptions options;
   options.session.config_folders = config_folders(GAITPAD_CONFIG_DIR);
   options.session.walk.styles = {"even", "stiff_hip", "stiff_knee", "limp_left"};
-  options.session.pad.wish.driver = "sdl";
+  options.session.pad.selector.driver = "sdl";
   options.session.live.keyboard = true;
   options.session.live.record = record;
   options.width = kWidth;

@@ -20,14 +20,14 @@
 namespace gaitpad {
 
 // The pad that a user asks for; empty: any.
-struct PadWish {
+struct PadSelector {
   std::string pad;  // a path (node or recording), a `vid:pid`, a unique id, a unique part of a name
   std::string driver;  // hidraw, evdev, sdl or usb: this driver alone
 };
 
 // A kernel's driver is detached only for a user who names usb.
-inline Detach detach_asked(const PadWish& wish) {
-  return wish.driver == "usb" ? Detach::allowed : Detach::never;
+inline Detach detach_asked(const PadSelector& selector) {
+  return selector.driver == "usb" ? Detach::allowed : Detach::never;
 }
 
 // A device as one driver sees it.
@@ -45,31 +45,31 @@ struct PadSighting {
 std::string pad_key(const PadSighting& sighting);
 
 enum class Drivers {
-  // SDL is asked only if the user chose it, or if no other driver of kernel devices was built: its
+  // SDL is asked only if it is asked for, or if no other driver of kernel devices was built: its
   // start takes up to a second.
   preferred,
   all,
 };
-// Every device that every driver, or the one that `wish` names, sees; pads first. If `wish` names a
+// Every device that every driver, or the selected one, sees; pads first. If the selector names a
 // recording: its devices alone. Blocks while drivers look; call it from one thread. Error: an
 // unknown driver, a driver that was not built, a damaged recording. `table`: other drivers, for
 // tests.
 Result<std::vector<PadSighting>> pad_sightings(
-    const PadFiles& files, const PadWish& wish, Drivers drivers,
+    const PadFiles& files, const PadSelector& selector, Drivers drivers,
     std::span<const DriverEntry> table = gaitpad::drivers());
 
 // The sightings to open, in the order of preference: each pad by the first driver in the order of
-// drivers() that can open it. usb counts only if `wish` names it or if no kernel driver has the
+// drivers() that can open it. usb counts only if it is asked for or if no kernel driver has the
 // pad. What one driver shows as several devices, such as an adapter with an input node for each of
-// its plugs, are several pads. Empty if nothing fits. Error: `wish.pad` is a part of the names of
-// several pads; the sentence names them.
+// its plugs, are several pads. Empty if nothing fits. Error: `selector.pad` is a part of the names
+// of several pads; the sentence names them.
 Result<std::vector<PadSighting>> chosen_pads(const std::vector<PadSighting>& sightings,
-                                             const PadWish& wish);
+                                             const PadSelector& selector);
 
-// The sightings of the pads that `wish.pad` means, usable or not, in the order of preference; of
-// all pads if it is empty. Error as for chosen_pads().
-Result<std::vector<PadSighting>> wished_pads(const std::vector<PadSighting>& sightings,
-                                             const PadWish& wish);
+// The sightings of the pads that `selector.pad` means, usable or not, in the order of preference;
+// of all pads if it is empty. Error as for chosen_pads().
+Result<std::vector<PadSighting>> matching_pads(const std::vector<PadSighting>& sightings,
+                                               const PadSelector& selector);
 // Whether PAD names a recording: an existing file, or a path that ends in .hid.
 bool is_recording(const std::string& pad);
 
@@ -81,7 +81,7 @@ inline constexpr std::size_t kMaxPads = kMaxTraceDevices;  // different ones in 
 
 struct PadStreamOptions {
   PadFiles files;
-  PadWish wish;
+  PadSelector selector;
   // The keyboard as a further device. It has index 0 and is there from the start. Null: none.
   std::shared_ptr<KeyboardStick> keyboard = nullptr;
   bool is_raw = false;  // every packet as its node gives it, input or not (Device::hand_on_raw)
@@ -115,8 +115,8 @@ struct PadStreamCounts {
 class PadStream {
  public:
   // Starts both threads. Pads that are plugged in already are announced like those plugged in
-  // later. If no device fits the user's choice, the stream waits for one. Error: an unknown driver,
-  // a damaged recording, a part of a name that fits several pads.
+  // later. If no device fits the selector, the stream waits for one. Error: an unknown driver, a
+  // damaged recording, a part of a name that fits several pads.
   static Result<std::unique_ptr<PadStream>> start(PadStreamOptions options);
   ~PadStream();  // closes every device and gives back what was taken from the kernel
 

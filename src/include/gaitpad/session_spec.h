@@ -33,7 +33,7 @@ struct SessionSpec {
   };
   // The pad that drives, and the files that interpret its reports.
   struct Pad {
-    PadWish wish;             // of a live session
+    PadSelector selector;     // of a live session
     std::string map;          // pad file that goes before config/pads
     std::string calibration;  // file of the stick
   };

@@ -179,8 +179,10 @@ LiveSession::~LiveSession() {
 
 Result<std::shared_ptr<LiveSession::Prepared>> LiveSession::prepare(const SessionSpec& spec) {
   const int rate_hz = spec.rate_hz.value_or(kDefaultRateHz);
-  if (rate_hz < 1 || rate_hz > kMaxRateHz)
-    return Error{fmt::format("a rate of {} Hz is not within 1 .. {}", rate_hz, kMaxRateHz)};
+  if (rate_hz < kLeastRateHz || rate_hz > kMaxRateHz) {
+    return Error{
+        fmt::format("a rate of {} Hz is not within {} .. {}", rate_hz, kLeastRateHz, kMaxRateHz)};
+  }
   const InputFiles pad_inputs;
   auto files = load_pad_files(spec);
   if (!files) return files.error();

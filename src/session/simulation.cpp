@@ -170,6 +170,10 @@ std::optional<Error> check(const SimulationConfig& config) {
     if (auto problem = check(static_cast<const StyleValues&>(style)))
       return Error{fmt::format("style {}: {}", in_quotes(style.name), problem->message)};
   }
+  for (std::size_t i = 0; i < config.pads.size(); ++i) {
+    if (auto problem = check(config.pads[i].calibration))
+      return Error{fmt::format("SimulationConfig: pads[{}]: {}", i, problem->message)};
+  }
   for (std::size_t i = 0; i < config.walkers.size(); ++i) {
     const int style = config.walkers[i].style, styles = static_cast<int>(config.styles.size());
     if (style < 0 || style >= styles) {

@@ -144,9 +144,11 @@ TEST_F(Live, TheSessionGoesOnWhenItsRecordingIsEnded) {
 }
 
 TEST_F(Live, InvalidOptionsAreRefused) {
-  options_.rate_hz = 0;
-  EXPECT_EQ(LiveSession::start(options_).error().message,
-            "a rate of 0 Hz is not within 1 .. 10000");
+  for (const int rate_hz : {0, kLeastRateHz - 1}) {
+    options_.rate_hz = rate_hz;
+    EXPECT_EQ(LiveSession::prepare(options_).error().message,
+              "a rate of " + std::to_string(rate_hz) + " Hz is not within 10 .. 10000");
+  }
   options_.rate_hz = 240;
   options_.live.record = (folder_ / "none" / "x.hid").string();
   EXPECT_FALSE(LiveSession::start(options_));

@@ -72,6 +72,12 @@ struct Calibration {
   bool operator==(const Calibration&) const = default;
 };
 
+inline constexpr double kLeastHalfRange = 0.1;      // raw, from the centre to either end
+inline constexpr double kLeastZoneSpan = 0.05;      // from the inner to the outer zone
+inline constexpr double kLeastTriggerTravel = 0.1;  // raw
+// `Calibration: left.inner is 2, outside [0, 0.9]`. The bounds are those of the files.
+std::optional<Error> check(const Calibration& calibration);
+
 // Inner zones for sticks that were not measured; a Sony stick rests within 6 % of its middle.
 inline constexpr double kInnerZoneSony = 0.12;
 inline constexpr double kInnerZoneUnknown = 0.20;

@@ -62,7 +62,7 @@ enum class FrameEnd { handed_over, not_shown };
 class LiveSession {
  public:
   // Reads the files, opens the recording and starts the threads. Error: a file that cannot be read,
-  // a wish that makes no sense (PadStream::start()), a rate outside 1 .. kMaxRateHz.
+  // a wish that makes no sense (PadStream::start()), a rate outside kLeastRateHz .. kMaxRateHz.
   static Result<std::unique_ptr<LiveSession>> start(const SessionSpec& spec);
   // The same in two parts, so that a program can end one session only when the files of the next
   // are known to fit together: prepare() reads them and touches no device. `prepared` is used once.

@@ -156,7 +156,8 @@ void read_options(TomlTable& options, Expectation& e) {
   }
   e.pad.calibration = options.string("calibration").value_or("");
   e.pad.map = options.string("map").value_or("");
-  if (const auto rate = options.integer("rate", 1, kMaxRateHz)) e.rate_hz = static_cast<int>(*rate);
+  if (const auto rate = options.integer("rate", kLeastRateHz, kMaxRateHz))
+    e.rate_hz = static_cast<int>(*rate);
   e.is_lenient = options.boolean("lenient").value_or(false);
 }
 

@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+
+#include "base/ranges.h"
 
 namespace gaitpad {
 
@@ -99,6 +102,70 @@ PadState JumpFilter::filtered(const Calibration& calibration,
 double trigger_position(const TriggerCalibration& c, double raw) noexcept {
   if (!(raw > c.released)) return 0.0;
   return std::min((raw - c.released) / (c.pressed - c.released), 1.0);
+}
+
+namespace {
+
+// A range of values that must be in order and so far apart.
+std::optional<Error> span_problem(const std::string& what, double low, double high, double least,
+                                  double most) {
+  return range_problem(what, high - low, least, most);
+}
+
+std::optional<Error> axis_problem(const std::string& what, const AxisCalibration& axis) {
+  if (auto problem = range_problem(what + ".min", axis.min, -1.0, 1.0)) return problem;
+  if (auto problem = range_problem(what + ".centre", axis.centre, -1.0, 1.0)) return problem;
+  if (auto problem = range_problem(what + ".max", axis.max, -1.0, 1.0)) return problem;
+  if (auto problem =
+          span_problem(what + ".centre - min", axis.min, axis.centre, kLeastHalfRange, 2.0))
+    return problem;
+  return span_problem(what + ".max - centre", axis.centre, axis.max, kLeastHalfRange, 2.0);
+}
+
+std::optional<Error> stick_problem(const std::string& what, const StickCalibration& c) {
+  if (auto problem = choice_problem(what + "frame.right", c.frame.right, RawDirection::minus_y))
+    return problem;
+  if (auto problem = choice_problem(what + "frame.forward", c.frame.forward, RawDirection::minus_y))
+    return problem;
+  if (is_along_x(c.frame.right) == is_along_x(c.frame.forward))
+    return Error{what + "frame: right and forward lie along one axis"};
+  if (auto problem = choice_problem(what + "shape", c.shape, ZoneShape::both)) return problem;
+  if (auto problem = axis_problem(what + "x", c.x)) return problem;
+  if (auto problem = axis_problem(what + "y", c.y)) return problem;
+  if (auto problem = range_problem(what + "inner", c.inner, 0.0, 0.9)) return problem;
+  if (auto problem = range_problem(what + "outer", c.outer, 0.1, 1.0)) return problem;
+  if (auto problem = span_problem(what + "outer - inner", c.inner, c.outer, kLeastZoneSpan, 1.0))
+    return problem;
+  if (auto problem = range_problem(what + "sideways", c.sideways, 0.0, 0.5)) return problem;
+  return range_problem(what + "curve", c.curve, 0.0, 1.0);
+}
+
+std::optional<Error> trigger_problem(const std::string& what, const TriggerCalibration& c) {
+  if (auto problem = range_problem(what + ".released", c.released, 0.0, 1.0)) return problem;
+  if (auto problem = range_problem(what + ".pressed", c.pressed, 0.0, 1.0)) return problem;
+  return span_problem(what + ".pressed - released", c.released, c.pressed, kLeastTriggerTravel,
+                      1.0);
+}
+
+}  // namespace
+
+std::optional<Error> check(const Calibration& c) {
+  if (auto problem = stick_problem("Calibration: left.", c.left)) return problem;
+  if (auto problem = stick_problem("Calibration: right.", c.right)) return problem;
+  if (auto problem = trigger_problem("Calibration: left_trigger", c.left_trigger)) return problem;
+  return trigger_problem("Calibration: right_trigger", c.right_trigger);
+}
+
+std::optional<Error> check(const CalibrationFile& file) {
+  if (auto problem = check(file.calibration)) return problem;
+  if (!file.gyro_bias_rad_s) return std::nullopt;
+  for (std::size_t axis = 0; axis < file.gyro_bias_rad_s->size(); ++axis) {
+    if (auto problem =
+            range_problem("CalibrationFile: gyro_bias_rad_s[" + std::to_string(axis) + "]",
+                          (*file.gyro_bias_rad_s)[axis], -kMostGyroBias_rad_s, kMostGyroBias_rad_s))
+      return problem;
+  }
+  return std::nullopt;
 }
 
 Calibration canonical(const Calibration& calibration) noexcept {

@@ -17,13 +17,9 @@ namespace gaitpad {
 
 namespace {
 
-constexpr double kLeastHalfRange = 0.1;  // raw, from the centre to either end
-constexpr double kLeastZoneSpan = 0.05;  // from the inner to the outer zone
 constexpr std::size_t kMaxDevices = 256;
 constexpr std::size_t kMaxFolderFiles = 4096;
-constexpr double kLeastTriggerTravel = 0.1;  // raw
-constexpr double kMostGyroBias_rad_s = 1.0;  // no such chip is off by more
-constexpr double kMaxMeasured = 100.0;       // of any measured number; far beyond what sticks do
+constexpr double kMaxMeasured = 100.0;  // of any measured number; far beyond what sticks do
 constexpr std::string_view kShapeNames[] = {"radial", "axial", "both"};
 constexpr std::string_view kDirectionNames[] = {"x", "-x", "y", "-y"};  // by RawDirection
 constexpr std::string_view kDriverNames[] = {"hidraw", "usb", "evdev", "sdl"};

@@ -137,7 +137,7 @@ TEST_F(Live, FourPadsAStreamAndARecordingRunAtOnce) {
   }
   for (std::uint16_t i = 1; i < 4; ++i)
     add_event(trace, 1'000'000, made_plug(ReportKind::removed, i));
-  ASSERT_TRUE(write_trace(trace, options_.pad.wish.pad));
+  ASSERT_TRUE(write_trace(trace, options_.pad.selector.pad));
   options_.live.stream = "json://127.0.0.1:39599";  // nobody listens
   auto session = started();
   EXPECT_TRUE(comes_true([&] {
@@ -176,9 +176,11 @@ TEST_F(Live, TheSessionGoesOnWhenItsRecordingIsEnded) {
 }
 
 TEST_F(Live, InvalidOptionsAreRefused) {
-  options_.rate_hz = 0;
-  EXPECT_EQ(LiveSession::start(options_).error().message,
-            "a rate of 0 Hz is not within 1 .. 10000");
+  for (const int rate_hz : {0, kLeastRateHz - 1}) {
+    options_.rate_hz = rate_hz;
+    EXPECT_EQ(LiveSession::prepare(options_).error().message,
+              "SessionSpec: rate_hz is " + std::to_string(rate_hz) + ", outside [10, 10000]");
+  }
   options_.rate_hz = 240;
   options_.live.record = (folder_ / "none" / "x.hid").string();
   EXPECT_FALSE(LiveSession::start(options_));

@@ -102,6 +102,8 @@ TEST(Simulation, AConfigurationThatCannotRunIsRefusedWithOneSentence) {
             "style \"limp\": StyleValues: hip_sway is -2, outside [0, 3]");
   EXPECT_EQ(said_of([](Config& c) { c.terrain = nullptr; }),
             "SimulationConfig: terrain is null, see flat_terrain()");
+  EXPECT_EQ(said_of([](Config& c) { c.pads.at(0).calibration.left.outer = 0.2; }),
+            "SimulationConfig: pads[0]: Calibration: left.outer - inner is 0, outside [0.05, 1]");
   EXPECT_EQ(said_of([](Config& c) { c.walkers.clear(); }), "0 characters: 1 to 16 can walk");
   EXPECT_EQ(said_of([](Config& c) { c.walkers[0].character.scale = 0.0; }),
             "as in the motion file: scale is 0, outside [0.05, 20]");

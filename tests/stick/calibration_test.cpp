@@ -176,6 +176,29 @@ TEST(StickPosition, BothSticksHaveTheirOwnCalibration) {
   static_assert(std::is_trivially_copyable_v<Calibration>);
 }
 
+TEST(Calibration, OneThatWouldDivideByZeroIsNamedByItsField) {
+  const auto said_of = [](const auto& spoil) {
+    Calibration c;
+    spoil(c);
+    const auto problem = check(c);
+    return problem ? problem->message : "";
+  };
+  using C = Calibration;
+  EXPECT_EQ(said_of([](C&) {}), "");
+  EXPECT_EQ(said_of([](C& c) { c.left.inner = std::nan(""); }),
+            "Calibration: left.inner is nan, outside [0, 0.9]");
+  EXPECT_EQ(said_of([](C& c) { c.left.inner = c.left.outer = 0.5; }),
+            "Calibration: left.outer - inner is 0, outside [0.05, 1]");
+  EXPECT_EQ(said_of([](C& c) { c.right.x.min = c.right.x.centre; }),
+            "Calibration: right.x.centre - min is 0, outside [0.1, 2]");
+  EXPECT_EQ(said_of([](C& c) { c.right.y.max = 0.05; }),
+            "Calibration: right.y.max - centre is 0.05, outside [0.1, 2]");
+  EXPECT_EQ(said_of([](C& c) { c.left.sideways = 1.0; }),
+            "Calibration: left.sideways is 1, outside [0, 0.5]");
+  EXPECT_EQ(said_of([](C& c) { c.right_trigger.pressed = 0.0; }),
+            "Calibration: right_trigger.pressed - released is 0, outside [0.1, 1]");
+}
+
 TEST(Calibration, CanonicalHasNoNegativeZeroAndKeepsEveryOtherNumber) {
   Calibration c;
   c.left.x = {-0.9, -0.0, 0.8};

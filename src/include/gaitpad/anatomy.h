@@ -40,7 +40,8 @@ struct NamedJoint {
 // Prefixes such as "mixamorig:" or "CC_Base_" do not matter, nor do upper and lower case.
 NamedJoint named_joint(std::string_view name);
 
-// Joints of one leg given by hand. Empty: found.
+// Joints of one leg given by hand, by their names in the skeleton; the caller fills it. Empty:
+// found.
 struct LegNames {
   std::string hip, knee, ankle, toe;
 };
@@ -68,7 +69,8 @@ struct ArmChain {
   bool is_found() const noexcept { return shoulder >= 0; }
 };
 
-// The joints above the legs. A part that the skeleton lacks is empty or -1.
+// Indices of the joints above the legs; find_upper_body() fills them. A part that the skeleton
+// lacks is empty or -1.
 struct UpperBodyJoints {
   std::vector<int> spine;  // from above the pelvis up to the joint that carries arms and neck
   std::vector<int> neck;   // from above that joint to below the head

@@ -25,6 +25,7 @@ namespace gaitpad {
 // "Raw" is what decode() gives: fractions of half the field's logical range from its middle, -1..1,
 // +x right, +y forward as the pad's layout has it.
 
+// Measured when a pad is calibrated.
 struct AxisCalibration {
   double min = -1.0, centre = 0.0, max = 1.0;  // raw; min < centre < max, at least 0.1 apart
   bool operator==(const AxisCalibration&) const = default;
@@ -64,14 +65,21 @@ struct StickCalibration {
   bool operator==(const StickCalibration&) const = default;
 };
 struct TriggerCalibration {
-  double released = 0.0, pressed = 1.0;  // raw 0..1; released < pressed
+  double released = 0.0, pressed = 1.0;  // raw 0..1; pressed at least 0.1 above released
   bool operator==(const TriggerCalibration&) const = default;
 };
+// Comes from a file or a measurement, or a program fills it.
 struct Calibration {
   StickCalibration left, right;
   TriggerCalibration left_trigger, right_trigger;
   bool operator==(const Calibration&) const = default;
 };
+
+inline constexpr double kLeastHalfRange = 0.1;      // raw, from the centre to either end
+inline constexpr double kLeastZoneSpan = 0.05;      // from the inner to the outer zone
+inline constexpr double kLeastTriggerTravel = 0.1;  // raw
+// `Calibration: left.inner is 2, outside [0, 0.9]`. The bounds are those of the files.
+std::optional<Error> check(const Calibration& calibration);
 
 // Inner zones for sticks that were not measured; a Sony stick rests within 6 % of its middle.
 inline constexpr double kInnerZoneSony = 0.12;
@@ -120,18 +128,21 @@ struct DevicePattern {
   int vendor = -1, product = -1;  // -1: any
   bool operator==(const DevicePattern&) const = default;
 };
-// The facts by which calibration files tell devices apart.
+// The facts by which calibration files tell devices apart. identity_of() fills them
+// (gaitpad/pad_configuration.h).
 struct DeviceIdentity {
   std::uint16_t vendor = 0, product = 0;
   std::string unique_id, port;  // as DeviceInfo::unique_id and physical_path
   std::string driver;           // empty (foreign recordings): hidraw
 };
-// Measurements made along with the file, to compare with a later day; they change no output. Raw,
+// Measurements made along with the file, to compare with a later day; they change no output. A
+// calibration's analysis fills them. Raw,
 // in the stick's frame; none: not known.
 struct StickMeasured {
   std::optional<double> sigma, hysteresis, drift_per_s, circularity_error;  // the last in percent
   bool operator==(const StickMeasured&) const = default;
 };
+inline constexpr double kMostGyroBias_rad_s = 1.0;  // no such chip is off by more
 struct CalibrationFile {
   std::string name;
   std::string unique_id, port;         // empty: any
@@ -141,9 +152,14 @@ struct CalibrationFile {
   std::string mapping;                 // a line of SDL's controller data base, or empty
   Calibration calibration;
   std::array<std::optional<StickMeasured>, 2> measured;  // left, right
-  std::optional<TurnRates> gyro_bias_rad_s;              // its rates while the pad lies still
+  // The gyroscope's rates while the pad lies still, each -kMostGyroBias_rad_s ..
+  // kMostGyroBias_rad_s.
+  std::optional<TurnRates> gyro_bias_rad_s;
   bool operator==(const CalibrationFile&) const = default;
 };
+// `CalibrationFile: gyro_bias_rad_s[1] is nan, outside [-1, 1]`, or what check() says of its
+// calibration.
+std::optional<Error> check(const CalibrationFile& file);
 
 // Error: `own.toml:3: "inner" is 0.95, outside [0, 0.9]`.
 Result<CalibrationFile> load_calibration_file(const std::string& path);

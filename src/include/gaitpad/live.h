@@ -61,8 +61,8 @@ enum class FrameEnd { handed_over, not_shown };
 
 class LiveSession {
  public:
-  // Reads the files, opens the recording and starts the threads. Error: a file that cannot be read,
-  // a selector that makes no sense (PadStream::start()), a rate outside 1 .. kMaxRateHz.
+  // Reads the files, opens the recording and starts the threads. Error: a specification that
+  // check() refuses, a file that cannot be read, an impossible selector (PadStream::start()).
   static Result<std::unique_ptr<LiveSession>> start(const SessionSpec& spec);
   // The same in two parts, so that a program can end one session only when the files of the next
   // are known to fit together: prepare() reads them and touches no device. `prepared` is used once.
@@ -91,14 +91,15 @@ class LiveSession {
   // dropped.
   bool take_report_time(ReportTime& time) noexcept;
   // Sets the pace, ticks per second over the rate: 0 stands still, 1 is real time, 0.25 slow
-  // motion, at most 8; less than 1/1024 stands still. A tick computes the same at every pace. Takes
-  // effect within 20 ms. While the session stands still latest() still shows the driving pad's
-  // state and presses.
+  // motion, at most 8; less than 1/1024, or no number, stands still. A tick computes the same at
+  // every pace. Takes effect within 20 ms. While the session stands still latest() still shows the
+  // driving pad's state and presses.
   void set_pace(double pace) noexcept;
   void step(int ticks) noexcept;     // if the session stands still: runs them at pace 8
   void advance(int ticks) noexcept;  // Clock::by_hand: runs them here and now; else nothing
+  // Neither does anything for less than one tick.
   // The keyboard as a stick: where it should go, +x right, +y forward, at most 1 long. It moves
-  // there smoothly.
+  // there smoothly. Not-a-number is the centre.
   void steer(const vec2& wanted) noexcept;
   // Sends a command such as `style limp_left` (grammar: config/README.md, `C:`), from any thread. A
   // command that cannot be carried out gives a remark and counts as bad.

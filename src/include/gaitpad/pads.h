@@ -9,17 +9,20 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
 #include "gaitpad/calibration.h"
 #include "gaitpad/decode.h"
 #include "gaitpad/report.h"
+#include "gaitpad/result.h"
 #include "gaitpad/untouched.h"
 
 namespace gaitpad {
 
-// The facts about a pad that are known before its first report.
+// The facts about a pad that are known before its first report. pad_config() fills them
+// (gaitpad/pad_configuration.h), or a program that has pads of its own.
 struct PadConfig {
   std::shared_ptr<const PadLayout> layout;  // null: none of its reports can be decoded
   Calibration calibration;
@@ -30,6 +33,8 @@ struct PadConfig {
   bool has_factory_sticks = false;  // live pads: it told its own calibration when it was opened
   std::optional<FactoryGyro> factory_gyro;  // the same for its gyroscope
 };
+// `Calibration: left.inner is 2, outside [0, 0.9]`, and the same for the gyroscope.
+std::optional<Error> check(const PadConfig& config);
 
 // For users.
 inline constexpr std::string_view kHatDrives =
@@ -71,7 +76,8 @@ enum class PadRules {
 class Pads {
  public:
   Pads() = default;
-  // A report's device is the index in `configs`.
+  // A report's device is the index in `configs`. The rate is that of the ticks, clamped to 1 ..
+  // kMaxRateHz.
   Pads(std::vector<PadConfig> configs, int rate_hz, PadRules rules = PadRules::version_2);
 
   // Sets what is known of a device that was found later, before its first add_pad(). Swaps:

@@ -1,4 +1,5 @@
-// The results of a session: numbers of the whole run and of each character.
+// The results of a session: numbers of the whole run and of each character. run_summary() fills
+// all.
 #pragma once
 #include <array>
 #include <cstdint>

@@ -134,7 +134,7 @@ SABOTAGES = [  # page, what it says, what is false
     ("docs/pads.md", "`frame_us_p99`", "`frame_ms_p99`"),
     ("docs/pads.md", "`quirks_of()`", "`quirks_for()`"),
     ("docs/pads.md", "`sony.cpp`", "`dualshock.cpp`"),
-    ("docs/library.md", "`PadSelector::driver`", "`PadSelector::drivers`"),
+    ("docs/process.md", "`PadSelector::driver`", "`PadSelector::drivers`"),
     ("docs/library.md", "`gaitpad::session`", "`gaitpad::sitting`"),
     ("docs/ci.md", "`GAITPAD_SHARD_TOTAL`", "`GAITPAD_SHARD_COUNT`"),
     ("docs/ci.md", "`--strict`", "`--severe`"),

@@ -161,3 +161,23 @@ def problems(root):
 def test_every_include_keeps_to_its_layer():
     found = list(problems(pathlib.Path(__file__).resolve().parents[1]))
     assert not found, "\n".join(found)
+
+
+# What the standard libraries of Emscripten 3 and of LLVM 14 lack, and system calls. tools/portable.sh compiles with both.
+NOT_IN_THE_CORE = re.compile(r"std::(ranges|views|bit_cast|async|jthread|format)\b|<(sys/|unistd|fcntl|ranges>|future>|format>)")
+POSIX = "src/base/files.cpp"  # linked into gaitpad::files
+
+
+def unportable(root, text_of=pathlib.Path.read_text):
+    public = [root / f"src/include/gaitpad/{name}.h" for room in LIBRARIES["core"] for name in PUBLIC.get(room, [])]
+    files = public + [p for room in LIBRARIES["core"] for p in sorted((root / room).glob("*.[ch]*"))]
+    for path in files:
+        if path.relative_to(root).as_posix() != POSIX:
+            code = re.sub(r"//.*", "", text_of(path))
+            yield from (f"{path.relative_to(root)}: {found[0]}" for found in NOT_IN_THE_CORE.finditer(code))
+
+
+def test_the_core_keeps_to_what_every_standard_library_has():
+    root = pathlib.Path(__file__).resolve().parents[1]
+    assert not list(unportable(root))
+    assert list(unportable(root, lambda path: path.read_text().replace("std::sort(", "std::ranges::sort(")))

@@ -1,8 +1,8 @@
 #include "gaitpad/terrain.h"
 
-#include <charconv>
 #include <optional>
 
+#include "base/ranges.h"
 #include "base/text.h"
 
 namespace gaitpad {
@@ -17,34 +17,23 @@ constexpr double kMinLength_m = 0.1, kMaxLength_m = 1000.0;
 constexpr double kMinTread_m = 0.15, kMaxTread_m = 2.0, kMaxRise_m = 0.4;
 constexpr int kMaxRisers = 100;
 
-// The shortest decimal that reads back as the same number, with an exponent only where it is tiny
-// or huge.
-std::string number(double value) {
-  const double size = std::abs(value);
-  const bool is_plain = size == 0.0 || (size >= 1e-4 && size < 1e16);
-  char text[64];
-  const auto end =
-      std::to_chars(text, text + sizeof text, value,
-                    is_plain ? std::chars_format::fixed : std::chars_format::scientific);
-  return std::string(text, end.ptr);
-}
-
 bool is_within(double x, double min, double max) noexcept { return x >= min && x <= max; }
 
 std::optional<Error> length_problem(double length_m) {
   if (is_within(length_m, kMinLength_m, kMaxLength_m)) return std::nullopt;
-  return Error{"a length of " + number(length_m) + " m is not within " + number(kMinLength_m) +
-               " and " + number(kMaxLength_m) + " m"};
+  return Error{"a length of " + short_number(length_m) + " m is not within " +
+               short_number(kMinLength_m) + " and " + short_number(kMaxLength_m) + " m"};
 }
 
 // The reason why a sole would not lie on a surface of at most this bend and grade.
 std::optional<Error> shape_problem(double bend_1_m, double grade) {
   if (!(grade <= kMaxGrade))
-    return Error{"a grade of " + fixed(grade, 2) + " is too steep: at most " + number(kMaxGrade)};
+    return Error{"a grade of " + fixed(grade, 2) + " is too steep: at most " +
+                 short_number(kMaxGrade)};
   if (!(bend_1_m <= kMaxBend_1_m)) {
     const std::string bend = std::isfinite(bend_1_m) ? "by " + fixed(bend_1_m, 2) : "infinitely";
     return Error{"a sole would not lie on ground that bends " + bend + " per metre: at most " +
-                 number(kMaxBend_1_m)};
+                 short_number(kMaxBend_1_m)};
   }
   return std::nullopt;
 }
@@ -80,8 +69,8 @@ std::optional<Error> faded_problem(double length_m, double fade_m, const MostOfS
                                    const Most& surface) {
   if (auto problem = length_problem(length_m)) return problem;
   if (!(fade_m > 0.0 && 2.0 * fade_m <= length_m)) {
-    return Error{number(fade_m) + " m of fading at both ends do not fit into " + number(length_m) +
-                 " m"};
+    return Error{short_number(fade_m) + " m of fading at both ends do not fit into " +
+                 short_number(length_m) + " m"};
   }
   return shape_problem(
       surface.bend_1_m + 2.0 * share.slope_1_m * surface.grade + share.bend_1_m2 * surface.height_m,
@@ -116,8 +105,8 @@ ShapePoint point_at(const SlopeSection& slope, double, double u) noexcept {
 std::optional<Error> problem_of(const SlopeSection& slope) {
   if (auto problem = length_problem(slope.length_m)) return problem;
   if (!(slope.rounding_m > 0.0 && 2.0 * slope.rounding_m <= slope.length_m)) {
-    return Error{number(slope.rounding_m) + " m of rounding at both ends do not fit into " +
-                 number(slope.length_m) + " m"};
+    return Error{short_number(slope.rounding_m) + " m of rounding at both ends do not fit into " +
+                 short_number(slope.length_m) + " m"};
   }
   const double grade = std::abs(slope.grade);
   return shape_problem(grade / slope.rounding_m, grade);
@@ -143,11 +132,11 @@ ShapePoint point_at(const StairsSection& stairs, double, double u) noexcept {
 
 std::optional<Error> problem_of(const StairsSection& stairs) {
   if (!is_within(stairs.tread_m, kMinTread_m, kMaxTread_m))
-    return Error{"a tread of " + number(stairs.tread_m) + " m is not within " +
-                 number(kMinTread_m) + " and " + number(kMaxTread_m) + " m"};
+    return Error{"a tread of " + short_number(stairs.tread_m) + " m is not within " +
+                 short_number(kMinTread_m) + " and " + short_number(kMaxTread_m) + " m"};
   if (!is_within(std::abs(stairs.rise_m), 0.01, kMaxRise_m))
-    return Error{"a rise of " + number(stairs.rise_m) + " m is not within 0.01 and " +
-                 number(kMaxRise_m) + " m, up or down"};
+    return Error{"a rise of " + short_number(stairs.rise_m) + " m is not within 0.01 and " +
+                 short_number(kMaxRise_m) + " m, up or down"};
   if (stairs.count < 1 || stairs.count > kMaxRisers)
     return Error{std::to_string(stairs.count) + " risers are not 1 to " +
                  std::to_string(kMaxRisers)};
@@ -280,8 +269,8 @@ std::optional<Error> problem_of(const FieldSection& section) {
   if (!is_within(m, 1e-3, 100.0)) return Error{"a sample is not 1 mm to 100 m wide"};
   const double width_m = (f.columns - 1) * m;
   if (!(2.0 * section.fade_m <= width_m)) {
-    return Error{number(section.fade_m) + " m of fading at both sides do not fit into " +
-                 number(width_m) + " m"};
+    return Error{short_number(section.fade_m) + " m of fading at both sides do not fit into " +
+                 short_number(width_m) + " m"};
   }
   const Differences most = differences(f);
   if (!(most.height * n < 100.0)) return Error{"a height is beyond 100 m"};
@@ -390,8 +379,8 @@ void ask_grid_several(const void* grid, std::span<const GroundPlace> places,
 
 std::optional<Error> check(const GroundGrid& grid) {
   if (!is_within(grid.spacing_m, kLeastSpacing_m, kMostSpacing_m))
-    return Error{"GroundGrid: spacing_m is " + number(grid.spacing_m) + ", outside [" +
-                 number(kLeastSpacing_m) + ", " + number(kMostSpacing_m) + "]"};
+    return Error{"GroundGrid: spacing_m is " + short_number(grid.spacing_m) + ", outside [" +
+                 short_number(kLeastSpacing_m) + ", " + short_number(kMostSpacing_m) + "]"};
   if (!std::isfinite(grid.x_m) || !std::isfinite(grid.z_m))
     return Error{"GroundGrid: x_m or z_m is not finite"};
   const int columns = grid.columns, rows = grid.rows;

@@ -6,12 +6,12 @@
 // In a tick: smooth_upper_body() brings the style's values into force, and pose_upper_body() leans
 // the trunk and spreads the arms, poses the spine, then the arms that hang on it, then the head.
 // Joints that move as in the data are not touched, so they cost nothing and keep their bits.
-#include <bit>
 #include <cstring>
 
 #include "animation/floor.h"
 #include "animation/sound_input.h"
 #include "animation/walk_figure.h"
+#include "base/bits.h"
 #include "motion/leg_pose.h"
 
 namespace gaitpad {
@@ -38,14 +38,14 @@ void settle_values(const Tick& tick, UpperBodyState& body) noexcept {
     body.unsettled_ticks = static_cast<int>(std::min(kSettled * tau / tick.dt_s, 1e6));
   }
   if (body.unsettled_ticks <= 0) return;
-  const auto to = std::bit_cast<BodyValues>(goal);
+  const auto to = bits_as<BodyValues>(goal);
   if (--body.unsettled_ticks == 0) {
     body.now = goal;
     body.per_s = {};
     return;
   }
   using Pair = Lanes<2>;
-  const auto before = std::bit_cast<BodyValues>(body.now);
+  const auto before = bits_as<BodyValues>(body.now);
   const BodyValues rate = body.per_s;
   BodyValues now = before;
   const Damping damping(tau, tick.dt_s);
@@ -60,7 +60,7 @@ void settle_values(const Tick& tick, UpperBodyState& body) noexcept {
     std::memcpy(&now[at], &value.x, sizeof(Pair));
     std::memcpy(&body.per_s[at], &value.v, sizeof(Pair));
   }
-  body.now = std::bit_cast<UpperBodyParams>(now);
+  body.now = bits_as<UpperBodyParams>(now);
 }
 
 // A rail rises evenly over stairs, so it stands on the mean of the ground along the way under the

@@ -395,7 +395,7 @@ void keep_trunk_upright(double roll_rad, GaitCycle& cycle) {
   const quat& pelvis = cycle.pelvis_standing;
   const quat back = glm::conjugate(pelvis) * rotation_z(-roll_rad) * pelvis;
   for (std::size_t j = 0; j < cycle.skeleton.joints.size(); ++j) {
-    const bool is_leg = std::ranges::any_of(cycle.leg, [&](const LegModel& leg) {
+    const bool is_leg = std::any_of(cycle.leg.begin(), cycle.leg.end(), [&](const LegModel& leg) {
       return is_ancestor(cycle.skeleton, static_cast<int>(j), leg.joints.hip) ||
              static_cast<int>(j) == leg.joints.hip;
     });

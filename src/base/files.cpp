@@ -171,8 +171,10 @@ const InputFiles* InputFiles::holder_of(const std::string& path) {
 
 const InputFile* InputFiles::find(const std::string& path) const {
   const std::string name = normal(path).substr(folder_.size());
-  const auto found = std::ranges::find(held_, name, &InputFile::path);
-  return found == held_.end() ? nullptr : &*found;
+  for (const InputFile& file : held_) {
+    if (file.path == name) return &file;
+  }
+  return nullptr;
 }
 
 Result<std::string> input_text(const std::string& path, std::size_t max_bytes) {
@@ -183,7 +185,8 @@ Result<std::string> input_text(const std::string& path, std::size_t max_bytes) {
   auto text = file_text(path, max_bytes);
   if (!text) return text;
   for (InputFiles* files = innermost; files != nullptr; files = files->outer_) {
-    if (std::ranges::count(files->read_, path, &InputFile::path) == 0)
+    const auto is_read = [&path](const InputFile& file) { return file.path == path; };
+    if (std::none_of(files->read_.begin(), files->read_.end(), is_read))
       files->read_.push_back({path, *text});
   }
   return text;

@@ -6,7 +6,10 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <locale>
+#include <sstream>
 
+#include "base/bits.h"
 #include "base/ranges.h"
 
 namespace gaitpad {
@@ -43,10 +46,49 @@ std::string_view take_part(std::string_view& rest, char divider) noexcept {
   return part;
 }
 
+namespace {
+
+#ifndef __cpp_lib_to_chars  // libc++ reads doubles by streams only
+// Cuts digits off the beginning; false if there are none.
+bool take_digits(std::string_view& rest) noexcept {
+  const std::size_t digits = std::min(rest.find_first_not_of("0123456789"), rest.size());
+  rest.remove_prefix(digits);
+  return digits > 0;
+}
+
+// Whether all of it is a number such as -1.5e-3, .5 or 2.
+bool is_decimal(std::string_view text) noexcept {
+  if (text.starts_with('-')) text.remove_prefix(1);
+  bool has_digits = take_digits(text);
+  if (text.starts_with('.')) {
+    text.remove_prefix(1);
+    has_digits = take_digits(text) || has_digits;
+  }
+  if (has_digits && (text.starts_with('e') || text.starts_with('E'))) {
+    text.remove_prefix(text.substr(1).starts_with('-') || text.substr(1).starts_with('+') ? 2 : 1);
+    has_digits = take_digits(text);
+  }
+  return has_digits && text.empty();
+}
+#endif
+
+// As a stream writes it in the C locale, whatever the program's own is.
+std::string streamed(double value, std::ios_base::fmtflags format, int precision) {
+  std::ostringstream out;
+  out.imbue(std::locale::classic());
+  out.setf(format, std::ios_base::floatfield);
+  out.precision(precision);
+  out << value;
+  return out.str();
+}
+
+}  // namespace
+
 std::optional<double> parse_bounded(std::string_view text) noexcept {
   constexpr double kMaxValue = 1e7;
   if (text.starts_with('+')) text.remove_prefix(1);
   double value = 0.0;
+#ifdef __cpp_lib_to_chars
   const char* end = text.data() + text.size();
   const auto read = std::from_chars(text.data(), end, value);
   if (text.empty() || read.ptr != end) return std::nullopt;
@@ -55,8 +97,14 @@ std::optional<double> parse_bounded(std::string_view text) noexcept {
     const bool is_tiny = exponent != text.npos && text.substr(exponent + 1).starts_with('-');
     return is_tiny ? std::optional(0.0) : std::nullopt;
   }
-  if (read.ec != std::errc() || !(std::abs(value) <= kMaxValue)) return std::nullopt;
-  return value;
+  if (read.ec != std::errc()) return std::nullopt;
+#else
+  if (!is_decimal(text)) return std::nullopt;
+  std::istringstream in{std::string(text)};
+  in.imbue(std::locale::classic());
+  in >> value;  // sets the value where it is tiny or huge, too
+#endif
+  return std::abs(value) <= kMaxValue ? std::optional(value) : std::nullopt;
 }
 
 std::size_t character_bytes(std::string_view text) noexcept {
@@ -172,7 +220,7 @@ constexpr auto kDigitPairs = [] {
 std::uint64_t scaled_exactly(double value, int decimals) noexcept {
   constexpr int kSignificand = 52, kBias = 1023 + kSignificand;
   constexpr std::uint64_t kLower = 0xffffffff;
-  const auto bits = std::bit_cast<std::uint64_t>(value);
+  const auto bits = bits_as<std::uint64_t>(value);
   const int biased = static_cast<int>(bits >> kSignificand & 0x7ff);
   const std::uint64_t fraction = bits & ((std::uint64_t{1} << kSignificand) - 1);
   const std::uint64_t significand =
@@ -210,10 +258,7 @@ char* put_pair(std::uint64_t pair, char* end) noexcept {
 
 void append_fixed(std::string& out, double value, int decimals) {
   if (!(std::abs(value) < kShortBelow) || decimals < 0 || decimals > kMostShortDecimals) {
-    std::array<char, 512> digits;  // a double has up to 309 before the point
-    const auto written = std::to_chars(digits.data(), digits.data() + digits.size(), value,
-                                       std::chars_format::fixed, std::clamp(decimals, 0, 100));
-    out.append(digits.data(), static_cast<std::size_t>(written.ptr - digits.data()));
+    out += streamed(value, std::ios_base::fixed, std::clamp(decimals, 0, 100));
     return;
   }
   std::array<char, 24> digits;  // sign, 10 digits, point, 9 digits; filled from the end
@@ -245,11 +290,6 @@ std::string fixed(double value, int decimals) {
   return text;
 }
 
-std::string short_number(double value) {
-  std::array<char, 32> text;
-  const auto written =
-      std::to_chars(text.data(), text.data() + text.size(), value, std::chars_format::general, 6);
-  return {text.data(), written.ptr};
-}
+std::string short_number(double value) { return streamed(value, {}, 6); }
 
 }  // namespace gaitpad

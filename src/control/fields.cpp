@@ -196,17 +196,21 @@ struct FoundField {
 // `hip_sway`, or SECTION.NAME.
 std::optional<FoundField> field_of(std::string_view key) noexcept {
   const auto in_section = [](const StyleSection& section, std::string_view name) {
-    const auto at = std::ranges::find(section.fields, name, &StyleField::name);
-    return at == section.fields.end() ? std::nullopt : std::optional(FoundField{&section, &*at});
+    for (const StyleField& field : section.fields) {
+      if (field.name == name) return std::optional(FoundField{&section, &field});
+    }
+    return std::optional<FoundField>();
   };
   for (const StyleSection& section : kSections) {
     if (!section.name.empty()) break;
     if (const auto whole = in_section(section, key)) return whole;
   }
   const std::string_view table = take_part(key, '.');
-  const auto section = std::ranges::find(kSections, table, &StyleSection::name);
-  if (table.empty() || section == std::end(kSections)) return std::nullopt;
-  return in_section(*section, key);
+  if (table.empty()) return std::nullopt;
+  for (const StyleSection& section : kSections) {
+    if (section.name == table) return in_section(section, key);
+  }
+  return std::nullopt;
 }
 
 // The words of a field in the table, or its name: `weight.hip_x` is "hip x weight".
@@ -215,7 +219,7 @@ std::string words_of(const StyleField& field) {
   constexpr std::string_view kWeight = "weight.";
   std::string words(field.is_weight() ? field.name.substr(kWeight.size()) : field.name);
   if (field.is_weight()) words += " weight";
-  std::ranges::replace(words, '_', ' ');
+  std::replace(words.begin(), words.end(), '_', ' ');
   return words;
 }
 
@@ -237,14 +241,14 @@ std::span<const StyleSection> style_sections() noexcept { return kSections; }
 void set_field(const StyleSection& section, const StyleField& field, double value,
                StyleValues& style) noexcept {
   for (int side = section.first_side; side <= section.last_side; ++side)
-    std::ranges::fill(field.values(style, side), value);
+    for (double& number : field.values(style, side)) number = value;
 }
 
 bool is_locked(const StyleSection& section, StyleValues& style) noexcept {
   if (section.weights == nullptr) return false;
   for (int side = section.first_side; side <= section.last_side; ++side) {
-    if (std::ranges::all_of(section.weights(style, side), [](double w) { return w == 0.0; }))
-      return true;
+    const std::span<const double> weights = section.weights(style, side);
+    if (std::all_of(weights.begin(), weights.end(), [](double w) { return w == 0.0; })) return true;
   }
   return false;
 }

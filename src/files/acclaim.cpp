@@ -68,7 +68,7 @@ std::optional<EulerOrder> axis_order(std::string_view word) {
 
 std::optional<AsfChannel> channel_named(const std::string& word) {
   constexpr std::array<std::string_view, 6> kNames = {"rx", "ry", "rz", "tx", "ty", "tz"};
-  const auto at = std::ranges::find(kNames, word);
+  const auto at = std::find(kNames.begin(), kNames.end(), word);
   if (at == kNames.end()) return std::nullopt;
   return static_cast<AsfChannel>(at - kNames.begin());
 }

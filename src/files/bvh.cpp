@@ -377,8 +377,9 @@ BvhWriter::BvhWriter(std::ostream& out, const Skeleton& skeleton, const BvhLayou
 }
 
 bool BvhWriter::is_joint(int joint) const {
+  const std::vector<int>& tips = layout_.end_sites_as_joints;
   return !skeleton_.joints[joint].is_end_site ||
-         std::ranges::find(layout_.end_sites_as_joints, joint) != layout_.end_sites_as_joints.end();
+         std::find(tips.begin(), tips.end(), joint) != tips.end();
 }
 
 void BvhWriter::write_hierarchy() {

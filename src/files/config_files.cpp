@@ -28,7 +28,7 @@ bool is_plain(char c) {
 Result<std::string> style_file_name(const std::string& given) {
   std::string name(trimmed(given, " "));
   if (name.empty()) return Error{"a style needs a name"};
-  if (name.size() > kMaxNameBytes || !std::ranges::all_of(name, is_plain)) {
+  if (name.size() > kMaxNameBytes || !std::all_of(name.begin(), name.end(), is_plain)) {
     return Error{fmt::format("a style's name has at most {} letters, digits, blanks, _ and -",
                              kMaxNameBytes)};
   }

@@ -36,7 +36,7 @@ bool is_wanted(const std::string& name, FileFilter filter) {
 }
 
 void sort(std::vector<FolderEntry>& entries) {
-  std::ranges::sort(entries, [](const FolderEntry& a, const FolderEntry& b) {
+  std::sort(entries.begin(), entries.end(), [](const FolderEntry& a, const FolderEntry& b) {
     if (a.is_folder != b.is_folder) return a.is_folder;
     const std::string left = lower_case(a.name), right = lower_case(b.name);
     return left != right ? left < right : a.name < b.name;
@@ -78,7 +78,7 @@ RecentFiles::RecentFiles(std::string file) : file_(std::move(file)) {
     std::string path = text->substr(begin, end - begin);
     begin = end + 1;
     std::error_code error;
-    const bool is_known = std::ranges::count(paths_, path) > 0;
+    const bool is_known = std::count(paths_.begin(), paths_.end(), path) > 0;
     if (!path.empty() && !is_known && fs::is_regular_file(path, error))
       paths_.push_back(std::move(path));
   }

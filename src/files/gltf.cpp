@@ -120,7 +120,7 @@ std::unique_ptr<RestPose> rest_of(const Skeleton& skeleton, const GltfLayout& la
   auto rest = std::make_unique<RestPose>();
   rest->pose.joint_count = static_cast<int>(skeleton.joints.size());
   rest->pose.root_m = layout.rest_root_m;
-  std::ranges::copy(layout.rest_local, rest->pose.local.begin());
+  std::copy(layout.rest_local.begin(), layout.rest_local.end(), rest->pose.local.begin());
   forward_kinematics(skeleton, rest->pose, rest->world);
   return rest;
 }

@@ -266,7 +266,8 @@ Motion motion_of(const KeyedStride& stride, const std::string& name) {
 }  // namespace
 
 PeriodicKeys::PeriodicKeys(std::vector<Key> keys) : keys_(std::move(keys)) {
-  std::ranges::sort(keys_, {}, &Key::phase);
+  std::sort(keys_.begin(), keys_.end(),
+            [](const Key& a, const Key& b) { return a.phase < b.phase; });
   const std::size_t n = keys_.size();
   std::vector<double> gap(n, 1.0), steepness(n, 0.0);
   for (std::size_t k = 0; n > 1 && k < n; ++k) {

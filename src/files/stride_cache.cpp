@@ -104,7 +104,7 @@ void delete_oldest(const std::string& folder) {
     if (!gone) files.emplace_back(time, entry->path());
   }
   if (files.size() <= kMostFiles) return;
-  std::ranges::sort(files);
+  std::sort(files.begin(), files.end());
   for (std::size_t i = 0; i < files.size() - kMostFiles; ++i) fs::remove(files[i].second, error);
 }
 

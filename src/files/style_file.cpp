@@ -46,7 +46,7 @@ std::string weights_text(const StyleSection& section, StyleValues& style) {
     const std::span<double> own = joint.values(style, side);
     if (written && own.data() < written) break;
     written = own.data() + own.size();
-    if (std::ranges::all_of(own, [&own](double w) { return w == own[0]; })) {
+    if (std::all_of(own.begin(), own.end(), [&own](double w) { return w == own[0]; })) {
       add(joint, own[0]);
       continue;
     }
@@ -75,8 +75,9 @@ std::string section_text(const StyleSection& section, StyleValues& style) {
 
 // True if both sides of a section have equal values.
 bool is_even(const StyleSection& both, StyleValues& style) {
-  return std::ranges::all_of(both.fields, [&](const StyleField& field) {
-    return std::ranges::equal(field.values(style, kLeftSide), field.values(style, kRightSide));
+  return std::all_of(both.fields.begin(), both.fields.end(), [&](const StyleField& field) {
+    const auto left = field.values(style, kLeftSide), right = field.values(style, kRightSide);
+    return std::equal(left.begin(), left.end(), right.begin(), right.end());
   });
 }
 

@@ -56,7 +56,7 @@ constexpr std::string_view kBesideLegWords[] = {"buttock", "buttocks"};
 
 template <std::size_t n>
 bool is_among(const std::string_view (&list)[n], std::string_view word) {
-  return std::ranges::find(list, word) != std::end(list);
+  return std::find(std::begin(list), std::end(list), word) != std::end(list);
 }
 
 bool is_upper_case(char c) { return c >= 'A' && c <= 'Z'; }
@@ -114,7 +114,7 @@ NamedPart middle_part(const std::vector<std::string>& words) {
   for (const std::string& word : words) {
     if (is_among(kNeckWords, word)) return NamedPart::neck;
     if (!is_among(kHeadWords, word)) continue;
-    const bool is_beside = std::ranges::any_of(words, [](const std::string& w) {
+    const bool is_beside = std::any_of(words.begin(), words.end(), [](const std::string& w) {
       return is_among(kHelperWords, w) || is_among(kBesideArmWords, w);
     });
     return is_beside ? NamedPart::none : NamedPart::head;
@@ -225,7 +225,7 @@ std::vector<int> children_of(const Skeleton& skeleton, int joint) {
 std::vector<int> path_below(const Skeleton& skeleton, int top, int joint) {
   std::vector<int> path;
   for (int j = joint; j > top && j >= 0; j = skeleton.joints[j].parent) path.push_back(j);
-  std::ranges::reverse(path);
+  std::reverse(path.begin(), path.end());
   return path;
 }
 
@@ -330,11 +330,12 @@ std::optional<LegJoints> shaped_leg(const Figure& figure, int ancestor, int leaf
 // in two branches and makes a pair of legs. At most the 24 lowest leaves are tried.
 std::optional<Legs> shaped_legs(const Figure& figure, int up_axis) {
   const auto height = [&](int j) { return figure.at[j][up_axis]; };
+  const auto is_lower = [&](int a, int b) { return height(a) < height(b); };
   std::vector<int> leaves;
   for (int j = 1; j < figure.count(); ++j) {
     if (children_of(figure.skeleton, j).empty()) leaves.push_back(j);
   }
-  std::ranges::stable_sort(leaves, {}, height);
+  std::stable_sort(leaves.begin(), leaves.end(), is_lower);
   if (leaves.size() > 24) leaves.resize(24);
   for (std::size_t b = 1; b < leaves.size(); ++b) {
     for (std::size_t a = 0; a < b; ++a) {
@@ -545,7 +546,7 @@ int hand_end_of(const Figure& figure, int wrist) {
   double longest = 0.0;
   for (int j = wrist + 1; j < figure.count() && figure.carries(wrist, j); ++j) {
     const std::vector<std::string> words = name_words(figure.joint(j).name);
-    const bool is_beside = std::ranges::any_of(words, [](const std::string& word) {
+    const bool is_beside = std::any_of(words.begin(), words.end(), [](const std::string& word) {
       return word.ends_with("thumb") || word.ends_with("mesh");
     });
     double length = 0.0;

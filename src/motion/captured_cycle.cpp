@@ -308,7 +308,7 @@ CapturedCycle without_samples(const Motion& motion) {
 void add_sample(const PeriodicPose& at, JointFrames& world, CapturedCycle& cycle) {
   Pose pose;
   pose.joint_count = static_cast<int>(cycle.joints());
-  std::ranges::copy(at.local, pose.local.begin());
+  std::copy(at.local.begin(), at.local.end(), pose.local.begin());
   pose.root_m = at.pelvis_m;
   forward_kinematics(cycle.skeleton, pose, world);
   cycle.local.insert(cycle.local.end(), at.local.begin(), at.local.end());

@@ -21,8 +21,9 @@ bool can_walk(const Motion& motion) { return !check(motion) && has_legs(motion);
 // ankle's first minimum within the band; if there is none, its lowest frame. Heights are not
 // smoothed, because a standing ankle's minima are less than a millimetre deep.
 int heel_off_frame(const std::vector<vec3>& ankle, int lift, int stop, double reach) {
-  const auto [low, high] = std::ranges::minmax(ankle, {}, &vec3::y);
-  const double limit_m = low.y + kBand * (high.y - low.y);
+  const auto [low, high] = std::minmax_element(
+      ankle.begin(), ankle.end(), [](const vec3& a, const vec3& b) { return a.y < b.y; });
+  const double limit_m = low->y + kBand * (high->y - low->y);
   int lowest = lift;
   for (int f = lift - 1; f >= stop && lift - f <= reach; --f) {
     const double y = ankle[f].y;
@@ -112,8 +113,8 @@ std::optional<Swing> robust_flight(const Motion& motion, Side side) {
 
 std::optional<Swing> paper_flight(const std::vector<double>& heights) {
   if (heights.size() < 3) return std::nullopt;
-  const auto [low, high] = std::ranges::minmax(heights);
-  const double band = kBand * (high - low);
+  const auto [low, high] = std::minmax_element(heights.begin(), heights.end());
+  const double band = kBand * (*high - *low);
   std::array<int, 3> target{};
   int found = 0, direction = 0;  // sign of the last gradient that was not 0
   for (std::size_t f = 1; f < heights.size() && found < 3; ++f) {
@@ -121,8 +122,8 @@ std::optional<Swing> paper_flight(const std::vector<double>& heights) {
     if (gradient == 0.0) continue;
     const int now = gradient > 0.0 ? 1 : -1;
     const double turn_m = heights[f - 1];
-    const bool is_target = found == 1 ? direction > 0 && now < 0 && turn_m >= high - band
-                                      : direction < 0 && now > 0 && turn_m <= low + band;
+    const bool is_target = found == 1 ? direction > 0 && now < 0 && turn_m >= *high - band
+                                      : direction < 0 && now > 0 && turn_m <= *low + band;
     if (is_target) target[found++] = static_cast<int>(f) - 1;
     direction = now;
   }

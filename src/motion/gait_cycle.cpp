@@ -159,7 +159,7 @@ double flight_share(const CapturedCycle& captured, const GaitCycle& cycle) {
     }
     for (int i = 0; i < kCycleSamples; ++i) in_air[i] += flies[i];
   }
-  return double(std::ranges::count(in_air, 2)) / kCycleSamples;
+  return double(std::count(in_air.begin(), in_air.end(), 2)) / kCycleSamples;
 }
 
 // Distance that the toe slides between foot flat and toe-off.

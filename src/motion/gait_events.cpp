@@ -27,10 +27,11 @@ std::vector<SampleRange> unbroken_ranges(const FeetTracks& tracks,
   std::vector<SampleRange> ranges;
   int first = 0;
   for (int f = 1; f <= frames; ++f) {
-    const bool breaks = f == frames || is_jump(pelvis[f], pelvis[f - 1], most_m) ||
-                        std::ranges::any_of(tracks.foot, [&](const FootTrack& foot) {
-                          return is_jump(foot.ankle_m[f], foot.ankle_m[f - 1], most_m);
-                        });
+    const bool breaks =
+        f == frames || is_jump(pelvis[f], pelvis[f - 1], most_m) ||
+        std::any_of(tracks.foot.begin(), tracks.foot.end(), [&](const FootTrack& foot) {
+          return is_jump(foot.ankle_m[f], foot.ankle_m[f - 1], most_m);
+        });
     if (!breaks) continue;
     if (f - first >= 2) ranges.push_back({first, f - 1});
     first = f;
@@ -69,7 +70,7 @@ Sole sole_of(const FootJoints& foot, const std::vector<SampleRange>& ranges, dou
     }
   }
   if (flat.empty()) return {};
-  std::ranges::sort(flat);
+  std::sort(flat.begin(), flat.end());
   flat.resize(std::max<std::size_t>(1, flat.size() * kFlatPercent / 100));
   std::vector<vec3> heels, toes;
   for (const auto& [score, f] : flat) {
@@ -223,7 +224,8 @@ std::vector<Run> swing_runs(const FeetTracks& tracks, double moving_share, doubl
     std::erase_if(runs, [&](const Run& run) { return !is_swing(tracks, run); });
     found.insert(found.end(), runs.begin(), runs.end());
   }
-  std::ranges::stable_sort(found, [](const Run& a, const Run& b) { return a.first < b.first; });
+  std::stable_sort(found.begin(), found.end(),
+                   [](const Run& a, const Run& b) { return a.first < b.first; });
   return found;
 }
 
@@ -498,7 +500,7 @@ Result<StrideEvents> stride_events(const FeetTracks& stride, const vec3& travel_
       const double roll = events.toe_off[other(side)] - events.strike[side];
       roll_s[side] = (fraction(roll + 0.5) - 0.5) * samples * stride.sample_s;
     }
-    const double flight_s = -std::ranges::max(roll_s);
+    const double flight_s = -std::max(roll_s[0], roll_s[1]);
     const double legs_s = glm::length(travel_m) / (samples * stride.sample_s) / stride.leg_m;
     if (flight_s > kLeastFlight_s && legs_s > kSlowestRun_legs_s)
       return Error{"holds no walk: both feet are in the air for " + fixed(flight_s, 2) +

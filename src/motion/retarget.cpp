@@ -154,10 +154,8 @@ class Matcher {
   void aim_chain(const std::vector<int>& from, const std::vector<int>& to, int from_end,
                  int to_end) {
     if (from.empty() || to.empty()) return;
-    const bool is_same =
-        from.size() == to.size() && std::ranges::equal(
-                                        from, to, {}, [this](int j) { return from_.name(j); },
-                                        [this](int j) { return to_.name(j); });
+    const bool is_same = std::equal(from.begin(), from.end(), to.begin(), to.end(),
+                                    [this](int f, int t) { return from_.name(f) == to_.name(t); });
     if (is_same) {
       for (std::size_t k = 0; k + 1 < from.size(); ++k) aim(from[k], from[k + 1], to[k], to[k + 1]);
       if (from_end >= 0 && to_end >= 0) aim(from.back(), from_end, to.back(), to_end);
@@ -179,13 +177,14 @@ class Matcher {
 
   static bool is_part(const BodyPlan& part, int joint) {
     const auto has = [joint](const std::vector<int>& list) {
-      return std::ranges::find(list, joint) != list.end();
+      return std::find(list.begin(), list.end(), joint) != list.end();
     };
     return has(part.joints.spine) || has(part.neck) ||
-           std::ranges::any_of(part.joints.arm, [joint](const ArmChain& arm) {
-             return joint == arm.collar || joint == arm.shoulder || joint == arm.elbow ||
-                    joint == arm.wrist;
-           });
+           std::any_of(part.joints.arm.begin(), part.joints.arm.end(),
+                       [joint](const ArmChain& arm) {
+                         return joint == arm.collar || joint == arm.shoulder ||
+                                joint == arm.elbow || joint == arm.wrist;
+                       });
   }
 
   void match_names() {

@@ -76,7 +76,8 @@ std::vector<FootEvent> foot_events(const std::vector<FootSwing>& swings, int ran
     if (s.moves_from) events.push_back({*s.moves_from, s.side, Change::lift});
     if (s.moves_to) events.push_back({*s.moves_to, s.side, Change::land});
   }
-  std::ranges::stable_sort(events, {}, &FootEvent::frame);
+  std::stable_sort(events.begin(), events.end(),
+                   [](const FootEvent& a, const FootEvent& b) { return a.frame < b.frame; });
   return events;
 }
 
@@ -136,7 +137,7 @@ bool is_stride(const std::vector<FootEvent>& events, std::size_t from, std::size
   for (std::size_t i = from; i < to; ++i) {
     ++count[2 * events[i].side + static_cast<int>(events[i].change)];
   }
-  return std::ranges::all_of(count, [](int n) { return n == 1; });
+  return count == std::array{1, 1, 1, 1};
 }
 
 // The period within 4 % of the events' period that has the smallest seam.
@@ -195,7 +196,8 @@ void add_by_pose(const WalkTrack& track, const SampleRange& range,
   constexpr double kLike_legs = 0.05;
   constexpr double kShortest_s = 0.5;
   const auto first_from = [&](double frame) {
-    return std::ranges::lower_bound(events, frame, {}, &FootEvent::frame) - events.begin();
+    const auto is_before = [](const FootEvent& event, double at) { return event.frame < at; };
+    return std::lower_bound(events.begin(), events.end(), frame, is_before) - events.begin();
   };
   const int shortest = static_cast<int>(kShortest_s / frame_s) + 1;
   const int longest = static_cast<int>(kLongestStride_s / frame_s);
@@ -295,7 +297,8 @@ void sort_best_first(const WalkTrack& track, std::vector<Candidate>& all) {
               0.1 * std::abs(c.speed_legs_s / usual - 1.0) + 0.1 * unsteadiness(track, w) +
               0.02 * (1.0 - std::min(room / 0.2, 1.0));
   }
-  std::ranges::stable_sort(all, {}, &Candidate::score);
+  std::stable_sort(all.begin(), all.end(),
+                   [](const Candidate& a, const Candidate& b) { return a.score < b.score; });
 }
 
 // --- Clips that are one loop ---------------------------------------------------------------------

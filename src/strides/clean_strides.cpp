@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <future>
 #include <optional>
 #include <string>
+#include <thread>
 
 #include "gaitpad/curve.h"
 #include "motion/leg_pose.h"
@@ -368,8 +368,17 @@ Result<StrideFamily> stride_family(const GaitCycle& cycle) {
   back.family.stand_rad = builder.family.stand_rad;
   back.family.stand_m = builder.family.stand_m;
   back.family.stand_roll_rad = builder.family.stand_roll_rad;
-  std::future<bool> back_solved = std::async([&back] { return back.solve(); });
-  const bool forwards_solved = builder.solve(), solved = back_solved.get() && forwards_solved;
+  bool back_solved = false;
+  const auto solve_back = [&back, &back_solved] { back_solved = back.solve(); };
+  std::thread beside;
+  if (std::thread::hardware_concurrency() > 1) {
+    beside = std::thread(solve_back);
+  } else {  // no second core, or no threads at all
+    solve_back();
+  }
+  const bool forwards_solved = builder.solve();
+  if (beside.joinable()) beside.join();
+  const bool solved = back_solved && forwards_solved;
   builder.family.back = std::move(back.family.table);
   if (!solved || !is_finite(builder.family))
     return Error{cycle.name + ": no stride keeps its feet where they stand"};

@@ -170,7 +170,9 @@ struct StrideSolver::System {
                 l = (i + d) % solved * kUnknowns + at % kUnknowns;
       entries.push_back({std::max(k, l), std::min(k, l), at});
     }
-    std::ranges::sort(entries, {}, [](const Entry& e) { return std::pair(e.column, e.row); });
+    std::sort(entries.begin(), entries.end(), [](const Entry& a, const Entry& b) {
+      return std::pair(a.column, a.row) < std::pair(b.column, b.row);
+    });
     std::vector<Eigen::Triplet<double>> triplets;
     entry_at.clear();
     for (const Entry& e : entries) {

@@ -9,6 +9,7 @@
 #include "base/lanes.h"
 #include "gaitpad/hash.h"
 #include "tests/animation/made_crowd.h"
+#include "tests/clean_cycle.h"
 
 namespace gaitpad::test {
 namespace {

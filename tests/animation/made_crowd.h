@@ -4,10 +4,10 @@
 #include <memory>
 #include <vector>
 
+#include "gaitpad/clean_strides.h"
 #include "gaitpad/control.h"
 #include "gaitpad/crowd.h"
 #include "gaitpad/hash.h"
-#include "tests/clean_cycle.h"
 #include "tests/value_of.h"
 
 namespace gaitpad {
@@ -25,7 +25,7 @@ class MadeCrowd {
       add_section(uneven, shape);
     }
     const auto ground = std::make_shared<const Terrain>(std::move(uneven));
-    const GaitCycle cycle = clean_cycle(procedural_gait());
+    const GaitCycle cycle = value_of(with_clean_strides(procedural_gait()));
     std::vector<std::shared_ptr<const WalkModel>> models;
     for (int build = 0; build < 8; ++build) {
       Character character;

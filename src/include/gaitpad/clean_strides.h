@@ -6,7 +6,7 @@
 //   const auto model = gaitpad::walk_model(*cycle, gaitpad::Character{});
 //
 // Equal cycles give the same bits, with every compiler and at every level. Both functions only
-// compute, on three threads where there are cores: nothing is read, written or kept. `gaitpad`
+// compute, on two threads where there are cores: nothing is read, written or kept. `gaitpad`
 // itself keeps families in the user's cache.
 #pragma once
 #include "gaitpad/result.h"

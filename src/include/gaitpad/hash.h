@@ -3,15 +3,17 @@
 // shift after each product, because a product alone never carries upper bits down. Eight times
 // fewer steps than FNV-1a. It does not resist an adversary.
 #pragma once
-#include <bit>
 #include <cstdint>
+#include <cstring>
 
 namespace gaitpad {
 
 class WordHash {
  public:
   void add(double value) noexcept {
-    state_ = (state_ ^ std::bit_cast<std::uint64_t>(value)) * 0x100000001b3ull;
+    std::uint64_t bits;
+    std::memcpy(&bits, &value, sizeof bits);
+    state_ = (state_ ^ bits) * 0x100000001b3ull;
     state_ ^= state_ >> 32;
   }
   std::uint64_t value() const noexcept { return state_; }

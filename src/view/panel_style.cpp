@@ -445,7 +445,7 @@ void draw_exaggerate(Ui& ui) {
   const auto walkers = ui.selected();
   const auto deviates = [&](const WalkerFrame& w) { return exaggeration(ui, w).has_value(); };
   const auto one = std::ranges::find_if(walkers, deviates);
-  text_line(ui, ui.fonts.small, ui.theme.text, "exaggerate (multiplies differences from even)");
+  text_line(ui, ui.fonts.small, ui.theme.text, "exaggerate differences from even (x)");
   SliderLook look;
   look.min = 1.0;
   look.max = kMostExaggerated;

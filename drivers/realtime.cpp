@@ -1,4 +1,4 @@
-#include "pads/realtime.h"
+#include "drivers/realtime.h"
 
 #include <fmt/format.h>
 #include <pthread.h>

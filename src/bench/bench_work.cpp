@@ -3,7 +3,6 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 #include <malloc.h>
-#include <time.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -13,6 +12,7 @@
 #include "animation/leg_ik.h"
 #include "animation/walk_figure.h"
 #include "base/lanes.h"
+#include "drivers/threads.h"
 #include "files/stride_cache.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/crowd.h"
@@ -314,11 +314,7 @@ Work character_work(const char* name, const char* label,
 }
 
 // Processor time of this thread.
-double thread_s() {
-  timespec time{};
-  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
-}
+double thread_s() { return 1e-9 * static_cast<double>(thread_time_ns()); }
 
 // Splits the tick into parts. Sixteen characters run each part together, so that reading the clock
 // costs little; no state is copied. The table reads of plan and pose are measured once more

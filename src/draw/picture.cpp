@@ -6,7 +6,6 @@
 
 #include "base/files.h"
 #include "base/text.h"
-#include "draw/sanitizer_hooks.h"
 
 namespace gaitpad {
 namespace {

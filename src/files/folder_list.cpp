@@ -2,9 +2,9 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
 
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <system_error>
 
@@ -99,9 +99,14 @@ void RecentFiles::add(const std::string& path) {
 }
 
 std::string written_on(const std::string& path) {
-  struct stat status {};
-  if (::stat(path.c_str(), &status) != 0) return {};
-  return fmt::format("{:%Y-%m-%d %H:%M}", fmt::localtime(status.st_mtime));
+  std::error_code error;
+  const auto time = std::filesystem::last_write_time(path, error);
+  if (error) return {};
+  using Seconds = std::chrono::time_point<std::chrono::system_clock, std::chrono::seconds>;
+  const auto written =
+      std::chrono::floor<std::chrono::seconds>(std::chrono::file_clock::to_sys(time));
+  return fmt::format("{:%Y-%m-%d %H:%M}",
+                     fmt::localtime(std::chrono::system_clock::to_time_t(Seconds(written))));
 }
 
 }  // namespace gaitpad

@@ -5,8 +5,6 @@
 // tried again a little later, a pad that was just plugged in gets a moment to show itself to the
 // preferred driver, and devices are looked at now and then even if udev says nothing.
 #pragma once
-#include <unistd.h>
-
 #include <atomic>
 #include <chrono>
 #include <condition_variable>

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 #include <poll.h>
-#include <time.h>
 
 #include <algorithm>
 #include <bit>
@@ -14,10 +13,11 @@
 
 #include "base/spsc_ring.h"
 #include "base/text.h"
+#include "drivers/realtime.h"
+#include "drivers/threads.h"
 #include "gaitpad/keyboard.h"
 #include "pads/newest_reports.h"
 #include "pads/pad_finder.h"
-#include "pads/realtime.h"
 
 namespace gaitpad {
 namespace {
@@ -170,12 +170,6 @@ void make_event(Report& report, ReportKind kind, std::uint16_t device, std::int6
   report.device = device;
   report.kind = kind;
   report.size = 0;
-}
-
-std::chrono::nanoseconds processor_time() {
-  timespec time{};
-  ::clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
-  return std::chrono::seconds(time.tv_sec) + std::chrono::nanoseconds(time.tv_nsec);
 }
 
 // Reads all open devices, stamps and orders their reports, sets motors, and gives back the devices
@@ -596,7 +590,7 @@ void PadIo::take_remarks(Pad& pad) {
 
 // A thread with real-time priority that never sleeps would leave no time for the others.
 void PadIo::watch_itself(Clock::time_point now) {
-  const std::chrono::nanoseconds busy = processor_time();
+  const std::chrono::nanoseconds busy(thread_time_ns());
   if (busy - busy_ > kMaxBusy * (now - watched_)) give_up_priority();
   busy_ = busy;
   watched_ = now;

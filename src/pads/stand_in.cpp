@@ -1,8 +1,8 @@
 #include "pads/stand_in.h"
 
-#include <errno.h>
 #include <fmt/format.h>
 
+#include <cerrno>
 #include <cstring>
 #include <utility>
 

@@ -1,7 +1,6 @@
 #include "gaitpad/live.h"
 
 #include <fmt/format.h>
-#include <pthread.h>
 
 #include <algorithm>
 #include <chrono>
@@ -12,8 +11,9 @@
 #include <utility>
 
 #include "drivers/posix.h"
+#include "drivers/realtime.h"
+#include "drivers/threads.h"
 #include "gaitpad/keyboard.h"
-#include "pads/realtime.h"
 #include "session/live_loop.h"
 #include "session/pad_forward.h"
 #include "session/pose_stream.h"
@@ -114,7 +114,7 @@ void LiveSession::Impl::start_thread() {
   std::promise<std::optional<std::string>> refused;
   auto refusal = refused.get_future();
   thread = std::thread([this, refused = std::move(refused)]() mutable {
-    ::pthread_setname_np(::pthread_self(), "gaitpad-loop");
+    name_thread("gaitpad-loop");
     const auto priority = take_priority(RealtimeRank::loop);
     time_policy = gaitpad::time_policy();
     const auto memory = lock_memory();

@@ -1,7 +1,5 @@
 #include "session/live_loop.h"
 
-#include <time.h>
-
 #include <algorithm>
 #include <bit>
 #include <chrono>
@@ -9,8 +7,8 @@
 #include <utility>
 
 #include "drivers/posix.h"
+#include "drivers/realtime.h"
 #include "gaitpad/decode.h"
-#include "pads/realtime.h"
 
 namespace gaitpad {
 

@@ -1,9 +1,10 @@
 #include "session/pad_forward.h"
 
 #include <poll.h>
-#include <pthread.h>
 
 #include <utility>
+
+#include "drivers/threads.h"
 
 namespace gaitpad {
 
@@ -68,7 +69,7 @@ void ForwardMail::wait() noexcept {
 }
 
 void PadForward::run() {
-  ::pthread_setname_np(::pthread_self(), "gaitpad-forward");
+  name_thread("gaitpad-forward");
   ForwardedTick sent;
   while (!is_ending_) {
     mail_.wait();

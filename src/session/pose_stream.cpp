@@ -3,7 +3,6 @@
 #include <fcntl.h>
 #include <fmt/format.h>
 #include <netdb.h>
-#include <pthread.h>
 #include <sys/socket.h>
 #ifdef GAITPAD_HAS_OSC
 #include <lo/lo.h>
@@ -17,6 +16,7 @@
 #include <utility>
 
 #include "base/text.h"
+#include "drivers/threads.h"
 #include "session/live_loop.h"
 
 namespace gaitpad {
@@ -226,7 +226,7 @@ void PoseStream::start() {
 }
 
 void PoseStream::run() {
-  ::pthread_setname_np(::pthread_self(), "gaitpad-stream");
+  name_thread("gaitpad-stream");
   const std::int64_t start_ns = now_ns();
   const auto frame_at = [&](std::int64_t time_ns) {
     return (time_ns - start_ns) * fps_ / kSecond_ns;

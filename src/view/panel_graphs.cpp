@@ -294,7 +294,7 @@ void draw_solver_panel(Ui& ui) {
   text_line(ui, ui.fonts.small, ui.theme.text, "Iterations of a tick");
   draw_plot_box(ui, "graph iterations", iteration_plot(ui.in.history, span, walker, ui.theme),
                 70.0);
-  text_line(ui, ui.fonts.small, ui.theme.text, "Error left (mm)");
+  text_line(ui, ui.fonts.small, ui.theme.text, "Remaining error (mm)");
   draw_plot_box(ui, "graph error", error_plot(ui.in.history, span, walker, ui.theme), 70.0);
   if (ui.in.status != nullptr) {
     const double legs = 2.0 * std::max(ui.in.frame.walker_count, 1);

@@ -351,7 +351,7 @@ void draw_sticks(Ui& ui) {
     put_text(list, ui.fonts.tick, ui.theme.tick, {min.x, y + 2.0f * line}, "circle", label);
     put_text(list, ui.fonts.tick, error ? ui.theme.text : ui.theme.secondary,
              {min.x + label, y + 2.0f * line},
-             error ? fmt::format("{:.1f} % off", *error) : "turn it round", side - label);
+             error ? fmt::format("{:.1f} % off", *error) : "trace the rim", side - label);
   }
   ImGui::Dummy({width, side + ui.px(6) + 3.0f * (ui.fonts.tick->FontSize + ui.px(2))});
 }

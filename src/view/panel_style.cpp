@@ -81,7 +81,7 @@ void give_back(Ui& ui, const Controlled& c, std::optional<GaitKey> key) {
   forget_pending(ui, "gait " + name);
 }
 
-// "does 0.37", for both feet "does 0.64 | 0.31", for walkers that differ "does 0.31 to 0.64". Empty
+// "now 0.37", for both feet "now 0.64 | 0.31", for walkers that differ "now 0.31 to 0.64". Empty
 // if the walk has no value of the parameter.
 std::string done_text(const ControlRow& row, const Controlled& c) {
   if (!done_value(c.walkers.front(), row.left)) return {};
@@ -98,9 +98,9 @@ std::string done_text(const ControlRow& row, const Controlled& c) {
       high = std::max(high, done(walker));
     }
   }
-  if (is_shared) return fmt::format("does {}", fmt::join(texts, " | "));
+  if (is_shared) return fmt::format("now {}", fmt::join(texts, " | "));
   const std::string from = tick_text(low, 0.01), to = tick_text(high, 0.01);
-  return from == to ? "does " + from : fmt::format("does {} to {}", from, to);
+  return from == to ? "now " + from : fmt::format("now {} to {}", from, to);
 }
 
 std::string stick_text(const ControlRow& row, const Controlled& c) {
@@ -445,7 +445,7 @@ void draw_exaggerate(Ui& ui) {
   const auto walkers = ui.selected();
   const auto deviates = [&](const WalkerFrame& w) { return exaggeration(ui, w).has_value(); };
   const auto one = std::ranges::find_if(walkers, deviates);
-  text_line(ui, ui.fonts.small, ui.theme.text, "exaggerate (times what differs from even)");
+  text_line(ui, ui.fonts.small, ui.theme.text, "exaggerate differences from even (x)");
   SliderLook look;
   look.min = 1.0;
   look.max = kMostExaggerated;

@@ -1,4 +1,4 @@
-#include "pads/realtime.h"
+#include "drivers/realtime.h"
 
 #include <gtest/gtest.h>
 #include <sys/mman.h>

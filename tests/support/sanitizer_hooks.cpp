@@ -1,11 +1,9 @@
-// Settings of the sanitizers for libraries that draw. Every program that loads such libraries
-// includes this file once.
-#pragma once
+// Settings of the sanitizers for programs that load libraries that draw. CMakeLists.txt adds this
+// source to each of them, in a build with sanitizers alone.
 
 // Fontconfig and D-Bus (through SDL) keep allocations until the process ends, where the leak
 // checker cannot see them. Renderers also keep some: SDL unloads them with the display, after which
 // the checker no longer finds the pointers, so nothing is unloaded.
-#ifdef GAITPAD_SANITIZED
 extern "C" const char* __lsan_default_suppressions() {
   return "leak:libdbus-1\n"
          "leak:libfontconfig";
@@ -17,4 +15,3 @@ extern "C" const char* __lsan_default_options() { return "print_suppressions=0";
 // address and crashes. Without this interception the checker still finds such blocks, as memory
 // that the dynamic linker allocated.
 extern "C" const char* __asan_default_options() { return "intercept_tls_get_addr=0"; }
-#endif

@@ -286,11 +286,11 @@ TEST_F(PanelTest, WhatTheWalkDoesIsBesideWhatIsAskedAndIsTheFiles) {
     draw();
     const auto file = file_row(*frame, cast.rate_hz);
     const double turn = file.at("turn_rate_rad_s");
-    EXPECT_TRUE(is_drawn(fmt::format("does {:.2f}", file.at("speed_m_s")))) << frame->tick;
+    EXPECT_TRUE(is_drawn(fmt::format("now {:.2f}", file.at("speed_m_s")))) << frame->tick;
     EXPECT_TRUE(is_drawn(
-        fmt::format("does {:.2f} | {:.2f}", file.at("stride_left_m"), file.at("stride_right_m"))))
+        fmt::format("now {:.2f} | {:.2f}", file.at("stride_left_m"), file.at("stride_right_m"))))
         << frame->tick;
-    EXPECT_TRUE(is_drawn(fmt::format("does {:.2f}", std::abs(turn) < 0.005 ? 0.0 : turn)));
+    EXPECT_TRUE(is_drawn(fmt::format("now {:.2f}", std::abs(turn) < 0.005 ? 0.0 : turn)));
     EXPECT_TRUE(is_drawn("1.20")) << "the slider shows what is asked";
     if (i > 5) least_m_s = std::min(least_m_s, file.at("speed_m_s"));
   }

@@ -17,7 +17,6 @@
 
 #include "base/suggestion.h"
 #include "base/text.h"
-#include "draw/sanitizer_hooks.h"
 #include "gaitpad/driver_registry.h"
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/options.h"

@@ -55,11 +55,12 @@ std::vector<CLI::Option*> add_window_options(CLI::App& command, WindowArguments&
           ->check(ends_with(".png")),
       command
           .add_option("--video", arguments.video,
-                      "write all frames, 60 a second of the session (needs ffmpeg)")
+                      "write all frames, 60 for each second of the session (needs ffmpeg)")
           ->check(ends_with(".mp4")),
       command.add_option("--theme", arguments.theme, "dark or light (default: as it was left)")
           ->check(CLI::IsMember({"dark", "light"})),
-      command.add_option("--scale", arguments.scale, "of type and lines (default: the display's)")
+      command
+          .add_option("--scale", arguments.scale, "size of text and lines (default: the display's)")
           ->check(CLI::Range(0.5, 4.0)),
       command
           .add_option("--panels", arguments.panels,

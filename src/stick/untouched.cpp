@@ -10,7 +10,7 @@ constexpr std::int64_t kPart_ns = 125'000'000, kJudged_ns = 250'000'000, kPush_n
 // Shares of the inner zone, which covers 5.5 sigma: noise moves a single report by less than kNoise
 // and the mean over an eighth of a second by far less than kMoved.
 constexpr double kNoise = 0.4, kMoved = 0.35;
-// Inner zones that a push moves from where it began. A jump moves as far, but not for long.
+// A push goes this many inner zones from its begin for kPush_ns; a jump does not last that long.
 constexpr double kPushedOnce = 1.0;
 
 // The inner zone in raw units, along the shorter half of the shorter axis.

@@ -153,7 +153,8 @@ void feed_motions() {
   feed({{"has no frames", [&] { return spoilt([](M& m) { m.frames.clear(); }); }},
         {"joints is 0, outside", [&] { return spoilt([](M& m) { m.skeleton.joints.clear(); }); }},
         {"is no rotation", [&] { return spoilt([](M& m) { m.frames[1].local[2].w = kNaN; }); }},
-        {"is no rotation", [&] { return spoilt([](M& m) { m.frames[1].local[2].x = 1e-310; }); }},
+        {"is no rotation",
+         [&] { return spoilt([](M& m) { m.frames[1].local[2] = quat(1e-310, 0.0, 0.0, 0.0); }); }},
         {"is not finite", [&] { return spoilt([](M& m) { m.frames[1].root_m.x = kInfinity; }); }}});
   fed += 4;
 }

@@ -150,6 +150,7 @@ vec2 KeyboardStick::wanted() const noexcept {
 void KeyboardStick::sleep() noexcept { is_awake_.store(false); }
 
 Result<std::unique_ptr<Device>> open_keyboard(std::shared_ptr<KeyboardStick> stick) {
+  if (!stick) return Error{"open_keyboard: stick is null"};
   Timer timer;
   if (timer.fd() < 0 || stick->bell().fd() < 0)
     return Error{"no file descriptors are left for the keyboard"};

@@ -52,22 +52,21 @@ Result<Crowd> Crowd::create(std::span<const CrowdMember> members, IkMode mode) {
   for (std::size_t i = 0; i < members.size(); ++i) {
     const std::string member = "members[" + std::to_string(i) + "]";
     if (!members[i].model) return Error{member + ".model is null"};
-    for (int axis = 0; axis < 3; ++axis) {
-      if (auto problem = range_problem(member + ".place_m." + "xyz"[axis], members[i].place_m[axis],
-                                       -kFarthest_m, kFarthest_m))
-        return *problem;
-    }
+    if (auto problem = vector_problem(member + ".place_m", members[i].place_m, kFarthest_m))
+      return *problem;
   }
   return Crowd(members, mode);
 }
 
 void Crowd::restart(int member, const vec3& place_m) noexcept {
+  if (!has(member)) return;
   Pose pose;
   states_[member] = standing(*models_[member], place_m, pose);
   store_pose(member, pose);
 }
 
 void Crowd::move(int member, const Placement& by) noexcept {
+  if (!has(member)) return;
   Pose pose;
   copy_pose(member, pose);
   move_walk(by, states_[member], pose);
@@ -75,6 +74,7 @@ void Crowd::move(int member, const Placement& by) noexcept {
 }
 
 void Crowd::put(int member, const vec3& place_m, double heading_rad) noexcept {
+  if (!has(member)) return;
   Pose pose;
   copy_pose(member, pose);
   put_walk(place_m, heading_rad, states_[member], pose);
@@ -88,6 +88,7 @@ void Crowd::store_pose(int member, const Pose& pose) noexcept {
 }
 
 void Crowd::copy_pose(int member, Pose& pose) const noexcept {
+  if (!has(member)) return;
   pose.root_m = roots_m_[member];
   const std::span<const quat> from = local(member);
   pose.joint_count = static_cast<int>(from.size());
@@ -97,6 +98,7 @@ void Crowd::copy_pose(int member, Pose& pose) const noexcept {
 int Crowd::blocks() const noexcept { return static_cast<int>(block_begin_.size()) - 1; }
 
 void Crowd::advance_block(int number, double dt_s) noexcept {
+  if (number < 0 || number >= blocks()) return;
   const std::span<const int> block(order_.data() + block_begin_[number],
                                    order_.data() + block_begin_[number + 1]);
   const WalkModel& model = *models_[block[0]];

@@ -86,6 +86,20 @@ bool do_fit(const IkChain& chain, std::span<const IkRow> rows) noexcept {
   return chain.dofs >= 0 && chain.dofs <= kMaxIkDofs && rows.size() <= kMaxIkRows;
 }
 
+// What check() of the options accepts, without a sentence.
+bool is_count(int count, int least) noexcept {
+  return count >= least && count <= kMostIkIterations;
+}
+bool is_length(double length_m) noexcept { return length_m >= 0.0 && length_m <= 1e6; }
+bool are_sound(const PaperOptions& o) noexcept {
+  return is_length(o.tolerance_m) && is_length(o.epsilon_m) && is_count(o.max_iterations, 0) &&
+         is_count(o.max_halvings, 0);
+}
+bool are_sound(const RobustOptions& o) noexcept {
+  return is_length(o.tolerance_m) && is_length(o.damping) && o.max_step_rad >= 1e-6 &&
+         o.max_step_rad <= kPi && is_count(o.max_iterations, 0) && is_count(o.max_tries, 1);
+}
+
 // Angles and weights are finite, limits in order (they may be infinite). A bad link, axis, point or
 // goal shows in the error.
 bool are_inputs_finite(const IkChain& chain, const IkAngles& angles_rad) noexcept {
@@ -285,13 +299,13 @@ double pose_error(const IkChain& chain, std::span<const IkRow> rows,
 
 double paper_iteration(const IkChain& chain, std::span<const IkRow> rows,
                        const PaperOptions& options, IkAngles& angles_rad) noexcept {
-  if (!do_fit(chain, rows)) return refused().error_m;
+  if (!do_fit(chain, rows) || !are_sound(options)) return refused().error_m;
   return one_pass(chain, rows, options, angles_rad).error_m;
 }
 
 IkResult solve_paper(const IkChain& chain, std::span<const IkRow> rows, const PaperOptions& options,
                      IkAngles& angles_rad, IkTrace* trace) noexcept {
-  if (!do_fit(chain, rows)) return refused();
+  if (!do_fit(chain, rows) || !are_sound(options)) return refused();
   IkResult result;
   result.error_m = pose_error(chain, rows, angles_rad);
   if (!are_inputs_finite(chain, angles_rad) || !std::isfinite(result.error_m)) {
@@ -474,7 +488,8 @@ IkResult best_of_tries(const Problem& p, const IkAngles& start, IkAngles& angles
 
 IkResult solve_robust(const IkChain& chain, std::span<const IkRow> rows,
                       const RobustOptions& options, IkAngles& angles_rad, IkTrace* trace) noexcept {
-  if (!do_fit(chain, rows) || !are_inputs_finite(chain, angles_rad)) return refused();
+  if (!do_fit(chain, rows) || !are_sound(options) || !are_inputs_finite(chain, angles_rad))
+    return refused();
   Problem p{chain, rows, options, trace, relative_weights(chain), {}, {}};
   IkAngles start = angles_rad;
   for (int j = 0; j < chain.dofs; ++j) {
@@ -496,13 +511,6 @@ constexpr double kLongest_m = 1e6;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kUnitTolerance = 1e-6;
 
-std::optional<Error> vector_problem(const std::string& what, const vec3& v) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (auto problem = range_problem(what + "." + "xyz"[axis], v[axis], -kLongest_m, kLongest_m))
-      return problem;
-  }
-  return std::nullopt;
-}
 std::optional<Error> unit_problem(const std::string& what, const vec3& v) {
   return range_problem(what + ", its length,", std::sqrt(glm::dot(v, v)), 1.0 - kUnitTolerance,
                        1.0 + kUnitTolerance);
@@ -516,7 +524,7 @@ std::optional<Error> check(const IkChain& chain) {
     const IkDof& dof = chain.dof[i];
     const std::string what = "IkChain: dof[" + std::to_string(i) + "].";
     if (auto problem = unit_problem(what + "axis", dof.axis)) return problem;
-    if (auto problem = vector_problem(what + "link_m", dof.link_m)) return problem;
+    if (auto problem = vector_problem(what + "link_m", dof.link_m, kLongest_m)) return problem;
     if (auto problem = range_problem(what + "min_rad", dof.min_rad, -kInfinity, kInfinity))
       return problem;
     if (auto problem = range_problem(what + "max_rad", dof.max_rad, dof.min_rad, kInfinity))
@@ -531,12 +539,39 @@ std::optional<Error> check(std::span<const IkRow> rows) {
     return problem;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const std::string what = "IkRow " + std::to_string(i) + ": ";
-    if (auto problem = vector_problem(what + "point_m", rows[i].point_m)) return problem;
+    if (auto problem = vector_problem(what + "point_m", rows[i].point_m, kLongest_m))
+      return problem;
     if (auto problem = unit_problem(what + "direction", rows[i].direction)) return problem;
     if (auto problem = range_problem(what + "goal_m", rows[i].goal_m, -kLongest_m, kLongest_m))
       return problem;
   }
   return std::nullopt;
+}
+
+std::optional<Error> check(const PaperOptions& options) {
+  const std::string what = "PaperOptions: ";
+  if (auto problem = range_problem(what + "tolerance_m", options.tolerance_m, 0.0, kLongest_m))
+    return problem;
+  if (auto problem = range_problem(what + "epsilon_m", options.epsilon_m, 0.0, kLongest_m))
+    return problem;
+  if (auto problem =
+          range_problem(what + "max_iterations", options.max_iterations, 0.0, kMostIkIterations))
+    return problem;
+  return range_problem(what + "max_halvings", options.max_halvings, 0.0, kMostIkIterations);
+}
+
+std::optional<Error> check(const RobustOptions& options) {
+  const std::string what = "RobustOptions: ";
+  if (auto problem = range_problem(what + "tolerance_m", options.tolerance_m, 0.0, kLongest_m))
+    return problem;
+  if (auto problem = range_problem(what + "damping", options.damping, 0.0, kLongest_m))
+    return problem;
+  if (auto problem = range_problem(what + "max_step_rad", options.max_step_rad, 1e-6, kPi))
+    return problem;
+  if (auto problem =
+          range_problem(what + "max_iterations", options.max_iterations, 0.0, kMostIkIterations))
+    return problem;
+  return range_problem(what + "max_tries", options.max_tries, 1.0, kMostIkIterations);
 }
 
 }  // namespace gaitpad

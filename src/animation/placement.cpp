@@ -1,6 +1,9 @@
 // Where a walk lies in the world, and how it follows what an engine moves.
 #include "animation/placement.h"
 
+#include <cmath>
+#include <limits>
+
 #include "gaitpad/control.h"
 
 namespace gaitpad {
@@ -40,16 +43,39 @@ void report_root(const RootBefore& before, WalkState& state) noexcept {
   frame.root_moved_m = from_world({vec3(0.0), before.heading_rad}, path.hips_m - before.hips_m);
 }
 
-void move_walk(const Placement& by, WalkState& state, Pose& pose) noexcept {
+namespace {
+
+// Whether each number is finite and at most kFarthest_m; counts those that are not.
+bool is_sound_move(const vec3& place_m, double heading_rad, WalkState& state) noexcept {
+  int bad = 0;
+  for (const double number : {place_m.x, place_m.y, place_m.z, heading_rad})
+    bad += !(std::abs(number) <= kFarthest_m);
+  state.frame.bad_inputs += bad;
+  return bad == 0;
+}
+
+void place_walk(const Placement& by, WalkState& state, Pose& pose) noexcept {
   state.placed = moved(by, state.placed);
   place_in_world(by, state.frame, pose.root_m, pose.local[0]);
 }
 
+bool is_finite(const CapsuleMotion& c) noexcept {
+  const vec3 sum = c.place_m + c.velocity_m_s;
+  return std::isfinite(sum.x + sum.y + sum.z + c.heading_rad + c.turn_rate_rad_s);
+}
+
+}  // namespace
+
+void move_walk(const Placement& by, WalkState& state, Pose& pose) noexcept {
+  if (is_sound_move(by.place_m, by.heading_rad, state)) place_walk(by, state, pose);
+}
+
 void put_walk(const vec3& place_m, double heading_rad, WalkState& state, Pose& pose) noexcept {
+  if (!is_sound_move(place_m, heading_rad, state)) return;
   Placement by;
   by.heading_rad = heading_rad - (state.placed.heading_rad + state.path.heading_rad);
   by.place_m = place_m - to_world(by, to_world(state.placed, state.path.hips_m));
-  move_walk(by, state, pose);
+  place_walk(by, state, pose);
 }
 
 GaitParams following(const CapsuleMotion& capsule, const WalkState& state, const StyleValues& style,
@@ -58,6 +84,11 @@ GaitParams following(const CapsuleMotion& capsule, const WalkState& state, const
   constexpr double kStill_m_s = 0.1, kBeside_m = 0.8;  // so slow and so near, it has arrived
   constexpr double kNear_m = 0.12, kFaces = 3.0 * kDegree;
   const WalkFrame& frame = state.frame;
+  Stick stick;
+  if (!is_finite(capsule)) {
+    stick.left = vec2(std::numeric_limits<double>::quiet_NaN());
+    return gait_params(stick, style, limits);
+  }
   vec3 off_m = capsule.place_m - frame.root_m;
   off_m.y = 0.0;
   const vec3 goes = capsule.velocity_m_s + off_m / kCatchUp_s;
@@ -69,7 +100,6 @@ GaitParams following(const CapsuleMotion& capsule, const WalkState& state, const
   // Where it has arrived it may step back; else it turns round.
   const double along = glm::dot(goes, heading_direction(frame.heading_rad)),
                ahead = arrives ? along : std::max(0.0, along);
-  Stick stick;
   GaitOverrides overrides;
   const auto ask = [&overrides](GaitKey key, double value) {
     overrides.value[static_cast<std::size_t>(key)] = value;

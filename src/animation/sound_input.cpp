@@ -1,6 +1,7 @@
 #include "animation/sound_input.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 
 #include "base/lanes.h"
@@ -48,6 +49,12 @@ GaitParams mended_params(const GaitParams& params, WalkState& state) noexcept {
   in_force.body = state.body.goal;
   const ParamsRange& range = params_range();
   GaitParams mended = params;
+  if (std::isnan(params.stride[0].length_m + params.stride[1].length_m) &&
+      std::isnan(params.turn_rate_rad_s)) {
+    // A stick that is no number: it says nothing of whether to walk either.
+    mended.walking = state.clock.started && !state.clock.stopping;
+    mended.backward = state.clock.backward;
+  }
   const auto numbers = numbers_of(mended);
   for (std::size_t k = 0; k < kParamsNumbers; ++k) {
     const double least = numbers_of(range.least)[k], most = numbers_of(range.most)[k];

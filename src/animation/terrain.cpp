@@ -179,6 +179,7 @@ std::optional<Error> problem_of(const RoughSection& rough) {
   for (const Wave& w : rough.wave) {
     const double k = std::sqrt(w.x_rad_m * w.x_rad_m + w.z_rad_m * w.z_rad_m);
     if (!(k < 100.0)) return Error{"a wave is shorter than 6 cm"};
+    if (!std::isfinite(w.phase_rad)) return Error{"phase_rad of a wave is not finite"};
     const double height_m = std::abs(w.height_m);
     most.height_m += height_m, most.grade += height_m * k, most.bend_1_m += height_m * k * k;
   }
@@ -272,6 +273,9 @@ std::optional<Error> problem_of(const FieldSection& section) {
       f.height_m.size() != static_cast<std::size_t>(f.columns) * static_cast<std::size_t>(f.rows))
     return Error{std::to_string(f.columns) + " x " + std::to_string(f.rows) +
                  " samples are not 2 to " + std::to_string(kMaxFieldSide) + " a side"};
+  const auto is_finite = [](float h) { return std::isfinite(h); };
+  if (!std::all_of(f.height_m.begin(), f.height_m.end(), is_finite))
+    return Error{"a height of the field is not finite"};
   const double m = section.pixel_m, n = section.height_scale;
   if (!is_within(m, 1e-3, 100.0)) return Error{"a sample is not 1 mm to 100 m wide"};
   const double width_m = (f.columns - 1) * m;

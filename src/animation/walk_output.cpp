@@ -2,6 +2,7 @@
 #include "gaitpad/walk_output.h"
 
 #include <algorithm>
+#include <cmath>
 #include <optional>
 
 namespace gaitpad {
@@ -16,6 +17,10 @@ std::optional<Side> steps_of(Stage stage, Side swing, bool goes_on) noexcept {
 
 quat turned_back(const Placement& model, const quat& world) noexcept {
   return glm::conjugate(rotation_y(model.heading_rad)) * world;
+}
+
+bool is_finite(const Placement& p) noexcept {
+  return std::isfinite(p.place_m.x + p.place_m.y + p.place_m.z + p.heading_rad);
 }
 
 int bones_of(std::span<const int> joints, std::span<float> out, std::size_t floats) noexcept {
@@ -72,6 +77,7 @@ void mix_pose(std::span<const float> weights, const Pose& walk, Pose& own) noexc
 
 int write_rotations(const Pose& pose, const Placement& model, std::span<const int> joints,
                     std::span<float> out, std::array<float, 3>& root_m) noexcept {
+  if (!is_finite(model)) return 0;
   const vec3 place_m = from_world(model, pose.root_m);
   for (int axis = 0; axis < 3; ++axis) root_m[axis] = static_cast<float>(place_m[axis]);
   const int count = bones_of(joints, out, 4);
@@ -88,6 +94,7 @@ int write_rotations(const Pose& pose, const Placement& model, std::span<const in
 
 int write_matrices(const Skeleton& skeleton, const Pose& pose, const Placement& model,
                    std::span<const int> joints, std::span<float> out) noexcept {
+  if (!is_finite(model)) return 0;
   Pose seen = pose;
   seen.joint_count = std::min(pose.joint_count, static_cast<int>(skeleton.joints.size()));
   seen.root_m = from_world(model, pose.root_m);

@@ -37,7 +37,7 @@ struct gaitpad_walk {
   GaitLimits limits;
   StyleValues style;
   vec2 stick{0.0};      // that was taken last
-  int bad_numbers = 0;  // of the sticks and moves, that were not taken
+  int bad_numbers = 0;  // sticks and null pointers that were not taken
   WalkState state;
   WalkEvents events;  // of the last tick
   Pose pose;
@@ -84,6 +84,9 @@ Result<Motion> standing_motion(const gaitpad_model_options& options) {
   if (options.bone_count < 1 || options.bone_count > kMaxJoints)
     return Error{"gaitpad_model_options: bone_count is " + std::to_string(options.bone_count) +
                  ", outside [1, " + std::to_string(kMaxJoints) + "]"};
+  if (auto problem = range_problem("gaitpad_model_options: root_height_m", options.root_height_m,
+                                   -kFarthest_m, kFarthest_m))
+    return *problem;
   Motion body;
   body.name = "bones";
   for (int i = 0; i < options.bone_count; ++i) {
@@ -173,13 +176,10 @@ std::optional<Error> start_problem(const gaitpad_model* model, const double* pla
   return range_problem(what + "heading_rad", heading_rad, -kFarthest_m, kFarthest_m);
 }
 
-// Whether a walk can be moved so; a null pointer and each number that is none count as bad.
-bool is_sound_move(const double* place_m, double turn_rad, int& bad) noexcept {
-  const auto is_bad = [](double value) { return !(std::abs(value) <= kFarthest_m); };
-  const auto found =
-      (place_m ? std::count_if(place_m, place_m + 3, is_bad) : 1) + (is_bad(turn_rad) ? 1 : 0);
-  bad += static_cast<int>(found);
-  return found == 0;
+// Counts a place that is null.
+bool is_missing(const double* place_m, gaitpad_walk& walk) noexcept {
+  walk.bad_numbers += !place_m;
+  return !place_m;
 }
 
 // How many of the first `count` joints can be written to `out`.
@@ -271,11 +271,11 @@ void gaitpad_walk_step(gaitpad_walk* walk, double stick_right, double stick_forw
 }
 
 void gaitpad_walk_move(gaitpad_walk* walk, const double shift_m[3], double turn_rad) {
-  if (!walk || !is_sound_move(shift_m, turn_rad, walk->bad_numbers)) return;
+  if (!walk || is_missing(shift_m, *walk)) return;
   move_walk({vector_of(shift_m), turn_rad}, walk->state, walk->pose);
 }
 void gaitpad_walk_put(gaitpad_walk* walk, const double place_m[3], double heading_rad) {
-  if (!walk || !is_sound_move(place_m, heading_rad, walk->bad_numbers)) return;
+  if (!walk || is_missing(place_m, *walk)) return;
   put_walk(vector_of(place_m), heading_rad, walk->state, walk->pose);
 }
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "gaitpad/math.h"
 
@@ -11,6 +12,12 @@ namespace {
 struct BaseStep {
   double length_m, time_s;
 };
+
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
+
+bool is_finite(const Stick& stick) noexcept {
+  return std::isfinite(stick.left.x) && std::isfinite(stick.left.y);
+}
 
 double finite_or_zero(double x) noexcept {
   return std::isfinite(x) ? std::clamp(x, -1.0, 1.0) : 0.0;
@@ -148,6 +155,10 @@ GaitParams gait_params(const Stick& stick, const StyleValues& style,
   params.hip_bounce = style.hip_bounce;
   params.weight = style.weight;
   params.body = style.body;
+  if (!is_finite(stick)) {
+    params.turn_rate_rad_s = kNoNumber;
+    for (StrideParams& stride : params.stride) stride.length_m = kNoNumber;
+  }
   return params;
 }
 
@@ -155,6 +166,7 @@ Stick pointed_stick(const Stick& stick, double heading_rad, double camera_rad,
                     const GaitLimits& limits) noexcept {
   constexpr double kTurns_per_s = 3.0;  // turn rate per radian of remaining angle
   Stick steers = stick;
+  if (!is_finite(stick)) return steers;
   const double right = finite_or_zero(stick.left.x), ahead = finite_or_zero(stick.left.y);
   const double pushed = std::min(std::sqrt(right * right + ahead * ahead), 1.0);
   steers.left = vec2(0.0);

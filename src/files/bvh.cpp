@@ -11,6 +11,7 @@
 #include <optional>
 
 #include "base/files.h"
+#include "base/ranges.h"
 #include "base/text.h"
 #include "gaitpad/motion_file.h"
 #include "gaitpad/skeleton.h"
@@ -19,6 +20,8 @@
 namespace gaitpad {
 
 namespace {
+
+constexpr double kLeastUnit_m = 1e-9, kMostUnit_m = 1e6;  // of a file that is written
 
 // Words and lines of a text, with the line number of the last word.
 class Reader {
@@ -335,8 +338,36 @@ std::vector<EulerOrder> euler_orders(const Skeleton& skeleton, std::span<const q
   return orders;
 }
 
+std::optional<Error> check(const BvhLayout& layout, const Skeleton& skeleton) {
+  const std::string what = "BvhLayout: ";
+  const std::size_t joints = skeleton.joints.size();
+  if (joints == 0) return Error{what + "the skeleton has no joints"};
+  if (auto problem = range_problem(what + "metres_per_unit", layout.metres_per_unit, kLeastUnit_m,
+                                   kMostUnit_m))
+    return problem;
+  if (auto problem = range_problem(what + "frame_time_s", layout.frame_time_s, 1e-5, 10.0))
+    return problem;
+  for (const int joint : layout.end_sites_as_joints) {
+    if (auto problem = range_problem(what + "end_sites_as_joints, a joint,", joint, 0.0,
+                                     static_cast<double>(joints - 1)))
+      return problem;
+  }
+  if (!layout.orders.empty() && layout.orders.size() != joints) {
+    return Error{
+        fmt::format("{}orders: there are {}, not {} or 0", what, layout.orders.size(), joints)};
+  }
+  for (std::size_t j = 0; j < layout.orders.size(); ++j) {
+    BvhOrder axes = layout.orders[j];
+    std::ranges::sort(axes);
+    if (axes != BvhOrder{0, 1, 2})
+      return Error{fmt::format("{}orders[{}] does not have each of 0, 1 and 2 once", what, j)};
+  }
+  return std::nullopt;
+}
+
 BvhWriter::BvhWriter(std::ostream& out, const Skeleton& skeleton, const BvhLayout& layout)
-    : out_(out), skeleton_(skeleton), layout_(layout) {
+    : out_(out), skeleton_(skeleton), layout_(layout), is_sound_(!check(layout, skeleton)) {
+  if (!is_sound_) return;
   if (layout_.orders.empty()) {
     layout_.orders.assign(skeleton.joints.size(), kEulerZyx);
     layout_.orders[0] = kEulerYxz;
@@ -393,6 +424,7 @@ void BvhWriter::write_joint(int joint, int depth) {
 }
 
 void BvhWriter::write(const Pose& pose) {
+  if (!is_sound_) return;
   const vec3 root = pose.root_m / layout_.metres_per_unit;
   line_.clear();
   append_fixed(line_, root.x, 8);
@@ -437,6 +469,7 @@ void BvhWriter::Written::turn_to(const BvhOrder& order, const quat& turned) {
 }
 
 bool BvhWriter::finish() {
+  if (!is_sound_) return false;
   const auto end = out_.tellp();
   out_.seekp(count_at_);
   out_ << frames_;

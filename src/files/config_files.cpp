@@ -122,6 +122,7 @@ std::string config_summary(const std::string& path) {
 
 Result<std::string> save_style(const std::vector<std::string>& config_folders,
                                const std::string& name, const StyleValues& values) {
+  if (auto problem = check(values)) return *problem;
   const auto plain = style_file_name(name);
   if (!plain) return plain.error();
   const std::string user = user_config_folder();

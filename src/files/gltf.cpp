@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <limits>
@@ -12,6 +13,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/ranges.h"
 #include "gaitpad/skeleton.h"
 
 namespace gaitpad {
@@ -250,9 +252,28 @@ std::string head(ordered_json& json, std::uint64_t bytes_behind) {
 
 }  // namespace
 
+std::optional<Error> check(const GltfLayout& layout, const Skeleton& skeleton) {
+  if (auto problem = range_problem("GltfLayout: fps", layout.fps, 1e-3, 1e4)) return problem;
+  const std::size_t joints = skeleton.joints.size();
+  if (joints == 0 || layout.rest_local.size() != joints) {
+    return Error{fmt::format("GltfLayout: rest_local: there are {}, not the skeleton's {}",
+                             layout.rest_local.size(), joints)};
+  }
+  for (std::size_t j = 0; j < joints; ++j) {
+    const quat& q = layout.rest_local[j];
+    if (!(std::abs(glm::dot(q, q) - 1.0) < 1e-3)) {
+      return Error{
+          fmt::format("GltfLayout: rest_local[{}] is no rotation: its length is not 1", j)};
+    }
+  }
+  return vector_problem("GltfLayout: rest_root_m", layout.rest_root_m, 1e6);
+}
+
 GltfWriter::GltfWriter(std::ostream& out, std::fstream scratch, const Skeleton& skeleton,
                        GltfLayout layout)
     : out_(&out), scratch_(std::move(scratch)), skeleton_(&skeleton), layout_(std::move(layout)) {
+  problem_ = check(layout_, skeleton);
+  if (problem_) return;
   for (std::size_t j = 0; j < joints(); ++j) {
     if (!skeleton.joints[j].is_end_site) turning_.push_back(static_cast<int>(j));
   }
@@ -265,6 +286,7 @@ std::size_t GltfWriter::chunk_bytes() const {
 }
 
 void GltfWriter::write(const Pose& pose) {
+  if (problem_) return;
   for (std::size_t t = 0; t < turning(); ++t) {
     const auto joint = static_cast<std::size_t>(turning_[t]);
     quat q = glm::normalize(pose.local[joint]);
@@ -309,6 +331,7 @@ bool GltfWriter::copy_track(std::size_t track, std::size_t floats) {
 }
 
 std::optional<std::string> GltfWriter::finish() {
+  if (problem_) return problem_->message;
   if (frames_ % kChunkFrames != 0) write_chunk();
   scratch_.flush();
   Document doc;

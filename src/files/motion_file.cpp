@@ -9,6 +9,7 @@
 
 #include "base/files.h"
 #include "base/numeric.h"
+#include "base/ranges.h"
 #include "base/text.h"
 #include "files/acclaim.h"
 #include "files/keyframe.h"
@@ -25,6 +26,7 @@ namespace {
 constexpr double kMinLegUnits = 1e-3, kMaxLegUnits = 1e6;
 constexpr double kAcclaimRate_hz = 120.0;  // for files without a rate, such as CMU's
 constexpr double kInch_m = 0.0254;
+constexpr double kLeastFrameRate_hz = 1.0, kMostFrameRate_hz = 1e4;
 
 // The index of the axis that points up.
 enum class UpAxis { y = 1, z = 2 };
@@ -373,8 +375,18 @@ double metres_per_unit(double leg_length_units, double stated_unit_m) noexcept {
   return leg_m >= kMinLegM && leg_m <= kMaxLegM ? stated_unit_m : metres_per_unit(leg_length_units);
 }
 
+std::optional<Error> check(const LoadOptions& options) {
+  if (auto problem =
+          range_problem("LoadOptions: metres_per_unit", options.metres_per_unit, 0.0, 1e3))
+    return problem;
+  if (options.frame_rate_hz == 0.0) return std::nullopt;
+  return range_problem("LoadOptions: frame_rate_hz", options.frame_rate_hz, kLeastFrameRate_hz,
+                       kMostFrameRate_hz);
+}
+
 Result<Motion> motion_from_bvh(std::string_view text, const std::string& name,
                                const LoadOptions& options) {
+  if (auto problem = check(options)) return *problem;
   const auto bvh = parse_bvh(text, name);
   if (!bvh) return bvh.error();
   return motion_of(*bvh, name, options);
@@ -382,6 +394,7 @@ Result<Motion> motion_from_bvh(std::string_view text, const std::string& name,
 
 Result<Motion> motion_from_acclaim(const NamedText& asf_text, const NamedText& amc_text,
                                    const LoadOptions& options) {
+  if (auto problem = check(options)) return *problem;
   const auto asf = parse_asf(asf_text.text, asf_text.name);
   if (!asf) return asf.error();
   std::optional<Amc> amc;
@@ -420,6 +433,7 @@ Result<Motion> load_asf(const std::string& path, const LoadOptions& options) {
 }  // namespace
 
 Result<Motion> load_motion(const std::string& path, const LoadOptions& options) {
+  if (auto problem = check(options)) return *problem;
   if (ends_in(path, ".amc")) return load_amc(path, options);
   if (ends_in(path, ".asf")) return load_asf(path, options);
   const auto bvh = read_bvh(path);
@@ -437,6 +451,7 @@ Result<std::string> motion_path(const std::vector<std::string>& folders,
 }
 
 Result<Motion> load_motion_source(const std::string& path, const LoadOptions& given) {
+  if (auto problem = check(given)) return *problem;
   if (!path.ends_with(".toml")) return load_motion(path, given);
   auto file = TomlFile::load(path);
   if (!file) return file.error();
@@ -450,7 +465,8 @@ Result<Motion> load_motion_source(const std::string& path, const LoadOptions& gi
   root.require("file");
   const std::string motion_file = root.string("file").value_or("");
   const double unit_m = root.number("metres_per_unit", 1e-6, 1e3).value_or(0.0);
-  const double rate_hz = root.number("frame_rate_hz", 1.0, 1e4).value_or(0.0);
+  const double rate_hz =
+      root.number("frame_rate_hz", kLeastFrameRate_hz, kMostFrameRate_hz).value_or(0.0);
   const std::string skeleton = root.string("skeleton").value_or("");
   const Pace pace = pace_of(root);
   LoadOptions options = given;

@@ -813,7 +813,45 @@ std::string trace_text(const Trace& trace) {
   return writer.take_text();
 }
 
+std::optional<Error> check(const Trace& trace) {
+  const auto problem = [&trace](const std::string& cause) {
+    return Error{trace.path + ": " + cause};
+  };
+  if (trace.rate_hz && (*trace.rate_hz < kLeastRateHz || *trace.rate_hz > kMaxRateHz)) {
+    return problem(
+        fmt::format("rate_hz is {}, outside [{}, {}]", *trace.rate_hz, kLeastRateHz, kMaxRateHz));
+  }
+  if (trace.devices.size() > kMaxTraceDevices)
+    return problem(
+        fmt::format("devices: there are {}, at most {}", trace.devices.size(), kMaxTraceDevices));
+  std::int64_t tick = 0;
+  for (std::size_t i = 0; i < trace.events.size(); ++i) {
+    const TraceEvent& event = trace.events[i];
+    if (event.device != kNoDevice && event.device >= trace.devices.size()) {
+      return problem(fmt::format("events[{}].device is {}, but there are {} devices", i,
+                                 event.device, trace.devices.size()));
+    }
+    if (event.size > kMaxReportBytes)
+      return problem(
+          fmt::format("events[{}].size is {}, outside [0, {}]", i, event.size, kMaxReportBytes));
+    if (event.first_byte > trace.bytes.size() ||
+        event.size > trace.bytes.size() - event.first_byte) {
+      return problem(fmt::format("events[{}].first_byte is {}, its {} bytes are not in bytes", i,
+                                 event.first_byte, event.size));
+    }
+    if (trace.has_ticks && event.tick < tick)
+      return problem(fmt::format("events[{}].tick is {}, before {}", i, event.tick, tick));
+    tick = event.tick;
+    const std::int64_t time_us = event.time_us - trace.events.front().time_us;
+    if (time_us < -kMaxTraceDurationUs || time_us > kMaxTraceDurationUs)
+      return problem(fmt::format("events[{}].time_us is {} us from the first, at most {} are", i,
+                                 time_us, kMaxTraceDurationUs));
+  }
+  return std::nullopt;
+}
+
 Result<std::int64_t> write_trace(const Trace& trace, const std::string& path) {
+  if (auto problem = check(trace)) return *problem;
   const std::string text = trace_text(trace);
   if (auto problem = write_file(path, text)) return *problem;
   return static_cast<std::int64_t>(text.size());
@@ -828,6 +866,7 @@ std::optional<std::string> damage_remark(const Trace& trace) {
 }
 
 Result<std::int64_t> assign_ticks(Trace& trace, int rate_hz) {
+  if (auto problem = check(trace)) return *problem;
   if (rate_hz < kLeastRateHz || rate_hz > kMaxRateHz) {
     return Error{fmt::format("{}: a rate of {} Hz is not within {} .. {}", trace.path, rate_hz,
                              kLeastRateHz, kMaxRateHz)};

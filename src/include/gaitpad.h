@@ -39,23 +39,24 @@ typedef struct gaitpad_model gaitpad_model;
 /* A joint as it stands: upright, facing +z. Parents before children; joint 0 is the root. */
 typedef struct gaitpad_bone {
   const char* name;   /* by which the legs are found: LeftUpLeg, thigh.L, r_hip ... */
-  int32_t parent;     /* -1: the root */
+  int32_t parent;     /* index of an earlier bone; -1: the root, which is the first */
   int32_t is_tip;     /* 1: the end of a bone, which nothing turns */
-  double offset_m[3]; /* from the parent */
+  double offset_m[3]; /* from the parent; finite */
 } gaitpad_bone;
 
 /* The height of the ground at a place of the world. gaitpad_walk_step() calls it on its thread. */
 typedef double (*gaitpad_ground)(const void* game, double x_m, double z_m);
 
+/* The caller fills it. */
 typedef struct gaitpad_model_options {
   size_t size;
   const gaitpad_bone* bones; /* null: the built-in adult */
-  int32_t bone_count;        /* at most 320 */
-  double root_height_m;      /* of joint 0 above the floor, standing; read only with bones */
-  double scale;              /* of all bones, 0.05 to 20 */
-  double leg_ratio;          /* of the legs, on top of scale */
-  gaitpad_ground ground;     /* null: level, at height 0 */
-  const void* game;          /* handed to `ground` */
+  int32_t bone_count;        /* 1 to 320 */
+  double root_height_m;  /* of joint 0 above the floor, standing; finite; read only with bones */
+  double scale;          /* of all bones, 0.05 to 20 */
+  double leg_ratio;      /* of the legs, on top of scale, 0.05 to 20 */
+  gaitpad_ground ground; /* null: level, at height 0 */
+  const void* game;      /* handed to `ground` */
 } gaitpad_model_options;
 /* The built-in adult on level ground. Sets `size`. */
 GAITPAD_API void gaitpad_model_defaults(gaitpad_model_options* options);
@@ -105,6 +106,7 @@ GAITPAD_API void gaitpad_walk_put(gaitpad_walk* walk, const double place_m[3], d
 enum { GAITPAD_STANDS = 0, GAITPAD_FLIGHT = 1, GAITPAD_ROLL = 2 };
 enum { GAITPAD_LEFT = 0, GAITPAD_RIGHT = 1 };
 
+/* gaitpad_walk_frame() fills it. */
 typedef struct gaitpad_frame {
   size_t size;
   int32_t stage;      /* GAITPAD_STANDS: both feet are planted; GAITPAD_FLIGHT: `swing` flies;

@@ -15,6 +15,8 @@ constexpr double kHeelOff_s = 0.6;  // how long before the lift the heel may ris
 
 int nearest(double frame) { return static_cast<int>(frame + 0.5); }
 
+bool can_walk(const Motion& motion) { return !check(motion) && has_legs(motion); }
+
 // The frame in which the heel begins to rise: searched backwards from the lift to `stop`, the
 // ankle's first minimum within the band; if there is none, its lowest frame. Heights are not
 // smoothed, because a standing ankle's minima are less than a millimetre deep.
@@ -80,9 +82,12 @@ Found found_in(const Motion& motion, Side side) {
 
 }  // namespace
 
-std::vector<Swing> swings(const Motion& motion, Side side) { return found_in(motion, side).swings; }
+std::vector<Swing> swings(const Motion& motion, Side side) {
+  return can_walk(motion) ? found_in(motion, side).swings : std::vector<Swing>();
+}
 
 std::optional<Swing> robust_flight(const Motion& motion, Side side) {
+  if (!can_walk(motion)) return std::nullopt;
   const Found found = found_in(motion, side);
   const std::vector<vec3>& ankle = found.feet.foot[side].ankle_m;
   std::vector<double> times, lengths;
@@ -126,6 +131,7 @@ std::optional<Swing> paper_flight(const std::vector<double>& heights) {
 }
 
 std::optional<Swing> paper_flight(const Motion& motion, Side side) {
+  if (!can_walk(motion)) return std::nullopt;
   const std::array<int, 1> joints = {motion.legs[side].ankle};
   const auto tracks = joint_tracks_m(motion, joints);
   std::vector<double> heights;

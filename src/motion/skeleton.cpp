@@ -69,18 +69,25 @@ void forward_kinematics(const Motion& motion, const MotionFrame& frame,
 }
 
 std::vector<std::vector<vec3>> joint_tracks_m(const Motion& motion, std::span<const int> joints) {
+  const int motion_joints = static_cast<int>(motion.skeleton.joints.size());
   std::vector<std::vector<vec3>> tracks(joints.size());
   for (auto& track : tracks) track.reserve(motion.frames.size());
   const auto world = std::make_unique<JointFrames>();
   for (const MotionFrame& frame : motion.frames) {
     forward_kinematics(motion, frame, *world);
-    for (std::size_t i = 0; i < joints.size(); ++i)
-      tracks[i].push_back(world->position_m[joints[i]]);
+    for (std::size_t i = 0; i < joints.size(); ++i) {
+      if (joints[i] >= 0 && joints[i] < motion_joints)
+        tracks[i].push_back(world->position_m[joints[i]]);
+    }
   }
   return tracks;
 }
 
 double leg_length_m(const Motion& motion, const LegJoints& leg) {
+  const int joints = static_cast<int>(motion.skeleton.joints.size());
+  const auto is_there = [joints](int joint) { return joint >= 0 && joint < joints; };
+  if (motion.frames.empty() || !is_there(leg.hip) || !is_there(leg.knee) || !is_there(leg.ankle))
+    return 0.0;
   const auto world = std::make_unique<JointFrames>();
   forward_kinematics(motion, motion.frames[motion.frames.size() / 2], *world);
   const auto& at = world->position_m;

@@ -191,6 +191,7 @@ Result<PadFiles> load_pad_files(const std::vector<std::string>& config_folders,
 
 Result<PadConfig> pad_config(const PadFiles& files, const DeviceInfo& info,
                              const CalibrationFile& calibration, const std::string& origin) {
+  if (auto problem = check(calibration)) return Error{origin + ": " + problem->message};
   auto layout = layout_with(files, info, calibration.mapping);
   if (!layout) return Error{origin + ": " + layout.error().message};
   PadConfig pad;

@@ -5,9 +5,11 @@
 #include <time.h>
 
 #include <algorithm>
+#include <bit>
 #include <cassert>
 #include <cerrno>
 #include <deque>
+#include <limits>
 #include <utility>
 
 #include "base/spsc_ring.h"
@@ -700,7 +702,24 @@ void PadStream::Impl::take_introduction(std::uint16_t device) noexcept {
 PadStream::PadStream() = default;
 PadStream::~PadStream() = default;
 
+std::optional<Error> check(const PadStreamOptions& options) {
+  if (options.files.calibration) {
+    if (auto problem = check(*options.files.calibration))
+      return Error{"PadStreamOptions: files: " + problem->message};
+  }
+  if (options.changes_fd < -1) {
+    return Error{fmt::format("PadStreamOptions: changes_fd is {}, outside [-1, {}]",
+                             options.changes_fd, std::numeric_limits<int>::max())};
+  }
+  if (!std::has_single_bit(options.ring_reports) || options.ring_reports > kMostRingReports) {
+    return Error{fmt::format("PadStreamOptions: ring_reports is {}, not a power of two in [1, {}]",
+                             options.ring_reports, kMostRingReports)};
+  }
+  return std::nullopt;
+}
+
 Result<std::unique_ptr<PadStream>> PadStream::start(PadStreamOptions options) {
+  if (auto problem = check(options)) return *problem;
   auto keyboard = opened_keyboard(options);
   if (!keyboard) return keyboard.error();
   std::unique_ptr<PadStream> stream(new PadStream());

@@ -2,13 +2,18 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
+
+#include "base/ranges.h"
+#include "gaitpad/trace.h"
 
 namespace gaitpad {
 namespace {
 
-constexpr double kNearCentre = 0.1;  // of the calibrated deflection
-constexpr double kMoved = 0.1;       // likewise; the inner zone has taken the noise away
+constexpr double kMostCount = 65536.0;  // of a gyroscope's 16 bits
+constexpr double kNearCentre = 0.1;     // of the calibrated deflection
+constexpr double kMoved = 0.1;          // likewise; the inner zone has taken the noise away
 constexpr int kYielding_s = 5;
 constexpr int kSilencesInSecond = 10;  // 100 ms each
 const PadState kAtRest;
@@ -31,12 +36,27 @@ void count_presses(std::uint32_t before, std::uint32_t now, PressCounts& presses
   for (int b = 0; b < kButtonCount; ++b) presses[b] += (now & ~before) >> b & 1u;
 }
 
+std::optional<Error> check(const PadConfig& config) {
+  if (auto problem = check(config.calibration)) return problem;
+  if (!config.factory_gyro) return std::nullopt;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const std::string index = "[" + std::to_string(axis) + "]";
+    if (auto problem = range_problem("PadConfig: factory_gyro.zero" + index,
+                                     config.factory_gyro->zero[axis], -kMostCount, kMostCount))
+      return problem;
+    if (auto problem = range_problem("PadConfig: factory_gyro.rad_s_per_count" + index,
+                                     config.factory_gyro->rad_s_per_count[axis], -1.0, 1.0))
+      return problem;
+  }
+  return std::nullopt;
+}
+
 Pads::Pads(std::vector<PadConfig> configs, int rate_hz, PadRules rules)
     : rules_(rules),
-      rate_hz_(rate_hz),
-      silence_ticks_((rate_hz + kSilencesInSecond - 1) / kSilencesInSecond),
-      settled_ticks_(static_cast<int>(std::ceil(JumpFilter::kSettled_s * rate_hz))),
-      yielding_ticks_(kYielding_s * rate_hz) {
+      rate_hz_(std::clamp(rate_hz, 1, kMaxRateHz)),
+      silence_ticks_((rate_hz_ + kSilencesInSecond - 1) / kSilencesInSecond),
+      settled_ticks_(static_cast<int>(std::ceil(JumpFilter::kSettled_s * rate_hz_))),
+      yielding_ticks_(kYielding_s * rate_hz_) {
   pads_.resize(configs.size());
   for (std::size_t i = 0; i < configs.size(); ++i) {
     pads_[i].config = std::move(configs[i]);

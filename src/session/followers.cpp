@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
+#include <utility>
 
+#include "base/ranges.h"
 #include "session/workers.h"
 
 namespace gaitpad {
@@ -81,6 +84,34 @@ Character follower_build(const Character& first, int number) {
   build.scale *= 0.88 + 0.24 * share_of(n, 0);
   build.leg_ratio *= 0.95 + 0.1 * share_of(n, 1);
   return build;
+}
+
+std::optional<Error> check(const Followers::Options& options) {
+  const std::string what = "Followers::Options: ";
+  if (auto problem = range_problem(what + "count", options.count, 0.0, kMaxFollowers))
+    return problem;
+  if (auto problem = choice_problem(what + "ik", options.ik, IkMode::robust)) return problem;
+  if (auto problem = range_problem(what + "threads", options.threads, 1.0, kMaxCrowdThreads))
+    return problem;
+  if (auto problem = range_problem(what + "shown", options.shown, 0.0, kMaxFollowers))
+    return problem;
+  if (auto problem = vector_problem(what + "first_m", options.first_m, kFarthest_m)) return problem;
+  return vector_problem(what + "middle_m", options.middle_m, kFarthest_m);
+}
+
+Result<Followers> Followers::create(const Options& options,
+                                    const std::vector<std::shared_ptr<const WalkModel>>& builds,
+                                    const std::vector<Style>& styles) {
+  if (auto problem = check(options)) return *problem;
+  if (builds.empty()) return Error{"Followers: builds is empty, one is needed"};
+  if (styles.empty()) return Error{"Followers: styles is empty, one is needed"};
+  for (std::size_t i = 0; i < builds.size(); ++i) {
+    if (!builds[i]) return Error{"Followers: builds[" + std::to_string(i) + "] is null"};
+  }
+  for (const Style& style : styles) {
+    if (auto problem = check(style)) return *problem;
+  }
+  return Followers(options, builds, styles);
 }
 
 Followers::Followers(const Options& options,

@@ -178,11 +178,8 @@ LiveSession::~LiveSession() {
 }
 
 Result<std::shared_ptr<LiveSession::Prepared>> LiveSession::prepare(const SessionSpec& spec) {
+  if (auto problem = check(spec)) return *problem;
   const int rate_hz = spec.rate_hz.value_or(kDefaultRateHz);
-  if (rate_hz < kLeastRateHz || rate_hz > kMaxRateHz) {
-    return Error{
-        fmt::format("a rate of {} Hz is not within {} .. {}", rate_hz, kLeastRateHz, kMaxRateHz)};
-  }
   const InputFiles pad_inputs;
   auto files = load_pad_files(spec);
   if (!files) return files.error();
@@ -211,6 +208,7 @@ Result<std::shared_ptr<LiveSession::Prepared>> LiveSession::prepare(const Sessio
 }
 
 Result<std::unique_ptr<LiveSession>> LiveSession::start(const std::shared_ptr<Prepared>& prepared) {
+  if (!prepared) return Error{"LiveSession::start: prepared is null"};
   std::unique_ptr<LiveSession> live(new LiveSession());
   live->impl_ = std::make_unique<Impl>(*prepared);
   Impl& impl = *live->impl_;

@@ -40,6 +40,7 @@ std::optional<Error> length_problem(const Trace& trace, std::int64_t ticks, int 
 }  // namespace
 
 Result<PreparedTrace> prepared_trace(const SessionSpec& asked) {
+  if (auto problem = check(asked)) return *problem;
   auto trace = read_trace(asked.replay.trace, asked.replay.damage);
   if (!trace) return trace.error();
   auto recorded = with_recorded(asked, *trace);

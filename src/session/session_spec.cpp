@@ -6,6 +6,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/ranges.h"
 #include "files/stride_cache.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/gait_cycle.h"
@@ -14,6 +15,8 @@
 
 namespace gaitpad {
 namespace {
+
+constexpr double kMostHours = 1e6;  // of a replay
 
 std::vector<std::string> folders_of_lists(const SessionSpec& spec) {
   return spec.recording.empty() ? spec.config_folders : std::vector{spec.recording};
@@ -118,6 +121,48 @@ Result<WalkerConfig> walker_config(const Character& character, int style, const 
 
 }  // namespace
 
+std::optional<Error> check(const SessionSpec& spec) {
+  struct Number {
+    const char* name;
+    std::optional<double> value;
+    double least, most;
+  };
+  const Number numbers[] = {
+      {"rate_hz", spec.rate_hz, kLeastRateHz, kMaxRateHz},
+      {"walk.crowd", spec.walk.crowd, 0.0, kMaxFollowers},
+      {"live.frame_ticks", spec.live.frame_ticks, 0.0, kMaxRateHz},
+      {"live.stream_fps", spec.live.stream_fps, 1.0, kMaxRateHz},
+      {"replay.max_hours", spec.replay.max_hours, 0.0, kMostHours},
+      {"replay.fps", spec.replay.fps, 1.0, kMaxRateHz},
+      {"replay.crowd_files", spec.replay.crowd_files, 0.0, kMaxFollowers},
+  };
+  const std::string what = "SessionSpec: ";
+  for (const Number& number : numbers) {
+    if (!number.value) continue;
+    if (auto problem = range_problem(what + number.name, *number.value, number.least, number.most))
+      return problem;
+  }
+  using Clock = SessionSpec::Live::Clock;
+  const std::optional<Error> choices[] = {
+      choice_problem(what + "walk.ik", spec.walk.ik.value_or(IkMode::robust), IkMode::robust),
+      choice_problem(what + "walk.stick", spec.walk.stick, StickMeans::points),
+      choice_problem(what + "walk.pace", spec.walk.pace.value_or(Pace::own), Pace::adult),
+      choice_problem(what + "live.clock", spec.live.clock, Clock::by_hand),
+      choice_problem(what + "replay.damage", spec.replay.damage, Damage::skip),
+  };
+  for (const auto& problem : choices) {
+    if (problem) return problem;
+  }
+  const std::pair<const char*, const std::vector<std::string>*> lists[] = {
+      {"walk.characters", &spec.walk.characters}, {"walk.styles", &spec.walk.styles}};
+  for (const auto& [name, list] : lists) {
+    const auto empty = std::ranges::find(*list, "");
+    if (empty != list->end())
+      return Error{fmt::format("{}{}[{}] is empty", what, name, empty - list->begin())};
+  }
+  return std::nullopt;
+}
+
 bool is_built_in(const SessionSpec& spec) {
   return spec.walk.motion.empty() || spec.walk.motion == "procedural";
 }
@@ -130,6 +175,7 @@ Result<PadFiles> load_pad_files(const SessionSpec& spec) {
 }
 
 Result<SimulationConfig> simulation_config(const SessionSpec& spec, int rate_hz) {
+  if (auto problem = check(spec)) return *problem;
   SimulationConfig config;
   config.rate_hz = rate_hz;
   config.ik = spec.walk.ik.value_or(IkMode::robust);

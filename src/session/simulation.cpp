@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "base/ranges.h"
 #include "base/text.h"
 #include "gaitpad/gait_cycle.h"
 #include "gaitpad/style.h"
@@ -163,6 +164,19 @@ std::optional<Error> check(const SimulationConfig& config) {
     return Error{
         fmt::format("a crowd of {}: 0 to {} can walk behind", config.crowd, kMaxFollowers)};
   }
+  const std::string what = "SimulationConfig: ";
+  if (auto problem =
+          range_problem(what + "crowd_threads", config.crowd_threads, 1.0, kMaxCrowdThreads))
+    return problem;
+  if (auto problem = choice_problem(what + "ik", config.ik, IkMode::robust)) return problem;
+  if (auto problem = choice_problem(what + "stick", config.stick, StickMeans::points))
+    return problem;
+  if (auto problem = choice_problem(what + "pad_rules", config.pad_rules, PadRules::version_2))
+    return problem;
+  if (auto problem = choice_problem(what + "pace", config.pace, Pace::adult)) return problem;
+  if (config.pads.size() >= kNoDevice)
+    return Error{
+        fmt::format("{}pads: there are {}, at most {}", what, config.pads.size(), kNoDevice - 1)};
   if (!config.terrain) return Error{"SimulationConfig: terrain is null, see flat_terrain()"};
   if (auto problem = check(*config.terrain)) return problem;
   if (config.styles.empty()) return Error{"SimulationConfig: styles is empty, one is needed"};
@@ -171,7 +185,7 @@ std::optional<Error> check(const SimulationConfig& config) {
       return Error{fmt::format("style {}: {}", in_quotes(style.name), problem->message)};
   }
   for (std::size_t i = 0; i < config.pads.size(); ++i) {
-    if (auto problem = check(config.pads[i].calibration))
+    if (auto problem = check(config.pads[i]))
       return Error{fmt::format("SimulationConfig: pads[{}]: {}", i, problem->message)};
   }
   for (std::size_t i = 0; i < config.walkers.size(); ++i) {
@@ -217,7 +231,9 @@ Result<Simulation> Simulation::create(const SimulationConfig& config) {
     crowd.middle_m = 0.5 * (s.walkers_.front().start_m + s.walkers_.back().start_m);
     models->erase(models->begin(),
                   models->begin() + static_cast<std::ptrdiff_t>(s.walkers_.size()));
-    s.followers_ = Followers(crowd, *models, s.styles());
+    auto followers = Followers::create(crowd, *models, s.styles());
+    if (!followers) return followers.error();
+    s.followers_ = std::move(*followers);
   }
   return s;
 }

@@ -123,6 +123,13 @@ std::optional<Error> axis_problem(const std::string& what, const AxisCalibration
 }
 
 std::optional<Error> stick_problem(const std::string& what, const StickCalibration& c) {
+  if (auto problem = choice_problem(what + "frame.right", c.frame.right, RawDirection::minus_y))
+    return problem;
+  if (auto problem = choice_problem(what + "frame.forward", c.frame.forward, RawDirection::minus_y))
+    return problem;
+  if (is_along_x(c.frame.right) == is_along_x(c.frame.forward))
+    return Error{what + "frame: right and forward lie along one axis"};
+  if (auto problem = choice_problem(what + "shape", c.shape, ZoneShape::both)) return problem;
   if (auto problem = axis_problem(what + "x", c.x)) return problem;
   if (auto problem = axis_problem(what + "y", c.y)) return problem;
   if (auto problem = range_problem(what + "inner", c.inner, 0.0, 0.9)) return problem;
@@ -147,6 +154,18 @@ std::optional<Error> check(const Calibration& c) {
   if (auto problem = stick_problem("Calibration: right.", c.right)) return problem;
   if (auto problem = trigger_problem("Calibration: left_trigger", c.left_trigger)) return problem;
   return trigger_problem("Calibration: right_trigger", c.right_trigger);
+}
+
+std::optional<Error> check(const CalibrationFile& file) {
+  if (auto problem = check(file.calibration)) return problem;
+  if (!file.gyro_bias_rad_s) return std::nullopt;
+  for (std::size_t axis = 0; axis < file.gyro_bias_rad_s->size(); ++axis) {
+    if (auto problem =
+            range_problem("CalibrationFile: gyro_bias_rad_s[" + std::to_string(axis) + "]",
+                          (*file.gyro_bias_rad_s)[axis], -kMostGyroBias_rad_s, kMostGyroBias_rad_s))
+      return problem;
+  }
+  return std::nullopt;
 }
 
 Calibration canonical(const Calibration& calibration) noexcept {

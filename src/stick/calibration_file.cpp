@@ -19,8 +19,7 @@ namespace {
 
 constexpr std::size_t kMaxDevices = 256;
 constexpr std::size_t kMaxFolderFiles = 4096;
-constexpr double kMostGyroBias_rad_s = 1.0;  // no such chip is off by more
-constexpr double kMaxMeasured = 100.0;       // of any measured number; far beyond what sticks do
+constexpr double kMaxMeasured = 100.0;  // of any measured number; far beyond what sticks do
 constexpr std::string_view kShapeNames[] = {"radial", "axial", "both"};
 constexpr std::string_view kDirectionNames[] = {"x", "-x", "y", "-y"};  // by RawDirection
 constexpr std::string_view kDriverNames[] = {"hidraw", "usb", "evdev", "sdl"};

@@ -302,9 +302,8 @@ struct Builder {
   }
 };
 
-// The reason why a cycle is not a walk that the solver accepts, if any.
+// The reason why a cycle that check() accepts is not a walk that the solver accepts, if any.
 std::optional<std::string> fault_of(const GaitCycle& cycle) {
-  if (cycle.samples.size() != kCycleSamples) return "has no samples of a whole cycle";
   for (const double number : solver_input(cycle)) {
     if (!std::isfinite(number)) return "holds a number that is not finite";
   }
@@ -313,7 +312,6 @@ std::optional<std::string> fault_of(const GaitCycle& cycle) {
     if (std::min({leg.thigh_m, leg.shank_m, horizontal_length(foot)}) < kLeastBone_m)
       return "has a leg without a thigh, a shank or a foot";
   }
-  if (cycle.stride_m <= 0.0) return "does not go forward";
   if (cycle.stride_m > kMostLegs * mean_leg_m(cycle)) return "takes strides longer than four legs";
   constexpr double kSample = 1.0 / kCycleSamples;
   if (std::abs(cycle.strike[1]) > kSample || cycle.toe_off[0] < kSample ||
@@ -361,8 +359,8 @@ std::vector<double> solver_input(const GaitCycle& cycle) {
 }
 
 Result<StrideFamily> stride_family(const GaitCycle& cycle) {
-  if (const auto fault = fault_of(cycle)) return Error{cycle.name + ": " + *fault};
   if (auto problem = check(cycle)) return *problem;
+  if (const auto fault = fault_of(cycle)) return Error{cycle.name + ": " + *fault};
   const GaitCycle backwards = run_back(cycle);
   Builder builder(cycle), back(backwards);
   back.family.stand_rad = builder.family.stand_rad;

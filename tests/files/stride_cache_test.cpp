@@ -122,7 +122,8 @@ TEST_F(StrideCache, KeepsNoErrors) {
   cycle.name = "odd.bvh";
   cycle.stride_m = -1.0;
   for (int i = 0; i < 2; ++i)
-    EXPECT_EQ(cause_of(cached_clean_strides(cycle, cache())), "odd.bvh: does not go forward");
+    EXPECT_EQ(cause_of(cached_clean_strides(cycle, cache())),
+              "odd.bvh: stride_m is -1, outside [0.001, 1000]");
   EXPECT_FALSE(fs::exists(cache()));
 }
 

@@ -147,7 +147,7 @@ TEST_F(Live, InvalidOptionsAreRefused) {
   for (const int rate_hz : {0, kLeastRateHz - 1}) {
     options_.rate_hz = rate_hz;
     EXPECT_EQ(LiveSession::prepare(options_).error().message,
-              "a rate of " + std::to_string(rate_hz) + " Hz is not within 10 .. 10000");
+              "SessionSpec: rate_hz is " + std::to_string(rate_hz) + ", outside [10, 10000]");
   }
   options_.rate_hz = 240;
   options_.live.record = (folder_ / "none" / "x.hid").string();

@@ -291,14 +291,16 @@ TEST(StrideFamily, NamesWhatIsNoWalk) {
   EXPECT_EQ(cause([&](GaitCycle& c) { c.samples[9].pelvis_m.y = nothing; }), no_number);
   EXPECT_EQ(cause([&](GaitCycle& c) { c.samples[9].leg[1].angles[kKneeX] = endless; }), no_number);
   EXPECT_EQ(cause([&](GaitCycle& c) { c.toe_off[0] = nothing; }), no_number);
-  EXPECT_EQ(cause([&](GaitCycle& c) { c.stride_m = endless; }), no_number);
+  EXPECT_EQ(cause([&](GaitCycle& c) { c.stride_m = endless; }),
+            "odd.bvh: stride_m is inf, outside [0.001, 1000]");
   EXPECT_EQ(cause([](GaitCycle& c) { c.samples.clear(); }),
-            "odd.bvh: has no samples of a whole cycle");
+            "odd.bvh: samples: there are 0, not 128");
   EXPECT_EQ(cause([](GaitCycle& c) { c.leg[0].shank_m = 0.0; }),
-            "odd.bvh: has a leg without a thigh, a shank or a foot");
+            "odd.bvh: leg[0].shank_m is 0, outside [0.001, 1000]");
   EXPECT_EQ(cause([](GaitCycle& c) { c.leg[1].toe_m = c.leg[1].heel_m; }),
             "odd.bvh: has a leg without a thigh, a shank or a foot");
-  EXPECT_EQ(cause([](GaitCycle& c) { c.stride_m = 0.0; }), "odd.bvh: does not go forward");
+  EXPECT_EQ(cause([](GaitCycle& c) { c.stride_m = 0.0; }),
+            "odd.bvh: stride_m is 0, outside [0.001, 1000]");
   EXPECT_EQ(cause([](GaitCycle& c) { c.stride_m = 40.0; }),
             "odd.bvh: takes strides longer than four legs");
   EXPECT_EQ(cause([](GaitCycle& c) { std::swap(c.toe_off[0], c.toe_off[1]); }),

@@ -36,6 +36,8 @@ def test_core_needs_glm_and_the_standard_library_alone(installed):
     for foreign in ("toml::", "png_", "SDL_", "fmt::", "nlohmann::", "cairo_", "libevdev", "hid_", "libusb"):
         found = [line for line in undefined.splitlines() if foreign in line]
         assert not found, f"{foreign}: {found[:3]}"
+    posix = {"statfs", "flock", "open", "open64", "read", "write", "mmap", "getrandom", "poll", "ioctl", "kill"}
+    assert not posix & set(undefined.split()), "the core calls POSIX"
 
 
 def test_installed_headers_include_nothing_internal(installed):
@@ -54,6 +56,15 @@ def test_each_installed_header_compiles_alone(installed, tmp_path):
     lines += [f"build {header.stem}: check {header}" for header in headers]
     (tmp_path / "build.ninja").write_text("\n".join(lines) + "\n")
     call("ninja", "-C", tmp_path)
+
+
+@pytest.mark.parametrize("define", ["GLM_FORCE_QUAT_DATA_WXYZ", "GLM_FORCE_CTOR_INIT"])
+def test_a_program_that_sets_glm_up_otherwise_is_told_so(define):
+    """Its rotations would have their parts in another order, or not be plain data."""
+    command = ["g++", "-std=c++20", "-fsyntax-only", f"-I{ROOT}/src/include", "-include", "gaitpad/math.h", "-x", "c++", "/dev/null"]
+    assert subprocess.run(command, check=False).returncode == 0
+    done = subprocess.run([*command, f"-D{define}"], capture_output=True, text=True, check=False)
+    assert done.returncode != 0 and f"without {define}" in done.stderr
 
 
 def test_minimal_walk_prints_a_row_a_tick(examples, program, tmp_path):

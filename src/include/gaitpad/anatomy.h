@@ -39,7 +39,8 @@ struct NamedJoint {
 // Prefixes such as "mixamorig:" or "CC_Base_" do not matter, nor do upper and lower case.
 NamedJoint named_joint(std::string_view name);
 
-// Joints of one leg given by hand. Empty: found.
+// Joints of one leg given by hand, by their names in the skeleton; the caller fills it. Empty:
+// found.
 struct LegNames {
   std::string hip, knee, ankle, toe;
 };
@@ -67,7 +68,7 @@ struct ArmChain {
   bool is_found() const noexcept { return shoulder >= 0; }
 };
 
-// What a skeleton lacks is empty or -1.
+// Of find_upper_body(): joint indices. What a skeleton lacks is empty or -1.
 struct UpperBodyJoints {
   std::vector<int> spine;  // from above the pelvis up to the joint that carries arms and neck
   std::vector<int> neck;   // from above that joint to below the head

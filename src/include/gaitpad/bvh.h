@@ -3,6 +3,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <ostream>
 #include <span>
 #include <string>
@@ -36,7 +37,8 @@ struct BvhJoint {
   int first_value = 0;  // index of its first channel's value in a frame
 };
 
-// Joints stand in the order of the file, which is depth-first, parents before children.
+// parse_bvh() fills it. Joints stand in the order of the file, which is depth-first, parents before
+// children.
 struct Bvh {
   std::vector<BvhJoint> joints;
   double frame_time_s = 0.0;
@@ -61,13 +63,17 @@ using BvhOrder = std::array<int, 3>;
 // heading is near its pole. `local` holds samples x joints.
 std::vector<BvhOrder> euler_orders(const Skeleton& skeleton, std::span<const quat> local);
 
+// How poses are written. The caller fills it.
 struct BvhLayout {
-  double metres_per_unit = 1.0;       // how long a unit of the file is
-  double frame_time_s = 1.0 / 240.0;  // between two poses
-  // End Sites to write as joints: a foot's toe, if the skeleton has no toe joint.
+  double metres_per_unit = 1.0;       // how long a unit of the file is, 1e-9 .. 1e6
+  double frame_time_s = 1.0 / 240.0;  // between two poses, 1e-5 .. 10
+  // Joints of the skeleton that are End Sites and are written as joints: a foot's toe, if the
+  // skeleton has no toe joint.
   std::vector<int> end_sites_as_joints;
   std::vector<BvhOrder> orders;  // one a joint; empty: y x z for the root, z y x for the others
 };
+// `BvhLayout: frame_time_s is 0, outside [1e-05, 10]`.
+std::optional<Error> check(const BvhLayout& layout, const Skeleton& skeleton);
 
 // Writes poses as a BVH file. The root has OFFSET 0 0 0 and six channels, every other joint three
 // rotations. Of the angles that give the same rotation those nearest to the frame before are
@@ -75,10 +81,11 @@ struct BvhLayout {
 // frames, so `out` must be able to seek.
 class BvhWriter {
  public:
-  // `out` and `skeleton` must live until finish().
+  // `out` and `skeleton` must live until finish(). Nothing is written if check() refuses the
+  // layout.
   BvhWriter(std::ostream& out, const Skeleton& skeleton, const BvhLayout& layout);
   void write(const Pose& pose);  // appends a frame
-  bool finish();                 // returns false if anything could not be written
+  bool finish();                 // returns false if anything was not written
 
  private:
   // A joint in the last frame.
@@ -101,6 +108,7 @@ class BvhWriter {
   std::string line_;
   std::ostream::pos_type count_at_;
   long long frames_ = 0;
+  bool is_sound_ = true;  // the layout is
 };
 
 }  // namespace gaitpad

@@ -24,6 +24,7 @@ namespace gaitpad {
 // "Raw" is what decode() gives: fractions of half the field's logical range from its middle, -1..1,
 // +x right, +y forward as the pad's layout has it.
 
+// Measured when a pad is calibrated.
 struct AxisCalibration {
   double min = -1.0, centre = 0.0, max = 1.0;  // raw; min < centre < max, at least 0.1 apart
   bool operator==(const AxisCalibration&) const = default;
@@ -63,9 +64,10 @@ struct StickCalibration {
   bool operator==(const StickCalibration&) const = default;
 };
 struct TriggerCalibration {
-  double released = 0.0, pressed = 1.0;  // raw 0..1; released < pressed
+  double released = 0.0, pressed = 1.0;  // raw 0..1; pressed at least 0.1 above released
   bool operator==(const TriggerCalibration&) const = default;
 };
+// Comes from a file or a measurement, or a program fills it.
 struct Calibration {
   StickCalibration left, right;
   TriggerCalibration left_trigger, right_trigger;
@@ -124,18 +126,21 @@ struct DevicePattern {
   int vendor = -1, product = -1;  // -1: any
   bool operator==(const DevicePattern&) const = default;
 };
-// What tells one device from another when a calibration is looked for.
+// What tells one device from another when a calibration is looked for. identity_of() fills it
+// (gaitpad/pad_configuration.h).
 struct DeviceIdentity {
   std::uint16_t vendor = 0, product = 0;
   std::string unique_id, port;  // as DeviceInfo::unique_id and physical_path
   std::string driver;           // empty, as in a foreign recording: hidraw
 };
-// What was measured when the file was made, to compare it with a later day; changes no output. Raw,
+// What was measured when the file was made, to compare it with a later day; changes no output. A
+// calibration's analysis fills it. Raw,
 // in the stick's frame; none: not known.
 struct StickMeasured {
   std::optional<double> sigma, hysteresis, drift_per_s, circularity_error;  // the last in percent
   bool operator==(const StickMeasured&) const = default;
 };
+inline constexpr double kMostGyroBias_rad_s = 1.0;  // no such chip is off by more
 struct CalibrationFile {
   std::string name;
   std::string unique_id, port;         // empty: any
@@ -145,9 +150,14 @@ struct CalibrationFile {
   std::string mapping;                 // a line of SDL's controller data base, or empty
   Calibration calibration;
   std::array<std::optional<StickMeasured>, 2> measured;  // left, right
-  std::optional<TurnRates> gyro_bias_rad_s;  // what the gyroscope shows while the pad lies still
+  // What the gyroscope shows while the pad lies still, each -kMostGyroBias_rad_s ..
+  // kMostGyroBias_rad_s.
+  std::optional<TurnRates> gyro_bias_rad_s;
   bool operator==(const CalibrationFile&) const = default;
 };
+// `CalibrationFile: gyro_bias_rad_s[1] is nan, outside [-1, 1]`, or what check() says of its
+// calibration.
+std::optional<Error> check(const CalibrationFile& file);
 
 // Error: `own.toml:3: "inner" is 0.95, outside [0, 0.9]`.
 Result<CalibrationFile> load_calibration_file(const std::string& path);

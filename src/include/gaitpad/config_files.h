@@ -61,9 +61,9 @@ std::string config_name(const std::string& path);
 std::string config_summary(const std::string& path);
 
 // Saves a style of the user's own as styles/NAME.toml in user_config_folder() and returns the path.
-// Error if the name is not of 1 to 48 letters, digits, blanks, `_` and `-`, if a style in
-// `config_folders` that is not the user's own has it, or if the file cannot be written. A style of
-// the same name is replaced and kept as PATH.old.
+// Error if check() refuses the values, if the name is not of 1 to 48 letters, digits, blanks, `_`
+// and `-`, if a style in `config_folders` that is not the user's own has it, or if the file cannot
+// be written. A style of the same name is replaced and kept as PATH.old.
 Result<std::string> save_style(const std::vector<std::string>& config_folders,
                                const std::string& name, const StyleValues& values);
 

@@ -36,17 +36,20 @@ inline constexpr double kBackwardStep = 0.8;
 inline constexpr double kBackwardSector = 0.176;
 inline constexpr double kFullFatigueLeaves = 0.4;  // of maximum speed and of maximum stride
 
-// What a character does at full deflection.
+// What a character does at full deflection. gait_limits() fills it; a program may change it.
 struct GaitLimits {
-  double max_speed_m_s = kMaxSpeed_m_s;
-  double max_step_m = std::sqrt(60.0 * kWalkRatio_m_min * kMaxSpeed_m_s);  // mean of both feet
-  std::array<double, 2> step_share{1.0, 1.0};  // by Side: of a foot's step over the mean of both
-  double max_step_time_s = kMaxStepTime_s;     // straight ahead
+  double max_speed_m_s = kMaxSpeed_m_s;  // 0.001 .. 50
+  // Mean of both feet, 0.001 .. 50.
+  double max_step_m = std::sqrt(60.0 * kWalkRatio_m_min * kMaxSpeed_m_s);
+  // By Side: of a foot's step over the mean of both, 0 .. 50.
+  std::array<double, 2> step_share{1.0, 1.0};
+  double max_step_time_s = kMaxStepTime_s;  // straight ahead; this and the next two 0.05 .. 50
   // At the greatest turn rate, less of it in proportion more: the foot of a slower step would land
   // beside the hips.
   double max_turning_step_time_s = kMaxStepTime_s;
   double turn_step_time_s = kTurnInPlaceStepTime_s;  // of a turn in place and of a closing step
-  double max_turn_rate_rad_s = kMaxTurnRate_rad_s;   // equal for all, so walkers stay side by side
+  // While walking, 0 .. 50; equal for all, so walkers stay side by side.
+  double max_turn_rate_rad_s = kMaxTurnRate_rad_s;
 };
 // `GaitLimits: max_speed_m_s is -1, outside [0.001, 50]`.
 std::optional<Error> check(const GaitLimits& limits);
@@ -56,10 +59,10 @@ std::optional<Error> check(const GaitLimits& limits);
 // to be tracked smoothly at 240 Hz.
 GaitLimits gait_limits(double leg_length_m) noexcept;
 
-// A walk's own gait, on legs of the character's length.
+// A walk's own gait, on legs of the character's length. The caller fills it; all are above 0.
 struct OwnGait {
-  double stick = 1.0;                      // the forward deflection that gives it
-  std::array<double, 2> step_m{1.0, 1.0};  // by Side
+  double stick = 1.0;                      // the forward deflection that gives it, 0 .. 1
+  std::array<double, 2> step_m{1.0, 1.0};  // by Side: from standing heel to landing heel
   double step_time_s = 0.5;                // half a cycle
 };
 // The limits of a walk with this gait: at `stick` the parameters are exactly those, at others speed
@@ -73,6 +76,9 @@ double vigour(double fatigue) noexcept;
 
 // The parameters that a stick and a style ask for. Only stick.left is read. Forward deflection
 // walks, backward deflection walks backwards, sideways deflection turns, alone on the spot.
+// Deflections beyond -1 .. 1 count as these. A stick with a number that is not finite gives stride
+// lengths and a turn rate that are none: the walk then goes on as it does, and counts them
+// (WalkFrame::bad_inputs).
 GaitParams gait_params(const Stick& stick, const StyleValues& style,
                        const GaitLimits& limits) noexcept;
 
@@ -82,7 +88,8 @@ enum class StickMeans : std::uint8_t { steers, points };
 
 // The stick that steers a walker with this heading to where `stick` points: as far as it is pushed
 // and in that direction, at once within 60 degrees of the heading, beyond that with slower steps,
-// and from 90 degrees on by a turn on the spot. Only stick.left is read and written.
+// and from 90 degrees on by a turn on the spot. Only stick.left is read and written; one that is
+// not finite stays as it is.
 Stick pointed_stick(const Stick& stick, double heading_rad, double camera_rad,
                     const GaitLimits& limits) noexcept;
 
@@ -117,10 +124,10 @@ struct GaitRange {
 // goes.
 GaitRange range_of(GaitKey key, const GaitLimits& limits) noexcept;
 
-// Plain, trivially copyable. Arrays are indexed by GaitKey.
+// Plain, trivially copyable. Arrays are indexed by GaitKey. The caller fills it.
 struct GaitOverrides {
-  std::array<double, kGaitKeys> value{};
-  std::array<bool, kGaitKeys> is_set{};
+  std::array<double, kGaitKeys> value{};  // in GaitKeyInfo::unit, within range_of()
+  std::array<bool, kGaitKeys> is_set{};   // whether `value` counts
 };
 // The parameters of stick and style with the overrides in their place. A value that is not a number
 // counts as not set; others are bounded by range_of().

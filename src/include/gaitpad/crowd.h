@@ -19,15 +19,17 @@ namespace gaitpad {
 
 struct CrowdMember {
   std::shared_ptr<const WalkModel> model;  // never null; members may share one
-  vec3 place_m{0.0};                       // where it stands at first, facing +z
+  vec3 place_m{0.0};  // where it stands at first, facing +z; world, within kFarthest_m
 };
 
+// The caller fills the members. They are told apart by their index, 0 .. size() - 1; what changes a
+// member does nothing for another index.
 class Crowd {
  public:
   Crowd() = default;  // nobody
-  // The same, or `members[3].model is null`.
+  // Everybody stands. Error: `members[3].model is null`, and a place that is none.
   static Result<Crowd> create(std::span<const CrowdMember> members, IkMode mode = IkMode::robust);
-  // Everybody stands.
+  // The same for members that create() would take.
   explicit Crowd(std::span<const CrowdMember> members, IkMode mode = IkMode::robust);
 
   int size() const noexcept { return static_cast<int>(states_.size()); }
@@ -55,6 +57,7 @@ class Crowd {
   void put(int member, const vec3& place_m, double heading_rad) noexcept;
 
  private:
+  bool has(int member) const noexcept { return member >= 0 && member < size(); }
   void store_pose(int member, const Pose& pose) noexcept;
 
   IkMode mode_ = IkMode::robust;

@@ -95,6 +95,7 @@ struct ReportLength {
   std::uint32_t bits = 0;  // without the report id
 };
 
+// parse_descriptor() fills it.
 struct ReportDescriptor {
   bool numbered = false;  // every report begins with its id
   std::vector<Field> fields;

@@ -41,11 +41,13 @@ inline constexpr std::string_view kKeyboardDriver = "keyboard";
 
 // Motor strengths, 0..65535 as in Linux's ff_rumble_effect. The strong motor is the slow, heavy
 // one.
+// The caller fills it.
 struct Rumble {
   std::uint16_t strong = 0, weak = 0;
 };
 
-// The calibration that a pad stores itself: raw positions as in calibration.h, fractions of half
+// The calibration that a pad stores itself, as its driver reads it; it may be nonsense, and is not
+// used then. Raw positions as in calibration.h, fractions of half
 // the logical range from its middle, +x right, +y forward.
 struct FactoryAxis {
   double min = -1.0, centre = 0.0, max = 1.0;
@@ -85,7 +87,7 @@ class Device {
   virtual std::vector<std::string> take_remarks() { return {}; }
 };
 
-// A device that a driver sees, open or not.
+// A device that a driver sees, open or not. The driver fills it.
 struct DeviceListing {
   DeviceInfo info;   // without a descriptor if that cannot be read without opening
   std::string node;  // /dev/hidraw3, /dev/input/event5, /dev/bus/usb/001/004, walk.hid

@@ -2,7 +2,8 @@
 // track of its ankle joint. Meredith & Maddock 2005, section 3.2 and figure 2, give the literal
 // rule; it takes any dip for a landing, so a robust rule stands beside it.
 //
-// These functions run when a motion is examined; they allocate.
+// These functions run when a motion is examined; they allocate. They find nothing in a motion that
+// check() refuses or that has no legs.
 #pragma once
 #include <array>
 #include <optional>
@@ -12,9 +13,10 @@
 
 namespace gaitpad {
 
-// Frames count from 0 in the file. A swing over the end of a looping clip lifts inside the file and
-// lands at a frame >= frames.size(). A loop's last frame is its first one again, so frame
-// frames.size() - 1 + i is frame i, moved on by the pelvis' travel over the clip.
+// Filled by the functions below. Frames count from 0 in the file. A swing over the end of a looping
+// clip lifts inside the file and lands at a frame >= frames.size(). A loop's last frame is its
+// first one again, so frame frames.size() - 1 + i is frame i, moved on by the pelvis' travel over
+// the clip.
 struct Swing {
   int heel_off = 0;  // last low of the ankle's height before the lift: the heel begins to rise;
                      // 0 where the file begins later

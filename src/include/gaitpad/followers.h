@@ -9,11 +9,13 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "gaitpad/control.h"
 #include "gaitpad/crowd.h"
+#include "gaitpad/result.h"
 #include "gaitpad/style.h"
 #include "gaitpad/walk.h"
 
@@ -28,6 +30,7 @@ inline constexpr int kMaxFollowers = 100'000;
 // take longer than a fifth of a second without a graphics card.
 inline constexpr int kMaxShownFollowers = 2000;
 inline constexpr int kFollowerBuilds = 16;
+inline constexpr int kMaxCrowdThreads = 1024;
 
 // The build with this number, a variation on `first`: bones 0.88 to 1.12 as long, legs 0.95 to 1.05
 // on top of that.
@@ -43,18 +46,21 @@ struct FollowerPoses {
 class Followers {
  public:
   Followers() = default;  // nobody
+  // The caller fills it. Places are in the world, within kFarthest_m.
   struct Options {
-    int count = 0;
+    int count = 0;  // 0 .. kMaxFollowers
     IkMode ik = IkMode::robust;
-    int threads = 1;
-    int shown = kMaxShownFollowers;  // so many have poses in shown()
+    int threads = 1;                 // that advance() uses, at most; 1 .. kMaxCrowdThreads
+    int shown = kMaxShownFollowers;  // so many have poses in shown(), 0 .. kMaxFollowers
     vec3 first_m{0.0};               // where the first character stands at first, facing +z
     vec3 middle_m{0.0};              // the middle of the characters that they stand behind
   };
-  // `builds`: at least one.
-  Followers(const Options& options, const std::vector<std::shared_ptr<const WalkModel>>& builds,
-            const std::vector<Style>& styles);
+  // Everybody stands. Error: what check() refuses, no builds, a null among them, no styles.
+  static Result<Followers> create(const Options& options,
+                                  const std::vector<std::shared_ptr<const WalkModel>>& builds,
+                                  const std::vector<Style>& styles);
 
+  // `member`: 0 .. size() - 1.
   int size() const noexcept { return crowd_.size(); }
   const Crowd& crowd() const noexcept { return crowd_; }
   int style(int member) const noexcept { return kinds_[kind_[member]].style; }  // index in `styles`
@@ -72,6 +78,8 @@ class Followers {
   std::size_t bytes() const noexcept;  // what a copy takes, about
 
  private:
+  Followers(const Options& options, const std::vector<std::shared_ptr<const WalkModel>>& builds,
+            const std::vector<Style>& styles);
   struct Kind {  // a build in a style
     int build = 0, style = 0;
     StyleValues values;
@@ -91,5 +99,7 @@ class Followers {
   bool is_flat_ = true;
   FollowerPoses shown_;
 };
+// `Followers::Options: count is -1, outside [0, 100000]`.
+std::optional<Error> check(const Followers::Options& options);
 
 }  // namespace gaitpad

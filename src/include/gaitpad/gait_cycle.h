@@ -22,6 +22,8 @@ namespace gaitpad {
 
 inline constexpr int kCycleSamples = 128;  // a cycle; sample i stands at phase i / kCycleSamples
 
+// gait_cycle(), procedural_gait() and cycle_on_skeleton() fill all that stands here.
+
 // A leg's build in the standing pose. Vectors are along the standing pose's axes, in metres.
 struct LegModel {
   LegJoints joints;
@@ -53,16 +55,16 @@ struct CycleSample {
 struct StrideFamily;
 
 struct GaitCycle {
-  std::string name;
+  std::string name;  // the motion's; error sentences begin with it
   // Metres. The root stands at the pelvis: joints from the root down to it have no offsets.
   Skeleton skeleton;
-  int pelvis = 0;
-  double metres_per_unit = 1.0;
+  int pelvis = 0;                                   // joint of the skeleton
+  double metres_per_unit = 1.0;                     // of the motion's file
   quat pelvis_standing = quat(1.0, 0.0, 0.0, 0.0);  // pelvis joint's world rotation when standing
   std::array<LegModel, 2> leg;
 
-  double duration_s = 0.0;  // of the stride in the source
-  double stride_m = 0.0;    // travel in it
+  double duration_s = 0.0;  // of the stride in the source, 0.05 .. 60
+  double stride_m = 0.0;    // travel in it, 0.001 .. 1000
   // Where the stride stands in the source: from `first_frame` on, `frames` long, both between
   // frames where need be; phase 0 is somewhere in it. Frames count from 0 in the file, of which
   // loading drops none.

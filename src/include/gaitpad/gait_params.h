@@ -10,11 +10,15 @@
 
 namespace gaitpad {
 
+// gait_params() of gaitpad/control.h fills all that stands here, or a program does. The ranges are
+// those that check() and a tick accept.
+
 // The step of one foot, from its lift to its landing.
 struct StrideParams {
-  double length_m = 0.0;       // from the standing heel to the landing heel, along the heading
-  double time_s = 0.5;         // half a cycle at this foot's pace, its flight and its roll together
-  double flight_height = 1.0;  // factor on the height of the flight in the motion data
+  // From the standing heel to the landing heel, along the heading, 0 .. 20; backward steps too.
+  double length_m = 0.0;
+  double time_s = 0.5;  // half a cycle at this foot's pace, its flight and its roll; 0.05 .. 20
+  double flight_height = 1.0;  // factor on the height of the flight in the motion data, 0 .. 3
 };
 
 // W of equation (5): one weight for each degree of freedom, 0 locked .. 1 free.
@@ -30,10 +34,12 @@ inline constexpr SpineWeights kEvenSpineWeights = {1, 1};
 struct HandParams {
   double carry = 0.0;  // share, 0 .. 1: at a place in front of the chest
   // That place, from the middle between the shoulders, in the upright frame that turns with them:
-  // x outwards (to the hand's own side), y up, z forward. The default is a tray at elbow height.
+  // x outwards (to the hand's own side), y up, z forward, each -1 .. 1. The default is a tray at
+  // elbow height.
   double x_m = 0.16, y_m = -0.30, z_m = 0.36;
-  double rail = 0.0;  // share, 0 .. 1: on a rail along the way; goes before `carry`
-  double rail_height_m = 0.90, rail_side_m = 0.36;  // above the ground; sideways of the hips' path
+  double rail = 0.0;            // share, 0 .. 1: on a rail along the way; goes before `carry`
+  double rail_height_m = 0.90;  // above the ground, 0.3 .. 2
+  double rail_side_m = 0.36;    // sideways of the hips' path, 0.1 .. 1
   bool operator==(const HandParams&) const = default;
 };
 
@@ -41,25 +47,26 @@ struct HandParams {
 // was read.
 struct HeadParams {
   double look = 0.0;                       // share, 0 .. 1: in the direction of
-  double yaw_deg = 0.0, pitch_deg = 0.0;   // yaw from the heading, + left; pitch + up
+  double yaw_deg = 0.0;                    // from the heading, left positive, -90 .. 90
+  double pitch_deg = 0.0;                  // up positive, -60 .. 60
   double look_at = 0.0;                    // share, 0 .. 1: at a place; goes before `look`
-  double x_m = 0.0, y_m = 1.6, z_m = 5.0;  // that place, world, not scaled
+  double x_m = 0.0, y_m = 1.6, z_m = 5.0;  // that place, world, not scaled; within 1e6
   double lead = 0.0;                       // share, 0 .. 1: to where the walk is about to head
   bool operator==(const HeadParams&) const = default;
 };
 
 // How the trunk is held, beyond what the data do; 0 as in the data. Degrees.
 struct TrunkParams {
-  double lean_deg = 0.0;  // forward, over the whole walk and when standing
-  // Sideways over the left and over the right leg, while that leg stands alone.
+  double lean_deg = 0.0;  // forward, over the whole walk and when standing, -20 .. 40
+  // Sideways over the left and over the right leg, while that leg stands alone, 0 .. 30.
   double over_left_deg = 0.0, over_right_deg = 0.0;
   bool operator==(const TrunkParams&) const = default;
 };
 
 // What a style says of the body above the hips. Arrays of two are indexed by Side.
 struct UpperBodyParams {
-  std::array<double, 2> arm_swing{1.0, 1.0};  // factor on the arm's swing in the motion data
-  std::array<double, 2> arm_out_deg{};        // the upper arms are spread by this
+  std::array<double, 2> arm_swing{1.0, 1.0};  // factor on the swing in the motion data, 0 .. 3
+  std::array<double, 2> arm_out_deg{};        // the upper arms are spread by this, 0 .. 45
   std::array<ArmWeights, 2> arm_weight{kEvenArmWeights, kEvenArmWeights};
   SpineWeights spine_weight = kEvenSpineWeights;
   TrunkParams trunk;
@@ -74,9 +81,9 @@ struct GaitParams {
   bool walking = false;                // false: finish the step and bring the feet together
   bool backward = false;               // step backwards; a change takes effect only from standing
   std::array<StrideParams, 2> stride;  // indexed by Side
-  double turn_rate_rad_s = 0.0;        // positive to the left
-  double hip_sway = 1.0;               // factor on the pelvis' rotation about the vertical axis
-  double hip_bounce = 1.0;             // factor on the pelvis' vertical travel
+  double turn_rate_rad_s = 0.0;        // positive to the left, -4 .. 4
+  double hip_sway = 1.0;    // factor on the pelvis' rotation about the vertical axis, 0 .. 3
+  double hip_bounce = 1.0;  // factor on the pelvis' vertical travel, 0 .. 3
   std::array<LegWeights, 2> weight{kEvenWeights, kEvenWeights};  // indexed by Side
   UpperBodyParams body;
 };

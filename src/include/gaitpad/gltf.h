@@ -9,16 +9,21 @@
 #include <string>
 #include <vector>
 
+#include "gaitpad/result.h"
 #include "gaitpad/skeleton.h"
 
 namespace gaitpad {
 
+// How poses are written. The caller fills it.
 struct GltfLayout {
-  std::string name;              // of the body
-  double fps = 240.0;            // poses a second
-  std::vector<quat> rest_local;  // one a joint: the pose in which the body is bound to the joints
-  vec3 rest_root_m{0.0};         // the root's place in that pose
+  std::string name;    // of the body
+  double fps = 240.0;  // poses a second, 0.001 .. 10,000
+  // One a joint, of length 1: the pose in which the body is bound to the joints, as Pose::local.
+  std::vector<quat> rest_local;
+  vec3 rest_root_m{0.0};  // the root's place in that pose, world; coordinates at most 1e6
 };
+// `GltfLayout: fps is 0, outside [0.001, 10000]`.
+std::optional<Error> check(const GltfLayout& layout, const Skeleton& skeleton);
 
 // The header of a .glb holds lengths that are known at the end, and each joint's rotations stand in
 // one piece. So the poses go to `scratch` in chunks and finish() puts the file together: memory
@@ -29,7 +34,8 @@ class GltfWriter {
   // writing.
   GltfWriter(std::ostream& out, std::fstream scratch, const Skeleton& skeleton, GltfLayout layout);
   void write(const Pose& pose);  // appends a frame
-  // Writes the file. Returns why it is not whole: too many poses, or a full disk.
+  // Writes the file. Returns why it is not whole: too many poses, a full disk, or what check() says
+  // of the layout; then nothing was written.
   std::optional<std::string> finish();
 
  private:
@@ -49,6 +55,7 @@ class GltfWriter {
   std::vector<quat> before_;
   std::vector<std::vector<float>> chunk_;  // one a joint of these, then the root's places
   std::size_t frames_ = 0;
+  std::optional<Error> problem_;  // with the layout
 };
 
 }  // namespace gaitpad

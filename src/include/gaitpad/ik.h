@@ -21,16 +21,18 @@ namespace gaitpad {
 
 inline constexpr int kMaxIkDofs = 16;
 inline constexpr int kMaxIkRows = 6;
+inline constexpr int kMostIkIterations = 1'000'000;  // that options may ask for
 
+// The caller fills a chain and its rows. Coordinates are at most 1e6 m.
 struct IkDof {
   vec3 axis{1.0, 0.0, 0.0};  // unit, in the frame that the DOFs before it leave
   vec3 link_m{0.0};          // translation that follows this rotation, in the turned frame
-  double min_rad = -1e9, max_rad = 1e9;  // limits; paper mode knows none
+  double min_rad = -1e9, max_rad = 1e9;  // limits, min <= max; paper mode knows none
   double weight = 1.0;                   // W of eq. (5): 0 locked .. 1 free
 };
 struct IkChain {
-  std::array<IkDof, kMaxIkDofs> dof;
-  int dofs = 0;
+  std::array<IkDof, kMaxIkDofs> dof;  // from the base outwards
+  int dofs = 0;                       // the first so many count: 1 .. kMaxIkDofs
 };
 struct IkRow {
   vec3 point_m{0.0};              // in the last frame, from its origin
@@ -49,7 +51,7 @@ enum class IkStatus : unsigned char {
   singular,     // paper mode: J J^T had no inverse; the last pose before it is returned
   not_finite,   // the input has a NaN, an infinity, a goal too far to square or crossed limits:
                 // the angles are untouched; also where `dofs` or the rows are more than there is
-                // room for
+                // room for, and where check() refuses the options
 };
 struct IkResult {
   IkStatus status = IkStatus::converged;
@@ -69,13 +71,16 @@ struct IkTrace {
 
 // The paper's steps 1-7 to the letter, with raw weights: theta += W J^T (J J^T)^-1 dX (eq. (5)), dX
 // halved in step 5, no limits, no damping. The caps only keep it from running for ever. With
-// equal weights w an iteration leaves 1 - w of the error, so small weights need many.
+// equal weights w an iteration leaves 1 - w of the error, so small weights need many. The caller
+// fills the options.
 struct PaperOptions {
-  double tolerance_m = 1e-4;
-  double epsilon_m = 1e-6;  // step 5: greatest ||(I - J J^+) dX||
-  int max_iterations = 200;
-  int max_halvings = 60;
+  double tolerance_m = 1e-4;  // it is converged at an error of at most this, 0 .. 1e6
+  double epsilon_m = 1e-6;    // step 5: greatest ||(I - J J^+) dX||, 0 .. 1e6
+  int max_iterations = 200;   // 0 .. kMostIkIterations
+  int max_halvings = 60;      // of step 5 in one iteration, 0 .. kMostIkIterations
 };
+// `PaperOptions: max_iterations is -1, outside [0, 1e+06]`. For set-up code, as above.
+std::optional<Error> check(const PaperOptions& options);
 IkResult solve_paper(const IkChain& chain, std::span<const IkRow> rows, const PaperOptions& options,
                      IkAngles& angles_rad, IkTrace* trace = nullptr) noexcept;
 // One pass of steps 1-6, for traces and tests. Returns the error before it; infinite, and nothing
@@ -89,15 +94,19 @@ double paper_iteration(const IkChain& chain, std::span<const IkRow> rows,
 // returned are always inside their limits, also when the ones given were not: a DOF at its limit is
 // frozen (its column leaves the step, which is solved again) until a step points inwards. The best
 // pose is kept.
+// The caller fills the options.
 struct RobustOptions {
-  double tolerance_m = 1e-6;
-  double damping = 1e-5;      // the least l, metres
-  double max_step_rad = 0.3;  // per DOF and iteration
-  int max_iterations = 150;   // of all tries together; each further start counts as one
+  double tolerance_m = 1e-6;  // it is converged at an error of at most this, 0 .. 1e6
+  double damping = 1e-5;      // the least l, metres, 0 .. 1e6
+  double max_step_rad = 0.3;  // per DOF and iteration, 1e-6 .. pi
+  // Of all tries together, 0 .. kMostIkIterations; each further start counts as one.
+  int max_iterations = 150;
   // Starts: the given one and, only if it fails, others spread through the limits by a fixed table.
-  // With 1 the pose never jumps to another branch, and a goal out of reach costs least.
+  // With 1 the pose never jumps to another branch, and a goal out of reach costs least. 1 ..
+  // kMostIkIterations.
   int max_tries = 9;
 };
+std::optional<Error> check(const RobustOptions& options);
 IkResult solve_robust(const IkChain& chain, std::span<const IkRow> rows,
                       const RobustOptions& options, IkAngles& angles_rad,
                       IkTrace* trace = nullptr) noexcept;

@@ -61,8 +61,8 @@ enum class FrameEnd { handed_over, not_shown };
 
 class LiveSession {
  public:
-  // Reads the files, opens the recording and starts the threads. Error: a file that cannot be read,
-  // a wish that makes no sense (PadStream::start()), a rate outside kLeastRateHz .. kMaxRateHz.
+  // Reads the files, opens the recording and starts the threads. Error: a specification that
+  // check() refuses, a file that cannot be read, a wish that makes no sense (PadStream::start()).
   static Result<std::unique_ptr<LiveSession>> start(const SessionSpec& spec);
   // The same in two parts, so that a program can end one session only when the files of the next
   // are known to fit together: prepare() reads them and touches no device. `prepared` is used once.
@@ -90,14 +90,15 @@ class LiveSession {
   // newest are dropped when nobody takes them.
   bool take_report_time(ReportTime& time) noexcept;
   // Ticks in a second of the clock over the rate: 0 stands still, 1 is real time, 0.25 slow motion,
-  // at most 8; less than 1/1024 stands still. A tick computes the same at every pace. Takes effect
-  // within 20 ms. While the session stands still latest() still shows the driving pad's state and
-  // presses.
+  // at most 8; less than 1/1024, or no number, stands still. A tick computes the same at every
+  // pace. Takes effect within 20 ms. While the session stands still latest() still shows the
+  // driving pad's state and presses.
   void set_pace(double pace) noexcept;
   void step(int ticks) noexcept;     // runs so many at pace 8 if it stands still; else nothing
   void advance(int ticks) noexcept;  // Clock::by_hand: runs them here and now; else nothing
+  // Neither does anything for less than one tick.
   // The keyboard as a stick: where it should go, +x right, +y forward, at most 1 long. It moves
-  // there smoothly.
+  // there smoothly. Not-a-number is the centre.
   void steer(const vec2& wanted) noexcept;
   // From any thread.
   // `style limp_left`; the grammar: config/README.md, `C:`. What is wrong with one is a remark, and

@@ -11,10 +11,11 @@
 
 namespace gaitpad {
 
+// A file's reader fills it (gaitpad/motion_file.h), or a program whose motion is no file.
 struct MotionFrame {
   vec3 root_m{0.0};  // world position of joint 0
-  std::vector<quat>
-      local;  // one a joint: turns its frame into its parent's, the root's into the world
+  // One a joint, of length 1: turns its frame into its parent's, the root's into the world.
+  std::vector<quat> local;
   // From the parent joint, in its frame: replaces Joint::offset_m in files that move joints below
   // the root. Empty, or one a joint.
   std::vector<vec3> translation_m;
@@ -33,15 +34,16 @@ constexpr std::optional<Pace> pace_named(std::string_view name) noexcept {
   return std::nullopt;
 }
 
+// As MotionFrame.
 struct Motion {
-  std::string name;  // file name without folder, or "procedural"
-  Skeleton skeleton;
-  int pelvis = 0;  // lowest joint above both legs; its ancestors may stand still while it moves
-  std::array<LegJoints, 2> legs;  // indexed by Side
-  double metres_per_unit = 1.0;   // file units times this are metres
-  double frame_time_s = 1.0 / 120.0;
+  std::string name;   // file name without folder, or "procedural"; error sentences begin with it
+  Skeleton skeleton;  // 1 .. kMaxJoints joints
+  int pelvis = 0;     // lowest joint above both legs; its ancestors may stand still while it moves
+  std::array<LegJoints, 2> legs;  // indexed by Side; of find_legs() (gaitpad/anatomy.h)
+  double metres_per_unit = 1.0;   // file units times this are metres, which all numbers here are in
+  double frame_time_s = 1.0 / 120.0;  // from one frame to the next, 1e-5 .. 10
   Pace pace = Pace::own;  // of the motion's description; the built-in motion has the adult's
-  std::vector<MotionFrame> frames;
+  std::vector<MotionFrame> frames;  // one at least
 };
 
 // `NAME: has no frames`. Joints stand parents before children, each frame has a rotation of length
@@ -55,11 +57,12 @@ bool has_legs(const Motion& motion) noexcept;
 void forward_kinematics(const Motion& motion, const MotionFrame& frame,
                         JointFrames& frames) noexcept;
 
-// World positions of some joints over all frames: result[i][frame] belongs to joints[i].
+// World positions of some joints over all frames: result[i][frame] belongs to joints[i]; empty for
+// an index that is no joint.
 std::vector<std::vector<vec3>> joint_tracks_m(const Motion& motion, std::span<const int> joints);
 
-// Hip to knee to ankle in the motion's middle frame. Where twist joints bend between them, the
-// length is not constant.
+// Hip to knee to ankle in the motion's middle frame; 0 where one of them or the frame is missing.
+// Where twist joints bend between them, the length is not constant.
 double leg_length_m(const Motion& motion, const LegJoints& leg);
 
 // The mean of both legs.

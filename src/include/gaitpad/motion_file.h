@@ -7,6 +7,7 @@
 #pragma once
 #include <array>
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,13 +22,17 @@ namespace gaitpad {
 inline constexpr std::size_t kMaxMotionFileBytes = std::size_t{512} << 20;
 inline constexpr long long kMaxFrameJoints = 10'000'000;  // 100 joints: 14 minutes at 120 Hz
 
-// What the file does not say, or says wrongly.
+// What the file does not say, or says wrongly. The caller fills it.
 struct LoadOptions {
-  double metres_per_unit = 0.0;    // 0: from the length of the legs, metres_per_unit() below
-  double frame_rate_hz = 0.0;      // 0: as the file says; 120 Hz for an .amc that says nothing
-  std::string skeleton;            // the .asf file of an .amc file; empty: beside it
+  // At most 1000; 0: from the length of the legs, metres_per_unit() below.
+  double metres_per_unit = 0.0;
+  // 1 .. 10,000; 0: as the file says; 120 Hz for an .amc that says nothing.
+  double frame_rate_hz = 0.0;
+  std::string skeleton;            // path of the .asf file of an .amc file; empty: beside it
   std::array<LegNames, 2> legs{};  // indexed by Side; empty names are found by find_legs()
 };
+// `LoadOptions: frame_rate_hz is -1, outside [1, 10000]`. Every function below calls it.
+std::optional<Error> check(const LoadOptions& options);
 
 // Loads a motion by its file's ending: .amc with its .asf, .asf alone (its rest pose as one frame),
 // else BVH. Errors read `PATH: cause` or `PATH:LINE: cause`.

@@ -16,7 +16,7 @@ namespace gaitpad {
 // What calibration files tell devices apart by.
 DeviceIdentity identity_of(const DeviceInfo& info);
 
-// What files say about pads. A session reads them once.
+// What files say about pads; load_pad_files() fills it. A session reads them once.
 struct PadFiles {
   PadOverrides overrides;                        // --map first, then config/pads
   std::optional<CalibrationFile> calibration;    // --calibration: for every pad but the keyboard

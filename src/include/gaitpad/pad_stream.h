@@ -5,6 +5,7 @@
 #include <chrono>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -19,7 +20,8 @@
 
 namespace gaitpad {
 
-// Which pad a user asks for; empty: any.
+// Which pad a user asks for; empty: any. The caller fills it; what no device or driver fits is an
+// error of the functions below.
 struct PadWish {
   std::string pad;  // a path (node or recording), a `vid:pid`, a unique id, a unique part of a name
   std::string driver;  // hidraw, evdev, sdl or usb: this driver alone
@@ -30,7 +32,7 @@ inline Detach detach_asked(const PadWish& wish) {
   return wish.driver == "usb" ? Detach::allowed : Detach::never;
 }
 
-// A device as one driver sees it.
+// A device as one driver sees it; pad_sightings() fills it.
 struct PadSighting {
   DeviceListing listing;
   const DriverEntry* driver = nullptr;
@@ -79,18 +81,25 @@ bool is_same_device(const DeviceInfo& a, const DeviceInfo& b) noexcept;
 
 inline constexpr std::size_t kMaxPads = kMaxTraceDevices;  // different ones in one session
 
+inline constexpr std::size_t kMostRingReports = std::size_t{1} << 20;  // 1 GB
+
+// The caller fills it.
 struct PadStreamOptions {
-  PadFiles files;
+  PadFiles files;  // of load_pad_files()
   PadWish wish;
   // The keyboard as a further device. It has index 0 and is there from the start. Null: none.
   std::shared_ptr<KeyboardStick> keyboard = nullptr;
   bool is_raw = false;  // every packet as its node gives it, input or not (Device::hand_on_raw)
   // For tests: other drivers; a file descriptor that replaces udev (readable when something was
-  // plugged in or out, silent after one read()); the size of the ring in reports, a power of two.
+  // plugged in or out, silent after one read(); -1: udev); the size of the ring in reports, a power
+  // of two up to kMostRingReports.
   std::span<const DriverEntry> drivers = gaitpad::drivers();
   int changes_fd = -1;
   std::size_t ring_reports = 1024;
 };
+
+// `PadStreamOptions: ring_reports is 3, not a power of two in [1, 1048576]`.
+std::optional<Error> check(const PadStreamOptions& options);
 
 // Since the beginning.
 struct PadStreamCounts {

@@ -8,17 +8,20 @@
 #include <array>
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string_view>
 #include <vector>
 
 #include "gaitpad/calibration.h"
 #include "gaitpad/decode.h"
 #include "gaitpad/report.h"
+#include "gaitpad/result.h"
 #include "gaitpad/untouched.h"
 
 namespace gaitpad {
 
-// What is known of a pad before its first report.
+// What is known of a pad before its first report. pad_config() fills it
+// (gaitpad/pad_configuration.h), or a program that has pads of its own.
 struct PadConfig {
   std::shared_ptr<const PadLayout> layout;  // null: none of its reports can be decoded
   Calibration calibration;
@@ -29,6 +32,8 @@ struct PadConfig {
   bool has_factory_sticks = false;  // live pads: it told its own calibration when it was opened
   std::optional<FactoryGyro> factory_gyro;  // the same of its gyroscope
 };
+// `Calibration: left.inner is 2, outside [0, 0.9]`, and numbers of the gyroscope that are none.
+std::optional<Error> check(const PadConfig& config);
 
 // For users.
 inline constexpr std::string_view kHatDrives =
@@ -70,7 +75,8 @@ enum class PadRules {
 class Pads {
  public:
   Pads() = default;
-  // A report's device is the index in `configs`.
+  // A report's device is the index in `configs`. The rate is that of the ticks, clamped to 1 ..
+  // kMaxRateHz.
   Pads(std::vector<PadConfig> configs, int rate_hz, PadRules rules = PadRules::version_2);
 
   // Sets what is known of a device that was found later, before its first add_pad(). Swaps:

@@ -1,6 +1,7 @@
 // What a driver delivers (a device and its reports) and what decode() makes of a report (the pad's
 // state). Plain data.
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -20,8 +21,8 @@ enum class BusType : std::uint16_t {
   host = 0x19,
 };
 
-// A device as its driver knows it. To decode a pad of one's own, `descriptor` is enough; the ids
-// let config/pads recognise the model.
+// A device as its driver knows it, which fills this. To decode a pad of one's own, `descriptor` is
+// enough; the ids let config/pads recognise the model.
 struct DeviceInfo {
   BusType bus = BusType::unknown;
   std::uint16_t vendor = 0;
@@ -54,16 +55,18 @@ enum class ReportKind : std::uint8_t {
 inline constexpr std::size_t kMaxReportBytes = 1024;
 inline constexpr std::uint16_t kNoDevice = 0xffff;
 
+// A driver fills it, or a program that has pads of its own.
 struct Report {
   std::int64_t time_ns = 0;          // CLOCK_MONOTONIC live; of a recording its own clock
   std::uint16_t device = kNoDevice;  // index in the list of devices of a session or trace
   ReportKind kind = ReportKind::input;
-  std::uint16_t size = 0;
+  std::uint16_t size = 0;  // at most kMaxReportBytes; a longer one is no report
   std::array<std::uint8_t, kMaxReportBytes> bytes;  // only the first `size` are set
 };
 // The text of a command.
 inline std::string_view text_of(const Report& r) noexcept {
-  return {reinterpret_cast<const char*>(r.bytes.data()), r.size};
+  return {reinterpret_cast<const char*>(r.bytes.data()),
+          std::min<std::size_t>(r.size, r.bytes.size())};
 }
 
 // Indices into PadState::axis. Sticks -1..1, +x right, +y forward (away from the thumb's owner);
@@ -153,8 +156,8 @@ enum class Hat : std::uint8_t {
   released,
 };
 
-// A decoded pad. Axes are scaled by the logical range of their fields and not calibrated: a stick
-// may rest beside 0 and reach less than 1 (calibration.h corrects that).
+// A decoded pad; decode() fills it. Axes are scaled by the logical range of their fields and not
+// calibrated: a stick may rest beside 0 and reach less than 1 (calibration.h corrects that).
 struct PadState {
   std::array<float, kAxisCount> axis{};
   std::uint32_t buttons = 0;  // bit k: PadButton k is pressed; the D-pad is in it

@@ -27,24 +27,27 @@ namespace gaitpad {
 
 inline constexpr int kMaxWalkers = 16;
 
+// simulation_config() fills both from files (gaitpad/session_spec.h), or a program does.
 struct WalkerConfig {
-  Character character;
+  Character character;                 // its build
   int style = 0;                       // index in SimulationConfig::styles
   std::optional<GaitCycle> own_cycle;  // the cycle on the character's own skeleton, if it has one
 };
 struct SimulationConfig {
-  int rate_hz = 240;
-  IkMode ik = IkMode::robust;
-  StickMeans stick = StickMeans::steers;  // until a command says otherwise
-  std::vector<PadConfig> pads;            // a report's device is the index here
+  int rate_hz = 240;           // ticks a second, kLeastRateHz .. kMaxRateHz
+  IkMode ik = IkMode::robust;  // until a command says otherwise, like `stick`
+  StickMeans stick = StickMeans::steers;
+  std::vector<PadConfig> pads;  // a report's device is the index here
   PadRules pad_rules = PadRules::version_2;
-  std::vector<Style> styles;  // that commands may name; of equal names the first one counts
-  GaitCycle cycle;            // its pace is the one in force
-  Pace pace = Pace::own;      // that was chosen; with the built-in motion it changes nothing
-  std::vector<WalkerConfig>
-      walkers;            // at least one; they stand side by side, the first at the origin
-  int crowd = 0;          // so many more walk behind the first, at most kMaxFollowers
-  int crowd_threads = 1;  // that move the crowd on, at most; the poses are the same for any number
+  // That commands may name, at least one; of equal names the first one counts.
+  std::vector<Style> styles;
+  GaitCycle cycle;        // its pace is the one in force
+  Pace pace = Pace::own;  // that was chosen; with the built-in motion it changes nothing
+  // 1 .. kMaxWalkers; they stand side by side, the first at the origin.
+  std::vector<WalkerConfig> walkers;
+  int crowd = 0;  // so many more walk behind the first, 0 .. kMaxFollowers
+  // That move the crowd on, at most, 1 .. kMaxCrowdThreads; the poses are the same for any number.
+  int crowd_threads = 1;
   bool shows_crowd = true;  // keeps the crowd's poses of two ticks for viewers
   std::shared_ptr<const Terrain> terrain = flat_terrain();  // never null
   std::vector<std::string> remarks;  // what a user should know of the files that it was read from
@@ -56,7 +59,7 @@ std::optional<Error> check(const SimulationConfig& config);
 // Configurations for devices that are not known yet: set_pad() fills them in.
 std::vector<PadConfig> unknown_pads(std::size_t count);
 
-// Counted since the beginning.
+// All that follows is what a simulation tells. Counted since the beginning.
 struct SimulationCounts {
   std::int64_t ticks = 0;
   std::int64_t reports = 0;      // input reports, sound or not

@@ -15,12 +15,12 @@ namespace gaitpad {
 
 inline constexpr int kMaxJoints = 320;
 
-// Immutable after load. Joints stand in depth-first order, parents before children; joint 0 is the
-// root (parent -1).
+// A motion's reader or a program with its own bones fills it; immutable after that. Joints stand in
+// depth-first order, parents before children; joint 0 is the root (parent -1).
 struct Joint {
-  std::string name;  // of an End Site: its parent's name + "_End"
-  int parent = -1;
-  vec3 offset_m{0.0};        // from the parent joint, in the parent joint's frame
+  std::string name;          // of an End Site: its parent's name + "_End"
+  int parent = -1;           // index of an earlier joint
+  vec3 offset_m{0.0};        // from the parent joint, in the parent joint's frame; finite
   bool is_end_site = false;  // the tip of a bone in a BVH file: a place that nothing turns
 };
 struct Skeleton {
@@ -29,7 +29,7 @@ struct Skeleton {
 };
 
 // Joint indices of one leg. Between hip and knee (or knee and ankle) further joints may stand
-// (twist joints); they keep a fixed rotation.
+// (twist joints); they keep a fixed rotation. find_legs() fills it; -1: not set.
 struct LegJoints {
   int hip = -1, knee = -1, ankle = -1;
   int toe = -1;      // the ball of the foot; an End Site where the skeleton has no toe joint
@@ -37,15 +37,16 @@ struct LegJoints {
                      // Site
 };
 
-// Plain, trivially copyable. local[j] turns joint j's frame into its parent's, local[0] into the
-// world.
+// A walk or a program fills it; at most kMaxJoints. Plain, trivially copyable. local[j] turns joint
+// j's frame into its parent's, local[0] into the world.
 struct Pose {
   vec3 root_m{0.0};  // world position of joint 0
   std::array<quat, kMaxJoints> local;
   int joint_count = 0;
 };
 
-// World frames: where each joint is, and what turns its frame into the world's.
+// World frames, of forward_kinematics(): where each joint is, and what turns its frame into the
+// world's.
 struct JointFrames {
   std::array<vec3, kMaxJoints> position_m;
   std::array<quat, kMaxJoints> rotation;

@@ -4,8 +4,9 @@
 
 namespace gaitpad {
 
-// Each stick is in the unit disc: x to the right, y forward (away from the player), 0 at rest. The
-// walk reads `left` alone.
+// The caller fills it. Each stick is in the unit disc: x to the right, y forward (away from the
+// player), both -1 .. 1 and 0 at rest. The walk reads `left` alone; gait_params() says what becomes
+// of numbers that are none (gaitpad/control.h).
 struct Stick {
   vec2 left{0.0};
   vec2 right{0.0};

@@ -75,6 +75,7 @@ struct StrideTable : StrideTrack {
   std::array<StrideCell, kCycleSamples> knot{};
 };
 
+// stride_family() fills it (gaitpad/clean_strides.h). Metres and radians of the motion's skeleton.
 struct StrideFamily {
   double stand_m = 0.0;                  // the pelvis' height when standing,
   double lead_m = 0.0;                   // how far it is before the heels,

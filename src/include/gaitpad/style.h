@@ -26,8 +26,9 @@ struct StrideFactors {
   bool operator==(const StrideFactors&) const = default;
 };
 
-// All values of a style. The default is the plain walk of the motion data. Plain, trivially
-// copyable: a tick reads it and a command may change it.
+// All values of a style. The default is the plain walk of the motion data. A style's file, a
+// program or set_value() fills it. Plain, trivially copyable: a tick reads it and a command may
+// change it.
 struct StyleValues {
   std::array<StrideFactors, 2> stride;  // indexed by Side
   // W of equation (5), section 3.3.3: the share of each DOF of the legs; indexed by Side.
@@ -35,14 +36,15 @@ struct StyleValues {
   double hip_sway = 1.0;    // factor on the pelvis' rotation about the vertical axis, 0 .. 3
   double hip_bounce = 1.0;  // factor on the pelvis' vertical travel, 0 .. 3
   double fatigue = 0.0;     // 0 fresh .. 1: lowers the maximum speed and stride linearly
-  // The fatigue model, both 0: none. Fatigue gained by walking 100 m, and lost by a second of rest.
+  // The fatigue model, both 0: none. Fatigue gained by walking 100 m, 0 .. 10, and lost by a second
+  // of rest, 0 .. 1.
   double fatigue_per_100_m = 0.0, fatigue_recovery_per_s = 0.0;
-  double blend_s = 0.0;  // how long a change to or from this style takes, 0 .. 10
+  double blend_s = 0.0;  // how long a change to or from this style takes, 0 .. 10 s
   UpperBodyParams body;  // arms, hands, spine and head
   bool operator==(const StyleValues&) const = default;
 };
 struct Style : StyleValues {
-  std::string name;
+  std::string name;  // by which commands and zones name it
 };
 // `StyleValues: left_leg.stride_length is nan, outside [0, 1.5]`. The bounds are those of
 // style_keys(); of the weights of a leg, an arm or the spine one must be above 0.

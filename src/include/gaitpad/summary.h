@@ -1,4 +1,4 @@
-// What a session came to: numbers of the whole run and of each character.
+// What a session came to: numbers of the whole run and of each character. run_summary() fills all.
 #pragma once
 #include <array>
 #include <cstdint>

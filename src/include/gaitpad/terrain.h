@@ -30,52 +30,62 @@ inline constexpr int kMaxFieldSide = 1024;  // samples
 inline constexpr double kMaxBend_1_m = 0.512;
 inline constexpr double kMaxGrade = 0.6;  // rise over run along the steepest line
 
-// The ground at one place. Risers cut the ground into pieces, counted along +z: if two places are
-// on different pieces, a riser is between them.
+// The ground at one place, as ground_at() finds it. Risers cut the ground into pieces, counted
+// along +z: if two places are on different pieces, a riser is between them.
 struct Ground {
-  double height_m = 0.0;
-  vec3 normal = kUp;  // unit, world
-  int piece = 0;
+  double height_m = 0.0;  // world
+  vec3 normal = kUp;      // unit, world
+  int piece = 0;          // 0 before the first riser
 };
 
+// The caller fills sections; add_section() refuses other numbers than these. Each is 0.1 to 1000 m
+// long.
 struct FlatSection {
-  double length_m = 1.0;
+  double length_m = 1.0;  // along z, as of the others
 };
 // Level at both ends: over `rounding_m` the grade grows from 0 (a parabola), holds, and over
 // another `rounding_m` it falls back to 0. A negative grade leads down.
 struct SlopeSection {
-  double length_m = 1.0, grade = 0.0, rounding_m = 0.5;
+  double length_m = 1.0;
+  double grade = 0.0;       // rise over run, -kMaxGrade .. kMaxGrade
+  double rounding_m = 0.5;  // above 0, at most half the length
 };
 // `count` risers. Riser k (from 0) stands k tread_m behind the section's begin, with a tread behind
 // it. A negative rise leads down.
 struct StairsSection {
-  double rise_m = 0.17, tread_m = 0.28;
-  int count = 1;
+  double rise_m = 0.17;   // of a riser: 0.01 to 0.4, or as much down
+  double tread_m = 0.28;  // along z, 0.15 to 2
+  int count = 1;          // 1 to 100
 };
 // height_m sin(x_rad_m x + z_rad_m u + phase_rad), with u counted from the section's begin.
+// Waves are longer than 6 cm, and their sum bends and climbs as little as the ground may.
 struct Wave {
   double x_rad_m = 0.0, z_rad_m = 0.0, phase_rad = 0.0, height_m = 0.0;
 };
 // A sum of waves that have no common period, faded to level at both ends.
 struct RoughSection {
-  double length_m = 1.0, fade_m = 1.0;
+  double length_m = 1.0;
+  double fade_m = 1.0;  // at each end; above 0, at most half the length
   std::array<Wave, 5> wave;
 };
 // Samples of heights. A section smooths them by cubic B-splines, so that the slope does not jump
 // and a single pixel is no spike, and fades them to level at both ends and both sides. Beyond its
 // sides the section is level.
 struct HeightField {
-  int columns = 0, rows = 0;    // along -x from the walker's left; along +z
+  int columns = 0, rows = 0;    // along -x from the walker's left; along +z; 2 .. kMaxFieldSide
   std::vector<float> height_m;  // above the section's begin, row by row; times height_scale
 };
 struct FieldSection {
-  double length_m = 1.0, fade_m = 1.0, pixel_m = 0.1, height_scale = 1.0;
-  std::shared_ptr<const HeightField> field;
+  double length_m = 1.0;
+  double fade_m = 1.0;                       // at each end and side; above 0, at most half of both
+  double pixel_m = 0.1;                      // from one sample to the next, 0.001 to 100
+  double height_scale = 1.0;                 // factor on the samples; no height is beyond 100 m
+  std::shared_ptr<const HeightField> field;  // never null
 };
 
 using SectionShape =
     std::variant<FlatSection, SlopeSection, StairsSection, RoughSection, FieldSection>;
-// A section in its place.
+// A section in its place. add_section() fills it. Metres in the world.
 struct TerrainSection {
   SectionShape shape;
   double begin_m = 0.0, length_m = 0.0;  // along z
@@ -83,12 +93,13 @@ struct TerrainSection {
   int piece = 0;                         // number of the piece that leads up to it
 };
 
-// A rectangle of the ground in which everybody walks in one style. Its border belongs to it.
+// A rectangle of the ground in which everybody walks in one style. Its border belongs to it. A
+// terrain's file or the caller fills it. Bounds are in the world; they may be infinite.
 struct TerrainZone {
-  double from_m = 0.0, to_m = 0.0;  // along z
+  double from_m = 0.0, to_m = 0.0;  // along z: from_m <= z <= to_m
   double left_m = std::numeric_limits<double>::infinity();
   double right_m = -std::numeric_limits<double>::infinity();  // along x: right_m <= x <= left_m
-  std::string style;
+  std::string style;  // name of one of SimulationConfig::styles
   std::string where;  // "course.toml:12", for error sentences
 };
 
@@ -112,6 +123,7 @@ inline constexpr int kMostAsked = 6;
 
 // A height field in the world: samples on a square grid, straight between neighbours (bilinear).
 // Beyond its border the ground is as at the border.
+// The caller fills it.
 struct GroundGrid {
   double x_m = 0.0, z_m = 0.0;  // of the first sample, world: the corner of least x and z
   double spacing_m = 1.0;       // from one sample to the next, 0.01 to 100
@@ -129,9 +141,9 @@ AskedGround asked_ground(const GroundGrid& grid) noexcept;
 // Immutable after load. In the world frame: characters start at z = 0 and walk along +z.
 struct Terrain {
   std::string name = "flat";
-  std::vector<TerrainSection> sections;
-  std::vector<TerrainZone> zones;  // where zones overlap the last one counts
-  AskedGround asked;               // where it is set there are no sections
+  std::vector<TerrainSection> sections;  // of add_section(), at most kMaxSections
+  std::vector<TerrainZone> zones;        // where zones overlap the last one counts
+  AskedGround asked;                     // where it is set there are no sections
 };
 // Whether all sections are as add_section() lays them out, and the zones' numbers are numbers.
 std::optional<Error> check(const Terrain& terrain);

@@ -28,6 +28,8 @@ inline constexpr std::int64_t kMaxTraceDurationUs = 1'000'000'000'000;
 
 // Times are in microseconds of the recording's own clock.
 
+// read_trace() fills these, or a program that records by other means.
+
 struct TraceDevice {
   int index = 0;  // of its `D:` line
   DeviceInfo info;
@@ -55,7 +57,7 @@ struct TraceFile {
 };
 
 struct Trace {
-  std::string path;
+  std::string path;             // error sentences begin with it
   int version = kTraceVersion;  // of the `V:` line; a file without one replays by today's rules
   std::optional<int> rate_hz;   // of the `V:` line
   std::optional<Pace> pace;     // of the `O: pace` line
@@ -70,6 +72,10 @@ struct Trace {
   std::int64_t skipped_lines = 0;  // damaged lines; Damage::skip only
   std::string first_damage;        // the sentence on the first of them
 };
+
+// `walk.hid: events[3].device is 7, but there are 2 devices`. Its rate is one, and devices, bytes,
+// ticks and times of its events are there and in order.
+std::optional<Error> check(const Trace& trace);
 
 // What to do with a damaged line: refuse the whole file, or skip the line and count it.
 enum class Damage { refuse, skip };
@@ -94,7 +100,7 @@ int replay_rate_hz(const Trace& trace, std::optional<int> asked);
 // pace, which shows by its `T:` lines, had the adult's. Nothing: the motion's.
 std::optional<Pace> replay_pace(const Trace& trace, std::optional<Pace> asked);
 
-// The event as a driver would have delivered it.
+// The event as a driver would have delivered it. `trace` is one that check() accepts.
 void copy_report(const Trace& trace, const TraceEvent& event, Report& report) noexcept;
 Report report_of(const Trace& trace, const TraceEvent& event) noexcept;
 
@@ -127,7 +133,8 @@ class TraceWriter {
 };
 
 // The text of a trace: parse_trace() reads the same devices and events from it, and hid-replay
-// plays it. It has `T:` lines if has_ticks is set, `V:` if rate_hz is, `Q:` if both ends are.
+// plays it. `trace` is one that check() accepts; write_trace() calls it. It has `T:` lines if
+// has_ticks is set, `V:` if rate_hz is, `Q:` if both ends are.
 std::string trace_text(const Trace& trace);
 Result<std::int64_t> write_trace(const Trace& trace, const std::string& path);  // bytes written
 

@@ -40,8 +40,8 @@ enum class Stage : std::uint8_t {
 // Where coordinates lie in the world: turned by `heading_rad` about the vertical through their
 // origin, which is at `place_m`.
 struct Placement {
-  vec3 place_m{0.0};
-  double heading_rad = 0.0;  // to the left positive
+  vec3 place_m{0.0};         // world; each coordinate at most kFarthest_m
+  double heading_rad = 0.0;  // to the left positive, at most kFarthest_m of them
   bool operator==(const Placement&) const = default;
 };
 // A place in the world, and back.
@@ -50,8 +50,8 @@ vec3 from_world(const Placement& placed, const vec3& world_m) noexcept;
 // Where `placed` lies after the world has been turned and shifted by `by`.
 Placement moved(const Placement& by, const Placement& placed) noexcept;
 
-// What one tick did, for export, tests and panels. World frame, metres: y up, floor 0, heading 0
-// along +z, x to the left at heading 0. Arrays are indexed by Side.
+// What one tick did, for export, tests and panels; advance() fills it. World frame, metres: y up,
+// floor 0, heading 0 along +z, x to the left at heading 0. Arrays are indexed by Side.
 struct WalkFrame {
   Stage stage = Stage::idle;
   Side swing = kLeftSide;    // flight: the flying foot; roll: the foot that has just landed
@@ -73,8 +73,9 @@ struct WalkFrame {
   std::array<int, 2> steps{};          // landings so far
   // Height of the ground under heel and toe, planted or not.
   std::array<double, 2> heel_ground_m{}, toe_ground_m{};
-  int overhangs = 0;   // landings so far on a tread too short for the foot
-  int bad_inputs = 0;  // numbers so far that advance() or standing() did not take
+  int overhangs = 0;  // landings so far on a tread too short for the foot
+  // Numbers so far that advance(), standing(), move_walk() or put_walk() did not take.
+  int bad_inputs = 0;
 };
 
 // support: on its toe; flight: in the air; roll: landed on its heel, the toe comes down.
@@ -311,7 +312,7 @@ struct LegFlow {
 };
 using LegState = LegFlow<double>;
 
-// All that a walk remembers. Plain, trivially copyable.
+// All that a walk remembers; standing() and advance() fill it. Plain, trivially copyable.
 struct WalkState {
   WalkFrame frame;
   // A walk counts in coordinates of its own, in which the sections of its terrain lie, too. Poses
@@ -330,7 +331,8 @@ struct WalkState {
 };
 
 // A character that stands at `place_m`, facing +z, on its terrain; the height of `place_m` does not
-// matter. Sets `pose`.
+// matter. Sets `pose`. A coordinate or heading that is not finite or beyond kFarthest_m counts as 0
+// (WalkFrame::bad_inputs).
 WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noexcept;
 
 // The same, facing `heading_rad`.
@@ -338,17 +340,19 @@ WalkState standing(const WalkModel& model, const vec3& place_m, double heading_r
                    Pose& pose) noexcept;
 
 // Turns the walk about the world's vertical through the origin and shifts it, in the middle of a
-// step, too. Planted feet stay where they are in the moved frame.
+// step, too. Planted feet stay where they are in the moved frame. A number that is not finite or
+// beyond kFarthest_m moves nothing and is counted (WalkFrame::bad_inputs).
 void move_walk(const Placement& by, WalkState& state, Pose& pose) noexcept;
 // The same, so that the hips come to be over a place and face a heading.
 void put_walk(const vec3& place_m, double heading_rad, WalkState& state, Pose& pose) noexcept;
 
-// Where an engine has moved a character's capsule to, and how it goes on there. World.
+// Where an engine has moved a character's capsule to, and how it goes on there. World. The engine
+// fills it; with a number that is not finite the walk goes on as it does and counts it.
 struct CapsuleMotion {
-  vec3 place_m{0.0};
-  double heading_rad = 0.0;  // that it is to have when it stands
-  vec3 velocity_m_s{0.0};
-  double turn_rate_rad_s = 0.0;
+  vec3 place_m{0.0};             // of the hips on the ground; its height does not matter
+  double heading_rad = 0.0;      // that it is to have when it stands, to the left positive
+  vec3 velocity_m_s{0.0};        // of the capsule, as quick as the walk can be
+  double turn_rate_rad_s = 0.0;  // of the capsule, to the left positive
 };
 // The parameters by which a walk follows it, in steps of its own: feet stay planted, so the walk is
 // some centimetres off its capsule. It turns to where the capsule goes.

@@ -21,11 +21,12 @@
 
 namespace gaitpad {
 
-// A character's build, as far as it differs from the motion's own skeleton.
+// A character's build, as far as it differs from the motion's own skeleton. Its file or the caller
+// fills it.
 struct Character {
-  std::string name = "as in the motion file";
-  double scale = 1.0;      // all bones
-  double leg_ratio = 1.0;  // thigh, shank and foot bones, on top of scale
+  std::string name = "as in the motion file";  // error sentences begin with it
+  double scale = 1.0;                          // factor on all bones, 0.05 .. 20
+  double leg_ratio = 1.0;  // on thigh, shank and foot bones, on top of scale; 0.05 .. 20
   std::string skeleton;    // BVH file whose skeleton the character brings, empty: the motion's own
 };
 // `NAME: scale is 0, outside [0.05, 20]`. Both factors and their product have this range.
@@ -110,6 +111,8 @@ struct FootprintLine {
   double most_ratio = 0.0;  // of the tables
 };
 
+// walk_model() fills it. A program may put another ground in place of `terrain` before the first
+// walk stands on it, one that check() accepts. Lengths are the character's, in metres.
 struct WalkModel {
   std::shared_ptr<const Terrain> terrain = flat_terrain();  // never null
   // The data; its skeleton and legs have the character's lengths, its strides the motion's, so that

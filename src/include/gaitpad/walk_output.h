@@ -22,6 +22,7 @@ namespace gaitpad {
 // toe_off: its toe leaves the ground. heel_strike: its heel lands.
 enum class WalkEventKind : std::uint8_t { step_begin, toe_off, heel_strike };
 
+// walk_events() fills it.
 struct WalkEvent {
   WalkEventKind kind = WalkEventKind::heel_strike;
   Side side = kLeftSide;
@@ -54,7 +55,7 @@ void mix_pose(std::span<const float> weights, const Pose& walk, Pose& own) noexc
 // joint of the pose. They write as many bones as `out` has room for, and return how many entries
 // they considered. What stands in the world is seen from `model`, where the caller's object lies:
 // {state.frame.root_m, state.frame.heading_rad} for an object that is moved by root motion, {} for
-// the world.
+// the world. Where that is not finite nothing is written, and 0 returned.
 
 // Local rotations, 4 floats each: x, y, z, w. The root's turns into the frame of `model`; its place
 // there goes to `root_m`.

@@ -218,6 +218,8 @@ def measure_bench(options, text=None):
     add("characters_styled", "four characters with styles, each")
     add("characters_styled", "the same over four even ones", "ratio")
     add("character_even_60_hz", "one character, even, at 60 Hz")
+    add("character_asked", "one character, even, on waves that are asked for")
+    add("ground_query", "one question to a height field")
     add("step", "four characters with the session around them, each", characters=4)
     add("crowd_alone", "a member of the crowd, mixed builds and styles, at 60 Hz, alone")
     for width in (8, 4, 2, 1):

@@ -313,6 +313,54 @@ Work character_work(const char* name, const char* label,
   return work;
 }
 
+// --- Ground that is asked for --------------------------------------------------------------------
+
+// Waves of 0.2 m without an end, and how often they were asked for.
+struct Waves {
+  mutable long long asked = 0;
+};
+Ground ask_waves(const void* game, double x_m, double z_m) noexcept {
+  ++static_cast<const Waves*>(game)->asked;
+  return {0.1 * (sin_cos(0.8 * x_m).sin + sin_cos(0.8 * z_m).sin)};
+}
+
+// The walker on the waves, from standing.
+Work asked_work(const std::shared_ptr<LiveWalkers>& walkers) {
+  const auto waves = std::make_shared<Waves>();
+  LiveWalkers::One& one = walkers->all.front();
+  auto model = std::make_shared<WalkModel>(*one.model);
+  model->terrain = std::make_shared<Terrain>(
+      Terrain{.name = "waves", .sections = {}, .zones = {}, .asked = {&ask_waves, waves.get()}});
+  one.model = model;
+  one.state = standing(*model, vec3(0.0), one.pose);
+  constexpr int kCounted = 2400;
+  for (int tick = 0; tick < kCounted; ++tick) walkers->advance_all();
+  Work work = character_work("character_asked", "1, even, on waves that are asked for", walkers);
+  work.notes["asked_per_tick"] = static_cast<double>(waves->asked) / kCounted;
+  work.pass = [walkers, waves] { walkers->advance_all(); };
+  return work;
+}
+
+// One question to a height field of 200 m, along a walk.
+Work query_work() {
+  const auto grid = std::make_shared<GroundGrid>(
+      GroundGrid{.x_m = -100.0, .z_m = -100.0, .spacing_m = 0.5, .columns = 400, .rows = 400});
+  for (int i = 0; i < grid->columns * grid->rows; ++i)
+    grid->height_m.push_back(static_cast<float>(0.05 * sin_cos(0.1 * i).sin));
+  const auto terrain = std::make_shared<Terrain>();
+  terrain->asked = asked_ground(*grid);
+  Work work;
+  work.name = "ground_query";
+  work.label = "a height field of 400 x 400";
+  constexpr int kQueries = 1000;
+  work.units = kQueries;
+  work.pass = [grid, terrain] {
+    for (int i = 0; i < kQueries; ++i)
+      benchmark::DoNotOptimize(ground_at(*terrain, 0.01 * i, 0.02 * i));
+  };
+  return work;
+}
+
 // Processor time of this thread.
 double thread_s() { return 1e-9 * static_cast<double>(thread_time_ns()); }
 
@@ -733,6 +781,10 @@ Result<std::vector<Work>> bench_work(int most_characters,
       "character_even_60_hz", "1, even",
       std::make_shared<LiveWalkers>(kCrowdDt_s, *one_walks, std::vector<int>{0}, sticks)));
   list.back().over = "playback";
+
+  list.push_back(asked_work(live(*one, *one_walks, {0})));
+  list.back().over = "playback";
+  list.push_back(query_work());
 
   auto found = crowd_cast(*cast_session, sticks);
   if (!found) return found.error();

@@ -87,7 +87,8 @@ def benched(run, tmp_path_factory):
 def test_bench_lists_each_measurement(benched):
     names = [r["name"] for r in benched]
     assert set(names) == {"leg_paper", "leg_robust_even", "leg_robust_weighted", "leg_ik", "playback", "playback_world", "stage",
-                          "character_even", "characters_even", "characters_styled", "character_even_60_hz", "step", "crowd", "crowd_alone",
+                          "character_even", "characters_even", "characters_styled", "character_even_60_hz", "character_asked",
+                          "ground_query", "step", "crowd", "crowd_alone",
                           "crowd_memory", "load_built_in", "load_clip", "load_cached", "load", "replay", "replay_files"}
     assert all(0 < r["ns_low"] <= r["ns"] <= r["ns_high"] for r in benched if r["name"] != "stage")
     assert all(r["processor"] and r["lanes"] in (2, 4, 8) for r in benched)
@@ -116,7 +117,7 @@ def test_bench_counts_in_its_peers(benched):
             assert row["at_60_hz"] == pytest.approx(1e9 / 60 / row["ns"], abs=1)
         assert row.get("bytes", 1000) >= 1000
     assert {r["name"] for r in benched if "ratio" in r} == {"character_even", "characters_even", "characters_styled", "step",
-                                                         "character_even_60_hz", "crowd", "crowd_alone", "crowd_memory"}
+                                                         "character_even_60_hz", "character_asked", "crowd", "crowd_alone", "crowd_memory"}
     assert ns["load"] == ns["load_clip"] > ns["load_cached"] > ns["load_built_in"]
     assert ns["replay_files"] > ns["replay"]
 

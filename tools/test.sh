@@ -16,9 +16,10 @@ esac
 [ "${GAITPAD_ALL:-}" != 1 ] || chosen=()
 source "$root/tools/folders.sh"
 bash "$root/tools/install.sh" xvfb ffmpeg # a display and an encoder for the window's tests
-# Packages for tests that only a whole run includes: other processors, valgrind, locales with decimal commas.
+# Packages for tests that only a whole run includes: other processors, standard libraries and WebAssembly, valgrind, locales with decimal commas.
 [ "${GAITPAD_ALL:-}" != 1 ] ||
-  bash "$root/tools/install.sh" g++-aarch64-linux-gnu g++-i686-linux-gnu qemu-user-static valgrind locales
+  bash "$root/tools/install.sh" g++-aarch64-linux-gnu g++-i686-linux-gnu qemu-user-static libc++-dev libc++abi-dev \
+    emscripten valgrind locales
 if command -v npm >/dev/null && ! bash "$root/tools/gltf/install.sh"; then
   echo "No glTF validator: its test is skipped." >&2
 fi

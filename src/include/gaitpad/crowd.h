@@ -47,7 +47,8 @@ class Crowd {
   // The pose of the last tick: where joint 0 is, in the world, and each joint's local rotation.
   const vec3& root_m(int member) const noexcept { return roots_m_[member]; }
   std::span<const quat> local(int member) const noexcept {
-    return {local_.data() + first_joint_[member], local_.data() + first_joint_[member + 1]};
+    const std::size_t first = first_joint_[member];
+    return {local_.data() + first, first_joint_[member + 1] - first};
   }
   void copy_pose(int member, Pose& pose) const noexcept;
   // Puts a member back to where it stands at first.

@@ -95,7 +95,7 @@ def test_while_the_wall_clock_is_set(run, short, tmp_path):
 
 def test_the_wall_clock_only_names_new_files():
     """The adjustable clock is read only for dates: in the names of folders and in `measured_on`."""
-    asks = re.compile(r"system_clock|CLOCK_REALTIME|gettimeofday|\btime\(nullptr\)")
+    asks = re.compile(r"system_clock::now|CLOCK_REALTIME|gettimeofday|\btime\(nullptr\)")
     found = {str(path.relative_to(ROOT)) for folder in ("src", "drivers", "tools/gaitpad")
              for path in (ROOT / folder).rglob("*.[ch]*") if asks.search(path.read_text())}
     assert found == {"src/selftest/self_test.cpp", "src/view/window.cpp", "src/pads/guided_calibration.cpp"}

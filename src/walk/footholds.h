@@ -1,0 +1,98 @@
+// Second: where the swinging foot will land, and which stride the step is.
+#pragma once
+#include "walk/gait_clock.h"
+
+namespace gaitpad::anew {
+namespace {
+
+template <class V>
+struct Landing {
+  V x_m{}, z_m{}, rad{};  // the footprint
+  Way<V> way;             // where it points
+  V ratio{};              // of the stride that the step is taken with
+};
+
+// q^n of whole numbers n, at least 0.
+template <class V>
+V power(float q, V n) noexcept {
+  V result = all<V>(1.0f);
+  for (; any(n > V{}); q *= q) {
+    const V half = floored(V(0.5f * n));
+    result = n != 2.0f * half ? result * q : result;
+    n = half;
+  }
+  return result;
+}
+
+// The heading so many ticks ahead if the turn's goal stays: its filter is a linear recurrence with
+// the double root q, so the error is e_k = (e_0 + c k) q^k, and its sum has a closed form.
+template <class V>
+V heading_ahead(const Tables& tables, const State<V>& state, const V& n) noexcept {
+  const float dt = tables.tick_s, q = std::sqrt(tables.turn.keep), w = 1.0f / q - 1.0f;
+  const V goal = state.turn_goal_rad_s.x, e0 = state.turn_rad_s.x - goal;
+  const auto turns = either(e0 != V{}, state.turn_rad_s.v != V{});
+  const V straight = state.heading_rad + goal * n * dt;
+  if (!any(turns)) return straight;
+  const V e1 = e0 * (1.0f - w * w * q * q) + q * q * state.turn_rad_s.v * dt, c = e1 / q - e0,
+          qn = power(q, n), s0 = q * (1.0f - qn) * (1.0f / (1.0f - q)),
+          s1 = q * (1.0f - (n + 1.0f) * qn + n * qn * q) * (1.0f / ((1.0f - q) * (1.0f - q)));
+  return turns ? V(state.heading_rad + (goal * n + e0 * s0 + c * s1) * dt) : straight;
+}
+
+// Footprints lie on both sides of the path, which in a turn is an arc from the one's direction to
+// the other's: the way between them leads so far round. Turning on the spot they stand wider apart
+// and point ahead of the body.
+inline constexpr float kWayTurns = 0.82f, kInPlace_m = 0.2f, kFootAhead = 0.45f, kWider_s = 0.045f,
+                       kWidest_m = 0.045f, kStance_m = 0.105f, kLeastWider_m = 0.03f;
+
+// A landing follows what is asked at once until kSettles of the flight, then more and more slowly,
+// and from kFreeze on no more. To stop it at once would be a jerk of the foot that flies.
+inline constexpr float kSettles = 0.25f, kFreeze = 0.6f, kSettling_s = 0.1f;
+
+template <class V>
+Landing<V> plan_landing(const Tables& tables, const Time<V>& time, const Change<V>& change,
+                        State<V>& state) noexcept {
+  const auto closes = change.closing != V{};
+  const V heading = heading_ahead(tables, state, V(time.to_strike + 1.0f));
+  const Way<V> to = way_of(heading), along = way_of(V(kWayTurns * heading));
+  const float left_m = tables.leg[0].track_m, right_m = tables.leg[1].track_m, grown = tables.size;
+  const V steps_m = time.right ? state.length_m[1].x : state.length_m[0].x,
+          length_m = closes ? V{} : steps_m, lands_m = chosen<V>(time.right, right_m, left_m),
+          stands_m = chosen<V>(time.right, left_m, right_m),
+          outwards = chosen<V>(time.right, -1.0f, 1.0f);
+  const V round = size(state.turn_goal_rad_s.x),
+          in_place = 1.0f - smooth(V(size(length_m) * (1.0f / (kInPlace_m * grown))));
+  const V arc_m = least(V(grown * kWider_s * round), all<V>(grown * kWidest_m)),
+          place_m = most(V(grown * kStance_m - size(lands_m)), all<V>(grown * kLeastWider_m)) *
+                    least(round, all<V>(1.0f)),
+          wider_m = closes ? V{} : most(mix(arc_m, place_m, in_place), V{});
+  const V asides_m = lands_m + outwards * wider_m,
+          stood_m = stands_m - (closes ? V{} : V(outwards * state.wider_m)),
+          lead_m = in_place * tables.rest_lead_m;
+  const V ahead_rad = state.turn_goal_rad_s.x * (state.roll_ticks + state.flight_ticks) *
+                      tables.tick_s * kFootAhead;
+  const V y = (time.u - kSettles) * (1.0f / (kFreeze - kSettles));
+  const auto follows = y <= V{}, open = y < all<V>(1.0f);
+  const float settling = kSettling_s * tables.time_scale / tables.tick_s;
+  const V share = 1.0f / (1.0f + settling * y * y / (1.0f - (open ? y : V{})));
+  const auto keep = [&](const V& now, V& kept) {
+    kept = follows ? now : open ? V(kept + (now - kept) * share) : kept;
+  };
+  keep(V(along.sine * length_m + to.cosine * asides_m - stood_m - to.sine * lead_m),
+       state.landing_x_m);
+  keep(V(along.cosine * length_m - to.sine * asides_m + (1.0f - to.cosine) * lead_m),
+       state.landing_z_m);
+  keep(V(heading + (closes ? V{} : V(in_place * ahead_rad))), state.landing_rad);
+  keep(wider_m, state.next_wider_m);
+  Landing<V> landing{state.landing_x_m, state.landing_z_m, state.landing_rad,
+                     way_of(state.landing_rad)};
+  // Along the heading, which may still turn after the place is settled.
+  const V step_m = landing.x_m * to.sine + landing.z_m * to.cosine,
+          own_m = chosen<V>(time.right, tables.leg[1].own_step_m, tables.leg[0].own_step_m);
+  // A step that closes keeps what is left of the last one.
+  landing.ratio = closes ? state.ratio_behind : V(size(step_m) / own_m);
+  return landing;
+}
+
+}  // namespace
+}  // namespace gaitpad::anew

@@ -1,0 +1,94 @@
+// What does not change while characters of one build walk, in floats: the strides' tables, the body
+// above the legs, the legs' bones, and the filters of one tick length. Made from a WalkModel.
+#pragma once
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "gaitpad/walk_model.h"
+#include "walk/state.h"
+
+namespace gaitpad::anew {
+
+// A stride at one knot of its periodic cubic B-spline in phase, at one ratio; in the character's
+// metres and radians, 0 when standing (StrideCellOf). Numbers are neighbours so that what is read
+// together is summed together.
+struct StrideRow {
+  std::array<std::array<float, 3>, 2> heel_m;  // by Side; travel frame
+  std::array<float, 2> pitch_rad;
+  std::array<std::array<float, 2>, 2> edge_rad;  // twist and roll
+  std::array<float, 3> pelvis_m;
+  float pelvis_yaw_rad;
+  std::array<float, 3> pelvis_tilt_rad;
+  std::array<std::array<float, kLegAngles>, 2> leg_rad;
+  std::array<float, 2> pelvis_span_m;  // its lowest and highest place in the stride
+  std::array<float, 5> none;
+};
+inline constexpr int kRowNumbers = sizeof(StrideRow) / sizeof(float), kHeelNumbers = 8;
+static_assert(kRowNumbers == 40);
+
+// As many as a StrideFamily has: half of them are off by 0.17 degrees RMS of a knee, at the
+// lift-off.
+inline constexpr int kKnots = 128, kRatios = 8;
+using StrideRows = std::array<std::array<StrideRow, kRatios>, kKnots + 3>;  // one before, two after
+
+// Where strides go: exactly linear in their ratio.
+struct FootprintLines {
+  std::array<std::array<float, 3>, 2> at_zero_m, per_ratio_m;  // by Side
+  float stride_at_zero_m, stride_per_ratio_m;
+};
+
+// A critically damped filter of one time constant at one tick length (Damping of curve.h).
+struct Filter {
+  float pull, keep, tick_s;
+};
+
+struct LegBones {
+  std::array<float, 3> hip_m, heel_m, toe_m, forward, side;  // LegBuild
+  float thigh_m, shank_m, elevation_rad, foot_m, toe_rest_m, half_width_m, track_m;
+  std::array<float, kLegAngles> stand_rad;
+  float own_step_m;
+  std::array<int, 4> joint;                           // hip, knee, ankle, toe; -1: none
+  std::array<std::array<float, 4>, 4> before, after;  // w, x, y, z
+};
+
+// A joint that the legs do not set.
+struct UpperJoint {
+  int joint;
+  int swings;                             // 0 not; 1, 2: left shoulder, elbow; 3, 4: right ones
+  std::array<float, 4> standing, middle;  // x, y, z, w; the middle of an arm's swing
+};
+
+// A joint on the way from the pelvis to the head, and its share of what chest and head are ahead.
+struct PathJoint {
+  int joint;
+  float of_chest, of_head;
+};
+
+struct Tables {
+  alignas(64) StrideRows forward;
+  FootprintLines footprints;
+  std::array<LegBones, 2> leg;
+  std::array<float, 4>
+      stage_share;  // of the phase: roll right, flight left, roll left, flight right
+  float most_ratio, size, time_scale, stand_m, stand_roll_rad, rest_lead_m, source_step_m,
+      own_step_s;
+  bool legs_are_plain;  // no joint of a leg has a turn before or after its own
+
+  std::vector<UpperJoint> upper;
+  std::vector<float> upper_rows;  // (kKnots + 3) x upper.size() x 4: x, y, z, w
+  std::vector<PathJoint> path;    // from the pelvis on
+  std::array<float, 2> most_elbow_swing;
+  std::vector<int> still;                  // always the identity
+  std::vector<std::pair<int, quat>> kept;  // twist joints in the legs
+  int joints, pelvis;
+  std::array<float, 4> pelvis_standing;  // w, x, y, z
+
+  float tick_s;
+  Filter step, first_step, turn_goal, turn, bounce, lean, posture, chest, head;
+};
+
+// Of a tick of `tick_s` seconds.
+std::unique_ptr<const Tables> tables_of(const WalkModel& model, double tick_s);
+
+}  // namespace gaitpad::anew

@@ -57,10 +57,8 @@ V lift_of(const Time<V>& time, const State<V>& state) noexcept {
   return time.right ? state.lift[1].x : state.lift[0].x;
 }
 
-// Of the flight: until here the lift-off's own motion fades; a style's factor on the height grows
-// until here, and goes between the others.
-inline constexpr float kLiftFade = 0.5f, kLiftGrown = 0.4f, kLiftFalls = 0.5f, kLiftEnds = 0.85f,
-                       kPitchFade = 0.2f;
+// Of the flight: a style's factor on the height grows until here, and goes between the others.
+inline constexpr float kLiftGrown = 0.4f, kLiftFalls = 0.5f, kLiftEnds = 0.85f, kPitchFade = 0.2f;
 inline constexpr float kShortPitchFade = 0.6f, kFirstLift_m = 0.03f,
                        kLastLift_m = 0.025f;  // of a first and a last one
 // Of the first roll: until then the heel stays down; of the tables' pitch when it lifts off.
@@ -132,6 +130,68 @@ Vec<V> flight_heel(const Tables& tables, const Time<V>& time, const Landing<V>& 
   return p;
 }
 
+// What the lift-off, or a change of plan, differed by fades: of the heel and of the pitch.
+template <class V>
+V gap_share(const Time<V>& time, const Change<V>& change) noexcept {
+  return (time.u - change.gap_begin) / change.gap_lasts;
+}
+// The heel from its table's place, `heel_m`, to where it is, and off the floor.
+template <class V>
+Vec<V> with_gap(const Tables& tables, const Time<V>& time, const Vec<V>& heel_m,
+                const Change<V>& change, const State<V>& state) noexcept {
+  constexpr float kSoftFloor_m = 0.02f, kSoftFrom = 0.3f, kSoftUntil = 0.7f;
+  const V s = gap_share(time, change);
+  const auto fading = both(time.flies, s < all<V>(1.0f)), changed = change.gap_begin != V{};
+  V of_gap = value_left(s), of_slope = slope_left(s), falls = all<V>(1.0f);
+  Vec<V> p = heel_m;
+  if (any(changed)) {
+    // It may come down fast: a quintic then stays higher. One that was lower than it is to be goes
+    // over in proportion: it would else come to the ground.
+    const V w = 1.0f - s, w3 = w * w * w,
+            lift = tables.size * 16.0f * kLastLift_m * change.gap_lasts;
+    of_gap = changed ? V(w3 * (1.0f + s * (3.0f + 6.0f * s))) : of_gap;
+    of_slope = changed ? V(w3 * s * (1.0f + 3.0f * s)) : of_slope;
+    p.y = both(changed, fading) ? V(p.y + lift * (s * s) * (w * w)) : p.y;
+    falls = both(changed, state.gap_m.y < V{}) ? V(p.y / change.gap_high_m) : falls;
+  }
+  of_gap = fading ? of_gap : V{};
+  of_slope = fading ? V(of_slope * change.gap_lasts) : V{};
+  p = p + Vec<V>{state.gap_m.x, V(state.gap_m.y * falls), state.gap_m.z} * of_gap +
+      state.gap_slope_m * of_slope;
+  V high_m = most(p.y, V{});
+  if (any(changed)) {
+    const V soft_m = kSoftFloor_m * tables.size * smoother(V(s * (1.0f / kSoftFrom))) *
+                     (1.0f - smoother(V((time.u - kSoftUntil) * (1.0f / (1.0f - kSoftUntil)))));
+    high_m = changed ? soft_positive(p.y, most(soft_m, all<V>(1e-6f))) : high_m;
+  }
+  p.y = high_m;
+  return p;
+}
+template <class V>
+V pitch_off(const Time<V>& time, const Change<V>& change, const State<V>& state) noexcept {
+  const auto is_short = either(change.starting != V{}, change.closing != V{}),
+             changed = change.pitch_lasts != V{};
+  const V own_ticks = state.flight_ticks * chosen<V>(is_short, kShortPitchFade, kPitchFade),
+          ticks = changed ? change.pitch_lasts : own_ticks,
+          t = (state.tick - (changed ? change.pitch_begin : V{})) / ticks;
+  return both(time.flies, t < all<V>(1.0f)) ? V(state.swing_pitch_rad * value_left(t) +
+                                                state.swing_pitch_rate * ticks * slope_left(t))
+                                            : V{};
+}
+
+template <class V>
+V flying_yaw(const Time<V>& time, const Landing<V>& landing, const Change<V>& change,
+             const State<V>& state) noexcept {
+  return state.print_rad + (landing.rad - state.print_rad) * (1.0f - value_left(time.u)) +
+         state.lift_turn_rad * slope_left(time.u) + change.gap_rad * edge_left(time.u, change);
+}
+
+// How much of a roll is over, until the toe is down.
+template <class V>
+V roll_over(const Change<V>& change, const State<V>& state) noexcept {
+  return (state.tick - change.led_from) / (kRollEnd * (state.roll_ticks - change.led_from));
+}
+
 template <class V>
 struct Feet {
   Foot<V> foot[2];  // swing, stand
@@ -151,14 +211,15 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
     Foot<V>& foot = feet.foot[1];
     const Sole<V>& sole = feet.sole[1] = sole_of<V>(tables, no(time.right));
     const StrideFoot<V>& table = stride.foot[1];
-    const V s = state.tick / (kRollEnd * state.roll_ticks);
+    const V s = roll_over(change, state);
     const V off = s < one ? V(state.stand_pitch_rad * value_left(s)) : V{};
     // Where the hips lead, its toe is down when the other one lifts off.
     const V stays = 1.0f - change.led * (time.flies ? V{} : smoother(s));
     // In a first step it has not landed: its heel rises only while the other foot flies. In a last
     // one it stays flat.
     const V rises = starts ? smoother(V(time.u * (1.0f / kHeelRises))) : stays,
-            shows = both(closes, time.flies) ? V{} : rises;
+            ends = change.gap_begin != V{} ? edge_left(time.u, change) : V{},
+            shows = both(closes, time.flies) ? ends : rises;
     const V pitch = table.pitch_rad * shows + (time.flies ? V{} : off),
             planted = time.flies ? most(pitch, V{}) : least(pitch, V{});
     foot.edge = edge_of(sole, table.twist_rad, table.roll_rad);
@@ -170,12 +231,7 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
   const Sole<V>& sole = feet.sole[0] = sole_of<V>(tables, time.right);
   const StrideFoot<V>& table = stride.foot[0];
   const V u = time.u;
-  // What lift-off differed by fades.
-  const V fade_ticks = flight * chosen<V>(either(starts, closes), kShortPitchFade, kPitchFade),
-          t = state.tick / fade_ticks;
-  const V off = both(time.flies, t < one) ? V(state.swing_pitch_rad * value_left(t) +
-                                              state.swing_pitch_rate * fade_ticks * slope_left(t))
-                                          : V{};
+  const V off = pitch_off(time, change, state);
   const V lifts =
       smoother(V((state.tick / state.roll_ticks - kHeelStays) * (1.0f / (1.0f - kHeelStays))));
   const V planned =
@@ -183,18 +239,12 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
   const Way<V> left = way_of(state.print_rad);
   Vec<V> p = feet.table_heel_m =
       flight_heel(tables, time, landing, stride, hips, state.phase, u, change, state);
-  const V s = u * (1.0f / kLiftFade);
-  const auto fading = both(time.flies, s < one);
-  const V of_gap = fading ? value_left(s) : V{},
-          of_slope = fading ? V(slope_left(s) * kLiftFade) : V{};
-  p = p + state.gap_m * of_gap + state.gap_slope_m * of_slope;
-  p.y = most(p.y, V{});
+  p = with_gap(tables, time, p, change, state);
   // A low foot that hardly leaves the floor does not roll onto an edge.
   const V low = mix(one, least(lift_of(time, state), one),
                     V(smoother(V(u * 2.0f)) * (1.0f - smoother(V((u - 0.6f) * 2.5f)))));
   foot.edge = edge_of(sole, V(low * table.twist_rad), V(low * table.roll_rad));
-  const V yaw = state.print_rad + (landing.rad - state.print_rad) * (1.0f - value_left(u)) +
-                state.lift_turn_rad * slope_left(u);
+  const V yaw = flying_yaw(time, landing, change, state);
   const Way<V> flown = way_of(yaw), way = chosen(time.flies, flown, left);
   // Its toe stays off the floor, and the edge onto which it rolls.
   const Vec<V> rolled = foot.edge * sole.line_m;
@@ -283,7 +333,7 @@ void change_feet(const Landing<V>& landing, const Mask<V>& strikes, const Feet<V
   set(V{}, state.landing_x_m), set(V{}, state.landing_z_m), set(V{}, state.landing_rad);
   set(state.next_wider_m, state.wider_m);
   set(landing.ratio, state.ratio_behind);
-  set(V(feet.foot[0].pitch_rad - stride.foot[0].pitch_rad), state.stand_pitch_rad);
+  set(V(feet.foot[0].pitch_rad - stride.stood_pitch_rad), state.stand_pitch_rad);
   for (int j = 0; j < kLegAngles; ++j) {
     const auto swap = [&](V(&of)[2][kLegAngles]) {
       const V swing = of[0][j], stand = of[1][j];

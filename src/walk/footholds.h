@@ -49,6 +49,20 @@ inline constexpr float kWayTurns = 0.82f, kInPlace_m = 0.2f, kFootAhead = 0.45f,
 // and from kFreeze on no more. To stop it at once would be a jerk of the foot that flies.
 inline constexpr float kSettles = 0.25f, kFreeze = 0.6f, kSettling_s = 0.1f;
 
+// As it is planned. The step's stride counts along the heading `to`, which may still turn after the
+// place is settled; a step that closes keeps what is left of the last one.
+template <class V>
+Landing<V> planned_landing(const Tables& tables, const Time<V>& time, const Way<V>& to,
+                           const Change<V>& change, const State<V>& state) noexcept {
+  Landing<V> landing{state.landing_x_m, state.landing_z_m, state.landing_rad,
+                     way_of(state.landing_rad)};
+  const V step_m = landing.x_m * to.sine + landing.z_m * to.cosine,
+          own_m = chosen<V>(time.right, tables.leg[1].own_step_m, tables.leg[0].own_step_m);
+  landing.ratio =
+      (change.closing != V{} ? state.ratio_behind : V(size(step_m) / own_m)) + change.off_ratio.x;
+  return landing;
+}
+
 template <class V>
 Landing<V> plan_landing(const Tables& tables, const Time<V>& time, const Change<V>& change,
                         State<V>& state) noexcept {
@@ -71,7 +85,9 @@ Landing<V> plan_landing(const Tables& tables, const Time<V>& time, const Change<
           lead_m = in_place * tables.rest_lead_m;
   const V ahead_rad = state.turn_goal_rad_s.x * (state.roll_ticks + state.flight_ticks) *
                       tables.tick_s * kFootAhead;
-  const V y = (time.u - kSettles) * (1.0f / (kFreeze - kSettles));
+  // A flight whose plan has changed on its way goes where the new one wants it at once.
+  const V changed_u = most(V(change.gap_begin - kSettles), V{}),
+          y = (time.u - kSettles - changed_u) * (1.0f / (kFreeze - kSettles));
   const auto follows = y <= V{}, open = y < all<V>(1.0f);
   const float settling = kSettling_s * tables.time_scale / tables.tick_s;
   const V share = 1.0f / (1.0f + settling * y * y / (1.0f - (open ? y : V{})));
@@ -84,14 +100,7 @@ Landing<V> plan_landing(const Tables& tables, const Time<V>& time, const Change<
        state.landing_z_m);
   keep(V(heading + (closes ? V{} : V(in_place * ahead_rad))), state.landing_rad);
   keep(wider_m, state.next_wider_m);
-  Landing<V> landing{state.landing_x_m, state.landing_z_m, state.landing_rad,
-                     way_of(state.landing_rad)};
-  // Along the heading, which may still turn after the place is settled.
-  const V step_m = landing.x_m * to.sine + landing.z_m * to.cosine,
-          own_m = chosen<V>(time.right, tables.leg[1].own_step_m, tables.leg[0].own_step_m);
-  // A step that closes keeps what is left of the last one.
-  landing.ratio = closes ? state.ratio_behind : V(size(step_m) / own_m);
-  return landing;
+  return planned_landing(tables, time, to, change, state);
 }
 
 }  // namespace

@@ -62,15 +62,18 @@ void smooth_asked(const Tables& tables, const Change<V>& change, State<V>& state
     // The first step goes as far as the push that is still on its way asks.
     const auto starts = change.starting != V{},
                steps = both(starts, state.right_swings == all<V>(static_cast<float>(side)));
-    // A walk that is to end takes the running step as it was begun.
+    const auto stops = change.stops != V{}, is_quick = either(starts, stops),
+               goes_on = both(change.catch_ticks != V{},
+                              state.right_swings == all<V>(static_cast<float>(side)));
     const V rests = most(change.stands, change.closing),
             kept_m = rests != V{} ? V{} : state.length_m[side].x,
-            goal_m = asked.walks != V{} ? asked.length_m[side] : kept_m;
+            asked_m = asked.walks != V{} ? asked.length_m[side] : kept_m,
+            goal_m = either(stops, goes_on) ? change.length_m[side] : asked_m;
     Smoothed<V> first = state.length_m[side];
-    follow(steps ? V(kFirstStep * goal_m) : goal_m, tables.first_step, first);
+    follow(both(steps, no(stops)) ? V(kFirstStep * goal_m) : goal_m, tables.first_step, first);
     follow(goal_m, tables.step, state.length_m[side]);
-    state.length_m[side].x = starts ? first.x : state.length_m[side].x;
-    state.length_m[side].v = starts ? first.v : state.length_m[side].v;
+    state.length_m[side].x = is_quick ? first.x : state.length_m[side].x;
+    state.length_m[side].v = is_quick ? first.v : state.length_m[side].v;
     follow(asked.lift[side], tables.step, state.lift[side]);
   }
   const V cycle_s = asked.time_s[0] + asked.time_s[1];
@@ -154,12 +157,13 @@ void time_first_flight(const Tables& tables, const Mask<V>& where, State<V>& sta
   state.end_rate = where ? V(0.5f * (here.roll / roll + here.flight / flight)) : state.end_rate;
 }
 
-// Moves the clock on by one tick. The phase follows a cubic to the end of the stage.
 template <class V>
-Time<V> advance_clock(const Tables& tables, const Change<V>& change, State<V>& state) noexcept {
-  const auto follows = both(change.starting != V{}, state.flies == V{}),
-             runs = change.stands == V{};
-  if (any(follows)) time_first_flight(tables, follows, state);
+V ticks_of_stage(const State<V>& state) noexcept {
+  return state.flies != V{} ? state.flight_ticks : state.roll_ticks;
+}
+// Where the walk's tick is in its step.
+template <class V>
+Time<V> time_of(const Tables& tables, const State<V>& state) noexcept {
   Time<V> time;
   time.right = state.right_swings != V{};
   time.flies = state.flies != V{};
@@ -167,17 +171,26 @@ Time<V> advance_clock(const Tables& tables, const Change<V>& change, State<V>& s
   time.step_phase = chosen<V>(time.right, share[0] + share[1], 0.0f);
   time.stage_end = time.step_phase + chosen<V>(time.right, share[2], share[0]) +
                    (time.flies ? chosen<V>(time.right, share[3], share[1]) : V{});
-  const V ticks = time.flies ? state.flight_ticks : state.roll_ticks, left = ticks - state.tick,
-          s = 1.0f / left, way = time.stage_end - state.phase, v0 = state.phase_rate * left,
+  time.u = time.flies ? V(state.tick / state.flight_ticks) : V{};
+  time.to_strike = ticks_of_stage(state) - state.tick + (time.flies ? V{} : state.flight_ticks);
+  time.share = (state.tick + (time.flies ? state.roll_ticks : V{})) /
+               (state.roll_ticks + state.flight_ticks);
+  return time;
+}
+
+// Moves the clock on by one tick. The phase follows a cubic to the end of the stage.
+template <class V>
+Time<V> advance_clock(const Tables& tables, const Change<V>& change, State<V>& state) noexcept {
+  const auto follows = both(change.starting != V{}, state.flies == V{}),
+             runs = change.stands == V{};
+  if (any(follows)) time_first_flight(tables, follows, state);
+  const V stage_end = time_of(tables, state).stage_end, left = ticks_of_stage(state) - state.tick,
+          s = 1.0f / left, way = stage_end - state.phase, v0 = state.phase_rate * left,
           v1 = state.end_rate * left, c2 = 3.0f * way - 2.0f * v0 - v1, c3 = v0 + v1 - 2.0f * way;
   state.phase = runs ? V(state.phase + (v0 + (c2 + c3 * s) * s) * s) : state.phase;
   state.phase_rate = runs ? V((v0 + (2.0f * c2 + 3.0f * c3 * s) * s) * s) : V{};
   state.tick = runs ? V(state.tick + 1.0f) : V{};
-  time.u = time.flies ? V(state.tick / state.flight_ticks) : V{};
-  time.to_strike = ticks - state.tick + (time.flies ? V{} : state.flight_ticks);
-  time.share = (state.tick + (time.flies ? state.roll_ticks : V{})) /
-               (state.roll_ticks + state.flight_ticks);
-  return time;
+  return time_of(tables, state);
 }
 
 // After the roll, where `lifts`: the flight begins.
@@ -194,8 +207,6 @@ void begin_flight(const Tables& tables, const Time<V>& time, const Mask<V>& lift
   state.tick = lifts ? V{} : state.tick;
 }
 
-inline constexpr float kLastFlight_s = 0.40f;
-
 // After the flight, where `strikes`: the other foot's step begins. It makes up for what the steps
 // before were too short or long by rounding. Where it is slower than the last one (`led`), hips
 // that still are as fast would have to sink for the foot behind: it leaves the floor sooner.
@@ -210,11 +221,7 @@ void begin_step(const Tables& tables, const Time<V>& time, const Mask<V>& strike
           last_roll = next.roll / most(state.phase_rate, all<V>(1e-4f)),
           led_roll = most(floored(root(V(own_roll * last_roll))), all<V>(2.0f)),
           roll = change.led != V{} ? least(own_roll, led_roll) : own_roll,
-          rest_flight = ticks_of(V(step_s + late_s - roll * tick_s), tick_s),
-          flight =
-              change.closing != V{}
-                  ? least(rest_flight, ticks_of(all<V>(kLastFlight_s * tables.time_scale), tick_s))
-                  : rest_flight;
+          flight = ticks_of(V(step_s + late_s - roll * tick_s), tick_s);
   state.late_s = strikes ? late_s : state.late_s;
   state.step_s = strikes ? step_s : state.step_s;
   state.roll_ticks = strikes ? roll : state.roll_ticks;

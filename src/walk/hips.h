@@ -118,6 +118,7 @@ Hips<V> move_hips(const Tables& tables, const Time<V>& time, const Landing<V>& l
 // --- A change of pace: the hips lead, the phase follows -------------------------------------------
 
 // Steps whose ratios differ by more are led. What the phase is off the one found fades in kCarry_s.
+inline constexpr float kLiftFade = 0.5f;  // of the flight: until then the lift-off's motion fades
 inline constexpr float kOtherPace = 0.02f, kCarry_s = 0.15f, kMostBend_m_s2 = 15.0f;
 // The goal's rate and acceleration are read so far around the strike.
 inline constexpr float kAimTicks = 4.0f;
@@ -142,13 +143,19 @@ void move_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& la
     x_m[k] = state.path_x_m + state.per_cycle_x_m * at + pelvis.x;
     z_m[k] = state.path_z_m + state.per_cycle_z_m * at + pelvis.z;
   }
-  const V ticks = time.to_strike + 1.0f, left = time.to_strike;
-  const auto led = change.led != V{}, closes = change.closing != V{};
-  // Or, in a last step, to rest between the feet.
-  for (int k : {0, 1, 2}) {
-    x_m[k] =
-        closes ? chosen<V>(time.right, -tables.leg[0].track_m, -tables.leg[1].track_m) : x_m[k];
-    z_m[k] = closes ? all<V>(tables.rest_lead_m) : z_m[k];
+  const auto led = change.led != V{}, closes = change.closing != V{}, stops = change.stops != V{};
+  const V left = stops ? change.rest_ticks : time.to_strike, ticks = left + 1.0f;
+  // Or to rest between the feet as the last step leaves them.
+  if (any(stops)) {
+    const V swings_m = chosen<V>(time.right, tables.leg[1].track_m, tables.leg[0].track_m),
+            stands_m = chosen<V>(time.right, tables.leg[0].track_m, tables.leg[1].track_m),
+            next_m = time.right ? change.length_m[0] : change.length_m[1];
+    const Vec<V> rest =
+        landing.way * Vec<V>{-swings_m, V{}, tables.rest_lead_m + change.further * next_m};
+    for (int k : {0, 1, 2}) {
+      x_m[k] = closes ? -stands_m : stops ? landing.x_m + rest.x : x_m[k];
+      z_m[k] = closes ? all<V>(tables.rest_lead_m) : stops ? landing.z_m + rest.z : z_m[k];
+    }
   }
   const auto move = [&](const V(&m)[3], Off<V>& pelvis) {
     const V rate = (m[2] - m[0]) * (0.5f / kAimTicks),
@@ -158,7 +165,7 @@ void move_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& la
     };
     const Off<V> was = goal(ticks), is = goal(left);
     Off<V> off{V(pelvis.x - was.x), V(pelvis.v - was.v), V(pelvis.a - was.a)};
-    fade(ticks, off);
+    fade(stops ? ticks : most(ticks, change.catch_ticks), off);
     pelvis.x = led ? V(is.x + off.x) : pelvis.x;
     pelvis.v = led ? V(is.v + off.v) : pelvis.v;
     pelvis.a = led ? V(is.a + off.a) : pelvis.a;
@@ -170,16 +177,13 @@ void move_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& la
 // The phase at which the tables have the pelvis where it is: by Newton's method, from `phase` on.
 template <class V>
 V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
-                  const Hips<V>& hips, const V& strike_phase, const V& strike_rate,
+                  const Hips<V>& hips, const V& strike_phase, const V& strike_rate, const V& share,
                   const Mask<V>& is_new, const State<V>& state, const Change<V>& change,
                   V& rate) noexcept {
   const Way<V>& way = landing.way;
   const auto along = [&](const V& x_m, const V& z_m) {
     return V(x_m * way.sine + z_m * way.cosine);
   };
-  const V share = change.starting != V{}  ? all<V>(1.0f)
-                  : change.closing != V{} ? V{}
-                                          : smoother(time.share);
   const V at_zero = mix(along(V(-hips.behind.stand_m.x), V(-hips.behind.stand_m.z)),
                         along(state.path_x_m, state.path_z_m), share),
           per_cycle = mix(along(V{}, hips.behind.stride_m),
@@ -234,22 +238,39 @@ void show(const V& shown, Stride<V>& stride) noexcept {
 
 inline constexpr float kShownAfter = 0.55f;  // of a first step: all of the tables shows
 
+// By the plan: how much of the tables shows, and how far the step has come over from the stride
+// behind, at 0, to the one ahead, at 1.
+template <class V>
+V planned_shown(const Time<V>& time, const Change<V>& change) noexcept {
+  const V begins = smoother(V(time.share * (1.0f / kShownAfter))),
+          ends = smoother(V(time.to_strike / most(change.closing_ticks, all<V>(1.0f)))),
+          walks = change.closing != V{} ? ends : all<V>(1.0f);
+  return change.stands != V{} ? V{} : change.starting != V{} ? begins : walks;
+}
+template <class V>
+V planned_over(const Time<V>& time, const Change<V>& change) noexcept {
+  const V walks = change.starting != V{} ? all<V>(1.0f) : smoother(time.share);
+  return change.closing != V{} ? V{} : walks;
+}
+
 // Where hips lead or have led: their place, and the stride at the phase that goes with it. The foot
 // that flies keeps to the clock. Returns that phase; elsewhere that of the clock.
 template <class V>
 V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
             const Stride<V>& by_clock, State<V>& state, Change<V>& change, Hips<V>& hips,
             Stride<V>& stride) noexcept {
-  const auto led = change.led != V{}, stands = change.stands != V{},
-             starts = change.starting != V{}, closes = change.closing != V{},
-             runs = either(either(either(led, change.was_led != V{}), change.off_phase.x != V{}),
+  const auto led = change.led != V{}, stands = change.stands != V{}, closes = change.closing != V{},
+             runs = either(either(either(led, change.was_led != V{}), change.off_ticks != V{}),
                            stands);
   stride = by_clock;
   if (!any(runs)) return state.phase;
-  const auto is_new =
-      both(both(no(time.flies), state.tick == all<V>(1.0f)), either(led, change.was_led != V{}));
-  fade(change.off_ticks, change.off_phase);
+  const auto is_new = change.is_new != V{};
+  for (Off<V>* off : {&change.off_phase, &change.off_shown, &change.off_over, &change.off_ratio})
+    fade(change.off_ticks, *off);
   change.off_ticks = most(V(change.off_ticks - 1.0f), V{});
+  change.rest_ticks = most(V(change.rest_ticks - 1.0f), V{});
+  change.catch_ticks = most(V(change.catch_ticks - 1.0f), V{});
+  const V over = planned_over(time, change) + change.off_over.x;
   V phase = state.phase, rate = state.phase_rate;
   if (any(led)) {
     const Stages<V> next = stages_of(tables, state, no(time.right));
@@ -260,8 +281,8 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
                                                  next.roll / ticks_of(next.roll_s, tables.tick_s)));
     move_pelvis(tables, time, landing, strike_phase, strike_rate, state, change);
     V moves{};
-    const V found = phase_of_pelvis(tables, time, landing, hips, strike_phase, strike_rate, is_new,
-                                    state, change, moves);
+    const V found = phase_of_pelvis(tables, time, landing, hips, strike_phase, strike_rate, over,
+                                    is_new, state, change, moves);
     phase = led ? found : phase;
     rate = led ? moves : rate;
   }
@@ -270,21 +291,16 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
   change.off_phase.v = is_new ? V(change.phase_rate - rate) : change.off_phase.v;
   change.off_phase.a = is_new ? V{} : change.off_phase.a;
   const float carry = kCarry_s * tables.time_scale / tables.tick_s;
-  change.off_ticks = is_new ? floored(all<V>(carry + 0.5f)) : change.off_ticks;
-  change.shown = runs ? (stands   ? V{}
-                         : starts ? smoother(V(time.share * (1.0f / kShownAfter)))
-                         : closes ? smoother(V(1.0f - time.share))
-                                  : all<V>(1.0f))
-                      : change.shown;
+  change.off_ticks =
+      is_new ? most(floored(all<V>(carry + 0.5f)), change.off_ticks) : change.off_ticks;
+  change.is_new = V{};
+  change.shown = runs ? V(planned_shown(time, change) + change.off_shown.x) : change.shown;
   phase = phase + change.off_phase.x;
   const V goes = is_new ? V(rate + change.off_phase.v) : V(phase - was);
   change.phase = runs ? phase : change.phase;
   change.phase_rate = runs ? goes : change.phase_rate;
   phase = runs ? phase : state.phase;
-  Stride<V> read = read_stride(tables, time, phase, state.ratio_behind, landing.ratio,
-                               starts   ? all<V>(1.0f)
-                               : closes ? V{}
-                                        : smoother(time.share));
+  Stride<V> read = read_stride(tables, time, phase, state.ratio_behind, landing.ratio, over);
   if (any(change.shown != all<V>(1.0f))) show(change.shown, read);
   stride = read;
   stride.heel_behind_m = by_clock.heel_behind_m, stride.heel_ahead_m = by_clock.heel_ahead_m;
@@ -296,7 +312,11 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
               (1.0f -
                (closes ? V{} : smoother(V((time.u - (1.0f - kEdgeGoes)) * (1.0f / kEdgeGoes))))),
           share = led ? goes_over : all<V>(1.0f);
-  const StrideFoot<V>&flying = by_clock.foot[0], &stood = read.foot[0];
+  const StrideFoot<V>& stood = read.foot[0];
+  StrideFoot<V> flying = by_clock.foot[0];
+  const V edge = edge_left(time.u, change);
+  flying.twist_rad = flying.twist_rad + edge * change.gap_twist_rad;
+  flying.roll_rad = flying.roll_rad + edge * change.gap_roll_rad;
   StrideFoot<V>& swing = stride.foot[0];
   swing.pitch_rad = time.flies ? flying.pitch_rad : stood.pitch_rad;
   swing.twist_rad = time.flies ? mix(stood.twist_rad, flying.twist_rad, share) : stood.twist_rad;
@@ -352,19 +372,35 @@ void begin_lead(const Tables& tables, const Mask<V>& strikes, const V& phase, co
           asked_m = by_side<V>(right, state.asked.length_m),
           smoothed_m = right ? state.length_m[1].x : state.length_m[0].x,
           last_m = change.starting != V{} ? V(state.ratio_behind * own_m) : smoothed_m;
-  // A walk that is to end does so with the next step: its foot closes beside the other one.
-  const auto rests = both(strikes, change.closing != V{}),
-             closes = both(both(strikes, no(rests)), state.asked.walks == V{});
+  // In the last step of a stop the foot closes beside the other one.
+  const auto stops = change.stops != V{}, rests = both(strikes, change.closing != V{}),
+             closes = both(both(strikes, no(rests)), both(stops, change.further == V{}));
   change.stands = rests ? all<V>(1.0f) : change.stands;
+  change.stops = rests ? V{} : change.stops;
+  change.further = strikes ? V{} : change.further;
   change.closing = closes ? all<V>(1.0f) : strikes ? V{} : change.closing;
   const auto changes = size(V((asked_m - last_m) / own_m)) > all<V>(kOtherPace);
-  const auto leads = both(no(rests), either(closes, changes));
+  const auto leads = both(no(rests), either(either(stops, changes), change.catch_ticks != V{}));
+  change.length_m[0] = both(strikes, no(stops)) ? state.asked.length_m[0] : change.length_m[0];
+  change.length_m[1] = both(strikes, no(stops)) ? state.asked.length_m[1] : change.length_m[1];
   change.was_led = rests ? V{} : strikes ? change.led : change.was_led;
-  change.off_phase.x = rests ? V{} : change.off_phase.x;
+  change.off_ticks = rests ? V{} : change.off_ticks;
+  for (Off<V>* off : {&change.off_phase, &change.off_shown}) off->x = rests ? V{} : off->x;
+  for (Off<V>* off : {&change.off_over, &change.off_ratio})
+    off->x = strikes ? V{} : off->x, off->v = strikes ? V{} : off->v,
+    off->a = strikes ? V{} : off->a;
   change.led = strikes ? chosen<V>(leads, 1.0f, 0.0f) : change.led;
   change.starting = strikes ? V{} : change.starting;
   const auto begins = both(strikes, either(change.led != V{}, change.was_led != V{}));
   go_on_from_here(tables, begins, state, change);
+  change.is_new = begins ? all<V>(1.0f) : change.is_new;
+  change.gap_begin = strikes ? V{} : change.gap_begin;
+  change.gap_lasts = strikes ? all<V>(kLiftFade) : change.gap_lasts;
+  change.pitch_lasts = strikes ? V{} : change.pitch_lasts;
+  change.gap_rad = strikes ? V{} : change.gap_rad;
+  change.led_from = strikes ? V{} : change.led_from;
+  change.gap_twist_rad = strikes ? V{} : change.gap_twist_rad;
+  change.gap_roll_rad = strikes ? V{} : change.gap_roll_rad;
   change.phase = begins ? phase : change.phase;
   change.phase_rate = begins ? rate : change.phase_rate;
 }

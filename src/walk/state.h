@@ -84,10 +84,24 @@ struct Change {
   V stands{}, starting{}, closing{};  // 1 or 0: both feet rest; the first step; the last one
   V shown = V{} + 1.0f;               // how much of the tables: 0 at rest
   V led{}, was_led{};                 // 1 or 0: this step, and the one before it
+  V is_new{};                         // 1: the plan has changed since the last tick
+  V led_from{};                       // of a roll: the tick from which on the hips lead
   Off<V> pelvis_x_m, pelvis_z_m;      // where the pelvis is, while it leads and a tick after
   V phase{}, phase_rate{};            // that are shown
-  Off<V> off_phase;                   // from the phase found; fades in off_ticks
+  // What a changed plan has left, of the phase, of what shows, of how far the step has come over to
+  // its own stride, and of this stride's ratio: fades in off_ticks.
+  Off<V> off_phase, off_shown, off_over, off_ratio;
   V off_ticks{};
+  // Of a stop: 1 or 0; the steps that are left before the last one, 1 or 0, and the lengths of both
+  // feet's; until the hips rest, and how long the last step took from its plan on.
+  V stops{}, further{}, length_m[2]{}, rest_ticks{}, closing_ticks{};
+  V catch_ticks{};  // of a walk that goes on after all: until its hips are where they ought to be
+  // Of a flight: from where on, and over how much of it, its gap fades; the gaps of yaw, twist
+  // and roll, and how high the heel was to be there; the ticks from and over which its pitch's
+  // does, if its plan has changed.
+  V gap_begin{}, gap_lasts = V{} + 0.5f, gap_rad{}, gap_twist_rad{}, gap_roll_rad{};
+  V gap_high_m = V{} + 1.0f;
+  V pitch_begin{}, pitch_lasts{};
   V asked_ticks{};  // how long one that stands has been asked to walk
 };
 
@@ -108,5 +122,14 @@ struct alignas(64) Block {
   Change<Floats<kWidth>> change;
   Origin origin[kWidth];
 };
+
+// Copies a walk from a lane of one block to a lane of another.
+template <int kFrom, int kTo>
+void copy_walk(const Block<kFrom>& from, int from_lane, Block<kTo>& to, int to_lane) noexcept {
+  for (int n = 0; n < kStateNumbers<float>; ++n)
+    reinterpret_cast<float*>(&to)[n * kTo + to_lane] =
+        reinterpret_cast<const float*>(&from)[n * kFrom + from_lane];
+  to.origin[to_lane] = from.origin[from_lane];
+}
 
 }  // namespace gaitpad::anew

@@ -94,6 +94,7 @@ struct Stride {
   Vec<V> pelvis_m, pelvis_tilt_rad;
   V pelvis_yaw_rad{}, pelvis_low_m{}, pelvis_high_m{};
   V leg_rad[2][kLegAngles]{};
+  V stood_pitch_rad{};  // the swing foot's, as it would stand
   V ratio_ahead{};
 };
 
@@ -184,6 +185,7 @@ Stride<V> read_stride(const Tables& tables, const Time<V>& time, const V& phase,
     by_foot(time.right, n[19 + j], n[26 + j], stride.leg_rad[0][j], stride.leg_rad[1][j]);
   stride.pelvis_low_m = n[33];
   stride.pelvis_high_m = n[34];
+  stride.stood_pitch_rad = swing.pitch_rad;
   stride.ratio_ahead = ahead;
   return stride;
 }
@@ -208,6 +210,12 @@ Stride<V> read_by_clock(const Tables& tables, const Time<V>& time, const Landing
   flies.twist_rad = flat * flies.twist_rad, flies.roll_rad = flat * flies.roll_rad;
   stride.heel_high_m = starts ? stride.heel_behind_m.y : stride.heel_high_m;
   return stride;
+}
+
+// The share of what a change of plan has left of twist and roll of the foot that flies.
+template <class V>
+V edge_left(const V& u, const Change<V>& change) noexcept {
+  return 1.0f - smoother(V((u - change.gap_begin) / change.gap_lasts));
 }
 
 // The pelvis alone, at any phase.

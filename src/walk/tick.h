@@ -1,6 +1,7 @@
 // One tick of the walks of a block, in the order of its data.
 #pragma once
 #include "walk/pose.h"
+#include "walk/rest.h"
 
 namespace gaitpad::anew {
 namespace {
@@ -74,6 +75,7 @@ void begin_walks(const Tables& tables, Block<kWidth>& block) noexcept {
   const V begin = chosen<V>(first, share[0] + share[1], 0.0f),
           middle = 0.5f * chosen<V>(first, share[2] + share[3], share[0] + share[1]);
   set(V{}, change.stands), set(all<V>(1.0f), change.starting), set(all<V>(1.0f), change.led);
+  set(all<V>(1.0f), change.is_new);
   set(V{}, change.was_led), set(V{}, change.off_phase.x), set(V{}, change.off_ticks);
   // The tables' hips are over the foot that stands in the middle of its support.
   set(V(begin + middle), change.phase), set(V{}, change.phase_rate);
@@ -94,12 +96,47 @@ void rest(const Change<V>& change, State<V>& state) noexcept {
   set(0.0f, state.wider_m), set(0.0f, state.next_wider_m);
 }
 
+// What is rare is done for one walk after the other.
+template <int kWidth, class Work>
+void one_by_one(const Mask<Floats<kWidth>>& where, Block<kWidth>& block,
+                const Work& work) noexcept {
+  using V = Floats<kWidth>;
+  if (!any(where)) return;
+  if constexpr (kWidth == 1) {
+    work(block.state, block.change);
+  } else {
+    const V is = chosen<V>(where, 1.0f, 0.0f);
+    for (int w = 0; w < kWidth; ++w) {
+      if (lane(is, w) == 0.0f) continue;
+      Block<1> one;
+      copy_walk(block, w, one, 0);
+      work(one.state, one.change);
+      copy_walk(one, 0, block, w);
+    }
+  }
+}
+
+// Where one that walks is to come to rest, or to go on after all.
+template <int kWidth>
+void change_ends(const Tables& tables, Block<kWidth>& block) noexcept {
+  using V = Floats<kWidth>;
+  const auto walks = block.state.asked.walks != V{}, stops = block.change.stops != V{},
+             moves = block.change.stands == V{};
+  one_by_one<kWidth>(
+      both(moves, both(no(walks), no(stops))), block,
+      [&](State<float>& state, Change<float>& change) { plan_rest(tables, state, change); });
+  one_by_one<kWidth>(
+      both(moves, both(walks, stops)), block,
+      [&](State<float>& state, Change<float>& change) { walk_on(tables, state, change); });
+}
+
 template <int kWidth>
 void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& poses) noexcept {
   using V = Floats<kWidth>;
   State<V>& state = block.state;
   Change<V>& change = block.change;
   begin_walks(tables, block);
+  change_ends(tables, block);
   smooth_asked(tables, change, state);
   const Time<V> time = advance_clock(tables, change, state);
   const Landing<V> landing = plan_landing(tables, time, change, state);
@@ -126,11 +163,14 @@ void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& pose
   keep_swing(feet.foot[0], state);
   if (any(strikes)) {
     move_frame<kWidth>(landing, strikes, block);
-    change_feet(landing, strikes, feet, by_clock, state);
+    change_feet(landing, strikes, feet, stride, state);
     const auto keeps = either(change.led != V{}, change.off_phase.x != V{});
     const V rate = keeps ? change.phase_rate : state.phase_rate;
     begin_lead(tables, strikes, phase, rate, state, change);
     begin_step(tables, time, strikes, change, state);
+    one_by_one<kWidth>(
+        both(strikes, change.closing != V{}), block,
+        [&](State<float>& one, Change<float>& of_one) { time_closing_step(tables, one, of_one); });
     rest(change, state);
   }
   if (any(lifts)) begin_flight(tables, time, lifts, state);

@@ -267,7 +267,7 @@ Journey go(double x, double y, int stop_after) {
 class Start : public testing::TestWithParam<vec2> {};
 
 TEST_P(Start, LeavesTheStandAndComesBackToItSoftly) {
-  constexpr double kMostBend_deg = 1.2, kMostDip_m = 0.01, kMostBack_m = 1e-4, kSlowestStop_s = 1.5,
+  constexpr double kMostBend_deg = 2.2, kMostDip_m = 0.01, kMostBack_m = 1e-4, kSlowestStop_s = 1.5,
                    kMostSlid_m = 1e-4, kDeepest_m = 0.01;
   Journey most;
   double quickest_s = 9.0;
@@ -302,6 +302,89 @@ INSTANTIATE_TEST_SUITE_P(AndStop, Start,
                          testing::Values(vec2(0.0, 0.3), vec2(0.0, 0.8), vec2(0.0, 1.0),
                                          vec2(-0.3, 0.8), vec2(0.7, 0.7), vec2(0.9, 0.1),
                                          vec2(-0.9, 0.0), vec2(0.5, 0.0)));
+
+// A walk alone, from a stand on, that is steered and measured.
+class Alone {
+ public:
+  Alone() : tables_(tables_of(adult(), kDt)) {
+    gaitpad::standing(adult(), vec3(0.0), pose);
+    stand(*tables_, Origin{}, block);
+  }
+  void walk(double x, double y, int ticks) {
+    const GaitParams params = y == 0.0 && x == 0.0 ? GaitParams{} : params_of(x, y);
+    for (int tick = 0; tick < ticks; ++tick) {
+      ask(params, block.state.asked);
+      quat* local = pose.local.data();
+      vec3* root = &pose.root_m;
+      advance(*tables_, block, Poses{&local, &root, 1});
+      for (std::size_t i = z_m.size() - 1; i > 0; --i) z_m[i] = z_m[i - 1];
+      z_m[0] = pose.root_m.z;
+      if (++ticks_ < 9) continue;
+      const double per_s2 = kRate * kRate / 16.0, bend = (z_m[0] - 2.0 * z_m[4] + z_m[8]) * per_s2;
+      forwards_m_s2 = std::max(forwards_m_s2, bend);
+      brakes_m_s2 = std::max(brakes_m_s2, -bend);
+      slowest_m_s = std::min(slowest_m_s, (z_m[0] - z_m[1]) * kRate);
+    }
+  }
+  void forget() { forwards_m_s2 = brakes_m_s2 = 0.0, slowest_m_s = 9.0; }
+  bool stands() const { return block.change.stands != 0.0f; }
+  Pose pose;
+  Block<1> block;
+  double forwards_m_s2 = 0.0, brakes_m_s2 = 0.0, slowest_m_s = 9.0;  // the hips, over 4 ticks
+
+ private:
+  std::unique_ptr<const Tables> tables_;
+  std::array<double, 9> z_m{};
+  int ticks_ = 0;
+};
+constexpr int kMoments = 12;
+
+TEST(Stop, AtFullStickTakesNineTenthsOfASecondAndOfAMetre) {
+  double slowest_s = 0.0, farthest_m = 0.0;
+  std::vector<double> brakes_m_s2;
+  for (int moment = 0; moment < kMoments; ++moment) {
+    Alone walk;
+    walk.walk(0.0, 1.0, 3 * kRate + moment * kRate * 11 / 10 / kMoments);
+    walk.forget();
+    const double from_m = walk.pose.root_m.z;
+    int ticks = 0;
+    for (; !walk.stands() && ticks < 2 * kRate; ++ticks) walk.walk(0.0, 0.0, 1);
+    slowest_s = std::max(slowest_s, ticks * kDt);
+    farthest_m = std::max(farthest_m, walk.pose.root_m.z - from_m);
+    brakes_m_s2.push_back(walk.brakes_m_s2);
+    EXPECT_GE(walk.slowest_m_s, -0.01) << moment;
+  }
+  std::sort(brakes_m_s2.begin(), brakes_m_s2.end());
+  const double median = brakes_m_s2[kMoments / 2], worst = brakes_m_s2.back();
+  std::printf("stands after %.2f s, %.2f m; brakes with %.1f m/s^2, most %.1f\n", slowest_s,
+              farthest_m, median, worst);
+  EXPECT_LE(slowest_s, 0.9);
+  EXPECT_LE(farthest_m, 0.9);
+  EXPECT_LE(median, 4.0);
+  EXPECT_LE(worst, 6.0);
+}
+
+TEST(Stop, GoesOnIfTheStickComesBackInTime) {
+  double forwards_m_s2 = 0.0, brakes_m_s2 = 0.0, slowest_m_s = 9.0;
+  for (int moment = 0; moment < kMoments; ++moment) {
+    Alone walk;
+    walk.walk(0.0, 1.0, 3 * kRate + moment * kRate * 11 / 10 / kMoments);
+    walk.forget();
+    walk.walk(0.0, 0.0, kRate / 10);
+    for (int tick = 0; tick < 2 * kRate; ++tick) {
+      walk.walk(0.0, 1.0, 1);
+      ASSERT_FALSE(walk.stands()) << moment;
+    }
+    forwards_m_s2 = std::max(forwards_m_s2, walk.forwards_m_s2);
+    brakes_m_s2 = std::max(brakes_m_s2, walk.brakes_m_s2);
+    slowest_m_s = std::min(slowest_m_s, walk.slowest_m_s);
+  }
+  std::printf("forwards %.1f, brakes %.1f m/s^2; slowest %.2f m/s\n", forwards_m_s2, brakes_m_s2,
+              slowest_m_s);
+  EXPECT_LE(forwards_m_s2, 6.0);
+  EXPECT_LE(brakes_m_s2, 6.0);
+  EXPECT_GE(slowest_m_s, 0.4);
+}
 
 TEST(Stand, WaitsWhetherAFaintPushIsMeantAsLongAsTheOldWalkDoes) {
   const auto tables = tables_of(adult(), kDt);

@@ -57,7 +57,7 @@ Landing<V> planned_landing(const Tables& tables, const Time<V>& time, const Way<
   Landing<V> landing{state.landing_x_m, state.landing_z_m, state.landing_rad,
                      way_of(state.landing_rad)};
   const V step_m = landing.x_m * to.sine + landing.z_m * to.cosine,
-          own_m = chosen<V>(time.right, tables.leg[1].own_step_m, tables.leg[0].own_step_m);
+          own_m = own_step_m<V>(tables, time.right, time.back);
   landing.ratio =
       (change.closing != V{} ? state.ratio_behind : V(size(step_m) / own_m)) + change.off_ratio.x;
   return landing;
@@ -71,7 +71,8 @@ Landing<V> plan_landing(const Tables& tables, const Time<V>& time, const Change<
   const Way<V> to = way_of(heading), along = way_of(V(kWayTurns * heading));
   const float left_m = tables.leg[0].track_m, right_m = tables.leg[1].track_m, grown = tables.size;
   const V steps_m = time.right ? state.length_m[1].x : state.length_m[0].x,
-          length_m = closes ? V{} : steps_m, lands_m = chosen<V>(time.right, right_m, left_m),
+          ahead_m = time.back ? -steps_m : steps_m, length_m = closes ? V{} : ahead_m,
+          lands_m = chosen<V>(time.right, right_m, left_m),
           stands_m = chosen<V>(time.right, left_m, right_m),
           outwards = chosen<V>(time.right, -1.0f, 1.0f);
   const V round = size(state.turn_goal_rad_s.x),

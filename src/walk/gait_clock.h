@@ -9,7 +9,7 @@ namespace {
 // Where a tick is in its step.
 template <class V>
 struct Time {
-  Mask<V> right, flies;         // the right foot swings; it flies already
+  Mask<V> right, flies, back;   // the right foot swings; it flies already; steps lead backward
   V u{};                        // share of the flight that is over, 0 before it
   V share{};                    // of the step
   V to_strike{};                // ticks
@@ -52,12 +52,34 @@ void lead_turn(const V& ahead_rad, const Filter& filter, Smoothed<V>& value) noe
   value.v = still ? V{} : value.v;
 }
 
+// Of the foot that swings, in the data: run back, a foot makes the step that the other one makes
+// forwards.
+template <class V>
+V own_step_m(const Tables& tables, const Mask<V>& right, const Mask<V>& back) noexcept {
+  return chosen<V>(right != back, tables.leg[1].own_step_m, tables.leg[0].own_step_m);
+}
+// The longer one of the steps asked for, over the data's: a limp does not change the other's.
+template <class V>
+V asked_ratio(const Tables& tables, const State<V>& state) noexcept {
+  const auto back = state.backward != V{}, left = V{} != V{};
+  return most(V(state.asked.length_m[0] / own_step_m<V>(tables, left, back)),
+              V(state.asked.length_m[1] / own_step_m<V>(tables, no(left), back)));
+}
+// Whether it is to walk on as it walks: to go the other way it has to come to rest.
+template <class V>
+Mask<V> is_to_walk(const State<V>& state) noexcept {
+  const Asked<V>& asked = state.asked;
+  const auto on_spot = both(asked.length_m[0] == V{}, asked.length_m[1] == V{});
+  return both(asked.walks != V{}, either(on_spot, asked.backward == state.backward));
+}
+
 template <class V>
 void smooth_asked(const Tables& tables, const Change<V>& change, State<V>& state) noexcept {
   constexpr float kGravity_m_s2 = 9.81f, kLeastCycle_s = 0.2f;
   constexpr float kFirstStep = 0.9f;  // of the length asked for
   constexpr float kChestAhead_s = 0.13f, kHeadAhead_s = 0.30f;
   const Asked<V>& asked = state.asked;
+  const auto walks = is_to_walk(state);
   for (int side : {0, 1}) {
     // The first step goes as far as the push that is still on its way asks.
     const auto starts = change.starting != V{},
@@ -67,7 +89,7 @@ void smooth_asked(const Tables& tables, const Change<V>& change, State<V>& state
                               state.right_swings == all<V>(static_cast<float>(side)));
     const V rests = most(change.stands, change.closing),
             kept_m = rests != V{} ? V{} : state.length_m[side].x,
-            asked_m = asked.walks != V{} ? asked.length_m[side] : kept_m,
+            asked_m = walks ? asked.length_m[side] : kept_m,
             goal_m = either(stops, goes_on) ? change.length_m[side] : asked_m;
     Smoothed<V> first = state.length_m[side];
     follow(both(steps, no(stops)) ? V(kFirstStep * goal_m) : goal_m, tables.first_step, first);
@@ -78,7 +100,7 @@ void smooth_asked(const Tables& tables, const Change<V>& change, State<V>& state
   }
   const V cycle_s = asked.time_s[0] + asked.time_s[1];
   follow(V(0.5f * cycle_s), tables.step, state.step_time_s);
-  const V turn_rad_s = asked.walks * asked.turn_rad_s;
+  const V turn_rad_s = walks ? asked.turn_rad_s : V{};
   follow(turn_rad_s, tables.turn_goal, state.turn_goal_rad_s);
   settle(turn_rad_s, state.turn_goal_rad_s);
   follow(state.turn_goal_rad_s.x, tables.turn, state.turn_rad_s);
@@ -128,9 +150,7 @@ Stages<V> stages_of(const Tables& tables, const State<V>& state, const Mask<V>& 
   const auto& share = tables.stage_share;
   const V roll = chosen<V>(right, share[2], share[0]),
           flight = chosen<V>(right, share[3], share[1]);
-  // Of the foot whose step is the longer one beside its own: a limp does not change the other's.
-  const V ratio = most(V(asked.length_m[0] * (1.0f / tables.leg[0].own_step_m)),
-                       V(asked.length_m[1] * (1.0f / tables.leg[1].own_step_m)));
+  const V ratio = asked_ratio(tables, state);
   const V rolls = roll_share(roll, ratio), flies = roll + flight - rolls;
   const V lands_s = by_side<V>(no(right), asked.time_s), swings_s = by_side<V>(right, asked.time_s);
   return {roll, flight, whole_beats(V(2.0f * lands_s * rolls), kLeastRoll),
@@ -167,6 +187,7 @@ Time<V> time_of(const Tables& tables, const State<V>& state) noexcept {
   Time<V> time;
   time.right = state.right_swings != V{};
   time.flies = state.flies != V{};
+  time.back = state.backward != V{};
   const auto& share = tables.stage_share;
   time.step_phase = chosen<V>(time.right, share[0] + share[1], 0.0f);
   time.stage_end = time.step_phase + chosen<V>(time.right, share[2], share[0]) +

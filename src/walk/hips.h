@@ -48,10 +48,10 @@ Hips<V> move_hips(const Tables& tables, const Time<V>& time, const Landing<V>& l
                   const Stride<V>& stride, const Change<V>& change, State<V>& state) noexcept {
   Hips<V> hips;
   hips.heading = way_of(state.heading_rad);
-  hips.behind = footprints_of(tables, time.right, state.ratio_behind);
-  hips.ahead = footprints_of(tables, time.right, landing.ratio);
+  hips.behind = footprints_of(tables, time, state.ratio_behind);
+  hips.ahead = footprints_of(tables, time, landing.ratio);
   if (any(either(change.starting != V{}, change.closing != V{})))
-    hips.own = footprints_of(tables, time.right, short_ratio(tables, landing, state));
+    hips.own = footprints_of(tables, time, short_ratio(tables, landing, state));
   const V turns = chosen<V>(time.right, 1.0f, 0.0f);
   const Path<V> to = path_to(landing, hips.ahead, turns);
   const V x_m = to.x_m + to.per_cycle_x_m * state.phase,
@@ -84,8 +84,8 @@ Hips<V> move_hips(const Tables& tables, const Time<V>& time, const Landing<V>& l
       V x_m[3], z_m[3];
       for (int n : {0, 1, 2}) {
         const V at = n == 0 ? p0 : n == 1 ? p1 : p2, k = all<V>(static_cast<float>(n));
-        const Vec<V> pelvis =
-            hips.heading * read_pelvis(tables, at, state.ratio_behind, state.ratio_behind, V{});
+        const Vec<V> pelvis = hips.heading * read_pelvis(tables, time, at, state.ratio_behind,
+                                                         state.ratio_behind, V{});
         const auto goes = [&](const Off<V>& of) { return V(of.x + k * (of.v + 0.5f * k * of.a)); };
         x_m[n] = goes(change.pelvis_x_m) - pelvis.x - (to.x_m + to.per_cycle_x_m * at);
         z_m[n] = goes(change.pelvis_z_m) - pelvis.z - (to.z_m + to.per_cycle_z_m * at);
@@ -115,7 +115,7 @@ Hips<V> move_hips(const Tables& tables, const Time<V>& time, const Landing<V>& l
   return hips;
 }
 
-// --- A change of pace: the hips lead, the phase follows -------------------------------------------
+// --- A change of pace: the hips lead, the phase follows ------------------------------------------
 
 // Steps whose ratios differ by more are led. What the phase is off the one found fades in kCarry_s.
 inline constexpr float kLiftFade = 0.5f;  // of the flight: until then the lift-off's motion fades
@@ -139,7 +139,8 @@ void move_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& la
   V x_m[3], z_m[3];
   for (int k : {0, 1, 2}) {
     const V at = strike_phase + (static_cast<float>(k - 1) * kAimTicks) * strike_rate;
-    const Vec<V> pelvis = landing.way * read_pelvis(tables, at, landing.ratio, landing.ratio, V{});
+    const Vec<V> pelvis =
+        landing.way * read_pelvis(tables, time, at, landing.ratio, landing.ratio, V{});
     x_m[k] = state.path_x_m + state.per_cycle_x_m * at + pelvis.x;
     z_m[k] = state.path_z_m + state.per_cycle_z_m * at + pelvis.z;
   }
@@ -150,8 +151,8 @@ void move_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& la
     const V swings_m = chosen<V>(time.right, tables.leg[1].track_m, tables.leg[0].track_m),
             stands_m = chosen<V>(time.right, tables.leg[0].track_m, tables.leg[1].track_m),
             next_m = time.right ? change.length_m[0] : change.length_m[1];
-    const Vec<V> rest =
-        landing.way * Vec<V>{-swings_m, V{}, tables.rest_lead_m + change.further * next_m};
+    const V further_m = change.further * (time.back ? -next_m : next_m);
+    const Vec<V> rest = landing.way * Vec<V>{-swings_m, V{}, tables.rest_lead_m + further_m};
     for (int k : {0, 1, 2}) {
       x_m[k] = closes ? -stands_m : stops ? landing.x_m + rest.x : x_m[k];
       z_m[k] = closes ? all<V>(tables.rest_lead_m) : stops ? landing.z_m + rest.z : z_m[k];
@@ -190,7 +191,7 @@ V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& l
                           along(state.per_cycle_x_m, state.per_cycle_z_m), share);
   const auto by_tables = [&](const V& p) {
     return V(at_zero + per_cycle * p +
-             read_pelvis(tables, p, state.ratio_behind, landing.ratio, share).z);
+             read_pelvis(tables, time, p, state.ratio_behind, landing.ratio, share).z);
   };
   const V wanted = along(change.pelvis_x_m.x, change.pelvis_z_m.x),
           goes = along(change.pelvis_x_m.v, change.pelvis_z_m.v);
@@ -368,7 +369,7 @@ template <class V>
 void begin_lead(const Tables& tables, const Mask<V>& strikes, const V& phase, const V& rate,
                 const State<V>& state, Change<V>& change) noexcept {
   const auto right = state.right_swings == V{};  // it swings in the step that begins
-  const V own_m = chosen<V>(right, tables.leg[1].own_step_m, tables.leg[0].own_step_m),
+  const V own_m = own_step_m<V>(tables, right, state.backward != V{}),
           asked_m = by_side<V>(right, state.asked.length_m),
           smoothed_m = right ? state.length_m[1].x : state.length_m[0].x,
           last_m = change.starting != V{} ? V(state.ratio_behind * own_m) : smoothed_m;

@@ -82,9 +82,9 @@ inline Flown flown(const Tables& tables, const Change<float>& change,
     const Stride<float> stride =
         read_by_clock(tables, time, landing, at.phase, time.share, time.u, change, at);
     Hips<float> hips;
-    hips.behind = footprints_of(tables, time.right, at.ratio_behind);
-    hips.ahead = footprints_of(tables, time.right, landing.ratio);
-    hips.own = footprints_of(tables, time.right, short_ratio(tables, landing, at));
+    hips.behind = footprints_of(tables, time, at.ratio_behind);
+    hips.ahead = footprints_of(tables, time, landing.ratio);
+    hips.own = footprints_of(tables, time, short_ratio(tables, landing, at));
     flown.heel_m[k] = with_gap(
         tables, time,
         flight_heel(tables, time, landing, stride, hips, at.phase, time.u, change, at), change, at);
@@ -164,18 +164,18 @@ void change_step(const Tables& tables, bool moves, State<float>& state, Change<f
 // lifts off.
 inline float ticks_to_lift_off(const Tables& tables, const State<float>& state,
                                const Change<float>& change) noexcept {
-  const bool right = state.right_swings != 0.0f;
-  const float phase = (right ? tables.stage_share[0] + tables.stage_share[1] : 0.0f) +
-                      tables.stage_share[right ? 2 : 0];
-  const Footprints<float> prints = footprints_of(tables, right, state.ratio_behind);
-  const float place_m = prints.stride_m * phase - prints.stand_m.z +
-                        read_pelvis(tables, phase, state.ratio_behind, state.ratio_behind, 0.0f).z;
+  const Time<float> time = time_of(tables, state);
+  const float phase = time.step_phase + tables.stage_share[time.right ? 2 : 0];
+  const Footprints<float> prints = footprints_of(tables, time, state.ratio_behind);
+  const float place_m =
+      prints.stride_m * phase - prints.stand_m.z +
+      read_pelvis(tables, time, phase, state.ratio_behind, state.ratio_behind, 0.0f).z;
   Off<float> off = change.pelvis_z_m;
   off.x -= tables.rest_lead_m;
   float ticks = 1.0f;
   for (; ticks < change.rest_ticks; ticks += 1.0f) {
     fade(change.rest_ticks + 1.0f - ticks, off);
-    if (tables.rest_lead_m + off.x >= place_m) break;
+    if ((tables.rest_lead_m + off.x - place_m) * (time.back ? -1.0f : 1.0f) >= 0.0f) break;
   }
   return ticks;
 }
@@ -212,16 +212,17 @@ inline void plan_rest(const Tables& tables, State<float>& state, Change<float>& 
   const float tick_s = tables.tick_s, scale = tables.time_scale;
   const Time<float> time = time_of(tables, state);
   const Way<float> way = way_of(state.landing_rad);
-  const auto along = [&](float x, float z) { return x * way.sine + z * way.cosine; };
+  const float sign = time.back ? -1.0f : 1.0f;
+  const auto along = [&](float x, float z) { return sign * (x * way.sine + z * way.cosine); };
   Change<float> here = change;
   if (change.led == 0.0f) go_on_from_here(tables, true, state, here);
   const Off<float>&x = here.pelvis_x_m, &z = here.pelvis_z_m;
   const float speed = along(x.v, z.v) / tick_s, bend = along(x.a, z.a) / (tick_s * tick_s),
-              from = tables.rest_lead_m - along(x.x, z.x), need = kNeed * speed * speed,
+              from = sign * tables.rest_lead_m - along(x.x, z.x), need = kNeed * speed * speed,
               left_s = time.to_strike * tick_s,
               planned = along(state.landing_x_m, state.landing_z_m),
-              own_m = tables.leg[right ? 1 : 0].own_step_m,
-              next_own_m = tables.leg[right ? 0 : 1].own_step_m,
+              own_m = own_step_m<float>(tables, right, time.back),
+              next_own_m = own_step_m<float>(tables, !right, time.back),
               foot_m = flies ? along(state.last_heel_m[0].x, state.last_heel_m[0].z)
                              : along(state.print_x_m, state.print_z_m);
   const float longest_s =
@@ -266,7 +267,7 @@ inline void plan_rest(const Tables& tables, State<float>& state, Change<float>& 
                       next_own_m);
   const float step_s = (state.roll_ticks + state.flight_ticks) * tick_s,
               between_s = further_m > 0.0f ? step_s : 0.0f;
-  const float lead_m = tables.rest_lead_m;
+  const float lead_m = sign * tables.rest_lead_m;
   const Behind landings[2] = {{left_s, kLandsAhead * step_m + lead_m + further_m},
                               {left_s + between_s, kLandsAhead * further_m + lead_m}};
   change_step(tables, time.u < kStays, state, change, [&] {
@@ -295,15 +296,16 @@ inline float catch_ticks(const Tables& tables, const State<float>& state,
   const Way<float> to = way_of(heading_ahead(tables, state, time.to_strike + 1.0f));
   const Landing<float> landing = planned_landing(tables, time, to, change, state);
   const Path<float> path =
-      path_to(landing, footprints_of(tables, time.right, landing.ratio), time.right ? 1.0f : 0.0f);
+      path_to(landing, footprints_of(tables, time, landing.ratio), time.right ? 1.0f : 0.0f);
+  const float sign = time.back ? -1.0f : 1.0f;
   const auto along = [&](float x, float z) {
-    return x * landing.way.sine + z * landing.way.cosine;
+    return sign * (x * landing.way.sine + z * landing.way.cosine);
   };
   float m[3];
   for (int k : {0, 1, 2}) {
     const float at = strike_phase + static_cast<float>(k - 1) * kAimTicks * rate;
     m[k] = along(path.x_m + path.per_cycle_x_m * at, path.z_m + path.per_cycle_z_m * at) +
-           read_pelvis(tables, at, landing.ratio, landing.ratio, 0.0f).z;
+           sign * read_pelvis(tables, time, at, landing.ratio, landing.ratio, 0.0f).z;
   }
   const float goes = (m[2] - m[0]) * (0.5f / kAimTicks),
               bend = (m[2] - 2.0f * m[1] + m[0]) * (0.5f / (kAimTicks * kAimTicks)),
@@ -342,7 +344,8 @@ inline void walk_on(const Tables& tables, State<float>& state, Change<float>& ch
   const float asked_m = state.asked.length_m[swing], tick_s = tables.tick_s;
   const Stages<float> own = stages_of(tables, state, right);
   const Way<float> way = way_of(state.landing_rad);
-  const auto along = [&](float x, float z) { return x * way.sine + z * way.cosine; };
+  const float sign = time.back ? -1.0f : 1.0f;
+  const auto along = [&](float x, float z) { return sign * (x * way.sine + z * way.cosine); };
   const bool moves = !flies || time.u < kStays;
   const float at_m = along(change.pelvis_x_m.x, change.pelvis_z_m.x),
               speed = along(change.pelvis_x_m.v, change.pelvis_z_m.v) / tick_s,
@@ -356,7 +359,8 @@ inline void walk_on(const Tables& tables, State<float>& state, Change<float>& ch
                 goes = 0.5f * left_s / (own.roll_s + own.flight_s),
                 reach_m = (at_m + 0.5f * speed * left_s) / most(1.0f - kLandsAhead - goes, 0.05f);
     const float shortest_m =
-        least(most(kLeastStep * tables.leg[swing].own_step_m, foot_m + kBehind_m), asked_m);
+        least(most(kLeastStep * own_step_m<float>(tables, right, time.back), foot_m + kBehind_m),
+              asked_m);
     if (moves) state.length_m[swing] = {least(most(reach_m, shortest_m), asked_m), 0.0f};
     change.length_m[swing] = state.length_m[swing].x;
     change.stops = change.closing = change.further = 0.0f;

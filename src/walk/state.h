@@ -29,6 +29,7 @@ struct Asked {
   V walks{};                                // 1: walk, else come to rest
   V length_m[2]{}, time_s[2]{}, lift[2]{};  // StrideParams
   V turn_rad_s{}, bounce{}, sway{};
+  V backward{};  // 1: steps lead backward; where a walk goes the other way it comes to rest first
 };
 
 template <class V>
@@ -44,6 +45,7 @@ struct State {
 
   // Clock.
   V right_swings{}, flies{};       // 1 or 0
+  V backward{};                    // 1: its steps lead backward
   V tick{};                        // in the roll or the flight
   V roll_ticks{}, flight_ticks{};  // that they last
   V step_s{}, late_s{};            // of the step, unrounded; what the steps so far were too short

@@ -70,12 +70,12 @@ Knots<V> knots_at(const V& phase) noexcept {
 // The four ratios around one, the first may be -1, and their Catmull-Rom weights; beyond the ends
 // the tables go on straight.
 template <class V>
-Knots<V> ratios_at(const V& ratio, float last) noexcept {
-  const V y = within(V(ratio * float(1.0 / kRatioStep)), 0.0f, last),
-          r = least(floored(y), all<V>(last - 1.0f)), t = y - r;
+Knots<V> ratios_at(const V& ratio, const V& last) noexcept {
+  const V y = least(most(V(ratio * float(1.0 / kRatioStep)), V{}), last),
+          r = least(floored(y), V(last - 1.0f)), t = y - r;
   const V w0 = 0.5f * t * (t * (2.0f - t) - 1.0f), w3 = 0.5f * t * t * (t - 1.0f);
   V w1 = 1.0f + 0.5f * t * t * (3.0f * t - 5.0f), w2 = 0.5f * t * (1.0f + t * (4.0f - 3.0f * t));
-  const auto low = r == V{}, high = r == all<V>(last - 1.0f);
+  const auto low = r == V{}, high = r == last - 1.0f;
   w1 = w1 + (low ? V(2.0f * w0) : V{}) - (high ? w3 : V{});
   w2 = w2 - (low ? w0 : V{}) + (high ? V(2.0f * w3) : V{});
   return {V(r - 1.0f), {low ? V{} : w0, w1, w2, high ? V{} : w3}};
@@ -106,6 +106,23 @@ inline void by_foot(const Mask<V>& right, const V& of_left, const V& of_right, V
   stand = right ? of_left : of_right;
 }
 
+// A walk's rows: a knot's after the one before, a ratio's after the one before.
+struct Rows {
+  const float* first;
+  int of_knot;
+  const float* at(int knot, int ratio) const noexcept {
+    return first + knot * of_knot + ratio * kRowNumbers;
+  }
+};
+inline Rows rows_of(const Tables& tables, bool back) noexcept {
+  const StrideRow* first = back ? &tables.back[0][0] : &tables.forward[0][0];
+  return {reinterpret_cast<const float*>(first), (back ? kBackRatios : kRatios) * kRowNumbers};
+}
+template <class V>
+V last_ratio(const Tables& tables, const Mask<V>& back) noexcept {
+  return chosen<V>(back, kBackRatios - 1.0f, kRatios - 1.0f);
+}
+
 // Of strides whose half is the way of the foot that flies.
 template <class V>
 V short_ratio(const Tables& tables, const Landing<V>& landing, const State<V>& state) noexcept {
@@ -120,7 +137,7 @@ Stride<V> read_stride(const Tables& tables, const Time<V>& time, const V& phase,
   constexpr int kWidth = kLanes<V>, kPart = kLanes<RowPart>, kParts = kRowNumbers / kPart;
   constexpr int kHeelParts = kHeelNumbers <= kPart ? 1 : kHeelNumbers / kPart,
                 kHeelRoom = kHeelParts * kPart, kNumbers = kRowNumbers + 2 * kHeelNumbers;
-  const float last = tables.most_ratio * float(1.0 / kRatioStep);
+  const V last = last_ratio<V>(tables, time.back), back = chosen<V>(time.back, 1.0f, 0.0f);
   const Knots<V> knots = knots_at(phase), old = ratios_at(behind, last),
                  next = ratios_at(ahead, last);
   alignas(64) float row[kWidth][kNumbers];
@@ -138,13 +155,12 @@ Stride<V> read_stride(const Tables& tables, const Time<V>& time, const V& phase,
                 k2 = lane(knots.weight[2], w), k3 = lane(knots.weight[3], w);
     RowPart sum[kParts] = {}, heel_old[kHeelParts] = {}, heel_next[kHeelParts] = {};
     const int begin = std::max(0, std::min(first[0], first[1])),
-              end = std::min(static_cast<int>(last), std::max(first[0], first[1]) + 3);
+              end = std::min(static_cast<int>(lane(last, w)), std::max(first[0], first[1]) + 3);
+    const Rows rows = rows_of(tables, lane(back, w) != 0.0f);
     for (int r = begin; r <= end; ++r) {
       const float a = of_old[r + 1], b = of_next[r + 1], mixed = a * left + b * share;
-      const auto at = [&](int knot) {
-        return reinterpret_cast<const float*>(&tables.forward[i + knot][r]);
-      };
-      const float *p0 = at(0), *p1 = at(1), *p2 = at(2), *p3 = at(3);
+      const float *p0 = rows.at(i, r), *p1 = rows.at(i + 1, r), *p2 = rows.at(i + 2, r),
+                  *p3 = rows.at(i + 3, r);
       for (int n = 0; n < kParts; ++n) {
         const int o = n * kPart;
         const RowPart here = part<RowPart>(p0 + o) * k0 + part<RowPart>(p1 + o) * k1 +
@@ -220,10 +236,10 @@ V edge_left(const V& u, const Change<V>& change) noexcept {
 
 // The pelvis alone, at any phase.
 template <class V>
-Vec<V> read_pelvis(const Tables& tables, const V& phase, const V& behind, const V& ahead,
-                   const V& change) noexcept {
+Vec<V> read_pelvis(const Tables& tables, const Time<V>& time, const V& phase, const V& behind,
+                   const V& ahead, const V& change) noexcept {
   constexpr int kWidth = kLanes<V>, kAt = offsetof(StrideRow, pelvis_m) / sizeof(float);
-  const float last = tables.most_ratio * float(1.0 / kRatioStep);
+  const V last = last_ratio<V>(tables, time.back), back = chosen<V>(time.back, 1.0f, 0.0f);
   const Knots<V> knots = knots_at(phase), old = ratios_at(behind, last),
                  next = ratios_at(ahead, last);
   alignas(64) float row[kWidth][4];
@@ -237,12 +253,12 @@ Vec<V> read_pelvis(const Tables& tables, const V& phase, const V& behind, const 
     for (int k = 0; k < 4; ++k) weight[first[1] + 1 + k] += lane(next.weight[k], w) * share;
     Four sum{};
     const int begin = std::max(0, std::min(first[0], first[1])),
-              end = std::min(static_cast<int>(last), std::max(first[0], first[1]) + 3);
+              end = std::min(static_cast<int>(lane(last, w)), std::max(first[0], first[1]) + 3);
+    const Rows rows = rows_of(tables, lane(back, w) != 0.0f);
     for (int r = begin; r <= end; ++r) {
       Four here{};
       for (int k = 0; k < 4; ++k)
-        here += part<Four>(reinterpret_cast<const float*>(&tables.forward[i + k][r]) + kAt) *
-                lane(knots.weight[k], w);
+        here += part<Four>(rows.at(i + k, r) + kAt) * lane(knots.weight[k], w);
       sum += here * weight[r + 1];
     }
     std::memcpy(row[w], &sum, sizeof sum);
@@ -259,14 +275,22 @@ struct Footprints {
   Vec<V> swing_m, stand_m;
 };
 template <class V>
-Footprints<V> footprints_of(const Tables& tables, const Mask<V>& right, const V& ratio) noexcept {
-  const FootprintLines& lines = tables.footprints;
-  const V at = within(ratio, 0.0f, tables.most_ratio);
-  const auto of = [&](const Mask<V>& is_right) {
-    return by_side<V>(is_right, lines.at_zero_m[0], lines.at_zero_m[1]) +
-           by_side<V>(is_right, lines.per_ratio_m[0], lines.per_ratio_m[1]) * at;
+Footprints<V> footprints_of(const Tables& tables, const Time<V>& time, const V& ratio) noexcept {
+  const FootprintLines &ahead = tables.footprints, &back = tables.back_footprints;
+  const V at =
+      least(most(ratio, V{}), chosen<V>(time.back, tables.most_back_ratio, tables.most_ratio));
+  const auto of = [&](const Mask<V>& right) {
+    const Vec<V> at_zero_m =
+                     chosen(time.back, by_side<V>(right, back.at_zero_m[0], back.at_zero_m[1]),
+                            by_side<V>(right, ahead.at_zero_m[0], ahead.at_zero_m[1])),
+                 per_ratio_m =
+                     chosen(time.back, by_side<V>(right, back.per_ratio_m[0], back.per_ratio_m[1]),
+                            by_side<V>(right, ahead.per_ratio_m[0], ahead.per_ratio_m[1]));
+    return at_zero_m + per_ratio_m * at;
   };
-  return {lines.stride_at_zero_m + lines.stride_per_ratio_m * at, of(right), of(no(right))};
+  return {chosen<V>(time.back, back.stride_at_zero_m, ahead.stride_at_zero_m) +
+              chosen<V>(time.back, back.stride_per_ratio_m, ahead.stride_per_ratio_m) * at,
+          of(time.right), of(no(time.right))};
 }
 
 }  // namespace

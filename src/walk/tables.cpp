@@ -60,28 +60,30 @@ std::array<double, kRowNumbers> numbers_of(const StridePlace& place) {
   return all;
 }
 
-void fill_strides(const WalkModel& model, Tables& tables) {
-  for (int r = 0; r < kRatios; ++r) {
+template <std::size_t kOf>
+void fill_strides(const WalkModel& model, bool backward, RowsOf<kOf>& rows) {
+  for (std::size_t r = 0; r < kOf; ++r) {
     std::array<std::array<double, kRowNumbers>, kKnots> sample;
     for (int k = 0; k < kKnots; ++k)
-      sample[k] = numbers_of(stride_of(model, false, double(k) / kKnots, kRatioStep * r));
+      sample[k] = numbers_of(
+          stride_of(model, backward, double(k) / kKnots, kRatioStep * static_cast<double>(r)));
     for (int n = 0; n < kRowNumbers; ++n) {
       std::array<double, kKnots> of_number;
       for (int k = 0; k < kKnots; ++k) of_number[k] = sample[k][n];
       const auto knots = knots_through(of_number);
       for (int row = 0; row < kKnots + 3; ++row)
-        reinterpret_cast<float*>(&tables.forward[row][r])[n] =
-            static_cast<float>(knots[knot_of_row(row)]);
+        reinterpret_cast<float*>(&rows[row][r])[n] = static_cast<float>(knots[knot_of_row(row)]);
     }
   }
-  const FootprintLine& line = model.forward;
+}
+void fill_footprints(const FootprintLine& line, FootprintLines& lines, float& most_ratio) {
   for (int side : {0, 1}) {
-    tables.footprints.at_zero_m[side] = floats(line.at_zero.footprint_m[side]);
-    tables.footprints.per_ratio_m[side] = floats(line.per_ratio.footprint_m[side]);
+    lines.at_zero_m[side] = floats(line.at_zero.footprint_m[side]);
+    lines.per_ratio_m[side] = floats(line.per_ratio.footprint_m[side]);
   }
-  tables.footprints.stride_at_zero_m = static_cast<float>(line.at_zero.stride_m);
-  tables.footprints.stride_per_ratio_m = static_cast<float>(line.per_ratio.stride_m);
-  tables.most_ratio = static_cast<float>(line.most_ratio);
+  lines.stride_at_zero_m = static_cast<float>(line.at_zero.stride_m);
+  lines.stride_per_ratio_m = static_cast<float>(line.per_ratio.stride_m);
+  most_ratio = static_cast<float>(line.most_ratio);
 }
 
 void fill_legs(const WalkModel& model, Tables& tables) {
@@ -202,7 +204,10 @@ Filter filter(double time_constant_s, double tick_s) {
 
 std::unique_ptr<const Tables> tables_of(const WalkModel& model, double tick_s) {
   auto tables = std::make_unique<Tables>();
-  fill_strides(model, *tables);
+  fill_strides(model, false, tables->forward);
+  fill_strides(model, true, tables->back);
+  fill_footprints(model.forward, tables->footprints, tables->most_ratio);
+  fill_footprints(model.back, tables->back_footprints, tables->most_back_ratio);
   fill_legs(model, *tables);
   fill_upper_body(model, *tables);
   for (int k = 0; k < 4; ++k) tables->stage_share[k] = static_cast<float>(model.share[k]);

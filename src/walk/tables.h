@@ -30,7 +30,10 @@ static_assert(kRowNumbers == 40);
 // As many as a StrideFamily has: half of them are off by 0.17 degrees RMS of a knee, at the
 // lift-off.
 inline constexpr int kKnots = 128, kRatios = 8;
-using StrideRows = std::array<std::array<StrideRow, kRatios>, kKnots + 3>;  // one before, two after
+template <std::size_t kOf>
+using RowsOf = std::array<std::array<StrideRow, kOf>, kKnots + 3>;  // one before, two after
+using StrideRows = RowsOf<kRatios>;
+using BackRows = RowsOf<kBackRatios>;
 
 // Where strides go: exactly linear in their ratio.
 struct FootprintLines {
@@ -67,12 +70,13 @@ struct PathJoint {
 
 struct Tables {
   alignas(64) StrideRows forward;
-  FootprintLines footprints;
+  alignas(64) BackRows back;
+  FootprintLines footprints, back_footprints;
   std::array<LegBones, 2> leg;
   std::array<float, 4>
       stage_share;  // of the phase: roll right, flight left, roll left, flight right
-  float most_ratio, size, time_scale, stand_m, stand_roll_rad, rest_lead_m, source_step_m,
-      own_step_s;
+  float most_ratio, most_back_ratio, size, time_scale, stand_m, stand_roll_rad, rest_lead_m,
+      source_step_m, own_step_s;
   bool legs_are_plain;  // no joint of a leg has a turn before or after its own
 
   std::vector<UpperJoint> upper;

@@ -39,8 +39,7 @@ template <class V>
 Mask<V> is_meant(const Tables& tables, const State<V>& state, const Change<V>& change) noexcept {
   constexpr float kHesitation_s = 0.2f;  // for next to nothing; less for more, none from
   constexpr float kSureRatio = 0.3f, kSureTurn_rad_s = 0.15f;  // this stride or turn on
-  const V ratio = most(V(state.asked.length_m[0] * (1.0f / tables.leg[0].own_step_m)),
-                       V(state.asked.length_m[1] * (1.0f / tables.leg[1].own_step_m))),
+  const V ratio = asked_ratio(tables, state),
           sure = most(V(ratio * (1.0f / kSureRatio)),
                       V(size(state.asked.turn_rad_s) * (1.0f / kSureTurn_rad_s)));
   return change.asked_ticks * tables.tick_s >=
@@ -74,6 +73,7 @@ void begin_walks(const Tables& tables, Block<kWidth>& block) noexcept {
   const auto& share = tables.stage_share;
   const V begin = chosen<V>(first, share[0] + share[1], 0.0f),
           middle = 0.5f * chosen<V>(first, share[2] + share[3], share[0] + share[1]);
+  set(state.asked.backward, state.backward);
   set(V{}, change.stands), set(all<V>(1.0f), change.starting), set(all<V>(1.0f), change.led);
   set(all<V>(1.0f), change.is_new);
   set(V{}, change.was_led), set(V{}, change.off_phase.x), set(V{}, change.off_ticks);
@@ -120,7 +120,7 @@ void one_by_one(const Mask<Floats<kWidth>>& where, Block<kWidth>& block,
 template <int kWidth>
 void change_ends(const Tables& tables, Block<kWidth>& block) noexcept {
   using V = Floats<kWidth>;
-  const auto walks = block.state.asked.walks != V{}, stops = block.change.stops != V{},
+  const auto walks = is_to_walk(block.state), stops = block.change.stops != V{},
              moves = block.change.stands == V{};
   one_by_one<kWidth>(
       both(moves, both(no(walks), no(stops))), block,
@@ -153,7 +153,10 @@ void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& pose
   sink(tables, time, stride, ankle_m, pelvis);
   Leg<V> legs[2];
   solve_legs(tables, time, stride, feet, pelvis, state, legs);
-  write_upper_body(tables, pelvis, phase, change.shown, state, poses);
+  // The data's phase: walking backward is walking forward run back (Thorstensson 1986).
+  const auto& share = tables.stage_share;
+  write_upper_body(tables, pelvis, time.back ? V(share[0] + share[1] + share[2] - phase) : phase,
+                   change.shown, state, poses);
   write_legs(tables, time, feet, legs, poses);
   write_root<kWidth>(tables, pelvis, block, poses);
 

@@ -17,6 +17,7 @@ inline void ask(const GaitParams& params, Asked<float>& asked) {
     asked.time_s[side] = static_cast<float>(params.stride[side].time_s);
     asked.lift[side] = static_cast<float>(params.stride[side].flight_height);
   }
+  asked.backward = params.backward ? 1.0f : 0.0f;
   asked.turn_rad_s = static_cast<float>(params.turn_rate_rad_s);
   asked.bounce = static_cast<float>(params.hip_bounce);
   asked.sway = static_cast<float>(params.hip_sway);
@@ -53,6 +54,7 @@ inline Block<1> taken_over(const WalkState& old, const GaitParams& params) {
   smoothed(old.body.head_ahead_rad, to.head_ahead_rad);
   to.right_swings = swing == kRightSide ? 1.0f : 0.0f;
   to.roll_ticks = static_cast<float>(old.clock.roll_ticks);
+  to.backward = old.clock.backward ? 1.0f : 0.0f;
   to.flight_ticks = static_cast<float>(old.clock.flight_ticks);
   to.step_s = static_cast<float>(old.clock.step_s);
   to.late_s = static_cast<float>(old.clock.late_s);

@@ -114,6 +114,7 @@ TEST_P(Pace, WalksAsTheOldWalkDoes) {
 }
 INSTANTIATE_TEST_SUITE_P(Straight, Pace,
                          testing::Values(vec2(0.0, 0.3), vec2(0.0, 0.8), vec2(0.0, 1.0)));
+INSTANTIATE_TEST_SUITE_P(Backward, Pace, testing::Values(vec2(0.0, -0.5), vec2(0.0, -1.0)));
 INSTANTIATE_TEST_SUITE_P(Turning, Pace, testing::Values(vec2(-0.3, 0.8), vec2(0.7, 0.7)));
 
 // The greatest second difference of the legs' rotations, degrees a tick^2.
@@ -331,10 +332,10 @@ class Alone {
   Pose pose;
   Block<1> block;
   double forwards_m_s2 = 0.0, brakes_m_s2 = 0.0, slowest_m_s = 9.0;  // the hips, over 4 ticks
+  std::array<double, 9> z_m{};  // where they were, the last tick first
 
  private:
   std::unique_ptr<const Tables> tables_;
-  std::array<double, 9> z_m{};
   int ticks_ = 0;
 };
 constexpr int kMoments = 12;
@@ -386,6 +387,28 @@ TEST(Stop, GoesOnIfTheStickComesBackInTime) {
   EXPECT_GE(slowest_m_s, 0.4);
 }
 
+TEST(Reversal, LeadsBackWithinTwelveTenthsOfASecond) {
+  constexpr double kGoes_m_s = 0.1;
+  for (const double y : {1.0, -1.0}) {
+    double slowest_s = 0.0, most_m_s2 = 0.0;
+    for (int moment = 0; moment < kMoments; ++moment) {
+      Alone walk;
+      walk.walk(0.0, y, 3 * kRate + moment * kRate * 11 / 10 / kMoments);
+      walk.forget();
+      int ticks = 0;
+      for (; (walk.z_m[1] - walk.z_m[0]) * kRate * y < kGoes_m_s && ticks < 2 * kRate; ++ticks)
+        walk.walk(0.0, -y, 1);
+      slowest_s = std::max(slowest_s, ticks * kDt);
+      walk.walk(0.0, -y, kRate);
+      most_m_s2 = std::max({most_m_s2, walk.forwards_m_s2, walk.brakes_m_s2});
+    }
+    std::printf("from %.0f: goes the other way after %.2f s; most %.1f m/s^2\n", y, slowest_s,
+                most_m_s2);
+    EXPECT_LE(slowest_s, 1.2);
+    EXPECT_LE(most_m_s2, 6.0);
+  }
+}
+
 TEST(Stand, WaitsWhetherAFaintPushIsMeantAsLongAsTheOldWalkDoes) {
   const auto tables = tables_of(adult(), kDt);
   for (const double faint : {0.1, 0.3, 1.0}) {
@@ -420,6 +443,7 @@ void expect_same_bits() {
     alone.back().state.asked.length_m[0] += 0.01f * static_cast<float>(w);
     if (w % 3 == 1) alone.back().state.asked.length_m[1] *= 0.7f;
     if (w % 4 == 2) alone.back().state.asked.walks = 0.0f;
+    if (w % 4 == 3) alone.back().state.asked.backward = 1.0f;
     copy_walk(alone.back(), 0, block, w);
   }
   std::array<quat*, kWidth> local;

@@ -96,10 +96,12 @@ Vec<V> flight_heel(const Tables& tables, const Time<V>& time, const Landing<V>& 
                            : V(1.0f + ahead.z / (in_place ? all<V>(1.0f) : hips.own.stride_m)),
             goes = kLikeAStep * smoother(V((u - kWalksFrom) * (1.0f / (1.0f - kWalksFrom)))),
             walks = closes ? V{} : goes;
-    const V x = state.print_x_m + (landing.x_m - state.print_x_m) * far +
-                landing.way.cosine * ahead.x,
-            z = state.print_z_m + (landing.z_m - state.print_z_m) * far -
-                landing.way.sine * ahead.x;
+    // Sideways, to or from hip width, it goes evenly.
+    const V goes_x = landing.x_m - state.print_x_m, goes_z = landing.z_m - state.print_z_m,
+            asides = goes_x * landing.way.cosine - goes_z * landing.way.sine,
+            left_m = ahead.x + asides * (gone - far);
+    const V x = state.print_x_m + goes_x * far + landing.way.cosine * left_m,
+            z = state.print_z_m + goes_z * far - landing.way.sine * left_m;
     p.x = is_short ? mix(x, V(landing.x_m + to.x), walks) : p.x;
     p.z = is_short ? mix(z, V(landing.z_m + to.z), walks) : p.z;
   }

@@ -80,9 +80,12 @@ Landing<V> plan_landing(const Tables& tables, const Time<V>& time, const Change<
   const V arc_m = least(V(grown * kWider_s * round), all<V>(grown * kWidest_m)),
           place_m = most(V(grown * kStance_m - size(lands_m)), all<V>(grown * kLeastWider_m)) *
                     least(round, all<V>(1.0f)),
-          wider_m = closes ? V{} : most(mix(arc_m, place_m, in_place), V{});
-  const V asides_m = lands_m + outwards * wider_m,
-          stood_m = stands_m - (closes ? V{} : V(outwards * state.wider_m)),
+          wider_m = most(mix(arc_m, place_m, in_place), V{});
+  // At rest both stand at hip width, wherever the foot that stands has landed.
+  const V rests_m = chosen<V>(time.right, tables.leg[1].stance_m, tables.leg[0].stance_m),
+          rested_m = chosen<V>(time.right, tables.leg[0].stance_m, tables.leg[1].stance_m),
+          asides_m = closes ? rests_m : V(lands_m + outwards * wider_m),
+          stood_m = closes ? rested_m : V(stands_m - outwards * state.wider_m),
           lead_m = in_place * tables.rest_lead_m;
   const V ahead_rad = state.turn_goal_rad_s.x * (state.roll_ticks + state.flight_ticks) *
                       tables.tick_s * kFootAhead;

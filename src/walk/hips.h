@@ -148,8 +148,8 @@ void move_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& la
   const V left = stops ? change.rest_ticks : time.to_strike, ticks = left + 1.0f;
   // Or to rest between the feet as the last step leaves them.
   if (any(stops)) {
-    const V swings_m = chosen<V>(time.right, tables.leg[1].track_m, tables.leg[0].track_m),
-            stands_m = chosen<V>(time.right, tables.leg[0].track_m, tables.leg[1].track_m),
+    const V swings_m = chosen<V>(time.right, tables.leg[1].stance_m, tables.leg[0].stance_m),
+            stands_m = chosen<V>(time.right, tables.leg[0].stance_m, tables.leg[1].stance_m),
             next_m = time.right ? change.length_m[0] : change.length_m[1];
     const V further_m = change.further * (time.back ? -next_m : next_m);
     const Vec<V> rest = landing.way * Vec<V>{-swings_m, V{}, tables.rest_lead_m + further_m};

@@ -243,7 +243,7 @@ inline void plan_rest(const Tables& tables, State<float>& state, Change<float>& 
   if (may_close && change.starting == 0.0f && (!flies || time.u < kStays)) {
     change_step(tables, true, state, change, [&] {
       const Behind none[2] = {};
-      to_rest(most(from, 0.0f), -tables.leg[right ? 0 : 1].track_m, kLeastRest_s * scale,
+      to_rest(most(from, 0.0f), -tables.leg[right ? 0 : 1].stance_m, kLeastRest_s * scale,
               flies ? left_s + (kMostClosing - 1.0f) * state.flight_ticks * tick_s : longest_s,
               none);
       change.closing = 1.0f;
@@ -272,7 +272,7 @@ inline void plan_rest(const Tables& tables, State<float>& state, Change<float>& 
                               {left_s + between_s, kLandsAhead * further_m + lead_m}};
   change_step(tables, time.u < kStays, state, change, [&] {
     to_rest(from + step_m + further_m,
-            left_of(state.landing_x_m, state.landing_z_m) - tables.leg[right ? 1 : 0].track_m,
+            left_of(state.landing_x_m, state.landing_z_m) - tables.leg[right ? 1 : 0].stance_m,
             left_s + between_s + kAfterLanding_s * scale, left_s + between_s + longest_s, landings);
     change.further = further_m > 0.0f ? 1.0f : 0.0f;
     const int swing = right ? 1 : 0;

@@ -103,6 +103,9 @@ void fill_legs(const WalkModel& model, Tables& tables) {
     to.toe_rest_m = static_cast<float>(from.model.toe_rest_m);
     to.half_width_m = static_cast<float>(from.half_width_m);
     to.track_m = static_cast<float>(from.track_m);
+    const double below_hip_m = from.model.hip_m.x + from.model.heel_m.x;
+    to.stance_m = static_cast<float>(std::abs(below_hip_m) > std::abs(from.track_m) ? below_hip_m
+                                                                                    : from.track_m);
     to.own_step_m = static_cast<float>(model.own_step_m[side]);
     for (int j = 0; j < kLegAngles; ++j)
       to.stand_rad[j] = static_cast<float>(model.stand_rad[side][j]);

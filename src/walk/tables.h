@@ -51,6 +51,7 @@ struct LegBones {
   float thigh_m, shank_m, elevation_rad, foot_m, toe_rest_m, half_width_m, track_m;
   std::array<float, kLegAngles> stand_rad;
   float own_step_m;
+  float stance_m;  // where its heel stands at rest, to the left: below the hip, or on the track
   std::array<int, 4> joint;                           // hip, knee, ankle, toe; -1: none
   std::array<std::array<float, 4>, 4> before, after;  // w, x, y, z
 };

@@ -88,12 +88,13 @@ void begin_walks(const Tables& tables, Block<kWidth>& block) noexcept {
 
 // Where both feet stand no clock runs, and nothing is left of the last step.
 template <class V>
-void rest(const Change<V>& change, State<V>& state) noexcept {
+void rest(const Tables& tables, const Change<V>& change, State<V>& state) noexcept {
   const auto stands = change.stands != V{};
   const auto set = [&](float to, V& number) { number = stands ? all<V>(to) : number; };
   set(1.0f, state.roll_ticks), set(1.0f, state.flight_ticks), set(0.0f, state.stand_pitch_rad);
   set(0.0f, state.ratio_behind), set(0.0f, state.phase), set(0.0f, state.phase_rate);
-  set(0.0f, state.wider_m), set(0.0f, state.next_wider_m);
+  const LegBones& left = tables.leg[0];
+  set(std::abs(left.stance_m) - std::abs(left.track_m), state.wider_m);
 }
 
 // What is rare is done for one walk after the other.
@@ -174,7 +175,7 @@ void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& pose
     one_by_one<kWidth>(
         both(strikes, change.closing != V{}), block,
         [&](State<float>& one, Change<float>& of_one) { time_closing_step(tables, one, of_one); });
-    rest(change, state);
+    rest(tables, change, state);
   }
   if (any(lifts)) begin_flight(tables, time, lifts, state);
 }

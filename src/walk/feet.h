@@ -188,10 +188,22 @@ V flying_yaw(const Time<V>& time, const Landing<V>& landing, const Change<V>& ch
          state.lift_turn_rad * slope_left(time.u) + change.gap_rad * edge_left(time.u, change);
 }
 
-// How much of a roll is over, until the toe is down.
+// How long a roll takes until the toe is down, and how much of that is over.
+template <class V>
+V roll_lasts(const Change<V>& change, const State<V>& state) noexcept {
+  return kRollEnd * (state.roll_ticks - change.led_from);
+}
 template <class V>
 V roll_over(const Change<V>& change, const State<V>& state) noexcept {
-  return (state.tick - change.led_from) / (kRollEnd * (state.roll_ticks - change.led_from));
+  return (state.tick - change.led_from) / roll_lasts(change, state);
+}
+// What is left of the pitch with which it landed.
+template <class V>
+V landed_pitch(const Change<V>& change, const State<V>& state) noexcept {
+  const V s = roll_over(change, state);
+  return s < all<V>(1.0f) ? V(state.stand_pitch_rad * value_left(s) +
+                              change.led_rate_rad * roll_lasts(change, state) * slope_left(s))
+                          : V{};
 }
 
 template <class V>
@@ -214,7 +226,7 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
     const Sole<V>& sole = feet.sole[1] = sole_of<V>(tables, no(time.right));
     const StrideFoot<V>& table = stride.foot[1];
     const V s = roll_over(change, state);
-    const V off = s < one ? V(state.stand_pitch_rad * value_left(s)) : V{};
+    const V off = landed_pitch(change, state);
     // Where the hips lead, its toe is down when the other one lifts off.
     const V stays = 1.0f - change.led * (time.flies ? V{} : smoother(s));
     // In a first step it has not landed: its heel rises only while the other foot flies. In a last

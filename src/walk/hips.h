@@ -400,6 +400,7 @@ void begin_lead(const Tables& tables, const Mask<V>& strikes, const V& phase, co
   change.pitch_lasts = strikes ? V{} : change.pitch_lasts;
   change.gap_rad = strikes ? V{} : change.gap_rad;
   change.led_from = strikes ? V{} : change.led_from;
+  change.led_rate_rad = strikes ? V{} : change.led_rate_rad;
   change.gap_twist_rad = strikes ? V{} : change.gap_twist_rad;
   change.gap_roll_rad = strikes ? V{} : change.gap_roll_rad;
   change.phase = begins ? phase : change.phase;
@@ -447,10 +448,34 @@ inline constexpr float kReach = 0.9994f, kSoftReach_m = 0.006f, kKnown_m = 0.001
                        kWiderReach = 0.6f, kWidestReach_m = 0.06f, kMostSunk_m = 0.34f,
                        kSoftSunk_m = 0.12f;
 
+// The spline's knots stand so far apart, in seconds at the reference leg.
+inline constexpr float kSinkKnot_s = 0.06f, kSoftSink_m = 0.002f;
+inline int sink_knot_ticks(const Tables& tables) noexcept {
+  return std::max(1, static_cast<int>(kSinkKnot_s * tables.time_scale / tables.tick_s + 0.5f));
+}
+template <class V>
+V known_sink(const Tables& tables, const Change<V>& change) noexcept {
+  constexpr float kSixth = 1.0f / 6.0f;
+  const int knot = sink_knot_ticks(tables), all_ticks = (kSinkKnots - 3) * knot;
+  V sink_m{};
+  for (int w = 0; w < kLanes<V>; ++w) {
+    const int left = static_cast<int>(lane(change.sink_ticks, w));
+    if (left == 0) continue;
+    const int at = all_ticks - left, i = at / knot;
+    const float t = static_cast<float>(at - i * knot) / static_cast<float>(knot), s = 1.0f - t;
+    set_lane(s * s * s * kSixth * lane(change.sink_m[i], w) +
+                 (4.0f + t * t * (3.0f * t - 6.0f)) * kSixth * lane(change.sink_m[i + 1], w) +
+                 (4.0f + s * s * (3.0f * s - 6.0f)) * kSixth * lane(change.sink_m[i + 2], w) +
+                 t * t * t * kSixth * lane(change.sink_m[i + 3], w),
+             w, sink_m);
+  }
+  return sink_m;
+}
+
 // Lowers it where a leg is asked for more than the tables know. `ankle_m`: swing and stand.
 template <class V>
 void sink(const Tables& tables, const Time<V>& time, const Stride<V>& stride,
-          const Vec<V> (&ankle_m)[2], Pelvis<V>& pelvis) noexcept {
+          const Vec<V> (&ankle_m)[2], Change<V>& change, Pelvis<V>& pelvis) noexcept {
   const float grown = tables.size;
   V squares{};
   for (int k : {0, 1}) {
@@ -472,8 +497,18 @@ void sink(const Tables& tables, const Time<V>& time, const Stride<V>& stride,
             upright = most(V(0.3f * span), V(-way.y)) / span, down = excess / upright;
     squares = squares + (beyond > V{} ? V(down * down) : V{});
   }
-  const V down_m = root(squares),
-          sunk_m = soft_least(down_m, all<V>(kMostSunk_m * grown), all<V>(kSoftSunk_m * grown));
+  const V down_m = root(squares);
+  V sunk_m = soft_least(down_m, all<V>(kMostSunk_m * grown), all<V>(kSoftSunk_m * grown));
+  change.wants_m = sunk_m;
+  const auto ahead = change.sink_ticks != V{};
+  if (any(ahead)) {
+    // What it was known to want, or more.
+    const V known_m = known_sink(tables, change),
+            width_m = most(least(known_m, all<V>(kSoftSink_m * grown)), all<V>(1e-6f)),
+            more_m = known_m + soft_positive(V(sunk_m - known_m), width_m);
+    sunk_m = both(ahead, known_m > all<V>(1e-6f)) ? more_m : sunk_m;
+    change.sink_ticks = ahead ? V(change.sink_ticks - 1.0f) : V{};
+  }
   pelvis.place_m.y = pelvis.place_m.y - sunk_m;
 }
 

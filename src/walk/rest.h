@@ -122,9 +122,12 @@ void change_step(const Tables& tables, bool moves, State<float>& state, Change<f
     change.phase = state.phase, change.phase_rate = state.phase_rate;
   }
   // The foot that rolls down goes on from its pitch, if the hips have not led so far.
-  const float rolled = roll_over(change, state);
   if (!flies && change.led == 0.0f) {
-    state.stand_pitch_rad *= rolled < 1.0f ? value_left(rolled) : 0.0f;
+    State<float> next = state;
+    next.tick += 1.0f;
+    const float pitch_rad = landed_pitch(change, state);
+    change.led_rate_rad = landed_pitch(change, next) - pitch_rad;
+    state.stand_pitch_rad = pitch_rad;
     change.led_from = state.tick;
   }
   work();

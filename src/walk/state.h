@@ -78,6 +78,8 @@ struct State {
   // Turn of the step frame in the world, half of it.
   V frame_sine{}, frame_cosine{};
 };
+inline constexpr int kSinkKnots = 16;
+
 // A first step, or one whose pace is another one than that of the step before: the hips go to their
 // place at the coming strike along a quintic, and the phase at which the tables are read follows
 // them.
@@ -87,9 +89,10 @@ struct Change {
   V shown = V{} + 1.0f;               // how much of the tables: 0 at rest
   V led{}, was_led{};                 // 1 or 0: this step, and the one before it
   V is_new{};                         // 1: the plan has changed since the last tick
-  V led_from{};                       // of a roll: the tick from which on the hips lead
-  Off<V> pelvis_x_m, pelvis_z_m;      // where the pelvis is, while it leads and a tick after
-  V phase{}, phase_rate{};            // that are shown
+  // Of a roll: the tick from which on the hips lead, and the rate of what its pitch was off then.
+  V led_from{}, led_rate_rad{};
+  Off<V> pelvis_x_m, pelvis_z_m;  // where the pelvis is, while it leads and a tick after
+  V phase{}, phase_rate{};        // that are shown
   // What a changed plan has left, of the phase, of what shows, of how far the step has come over to
   // its own stride, and of this stride's ratio: fades in off_ticks.
   Off<V> off_phase, off_shown, off_over, off_ratio;
@@ -97,6 +100,10 @@ struct Change {
   // Of a stop: 1 or 0; the steps that are left before the last one, 1 or 0, and the lengths of both
   // feet's; until the hips rest, and how long the last step took from its plan on.
   V stops{}, further{}, length_m[2]{}, rest_ticks{}, closing_ticks{};
+  // How far hips sink before a leg is at its reach, as knots of a cubic spline (kSinkKnot_s), and
+  // the ticks that are left of it; how far a leg at its reach wants them to sink in this tick.
+  V sink_m[kSinkKnots]{}, sink_ticks{}, wants_m{};
+  V foreseen_m{};   // both steps' lengths that were asked for when that was found
   V catch_ticks{};  // of a walk that goes on after all: until its hips are where they ought to be
   // Of a flight: from where on, and over how much of it, its gap fades; the gaps of yaw, twist
   // and roll, and how high the heel was to be there; the ticks from and over which its pitch's

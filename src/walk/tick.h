@@ -131,13 +131,63 @@ void change_ends(const Tables& tables, Block<kWidth>& block) noexcept {
       [&](State<float>& state, Change<float>& change) { walk_on(tables, state, change); });
 }
 
+// Whether a flight is asked to be followed by another pace than was known; from time to time.
+template <class V>
+Mask<V> is_unforeseen(const State<V>& state, const Change<V>& change) noexcept {
+  constexpr float kOther = 0.1f, kEvery = 1.0f / 12.0f;
+  const V asked_m = state.asked.length_m[0] + state.asked.length_m[1], part = state.tick * kEvery;
+  return both(size(V(asked_m - change.foreseen_m)) > kOther * asked_m,
+              both(state.flies != V{}, part == floored(part)));
+}
+
 template <int kWidth>
-void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& poses) noexcept {
+void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& poses,
+                   bool looks_ahead = true) noexcept;
+
+// Walks ahead, to know when legs will be at their reach: hips sink before that.
+inline void look_ahead(const Tables& tables, State<float>& state, Change<float>& change) noexcept {
+  const int knot = sink_knot_ticks(tables), all_ticks = (kSinkKnots - 3) * knot,
+            left = static_cast<int>(change.sink_ticks), at = left > 0 ? all_ticks - left : 0,
+            first = at / knot, gone = at - first * knot;
+  std::array<float, kSinkKnots> wants_m{};  // between knots, the most
+  Block<1> ahead;
+  ahead.state = state, ahead.change = change;
+  ahead.change.sink_ticks = 0.0f;
+  for (int tick = gone; tick < (kSinkKnots - 3) * knot; ++tick) {
+    advance_block<1>(tables, ahead, Poses{nullptr, nullptr, 0}, false);
+    float& most_m = wants_m[tick / knot];
+    most_m = most(most_m, ahead.change.wants_m);
+  }
+  // Knot k stands at the beginning of part k - 1: it takes the most of the parts before and after
+  // that. The four that act now stay.
+  std::array<float, kSinkKnots> knots_m{};
+  bool sinks = false;
+  for (int k = 0; k < kSinkKnots; ++k) {
+    if (k < 4) {
+      if (left > 0 && first + k < kSinkKnots) knots_m[k] = change.sink_m[first + k];
+    } else if (k < kSinkKnots - 3) {
+      for (int part = k - 2; part <= k - 1; ++part)
+        if (part >= 0 && part < kSinkKnots) knots_m[k] = most(knots_m[k], wants_m[part]);
+    }
+    sinks |= knots_m[k] != 0.0f;
+  }
+  for (int k = 0; k < kSinkKnots; ++k) change.sink_m[k] = knots_m[k];
+  change.foreseen_m = state.asked.length_m[0] + state.asked.length_m[1];
+  change.sink_ticks = sinks ? static_cast<float>(all_ticks - gone) : 0.0f;
+}
+
+template <int kWidth>
+void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& poses,
+                   bool looks_ahead) noexcept {
   using V = Floats<kWidth>;
   State<V>& state = block.state;
   Change<V>& change = block.change;
+  const auto follows = change.is_new != V{};  // for a step has begun
   begin_walks(tables, block);
   change_ends(tables, block);
+  const auto is_new = both(no(follows), change.is_new != V{}),
+             is_short = either(either(change.starting != V{}, change.stops != V{}),
+                               change.catch_ticks != V{});
   smooth_asked(tables, change, state);
   const Time<V> time = advance_clock(tables, change, state);
   const Landing<V> landing = plan_landing(tables, time, change, state);
@@ -151,7 +201,7 @@ void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& pose
   Pelvis<V> pelvis = pelvis_over(tables, time, hips, stride, state);
   const Vec<V> ankle_m[2] = {ankle_of(feet.foot[0], feet.sole[0]),
                              ankle_of(feet.foot[1], feet.sole[1])};
-  sink(tables, time, stride, ankle_m, pelvis);
+  sink(tables, time, stride, ankle_m, change, pelvis);
   Leg<V> legs[2];
   solve_legs(tables, time, stride, feet, pelvis, state, legs);
   // The data's phase: walking backward is walking forward run back (Thorstensson 1986).
@@ -178,6 +228,12 @@ void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& pose
     rest(tables, change, state);
   }
   if (any(lifts)) begin_flight(tables, time, lifts, state);
+  const auto looks = either(either(is_new, both(either(lifts, strikes), is_short)),
+                            both(is_to_walk(state), is_unforeseen(state, change)));
+  if (looks_ahead)
+    one_by_one<kWidth>(looks, block, [&](State<float>& one, Change<float>& of_one) {
+      look_ahead(tables, one, of_one);
+    });
 }
 
 }  // namespace

@@ -27,6 +27,7 @@ inline Block<1> taken_over(const WalkState& old, const GaitParams& params) {
   Block<1> block{};
   State<float>& to = block.state;
   ask(params, to.asked);
+  block.change.foreseen_m = to.asked.length_m[0] + to.asked.length_m[1];
   const int stand = old.clock.swing, swing = 1 - stand;
   const FootState &stands = old.foot[stand], &swings = old.foot[swing];
   const double yaw = stands.lift_yaw_rad;

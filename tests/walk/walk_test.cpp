@@ -268,7 +268,7 @@ Journey go(double x, double y, int stop_after) {
 class Start : public testing::TestWithParam<vec2> {};
 
 TEST_P(Start, LeavesTheStandAndComesBackToItSoftly) {
-  constexpr double kMostBend_deg = 2.5, kMostDip_m = 0.0105, kMostBack_m = 1e-4,
+  constexpr double kMostBend_deg = 1.3, kMostDip_m = 0.014, kMostBack_m = 1e-4,
                    kSlowestStop_s = 1.5, kMostSlid_m = 1e-4, kDeepest_m = 0.01;
   Journey most;
   double quickest_s = 9.0;

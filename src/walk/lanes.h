@@ -66,6 +66,7 @@ inline M no(const M& a) noexcept {
 }
 template <class M>
 inline bool any(const M& mask) noexcept {
+  static_assert(sizeof(M) >= 16, "a mask, not a number");
   std::array<long long, sizeof(M) / 8> parts;
   std::memcpy(parts.data(), &mask, sizeof mask);
   long long sum = 0;

@@ -121,8 +121,7 @@ void change_step(const Tables& tables, bool moves, State<float>& state, Change<f
     go_on_from_here(tables, true, state, change);
     change.phase = state.phase, change.phase_rate = state.phase_rate;
   }
-  // The foot that rolls down goes on from its pitch, if the hips have not led so far.
-  if (!flies && change.led == 0.0f) {
+  if (change.led == 0.0f && !flies) {  // the foot that rolls down goes on from its pitch
     State<float> next = state;
     next.tick += 1.0f;
     const float pitch_rad = landed_pitch(change, state);

@@ -133,9 +133,11 @@ void change_ends(const Tables& tables, Block<kWidth>& block) noexcept {
 
 // Whether a flight is asked to be followed by another pace than was known; from time to time.
 template <class V>
-Mask<V> is_unforeseen(const State<V>& state, const Change<V>& change) noexcept {
-  constexpr float kOther = 0.1f, kEvery = 1.0f / 12.0f;
-  const V asked_m = state.asked.length_m[0] + state.asked.length_m[1], part = state.tick * kEvery;
+Mask<V> is_unforeseen(const Tables& tables, const State<V>& state,
+                      const Change<V>& change) noexcept {
+  constexpr float kOther = 0.1f;
+  const V asked_m = state.asked.length_m[0] + state.asked.length_m[1],
+          part = state.tick / static_cast<float>(sink_knot_ticks(tables));
   return both(size(V(asked_m - change.foreseen_m)) > kOther * asked_m,
               both(state.flies != V{}, part == floored(part)));
 }
@@ -153,7 +155,7 @@ inline void look_ahead(const Tables& tables, State<float>& state, Change<float>&
   Block<1> ahead;
   ahead.state = state, ahead.change = change;
   ahead.change.sink_ticks = 0.0f;
-  for (int tick = gone; tick < (kSinkKnots - 3) * knot; ++tick) {
+  for (int tick = gone; tick < all_ticks; ++tick) {
     advance_block<1>(tables, ahead, Poses{nullptr, nullptr, 0}, false);
     float& most_m = wants_m[tick / knot];
     most_m = most(most_m, ahead.change.wants_m);
@@ -163,12 +165,10 @@ inline void look_ahead(const Tables& tables, State<float>& state, Change<float>&
   std::array<float, kSinkKnots> knots_m{};
   bool sinks = false;
   for (int k = 0; k < kSinkKnots; ++k) {
-    if (k < 4) {
-      if (left > 0 && first + k < kSinkKnots) knots_m[k] = change.sink_m[first + k];
-    } else if (k < kSinkKnots - 3) {
-      for (int part = k - 2; part <= k - 1; ++part)
-        if (part >= 0 && part < kSinkKnots) knots_m[k] = most(knots_m[k], wants_m[part]);
-    }
+    if (k < 4 && left > 0)
+      knots_m[k] = change.sink_m[first + k];
+    else if (k >= 4 && k < kSinkKnots - 3)
+      knots_m[k] = most(wants_m[k - 2], wants_m[k - 1]);
     sinks |= knots_m[k] != 0.0f;
   }
   for (int k = 0; k < kSinkKnots; ++k) change.sink_m[k] = knots_m[k];
@@ -229,7 +229,7 @@ void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& pose
   }
   if (any(lifts)) begin_flight(tables, time, lifts, state);
   const auto looks = either(either(is_new, both(either(lifts, strikes), is_short)),
-                            both(is_to_walk(state), is_unforeseen(state, change)));
+                            both(is_to_walk(state), is_unforeseen(tables, state, change)));
   if (looks_ahead)
     one_by_one<kWidth>(looks, block, [&](State<float>& one, Change<float>& of_one) {
       look_ahead(tables, one, of_one);

@@ -119,7 +119,7 @@ inline Rows rows_of(const Tables& tables, bool back) noexcept {
   return {reinterpret_cast<const float*>(first), (back ? kBackRatios : kRatios) * kRowNumbers};
 }
 template <class V>
-V last_ratio(const Tables& tables, const Mask<V>& back) noexcept {
+V last_ratio(const Mask<V>& back) noexcept {
   return chosen<V>(back, kBackRatios - 1.0f, kRatios - 1.0f);
 }
 
@@ -137,7 +137,7 @@ Stride<V> read_stride(const Tables& tables, const Time<V>& time, const V& phase,
   constexpr int kWidth = kLanes<V>, kPart = kLanes<RowPart>, kParts = kRowNumbers / kPart;
   constexpr int kHeelParts = kHeelNumbers <= kPart ? 1 : kHeelNumbers / kPart,
                 kHeelRoom = kHeelParts * kPart, kNumbers = kRowNumbers + 2 * kHeelNumbers;
-  const V last = last_ratio<V>(tables, time.back), back = chosen<V>(time.back, 1.0f, 0.0f);
+  const V last = last_ratio<V>(time.back), back = chosen<V>(time.back, 1.0f, 0.0f);
   const Knots<V> knots = knots_at(phase), old = ratios_at(behind, last),
                  next = ratios_at(ahead, last);
   alignas(64) float row[kWidth][kNumbers];
@@ -239,7 +239,7 @@ template <class V>
 Vec<V> read_pelvis(const Tables& tables, const Time<V>& time, const V& phase, const V& behind,
                    const V& ahead, const V& change) noexcept {
   constexpr int kWidth = kLanes<V>, kAt = offsetof(StrideRow, pelvis_m) / sizeof(float);
-  const V last = last_ratio<V>(tables, time.back), back = chosen<V>(time.back, 1.0f, 0.0f);
+  const V last = last_ratio<V>(time.back), back = chosen<V>(time.back, 1.0f, 0.0f);
   const Knots<V> knots = knots_at(phase), old = ratios_at(behind, last),
                  next = ratios_at(ahead, last);
   alignas(64) float row[kWidth][4];

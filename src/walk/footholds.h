@@ -49,9 +49,17 @@ inline constexpr float kWayTurns = 0.82f, kInPlace_m = 0.2f, kFootAhead = 0.45f,
 // and from kFreeze on no more. To stop it at once would be a jerk of the foot that flies.
 inline constexpr float kSettles = 0.25f, kFreeze = 0.6f, kSettling_s = 0.1f;
 
+// The step that is asked for: its length and the direction of its way, and where it is to point.
 template <class V>
-Landing<V> plan_landing(const Tables& tables, const Time<V>& time, const Change<V>& change,
-                        State<V>& state) noexcept {
+struct AskedStep {
+  V length_m{};
+  Way<V> along, to;
+};
+
+// Where it would land on level ground.
+template <class V>
+AskedStep<V> plan_landing(const Tables& tables, const Time<V>& time, const Change<V>& change,
+                          State<V>& state, Footing<V>& footing) noexcept {
   const auto closes = change.closing != V{};
   const V heading = heading_ahead(tables, state, V(time.to_strike + 1.0f));
   const Way<V> to = way_of(heading), along = way_of(V(kWayTurns * heading));
@@ -78,19 +86,27 @@ Landing<V> plan_landing(const Tables& tables, const Time<V>& time, const Change<
   const auto keep = [&](const V& now, V& kept) {
     kept = follows ? now : open ? V(kept + (now - kept) * share) : kept;
   };
+  const bool level = tables.terrain == nullptr;
   keep(V(along.sine * length_m + to.cosine * asides_m - stood_m - to.sine * lead_m),
-       state.landing_x_m);
+       level ? state.landing_x_m : footing.level_x_m);
   keep(V(along.cosine * length_m - to.sine * asides_m + (1.0f - to.cosine) * lead_m),
-       state.landing_z_m);
+       level ? state.landing_z_m : footing.level_z_m);
   keep(V(heading + (closes ? V{} : V(in_place * ahead_rad))), state.landing_rad);
   keep(wider_m, state.next_wider_m);
+  return {length_m, along, to};
+}
+
+// Where it does land.
+template <class V>
+Landing<V> landing_of(const Tables& tables, const Time<V>& time, const Way<V>& to,
+                      const Change<V>& change, const State<V>& state) noexcept {
   Landing<V> landing{state.landing_x_m, state.landing_z_m, state.landing_rad,
                      way_of(state.landing_rad)};
   // Along the heading, which may still turn after the place is settled.
   const V step_m = landing.x_m * to.sine + landing.z_m * to.cosine,
           own_m = chosen<V>(time.right, tables.leg[1].own_step_m, tables.leg[0].own_step_m);
   // A step that closes keeps what is left of the last one.
-  landing.ratio = closes ? state.ratio_behind : V(size(step_m) / own_m);
+  landing.ratio = change.closing != V{} ? state.ratio_behind : V(size(step_m) / own_m);
   return landing;
 }
 

@@ -52,8 +52,10 @@ void lead_turn(const V& ahead_rad, const Filter& filter, Smoothed<V>& value) noe
   value.v = still ? V{} : value.v;
 }
 
+// `left`: the share of the lengths asked for that uneven ground leaves.
 template <class V>
-void smooth_asked(const Tables& tables, const Change<V>& change, State<V>& state) noexcept {
+void smooth_asked(const Tables& tables, const Change<V>& change, const V& left,
+                  State<V>& state) noexcept {
   constexpr float kGravity_m_s2 = 9.81f, kLeastCycle_s = 0.2f;
   constexpr float kFirstStep = 0.9f;  // of the length asked for
   constexpr float kChestAhead_s = 0.13f, kHeadAhead_s = 0.30f;
@@ -85,7 +87,7 @@ void smooth_asked(const Tables& tables, const Change<V>& change, State<V>& state
   follow(asked.bounce, tables.bounce, state.bounce);
   follow(asked.sway, tables.bounce, state.sway);
   const V both_m = state.length_m[0].x + state.length_m[1].x;
-  follow(V(0.5f * both_m * (1.0f / tables.source_step_m)), tables.step, state.pace);
+  follow(V(0.5f * both_m * left * (1.0f / tables.source_step_m)), tables.step, state.pace);
   follow(within(V(2.0f * state.pace.x), 0.0f, 1.0f), tables.posture, state.posture);
   // A lean of v w / g puts the weight on the standing foot's edge, as on a bicycle.
   const V speed_m_s = both_m / most(cycle_s, all<V>(kLeastCycle_s));
@@ -130,8 +132,8 @@ Stages<V> stages_of(const Tables& tables, const State<V>& state, const Mask<V>& 
                        V(asked.length_m[1] * (1.0f / tables.leg[1].own_step_m)));
   const V rolls = roll_share(roll, ratio), flies = roll + flight - rolls;
   const V lands_s = by_side<V>(no(right), asked.time_s), swings_s = by_side<V>(right, asked.time_s);
-  return {roll, flight, whole_beats(V(2.0f * lands_s * rolls), kLeastRoll),
-          whole_beats(V(2.0f * swings_s * flies), kLeastFlight)};
+  return {roll, flight, whole_beats(V(2.0f * lands_s * state.slowness * rolls), kLeastRoll),
+          whole_beats(V(2.0f * swings_s * state.slowness * flies), kLeastFlight)};
 }
 
 // A start: from the stick to the lift-off, and the first flight, in seconds and of a steady one.

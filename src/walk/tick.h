@@ -1,6 +1,8 @@
 // One tick of the walks of a block, in the order of its data.
 #pragma once
+#include "walk/ground_plan.h"
 #include "walk/pose.h"
+#include "walk/walk.h"
 
 namespace gaitpad::anew {
 namespace {
@@ -22,6 +24,7 @@ void move_frame(const Landing<Floats<kWidth>>& landing, const Mask<Floats<kWidth
     if (lane(is, w) != 0.0f) {
       origin.x_m += lane(moved.x, w);
       origin.z_m += lane(moved.z, w);
+      origin.y_m += lane(block.footing.landing_y_m, w);
       origin.heading_rad += lane(landing.rad, w);
     }
     set_lane(static_cast<float>(0.5 * wrapped(origin.heading_rad)), w, half_rad);
@@ -63,8 +66,15 @@ void begin_walks(const Tables& tables, Block<kWidth>& block) noexcept {
   if (any(other)) {
     Landing<V> beside{state.print_x_m, state.print_z_m, state.print_rad, way_of(state.print_rad)};
     Feet<V> feet;
-    feet.sole[1] = sole_of<V>(tables, no(right));
+    feet.flat_toe_m = sole_of<V>(tables, no(right)).line_m;
+    Footing<V>& footing = block.footing;
+    if (is_uneven(tables)) {
+      feet.flat_toe_m = tilt_of(footing.stand) * feet.flat_toe_m;
+      footing.landing = chosen(other, footing.print, footing.landing);
+      footing.landing_y_m = other ? footing.print_y_m : footing.landing_y_m;
+    }
     move_frame<kWidth>(beside, other, block);
+    if (is_uneven(tables)) change_footing(beside, other, feet.flat_toe_m.y, footing);
     change_feet(beside, other, feet, Stride<V>{}, state);
     state.right_swings = other ? V(1.0f - state.right_swings) : state.right_swings;
   }
@@ -94,23 +104,99 @@ void rest(const Change<V>& change, State<V>& state) noexcept {
   set(0.0f, state.wider_m), set(0.0f, state.next_wider_m);
 }
 
+// Work that is of one walk at a time.
+template <int kWidth, class Work>
+void one_by_one(const Mask<Floats<kWidth>>& where, Block<kWidth>& block,
+                const Work& work) noexcept {
+  if constexpr (kWidth == 1) {
+    if (where) work(block, 0);
+  } else {
+    const Floats<kWidth> is = chosen<Floats<kWidth>>(where, 1.0f, 0.0f);
+    for (int w = 0; w < kWidth; ++w) {
+      if (lane(is, w) == 0.0f) continue;
+      Block<1> one;
+      copy_walk(block, w, one, 0);
+      work(one, w);
+      copy_walk(one, 0, block, w);
+    }
+  }
+}
+
+// Where the landing on level ground has moved, the ground is asked for another one.
+template <int kWidth>
+void choose_footholds(const Tables& tables, const Time<Floats<kWidth>>& time,
+                      const AskedStep<Floats<kWidth>>& asked, Block<kWidth>& block) noexcept {
+  using V = Floats<kWidth>;
+  constexpr float kMoved = 1e-6f;        // metres, radians
+  constexpr float kPieceSettles = 0.6f;  // of the roll: until then a step may still go elsewhere
+  const State<V>& state = block.state;
+  Footing<V>& footing = block.footing;
+  const auto begins = both(no(time.flies), state.tick == all<V>(1.0f)),
+             settles = both(no(time.flies), state.tick <= kPieceSettles * state.roll_ticks);
+  const V moved = most(most(size(V(footing.level_x_m - footing.asked_x_m)),
+                            size(V(footing.level_z_m - footing.asked_z_m))),
+                       size(V(state.landing_rad - footing.asked_rad)));
+  const auto asks = both(block.change.stands == V{}, either(begins, moved > all<V>(kMoved)));
+  if (!any(asks)) return;
+  footing.asked_x_m = asks ? footing.level_x_m : footing.asked_x_m;
+  footing.asked_z_m = asks ? footing.level_z_m : footing.asked_z_m;
+  footing.asked_rad = asks ? state.landing_rad : footing.asked_rad;
+  const V is_first = chosen<V>(begins, 1.0f, 0.0f),
+          is_open = chosen<V>(either(begins, settles), 1.0f, 0.0f);
+  one_by_one<kWidth>(asks, block, [&](Block<1>& one, int w) {
+    const AskedFoothold step{
+        lane(asked.along.sine, w), lane(asked.along.cosine, w),
+        lane(asked.length_m, w),   lane(is_first, w) != 0.0f,
+        lane(is_open, w) != 0.0f,  one.state.asked.walks != 0.0f && one.change.closing == 0.0f};
+    choose_foothold(tables, step, one);
+  });
+}
+
+// Where a flight begins, or its landing has moved, it is planned how it keeps clear of the ground.
+template <int kWidth>
+void plan_rooms(const Tables& tables, const Mask<Floats<kWidth>>& lifts,
+                Block<kWidth>& block) noexcept {
+  using V = Floats<kWidth>;
+  const State<V>& state = block.state;
+  const Vec<V> off = block.footing.room_for_m -
+                     Vec<V>{state.landing_x_m, block.footing.landing_y_m, state.landing_z_m};
+  const float most_m = kReplan_m * tables.size;
+  const auto moved = both(state.flies != V{}, dot(off, off) > all<V>(most_m * most_m));
+  const auto plans = either(lifts, moved);
+  if (!any(plans)) return;
+  const V begins = chosen<V>(lifts, 1.0f, 0.0f);
+  one_by_one<kWidth>(
+      plans, block, [&](Block<1>& one, int w) { plan_room(tables, lane(begins, w) != 0.0f, one); });
+}
+
 template <int kWidth>
 void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& poses) noexcept {
   using V = Floats<kWidth>;
   State<V>& state = block.state;
   Change<V>& change = block.change;
+  Footing<V>& footing = block.footing;
+  const bool uneven = is_uneven(tables);
   begin_walks(tables, block);
-  smooth_asked(tables, change, state);
+  if (uneven) lean_into_slope(tables, change, footing);
+  smooth_asked(tables, change, uneven ? footing.left.x : all<V>(1.0f), state);
   const Time<V> time = advance_clock(tables, change, state);
-  const Landing<V> landing = plan_landing(tables, time, change, state);
+  const AskedStep<V> asked = plan_landing(tables, time, change, state, footing);
+  if (uneven) choose_footholds<kWidth>(tables, time, asked, block);
+  Landing<V> landing = landing_of(tables, time, asked.to, change, state);
+  if (uneven) {
+    follow_ground(tables, time, asked, change, state, footing, landing);
+    move_hips_ground(tables, time, landing, change, state, footing);
+    plan_rooms<kWidth>(tables, Mask<V>{}, block);
+  }
   const Stride<V> by_clock =
       read_by_clock(tables, time, landing, state.phase, time.share, time.u, change, state);
   Hips<V> hips = move_hips(tables, time, landing, by_clock, change, state);
   Stride<V> stride;
   const V phase = lead_hips(tables, time, landing, by_clock, state, change, hips, stride);
   keep_pelvis(hips, state);
-  const Feet<V> feet = plan_feet(tables, time, landing, by_clock, stride, hips, change, state);
-  Pelvis<V> pelvis = pelvis_over(tables, time, hips, stride, state);
+  const Feet<V> feet =
+      plan_feet(tables, time, landing, by_clock, stride, hips, change, state, footing);
+  Pelvis<V> pelvis = pelvis_over(tables, time, hips, stride, state, footing);
   const Vec<V> ankle_m[2] = {ankle_of(feet.foot[0], feet.sole[0]),
                              ankle_of(feet.foot[1], feet.sole[1])};
   sink(tables, time, stride, ankle_m, pelvis);
@@ -122,18 +208,29 @@ void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& pose
 
   const auto lifts = both(no(time.flies), state.tick >= state.roll_ticks),
              strikes = both(time.flies, state.tick >= state.flight_ticks);
-  if (any(lifts)) lift_off(tables, time, lifts, landing, hips, feet, by_clock, change, state);
+  if (any(lifts))
+    lift_off(tables, time, lifts, landing, hips, feet, by_clock, change, state, footing);
   keep_swing(feet.foot[0], state);
+  if (uneven)
+    footing.last_rise_m[1] = footing.last_rise_m[0], footing.last_rise_m[0] = footing.rise_m;
   if (any(strikes)) {
     move_frame<kWidth>(landing, strikes, block);
+    if (uneven) {
+      change_footing(landing, strikes, feet.flat_toe_m.y, footing);
+      const V slow = slowness_of(tables, no(time.right), state, footing);
+      state.slowness = strikes ? slow : state.slowness;
+    }
     change_feet(landing, strikes, feet, by_clock, state);
     const auto keeps = either(change.led != V{}, change.off_phase.x != V{});
     const V rate = keeps ? change.phase_rate : state.phase_rate;
     begin_lead(tables, strikes, phase, rate, state, change);
     begin_step(tables, time, strikes, change, state);
     rest(change, state);
+    if (uneven) footing.next_rise = change.stands != V{} ? V{} : footing.next_rise;
   }
-  if (any(lifts)) begin_flight(tables, time, lifts, state);
+  if (!any(lifts)) return;
+  begin_flight(tables, time, lifts, state);
+  if (uneven) plan_rooms<kWidth>(tables, lifts, block);
 }
 
 }  // namespace

@@ -23,6 +23,8 @@ void copy_walk(const Block<kFrom>& from, int from_lane, Block<kTo>& to, int to_l
     reinterpret_cast<float*>(&to)[n * kTo + to_lane] =
         reinterpret_cast<const float*>(&from)[n * kFrom + from_lane];
   to.origin[to_lane] = from.origin[from_lane];
+  to.placed[to_lane] = from.placed[from_lane];
+  to.piece[to_lane] = from.piece[from_lane];
 }
 
 }  // namespace gaitpad::anew

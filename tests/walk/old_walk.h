@@ -72,6 +72,7 @@ inline Block<1> taken_over(const WalkState& old, const GaitParams& params) {
   place(2.0 * last - now, to.pelvis_x_m[2], to.pelvis_z_m[2]);
   place(swings.heel_anchor_m, to.print_x_m, to.print_z_m);
   place(swings.toe_anchor_m, to.toe_x_m, to.toe_z_m);
+  block.footing.toe_y_m = static_cast<float>(swings.toe_anchor_m.y - frame.place_m.y);
   to.print_rad = static_cast<float>(swings.lift_yaw_rad - yaw);
   to.stand_pitch_rad = static_cast<float>(stands.pitch_fade.value);
   for (int k : {0, 1}) {

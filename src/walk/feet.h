@@ -232,6 +232,7 @@ struct Feet {
   Foot<V> foot[2];  // swing, stand
   Sole<V> sole[2];
   Vec<V> table_heel_m;  // of the swinging one
+  V base_m{};           // the ground line below it
   Vec<V> flat_toe_m;    // of the standing one, where it is flat on its ground
 };
 
@@ -303,6 +304,7 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
                          : pitch_to_rise<V>(tables, time.right, footing.rise_m, most(planned, V{}));
   }
   pitch_in_flight(tables, time, sole, flight, planned, off, footing, foot);
+  feet.base_m = flight.base_m;
   return feet;
 }
 

@@ -49,6 +49,19 @@ inline constexpr float kWayTurns = 0.82f, kInPlace_m = 0.2f, kFootAhead = 0.45f,
 // and from kFreeze on no more. To stop it at once would be a jerk of the foot that flies.
 inline constexpr float kSettles = 0.25f, kFreeze = 0.6f, kSettling_s = 0.1f;
 
+// As it is planned. The step's stride counts along the heading `to`, which may still turn after the
+// place is settled; a step that closes keeps what is left of the last one.
+template <class V>
+Landing<V> planned_landing(const Tables& tables, const Time<V>& time, const Way<V>& to,
+                           const Change<V>& change, const State<V>& state) noexcept {
+  Landing<V> landing{state.landing_x_m, state.landing_z_m, state.landing_rad,
+                     way_of(state.landing_rad)};
+  const V step_m = landing.x_m * to.sine + landing.z_m * to.cosine,
+          own_m = chosen<V>(time.right, tables.leg[1].own_step_m, tables.leg[0].own_step_m);
+  landing.ratio = change.closing != V{} ? state.ratio_behind : V(size(step_m) / own_m);
+  return landing;
+}
+
 // The step that is asked for: its length and the direction of its way, and where it is to point.
 template <class V>
 struct AskedStep {
@@ -94,20 +107,6 @@ AskedStep<V> plan_landing(const Tables& tables, const Time<V>& time, const Chang
   keep(V(heading + (closes ? V{} : V(in_place * ahead_rad))), state.landing_rad);
   keep(wider_m, state.next_wider_m);
   return {length_m, along, to};
-}
-
-// Where it does land.
-template <class V>
-Landing<V> landing_of(const Tables& tables, const Time<V>& time, const Way<V>& to,
-                      const Change<V>& change, const State<V>& state) noexcept {
-  Landing<V> landing{state.landing_x_m, state.landing_z_m, state.landing_rad,
-                     way_of(state.landing_rad)};
-  // Along the heading, which may still turn after the place is settled.
-  const V step_m = landing.x_m * to.sine + landing.z_m * to.cosine,
-          own_m = chosen<V>(time.right, tables.leg[1].own_step_m, tables.leg[0].own_step_m);
-  // A step that closes keeps what is left of the last one.
-  landing.ratio = change.closing != V{} ? state.ratio_behind : V(size(step_m) / own_m);
-  return landing;
 }
 
 }  // namespace

@@ -511,7 +511,7 @@ PlannedFlight planned_flight(const Tables& tables, const Floor& floor, const Fra
   const Footing<float>& footing = block.footing;
   Time<float> time = time_in_flight(tables, state);
   const Way<float> to = way_of(state.landing_rad);
-  Landing<float> landing = landing_of(tables, time, to, change, state);
+  Landing<float> landing = planned_landing(tables, time, to, change, state);
   landing.ratio = ratio_on_ground(change, state, footing);
   Hips<float> hips;
   hips.behind = footprints_of(tables, time.right, state.ratio_behind);

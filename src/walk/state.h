@@ -155,4 +155,15 @@ struct alignas(64) Block {
   Stretch piece[kWidth];     // of uneven ground: where the swinging foot lands
 };
 
+// Copies a walk from a lane of one block to a lane of another.
+template <int kFrom, int kTo>
+void copy_walk(const Block<kFrom>& from, int from_lane, Block<kTo>& to, int to_lane) noexcept {
+  for (int n = 0; n < kStateNumbers<float>; ++n)
+    reinterpret_cast<float*>(&to)[n * kTo + to_lane] =
+        reinterpret_cast<const float*>(&from)[n * kFrom + from_lane];
+  to.origin[to_lane] = from.origin[from_lane];
+  to.placed[to_lane] = from.placed[from_lane];
+  to.piece[to_lane] = from.piece[from_lane];
+}
+
 }  // namespace gaitpad::anew

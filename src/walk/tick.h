@@ -182,7 +182,7 @@ void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& pose
   const Time<V> time = advance_clock(tables, change, state);
   const AskedStep<V> asked = plan_landing(tables, time, change, state, footing);
   if (uneven) choose_footholds<kWidth>(tables, time, asked, block);
-  Landing<V> landing = landing_of(tables, time, asked.to, change, state);
+  Landing<V> landing = planned_landing(tables, time, asked.to, change, state);
   if (uneven) {
     follow_ground(tables, time, asked, change, state, footing, landing);
     move_hips_ground(tables, time, landing, change, state, footing);
@@ -194,14 +194,14 @@ void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& pose
   Stride<V> stride;
   const V phase = lead_hips(tables, time, landing, by_clock, state, change, hips, stride);
   keep_pelvis(hips, state);
-  const Feet<V> feet =
-      plan_feet(tables, time, landing, by_clock, stride, hips, change, state, footing);
+  Feet<V> feet = plan_feet(tables, time, landing, by_clock, stride, hips, change, state, footing);
   Pelvis<V> pelvis = pelvis_over(tables, time, hips, stride, state, footing);
   const Vec<V> ankle_m[2] = {ankle_of(feet.foot[0], feet.sole[0]),
                              ankle_of(feet.foot[1], feet.sole[1])};
   sink(tables, time, stride, ankle_m, pelvis);
   Leg<V> legs[2];
   solve_legs(tables, time, stride, feet, pelvis, state, legs);
+  ease_ankles(tables, time, stride, phase, pelvis, change, footing, state, feet, legs);
   write_upper_body(tables, pelvis, phase, change.shown, state, poses);
   write_legs(tables, time, feet, legs, poses);
   write_root<kWidth>(tables, pelvis, block, poses);

@@ -79,11 +79,11 @@ void ease_ankles(const Tables& tables, const Time<V>& time, const Stride<V>& str
       risen.turn = chosen(flies, down.turn, risen.turn);
       risen.pitch_rad = flies ? down.pitch_rad : risen.pitch_rad;
     }
-    // Once more, from where the leg is.
+    // Once more, from where it started: it turns little there, and its knee does not swivel away.
     V start_rad[kLegAngles], off_rad[kLegAngles];
     for (int j = 0; j < kLegAngles; ++j) {
       start_rad[j] = stride.leg_rad[k][j] + chosen<V>(right, r.stand_rad[j], l.stand_rad[j]);
-      off_rad[j] = state.leg_rad[k][j];
+      off_rad[j] = legs[k].begun_rad[j];
     }
     start_rad[3] = most(start_rad[3], all<V>(kLeastKnee_rad));
     const Turn<V> to_pelvis = back(pelvis.turn);

@@ -12,7 +12,8 @@ namespace {
 template <class V>
 struct Leg {
   Turn<V> hip, knee, ankle;
-  Mask<V> short_of{};  // the ankle is out of the leg's reach
+  Mask<V> short_of{};         // the ankle is out of the leg's reach
+  V begun_rad[kLegAngles]{};  // what was added to the tables' angles where it started
 };
 
 // What is added to the tables' angles leaks away at this rate.
@@ -136,9 +137,12 @@ void solve_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stri
     table_rad[3] = most(table_rad[3], all<V>(kLeastKnee_rad));
     const Vec<V> ankle_m =
         to_pelvis * (ankle_of(feet.foot[k], feet.sole[k]) - pelvis.place_m - pelvis.hip_m[k]);
+    V begun_rad[kLegAngles];
+    std::copy_n(state.leg_rad[k], kLegAngles, begun_rad);
     legs[k] =
         solve_leg<V>(chosen<V>(right, r.thigh_m, l.thigh_m), chosen<V>(right, r.shank_m, l.shank_m),
                      ankle_m, to_pelvis * feet.foot[k].turn, table_rad, state.leg_rad[k]);
+    std::copy_n(begun_rad, kLegAngles, legs[k].begun_rad);
   }
 }
 

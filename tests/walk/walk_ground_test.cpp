@@ -151,6 +151,13 @@ TEST_P(OnGround, WalksAsTheOldWalkDoes) {
                        kDegree
                 << ' ';
       }
+      for (const Side side : {kLeftSide, kRightSide}) {
+        const LegJoints& j = model.leg[side].model.joints;
+        const vec3 h = frames.position_m[j.hip], k = frames.position_m[j.knee],
+                   a = frames.position_m[j.ankle];
+        const vec3 line = glm::normalize(a - h), n = (k - h) - line * glm::dot(k - h, line);
+        trace << std::atan2(n.x, n.z) / kDegree << ' ';
+      }
       trace << pose->root_m.y << ' ' << pose->root_m.z << ' ';
     }
     trace << walks.block().footing.hips_m.x + walks.block().origin[0].y_m << ' '

@@ -13,7 +13,14 @@ void advance(const Tables& tables, Block<4>& block, const Poses& poses) noexcept
 void advance(const Tables& tables, Block<8>& block, const Poses& poses) noexcept;
 void advance(const Tables& tables, Block<16>& block, const Poses& poses) noexcept;
 
-// Sets up a walk that stands there, and faces that way.
+// Sets up a walk that stands there, and faces that way; on uneven ground where its soles have room.
 void stand(const Tables& tables, const Origin& place, Block<1>& block) noexcept;
+
+// Moves a walk with all that it stands on: a teleport, a platform, a world that is shifted. In its
+// own coordinates nothing changes; a ground that is asked for by place in the world is not moved.
+template <int kWidth>
+void move_walk(const Placement& by, int walk, Block<kWidth>& block) noexcept {
+  block.placed[walk] = moved(by, block.placed[walk]);
+}
 
 }  // namespace gaitpad::anew

@@ -5,6 +5,7 @@
 
 #include "tests/animation/made_walker.h"
 #include "tests/walk/old_walk.h"
+#include "walk/walk_frame.h"
 
 namespace gaitpad::anew {
 namespace {
@@ -200,6 +201,62 @@ INSTANTIATE_TEST_SUITE_P(
         Course{
             "stairs_down", {FlatSection{8.0}, StairsSection{-0.17, 0.28, 8}}, 0.0, 0.8, 10.0, true},
         Course{"slow_up", {FlatSection{5.0}, StairsSection{0.17, 0.28, 8}}, 0.0, 0.3, 12.0}));
+
+// --- The frame of a tick -------------------------------------------------------------------------
+
+class Frames : public testing::TestWithParam<Course> {};
+
+TEST_P(Frames, SayWhatTheOldWalksSay) {
+  constexpr double kPlace_m = 2e-3, kSpeed_m_s = 5e-3, kTurn_rad = 1e-4, kMoved_m = 2e-4;
+  const WalkModel model = model_on(ground_of(GetParam().sections));
+  BothWalks walks(model, GetParam().x, GetParam().y);
+  Report told;
+  told.frame = walks.old().frame;
+  told.step_ticks = walks.old().clock.last_step_ticks;
+  double place_m = 0.0, root_m = 0.0, moved_m = 0.0, speed_m_s = 0.0, stride_m = 0.0,
+         ground_m = 0.0;
+  for (int tick = 0; tick < GetParam().seconds * kRate; ++tick) {
+    walks.step();
+    report(model, walks.tables(), walks.block(), walks.pose, told);
+    const WalkFrame &is = told.frame, &old = walks.old().frame;
+    ASSERT_EQ(is.stage, old.stage) << tick;
+    ASSERT_EQ(is.swing, old.swing) << tick;
+    ASSERT_EQ(is.heel_planted, old.heel_planted);
+    ASSERT_EQ(is.toe_planted, old.toe_planted);
+    ASSERT_EQ(is.steps, old.steps);
+    EXPECT_EQ(is.overhangs, old.overhangs);
+    EXPECT_NEAR(is.heading_rad, old.heading_rad, kTurn_rad);
+    EXPECT_NEAR(is.turn_rate_rad_s, old.turn_rate_rad_s, kTurn_rad);
+    EXPECT_NEAR(is.root_turned_rad, tick > 0 ? old.root_turned_rad : 0.0, kTurn_rad);
+    const auto see = [](double off, double& most) { most = std::max(most, off); };
+    see(glm::distance(is.pelvis_m, old.pelvis_m), place_m);
+    see(glm::distance(is.root_m, old.root_m), root_m);
+    if (tick > 0) see(glm::distance(is.root_moved_m, old.root_moved_m), moved_m);
+    see(std::abs(is.speed_m_s - old.speed_m_s), speed_m_s);
+    for (int side : {0, 1}) {
+      see(std::abs(is.stride_m[side] - old.stride_m[side]), stride_m);
+      see(glm::distance(is.heel_m[side], old.heel_m[side]), place_m);
+      see(glm::distance(is.toe_m[side], old.toe_m[side]), place_m);
+      // Not where the one is before a riser and the other behind it.
+      const double heel = std::abs(is.heel_ground_m[side] - old.heel_ground_m[side]),
+                   toe = std::abs(is.toe_ground_m[side] - old.toe_ground_m[side]);
+      see(heel > 0.1 ? 0.0 : heel, ground_m);
+      see(toe > 0.1 ? 0.0 : toe, ground_m);
+    }
+  }
+  std::printf("places %.3f, root %.3f, moved %.4f, strides %.3f, ground %.3f mm; speed %.5f m/s\n",
+              place_m * 1e3, root_m * 1e3, moved_m * 1e3, stride_m * 1e3, ground_m * 1e3,
+              speed_m_s);
+  for (const double off : {place_m, root_m, stride_m, ground_m}) EXPECT_LE(off, kPlace_m);
+  EXPECT_LE(moved_m, kMoved_m);
+  EXPECT_LE(speed_m_s, kSpeed_m_s);
+}
+INSTANTIATE_TEST_SUITE_P(
+    OfTicks, Frames,
+    testing::Values(
+        Course{"level", {FlatSection{90.0}, SlopeSection{3.0, 0.1, 0.5}}, 0.0, 0.8, 6.0},
+        Course{"turn", {FlatSection{90.0}, SlopeSection{3.0, 0.1, 0.5}}, 0.4, 0.7, 6.0},
+        Course{"up", {FlatSection{8.0}, StairsSection{0.17, 0.28, 8}}, 0.0, 0.8, 10.0}));
 
 // --- Grounds of games ----------------------------------------------------------------------------
 

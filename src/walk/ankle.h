@@ -38,68 +38,78 @@ void point_down(const Time<V>& time, const Sole<V>& sole, const Turn<V>& yaw, co
   foot.toe_m.y = foot.toe_m.y + lift_m;
 }
 
-// `phase`: what is shown.
+// `phase`: what is shown. `bent`: by how much its ankle is bent too far.
+template <class V>
+[[gnu::noinline]] void ease_ankle(const Tables& tables, const Time<V>& time,
+                                  const Stride<V>& stride, const V& phase, const V& bent, int k,
+                                  const Pelvis<V>& pelvis, const Change<V>& change,
+                                  const Footing<V>& footing, State<V>& state, Feet<V>& feet,
+                                  Leg<V>& leg) noexcept {
+  const auto closes = change.closing != V{}, starts = change.starting != V{};
+  const auto right = k == 0 ? time.right : no(time.right);
+  const LegBones &l = tables.leg[0], &r = tables.leg[1];
+  const auto flies = k == 0 ? time.flies : Mask<V>{}, stands = k == 0 ? no(time.flies) : time.flies;
+  // An ankle that stairs bend while standing would jump where a walk starts.
+  const V begun = both(starts, no(time.flies)) ? smooth(V(state.tick / state.roll_ticks))
+                                               : all<V>(1.0f),
+          ends = closes ? V(1.0f - smoother(time.share)) : all<V>(1.0f),
+          may = change.stands != V{} ? V{} : V(begun * ends * heel_rise(tables, right, phase));
+  const V soft = chosen<V>(flies, kSoftFlying_rad, kSoftBent_rad),
+          excess = soft_positive(bent, soft) * (flies    ? all<V>(1.0f)
+                                                : stands ? may
+                                                         : V{});
+  const auto eases = excess != V{};
+  if (!any(eases)) return;
+  Foot<V>& foot = feet.foot[k];
+  const Sole<V>& sole = feet.sole[k];
+  const Turn<V> yaw = foot.turn * back(turn_about(sole.side, foot.pitch_rad) * foot.edge);
+  Foot<V> risen = foot;
+  set_pitch(sole, yaw, V(foot.pitch_rad + excess), no(flies), risen);
+  if (any(flies)) {
+    const V heel_m =
+        (foot.heel_m.y - feet.base_m) * (is_uneven(tables) ? upright(footing.print) : all<V>(1.0f));
+    Foot<V> down = foot;
+    point_down(time, sole, yaw, heel_m, excess, down);
+    risen.heel_m = chosen(flies, down.heel_m, risen.heel_m);
+    risen.toe_m = chosen(flies, down.toe_m, risen.toe_m);
+    risen.turn = chosen(flies, down.turn, risen.turn);
+    risen.pitch_rad = flies ? down.pitch_rad : risen.pitch_rad;
+  }
+  // Once more, from where it started: it turns little there, and its knee does not swivel away.
+  V start_rad[kLegAngles], off_rad[kLegAngles];
+  for (int j = 0; j < kLegAngles; ++j) {
+    start_rad[j] = stride.leg_rad[k][j] + chosen<V>(right, r.stand_rad[j], l.stand_rad[j]);
+    off_rad[j] = leg.begun_rad[j];
+  }
+  start_rad[3] = most(start_rad[3], all<V>(kLeastKnee_rad));
+  const Turn<V> to_pelvis = back(pelvis.turn);
+  const Vec<V> ankle_m = to_pelvis * (ankle_of(risen, sole) - pelvis.place_m - pelvis.hip_m[k]);
+  const Leg<V> again =
+      solve_leg<V>(chosen<V>(right, r.thigh_m, l.thigh_m), chosen<V>(right, r.shank_m, l.shank_m),
+                   ankle_m, to_pelvis * risen.turn, start_rad, off_rad);
+  foot.heel_m = chosen(eases, risen.heel_m, foot.heel_m);
+  foot.toe_m = chosen(eases, risen.toe_m, foot.toe_m);
+  foot.turn = chosen(eases, risen.turn, foot.turn);
+  foot.pitch_rad = eases ? risen.pitch_rad : foot.pitch_rad;
+  leg.hip = chosen(eases, again.hip, leg.hip);
+  leg.knee = chosen(eases, again.knee, leg.knee);
+  leg.ankle = chosen(eases, again.ankle, leg.ankle);
+  for (int j = 0; j < kLegAngles; ++j)
+    state.leg_rad[k][j] = eases ? off_rad[j] : state.leg_rad[k][j];
+}
+
 template <class V>
 void ease_ankles(const Tables& tables, const Time<V>& time, const Stride<V>& stride, const V& phase,
                  const Pelvis<V>& pelvis, const Change<V>& change, const Footing<V>& footing,
                  State<V>& state, Feet<V>& feet, Leg<V> (&legs)[2]) noexcept {
-  const auto closes = change.closing != V{}, starts = change.starting != V{};
+  const LegBones &l = tables.leg[0], &r = tables.leg[1];
   for (int k : {0, 1}) {
     const auto right = k == 0 ? time.right : no(time.right);
-    const LegBones &l = tables.leg[0], &r = tables.leg[1];
     const V bent = -(stride.leg_rad[k][4] + chosen<V>(right, r.stand_rad[4], l.stand_rad[4]) +
                      state.leg_rad[k][4]) -
                    kMostBent_rad;
     if (!any(bent > all<V>(-kSoftFlying_rad))) continue;
-    const auto flies = k == 0 ? time.flies : Mask<V>{},
-               stands = k == 0 ? no(time.flies) : time.flies;
-    // An ankle that stairs bend while standing would jump where a walk starts.
-    const V begun = both(starts, no(time.flies)) ? smooth(V(state.tick / state.roll_ticks))
-                                                 : all<V>(1.0f),
-            ends = closes ? V(1.0f - smoother(time.share)) : all<V>(1.0f),
-            may = change.stands != V{} ? V{} : V(begun * ends * heel_rise(tables, right, phase));
-    const V soft = chosen<V>(flies, kSoftFlying_rad, kSoftBent_rad),
-            excess = soft_positive(bent, soft) * (flies    ? all<V>(1.0f)
-                                                  : stands ? may
-                                                           : V{});
-    const auto eases = excess != V{};
-    if (!any(eases)) continue;
-    Foot<V>& foot = feet.foot[k];
-    const Sole<V>& sole = feet.sole[k];
-    const Turn<V> yaw = foot.turn * back(turn_about(sole.side, foot.pitch_rad) * foot.edge);
-    Foot<V> risen = foot;
-    set_pitch(sole, yaw, V(foot.pitch_rad + excess), no(flies), risen);
-    if (any(flies)) {
-      const V heel_m = (foot.heel_m.y - feet.base_m) *
-                       (is_uneven(tables) ? upright(footing.print) : all<V>(1.0f));
-      Foot<V> down = foot;
-      point_down(time, sole, yaw, heel_m, excess, down);
-      risen.heel_m = chosen(flies, down.heel_m, risen.heel_m);
-      risen.toe_m = chosen(flies, down.toe_m, risen.toe_m);
-      risen.turn = chosen(flies, down.turn, risen.turn);
-      risen.pitch_rad = flies ? down.pitch_rad : risen.pitch_rad;
-    }
-    // Once more, from where it started: it turns little there, and its knee does not swivel away.
-    V start_rad[kLegAngles], off_rad[kLegAngles];
-    for (int j = 0; j < kLegAngles; ++j) {
-      start_rad[j] = stride.leg_rad[k][j] + chosen<V>(right, r.stand_rad[j], l.stand_rad[j]);
-      off_rad[j] = legs[k].begun_rad[j];
-    }
-    start_rad[3] = most(start_rad[3], all<V>(kLeastKnee_rad));
-    const Turn<V> to_pelvis = back(pelvis.turn);
-    const Vec<V> ankle_m = to_pelvis * (ankle_of(risen, sole) - pelvis.place_m - pelvis.hip_m[k]);
-    const Leg<V> again =
-        solve_leg<V>(chosen<V>(right, r.thigh_m, l.thigh_m), chosen<V>(right, r.shank_m, l.shank_m),
-                     ankle_m, to_pelvis * risen.turn, start_rad, off_rad);
-    foot.heel_m = chosen(eases, risen.heel_m, foot.heel_m);
-    foot.toe_m = chosen(eases, risen.toe_m, foot.toe_m);
-    foot.turn = chosen(eases, risen.turn, foot.turn);
-    foot.pitch_rad = eases ? risen.pitch_rad : foot.pitch_rad;
-    legs[k].hip = chosen(eases, again.hip, legs[k].hip);
-    legs[k].knee = chosen(eases, again.knee, legs[k].knee);
-    legs[k].ankle = chosen(eases, again.ankle, legs[k].ankle);
-    for (int j = 0; j < kLegAngles; ++j)
-      state.leg_rad[k][j] = eases ? off_rad[j] : state.leg_rad[k][j];
+    ease_ankle(tables, time, stride, phase, bent, k, pelvis, change, footing, state, feet, legs[k]);
   }
 }
 

@@ -378,6 +378,21 @@ struct Pelvis {
   Vec<V> hip_m[2];  // joints, from its place; swing and stand
 };
 
+// On uneven ground: into a slope the trunk leans about the hip joints.
+template <class V>
+[[gnu::noinline]] void lean_pelvis(const Tables& tables, const Turn<V>& upright,
+                                   const Turn<V>& turned, const Footing<V>& footing,
+                                   Pelvis<V>& pelvis) noexcept {
+  const auto &l = tables.leg[0].hip_m, &r = tables.leg[1].hip_m;
+  const Vec<V> middle_m{all<V>(0.5f * (l[0] + r[0])), all<V>(0.5f * (l[1] + r[1])),
+                        all<V>(0.5f * (l[2] + r[2]))};
+  const Turn<V> leans =
+      upright * (turn_about(Vec<V>{all<V>(1.0f), V{}, V{}}, footing.lean_rad.x) * turned);
+  pelvis.place_m = pelvis.place_m + pelvis.turn * middle_m - leans * middle_m;
+  pelvis.place_m.y = pelvis.place_m.y + footing.hips_m.x;
+  pelvis.turn = leans;
+}
+
 template <class V>
 Pelvis<V> pelvis_over(const Tables& tables, const Time<V>& time, const Hips<V>& hips,
                       const Stride<V>& stride, const State<V>& state,
@@ -401,17 +416,7 @@ Pelvis<V> pelvis_over(const Tables& tables, const Time<V>& time, const Hips<V>& 
   const Turn<V> lean{half_cosine, V{}, V{}, -half_sine}, sway{cosine, V{}, sine, V{}};
   const Turn<V> upright = hips.heading.turn() * lean, turned = sway * turn_by(tilt);
   pelvis.turn = upright * turned;
-  if (tables.terrain != nullptr) {
-    // Into a slope the trunk leans about the hip joints.
-    const auto &l = tables.leg[0].hip_m, &r = tables.leg[1].hip_m;
-    const Vec<V> middle_m{all<V>(0.5f * (l[0] + r[0])), all<V>(0.5f * (l[1] + r[1])),
-                          all<V>(0.5f * (l[2] + r[2]))};
-    const Turn<V> leans =
-        upright * (turn_about(Vec<V>{all<V>(1.0f), V{}, V{}}, footing.lean_rad.x) * turned);
-    pelvis.place_m = pelvis.place_m + pelvis.turn * middle_m - leans * middle_m;
-    pelvis.place_m.y = pelvis.place_m.y + footing.hips_m.x;
-    pelvis.turn = leans;
-  }
+  if (tables.terrain != nullptr) lean_pelvis(tables, upright, turned, footing, pelvis);
   pelvis.hip_m[0] = pelvis.turn * by_side<V>(time.right, tables.leg[0].hip_m, tables.leg[1].hip_m);
   pelvis.hip_m[1] =
       pelvis.turn * by_side<V>(no(time.right), tables.leg[0].hip_m, tables.leg[1].hip_m);

@@ -67,7 +67,7 @@ void write_root(const Tables& tables, const Pelvis<Floats<kWidth>>& pelvis,
   }
   const Turn<V> frame{state.frame_cosine, V{}, state.frame_sine, V{}};
   write_joint(frame * pelvis.turn * same<V>(tables.pelvis_standing), tables.pelvis, poses);
-  for (int w = 0; w < poses.walks; ++w) {
+  for (int w = 0; block.is_placed && w < poses.walks; ++w) {
     const Placement& placed = block.placed[w];
     if (placed == Placement{}) continue;
     *poses.root_m[w] = to_world(placed, *poses.root_m[w]);

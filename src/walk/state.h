@@ -92,6 +92,9 @@ struct Change {
   Off<V> off_phase;                   // from the phase found; fades in off_ticks
   V off_ticks{};
   V asked_ticks{};  // how long one that stands has been asked to walk
+  // What is asked of the coming landing. 1: it is to be here; else a push moves it by so much, and
+  // 1: the landing after it.
+  V is_aimed{}, aim_x_m{}, aim_z_m{}, aim_rad{}, push_x_m{}, push_z_m{}, push_waits{};
 };
 
 // How a plane rises along x and along z.
@@ -153,6 +156,7 @@ struct alignas(64) Block {
   Origin origin[kWidth];
   Placement placed[kWidth];  // of the walk's own coordinates in the world
   Stretch piece[kWidth];     // of uneven ground: where the swinging foot lands
+  bool is_placed = false;    // a walk of them is placed
 };
 
 // Copies a walk from a lane of one block to a lane of another.
@@ -163,6 +167,7 @@ void copy_walk(const Block<kFrom>& from, int from_lane, Block<kTo>& to, int to_l
         reinterpret_cast<const float*>(&from)[n * kFrom + from_lane];
   to.origin[to_lane] = from.origin[from_lane];
   to.placed[to_lane] = from.placed[from_lane];
+  to.is_placed |= from.is_placed;
   to.piece[to_lane] = from.piece[from_lane];
 }
 

@@ -124,8 +124,9 @@ void one_by_one(const Mask<Floats<kWidth>>& where, Block<kWidth>& block,
 
 // Where the landing on level ground has moved, the ground is asked for another one.
 template <int kWidth>
-void choose_footholds(const Tables& tables, const Time<Floats<kWidth>>& time,
-                      const AskedStep<Floats<kWidth>>& asked, Block<kWidth>& block) noexcept {
+[[gnu::noinline]] void choose_footholds(const Tables& tables, const Time<Floats<kWidth>>& time,
+                                        const AskedStep<Floats<kWidth>>& asked,
+                                        Block<kWidth>& block) noexcept {
   using V = Floats<kWidth>;
   constexpr float kMoved = 2e-5f;        // metres, radians
   constexpr float kPieceSettles = 0.6f;  // of the roll: until then a step may still go elsewhere
@@ -154,8 +155,8 @@ void choose_footholds(const Tables& tables, const Time<Floats<kWidth>>& time,
 
 // Where a flight begins, or its landing has moved, it is planned how it keeps clear of the ground.
 template <int kWidth>
-void plan_rooms(const Tables& tables, const Mask<Floats<kWidth>>& lifts,
-                Block<kWidth>& block) noexcept {
+[[gnu::noinline]] void plan_rooms(const Tables& tables, const Mask<Floats<kWidth>>& lifts,
+                                  Block<kWidth>& block) noexcept {
   using V = Floats<kWidth>;
   const State<V>& state = block.state;
   const Vec<V> off = block.footing.room_for_m -
@@ -167,6 +168,17 @@ void plan_rooms(const Tables& tables, const Mask<Floats<kWidth>>& lifts,
   const V begins = chosen<V>(lifts, 1.0f, 0.0f);
   one_by_one<kWidth>(
       plans, block, [&](Block<1>& one, int w) { plan_room(tables, lane(begins, w) != 0.0f, one); });
+}
+
+// What was asked of a landing is over; a push that came too late for it goes on.
+template <class V>
+void end_aims(const Landing<V>& landing, const Mask<V>& strikes, Change<V>& change) noexcept {
+  const Way<V>& way = landing.way;
+  const V x_m = change.push_x_m * change.push_waits, z_m = change.push_z_m * change.push_waits;
+  change.is_aimed = strikes ? V{} : change.is_aimed;
+  change.push_x_m = strikes ? V(way.cosine * x_m - way.sine * z_m) : change.push_x_m;
+  change.push_z_m = strikes ? V(way.cosine * z_m + way.sine * x_m) : change.push_z_m;
+  change.push_waits = strikes ? V{} : change.push_waits;
 }
 
 template <int kWidth>
@@ -221,6 +233,7 @@ void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& pose
       state.slowness = strikes ? slow : state.slowness;
     }
     change_feet(landing, strikes, feet, by_clock, state);
+    end_aims(landing, strikes, change);
     const auto keeps = either(change.led != V{}, change.off_phase.x != V{});
     const V rate = keeps ? change.phase_rate : state.phase_rate;
     begin_lead(tables, strikes, phase, rate, state, change);

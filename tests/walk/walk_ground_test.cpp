@@ -558,5 +558,109 @@ TEST(Stand, MayBeAnywhereAndFaceAnyWay) {
   }
 }
 
+// --- Aims and pushes -----------------------------------------------------------------------------
+
+// Walks until the foot that swings has a step of so many ticks behind it.
+void walk_to(Hiker& hiker, int tick, bool flies) {
+  for (int n = 0; n < 4 * kRate; ++n) {
+    hiker.step(params_of(0.0, 0.8));
+    if (n > 3 * kRate && hiker.block.state.tick == static_cast<float>(tick) &&
+        (hiker.block.state.flies != 0.0f) == flies)
+      return;
+  }
+  FAIL();
+}
+// What is seen until so many strikes later: the footprints, and how far planted points stray.
+struct Steps {
+  std::vector<Placement> prints;
+  double slid_m = 0.0, bend_m_s2 = 0.0;
+};
+Steps see_steps(Hiker& hiker, int strikes) {
+  Steps seen;
+  std::array<vec3, 3> hips;
+  int ticks = 0;
+  while (static_cast<int>(seen.prints.size()) < strikes) {
+    const bool right = hiker.block.state.right_swings != 0.0f;
+    const Planted planted = planted_of(hiker.block);
+    const vec3 before = end_of(hiker.pose, planted.side, planted.toe);
+    const bool begins = hiker.block.state.tick == 0.0f;
+    hiker.step(params_of(0.0, 0.8));
+    if (!begins)
+      seen.slid_m = std::max(seen.slid_m,
+                             glm::distance(end_of(hiker.pose, planted.side, planted.toe), before));
+    hips = {hiker.pose.root_m, hips[0], hips[1]};
+    if (++ticks > 3)
+      seen.bend_m_s2 = std::max(
+          seen.bend_m_s2, horizontal_length(hips[0] - 2.0 * hips[1] + hips[2]) * kRate * kRate);
+    const Origin& origin = hiker.block.origin[0];
+    if ((hiker.block.state.right_swings != 0.0f) != right)
+      seen.prints.push_back({vec3(origin.x_m, 0.0, origin.z_m), origin.heading_rad});
+  }
+  return seen;
+}
+
+TEST(StepTo, PutsTheHeelThereOrSaysThatItCannot) {
+  constexpr double kThere_m = 1e-5;
+  for (const bool flies : {false, true}) {
+    for (const double aside : {-0.01, 0.0, 0.1}) {
+      for (const double on : {-0.2, 0.0, 0.12}) {
+        Hiker plain(adult()), aimed(adult());
+        walk_to(plain, 10, flies);
+        walk_to(aimed, 10, flies);
+        const Steps level = see_steps(plain, 4);
+        Placement goal = level.prints[0];
+        const double outwards = aimed.block.state.right_swings != 0.0f ? -1.0 : 1.0;
+        goal.place_m += vec3(outwards * aside, 0.0, on);
+        goal.heading_rad += 0.1;
+        ASSERT_EQ(step_to(aimed.tables(), goal, false, aimed.block), Aim::taken);
+        const Steps seen = see_steps(aimed, 4);
+        EXPECT_LE(glm::distance(seen.prints[0].place_m, goal.place_m), kThere_m);
+        EXPECT_NEAR(seen.prints[0].heading_rad, goal.heading_rad, 1e-5);
+        EXPECT_LE(seen.slid_m, kPlanted_m);
+        // The steps after it are as long as ever.
+        EXPECT_NEAR(seen.prints[3].place_m.z - seen.prints[2].place_m.z,
+                    level.prints[3].place_m.z - level.prints[2].place_m.z, 1e-3);
+      }
+    }
+  }
+  Hiker far(adult());
+  walk_to(far, 10, false);
+  const Placement beyond{vec3(0.0, 0.0, 40.0), 0.0};
+  EXPECT_EQ(step_to(far.tables(), beyond, false, far.block), Aim::refused);
+  EXPECT_EQ(step_to(far.tables(), beyond, true, far.block), Aim::nearest);
+  EXPECT_LE(see_steps(far, 3).slid_m, kPlanted_m);
+  walk_to(far, 60, true);
+  EXPECT_EQ(step_to(far.tables(), beyond, true, far.block), Aim::refused);
+  Hiker stands(adult());
+  EXPECT_EQ(step_to(stands.tables(), beyond, true, stands.block), Aim::refused);
+}
+
+TEST(Push, MovesTheHipsAndTheNextFootprintCatchesThem) {
+  constexpr double kPush_m_s = 0.5;
+  for (const bool flies : {false, true}) {
+    Hiker plain(adult()), pushed(adult());
+    walk_to(plain, 10, flies);
+    walk_to(pushed, 10, flies);
+    ASSERT_TRUE(push(pushed.tables(), vec3(kPush_m_s, 0.0, 0.0), pushed.block));
+    const double before = pushed.pose.root_m.x - plain.pose.root_m.x;
+    for (int tick = 0; tick < 6; ++tick) {
+      plain.step(params_of(0.0, 0.8));
+      pushed.step(params_of(0.0, 0.8));
+    }
+    const double faster = (pushed.pose.root_m.x - plain.pose.root_m.x - before) / (6 * kDt);
+    EXPECT_NEAR(faster, kPush_m_s, 0.15 * kPush_m_s);
+    const Steps level = see_steps(plain, 4), seen = see_steps(pushed, 4);
+    const double aside_m = seen.prints[0].place_m.x - level.prints[0].place_m.x;
+    std::printf(
+        "%.3f m/s more; prints %.3f %.3f %.3f m aside; hips bend by %.1f, else %.1f m/s^2\n",
+        faster, aside_m, seen.prints[1].place_m.x - level.prints[1].place_m.x,
+        seen.prints[3].place_m.x - level.prints[3].place_m.x, seen.bend_m_s2, level.bend_m_s2);
+    EXPECT_NEAR(aside_m, kPush_m_s * std::sqrt(pushed.tables().leg_m / 9.81), 0.01);
+    EXPECT_LE(seen.slid_m, kPlanted_m);
+  }
+  Hiker stands(adult());
+  EXPECT_FALSE(push(stands.tables(), vec3(kPush_m_s, 0.0, 0.0), stands.block));
+}
+
 }  // namespace
 }  // namespace gaitpad::anew

@@ -40,11 +40,10 @@ void point_down(const Time<V>& time, const Sole<V>& sole, const Turn<V>& yaw, co
 
 // `phase`: what is shown. `bent`: by how much its ankle is bent too far.
 template <class V>
-[[gnu::noinline]] void ease_ankle(const Tables& tables, const Time<V>& time,
-                                  const Stride<V>& stride, const V& phase, const V& bent, int k,
-                                  const Pelvis<V>& pelvis, const Change<V>& change,
-                                  const Footing<V>& footing, State<V>& state, Feet<V>& feet,
-                                  Leg<V>& leg) noexcept {
+void ease_ankle(const Tables& tables, const Time<V>& time, const Stride<V>& stride, const V& phase,
+                const V& bent, int k, const Pelvis<V>& pelvis, const Change<V>& change,
+                const Footing<V>& footing, State<V>& state, Feet<V>& feet,
+                const V (&begun_rad)[kLegAngles], Leg<V>& leg) noexcept {
   const auto closes = change.closing != V{}, starts = change.starting != V{};
   const auto right = k == 0 ? time.right : no(time.right);
   const LegBones &l = tables.leg[0], &r = tables.leg[1];
@@ -79,7 +78,7 @@ template <class V>
   V start_rad[kLegAngles], off_rad[kLegAngles];
   for (int j = 0; j < kLegAngles; ++j) {
     start_rad[j] = stride.leg_rad[k][j] + chosen<V>(right, r.stand_rad[j], l.stand_rad[j]);
-    off_rad[j] = leg.begun_rad[j];
+    off_rad[j] = begun_rad[j];
   }
   start_rad[3] = most(start_rad[3], all<V>(kLeastKnee_rad));
   const Turn<V> to_pelvis = back(pelvis.turn);
@@ -101,7 +100,8 @@ template <class V>
 template <class V>
 void ease_ankles(const Tables& tables, const Time<V>& time, const Stride<V>& stride, const V& phase,
                  const Pelvis<V>& pelvis, const Change<V>& change, const Footing<V>& footing,
-                 State<V>& state, Feet<V>& feet, Leg<V> (&legs)[2]) noexcept {
+                 State<V>& state, Feet<V>& feet, const V (&begun_rad)[2][kLegAngles],
+                 Leg<V> (&legs)[2]) noexcept {
   const LegBones &l = tables.leg[0], &r = tables.leg[1];
   for (int k : {0, 1}) {
     const auto right = k == 0 ? time.right : no(time.right);
@@ -109,7 +109,8 @@ void ease_ankles(const Tables& tables, const Time<V>& time, const Stride<V>& str
                      state.leg_rad[k][4]) -
                    kMostBent_rad;
     if (!any(bent > all<V>(-kSoftFlying_rad))) continue;
-    ease_ankle(tables, time, stride, phase, bent, k, pelvis, change, footing, state, feet, legs[k]);
+    ease_ankle(tables, time, stride, phase, bent, k, pelvis, change, footing, state, feet,
+               begun_rad[k], legs[k]);
   }
 }
 

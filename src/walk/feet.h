@@ -73,10 +73,10 @@ inline constexpr float kMostSink_m = 0.0015f, kSoftPitch_rad = 0.0069813f, kWide
 
 // The tables' place of the swinging heel, from its footprint to the landing; `base_m`: the height
 // of the ground line below it.
-template <class V>
+template <class V, class F>
 Vec<V> flight_heel(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
                    const Stride<V>& stride, const Hips<V>& hips, const V& phase, const V& u,
-                   const Change<V>& change, const State<V>& state, const Footing<V>& footing,
+                   const Change<V>& change, const State<V>& state, const F& footing,
                    V& base_m) noexcept {
   const Way<V> left = way_of(state.print_rad);
   const V turns = chosen<V>(time.right, 1.0f, 0.0f);
@@ -126,7 +126,7 @@ Vec<V> flight_heel(const Tables& tables, const Time<V>& time, const Landing<V>& 
   const V factor = lift_of(time, state), low = least(factor, all<V>(1.0f));
   V more = 1.0f + (most(factor, all<V>(1.0f)) - 1.0f) * (1.0f - smooth(kLiftFalls, kLiftEnds, u));
   base_m = V{};
-  if (is_uneven(tables)) {
+  if constexpr (kIsUneven<F>) {
     V up{};
     base_m = ground_line(tables, landing, p, u, state, footing, up);
     more = more * up;
@@ -136,7 +136,7 @@ Vec<V> flight_heel(const Tables& tables, const Time<V>& time, const Landing<V>& 
   const V left_u = 1.0f - u, square_u = u * left_u;
   const V high_m = tables.size * 16.0f * chosen<V>(closes, kLastLift_m, kFirstLift_m);
   p.y = is_short ? V(p.y + high_m * square_u * square_u) : p.y;
-  if (is_uneven(tables)) p.y = p.y + base_m;
+  if constexpr (kIsUneven<F>) p.y = p.y + base_m;
   return p;
 }
 
@@ -149,11 +149,11 @@ struct Flight {
   Turn<V> tilt{V{} + 1.0f, V{}, V{}, V{}}, edge;
 };
 
-template <class V>
+template <class V, class F>
 Flight<V> fly(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
               const Stride<V>& by_clock, const Stride<V>& stride, const Hips<V>& hips,
               const V& phase, const Sole<V>& sole, const Change<V>& change, const State<V>& state,
-              const Footing<V>& footing) noexcept {
+              const F& footing) noexcept {
   Flight<V> flight;
   const V one = all<V>(1.0f), u = time.u;
   Vec<V> p = flight.table_heel_m = flight_heel(tables, time, landing, by_clock, hips, phase, u,
@@ -174,7 +174,7 @@ Flight<V> fly(const Tables& tables, const Time<V>& time, const Landing<V>& landi
   const V yaw = state.print_rad + (landing.rad - state.print_rad) * gone +
                 state.lift_turn_rad * slope_left(u);
   flight.way = way_of(time.flies ? yaw : state.print_rad);
-  if (is_uneven(tables)) {
+  if constexpr (kIsUneven<F>) {
     const Turn<V> from = tilt_of(footing.print), to = tilt_of(footing.landing);
     flight.lifted_m = footing.print_y_m +
                       rise_of(footing.print, V(p.x - state.print_x_m), V(p.z - state.print_z_m)) -
@@ -199,13 +199,13 @@ V faded_pitch(const Time<V>& time, const V& tick, const Change<V>& change,
 }
 
 // Its pitch: what is planned, as far as toe and edge stay off the ground.
-template <class V>
+template <class V, class F>
 void pitch_in_flight(const Tables& tables, const Time<V>& time, const Sole<V>& sole,
-                     const Flight<V>& flight, const V& planned, const V& off,
-                     const Footing<V>& footing, Foot<V>& foot) noexcept {
+                     const Flight<V>& flight, const V& planned, const V& off, const F& footing,
+                     Foot<V>& foot) noexcept {
   const V u = time.u;
   V height_m = flight.heel_m.y;
-  if (is_uneven(tables)) {
+  if constexpr (kIsUneven<F>) {
     // The toe leaves the plane that it stood on, which may be another one than the ground line.
     const V lifted_m = flight.lifted_m * (1.0f - smoother(V(u * (1.0f / kLiftGround))));
     height_m = (height_m - (flight.base_m + lifted_m)) * upright(footing.print);
@@ -224,7 +224,7 @@ void pitch_in_flight(const Tables& tables, const Time<V>& time, const Sole<V>& s
   const V pitch = time.flies ? soft_least(planned, limit, soft) : most(planned, V{});
   foot.heel_m = flight.heel_m;
   const Turn<V> level = flight.way.turn();
-  set_pitch(sole, is_uneven(tables) ? flight.tilt * level : level, pitch, no(time.flies), foot);
+  set_pitch(sole, kIsUneven<F> ? flight.tilt * level : level, pitch, no(time.flies), foot);
 }
 
 template <class V>
@@ -236,13 +236,12 @@ struct Feet {
   Vec<V> flat_toe_m;    // of the standing one, where it is flat on its ground
 };
 
-template <class V>
+template <class V, class F>
 Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
                   const Stride<V>& by_clock, const Stride<V>& stride, const Hips<V>& hips,
-                  const Change<V>& change, const State<V>& state, Footing<V>& footing) noexcept {
+                  const Change<V>& change, const State<V>& state, F& footing) noexcept {
   Feet<V> feet;
   const V one = all<V>(1.0f);
-  const bool uneven = is_uneven(tables);
   const auto starts = change.starting != V{}, closes = change.closing != V{},
              first_roll = both(starts, no(time.flies));
   {  // The foot that stands: on its heel while it rolls, then on its toe.
@@ -261,7 +260,7 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
     V planted = time.flies ? most(pitch, V{}) : least(pitch, V{});
     Turn<V> tilt{one, V{}, V{}, V{}};
     feet.flat_toe_m = sole.line_m;
-    if (uneven) {
+    if constexpr (kIsUneven<F>) {
       tilt = tilt_of(footing.stand);
       feet.flat_toe_m = tilt * sole.line_m;
       // Where the hips have risen over it, it rises on its toe.
@@ -287,7 +286,7 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
   V planned = first_roll ? V(kFirstPitch * by_clock.foot[0].pitch_rad * lifts)
                          : V(stride.foot[0].pitch_rad + off);
   foot.toe_m = {state.toe_x_m, sole.toe_rest_m, state.toe_z_m};
-  if (uneven) {
+  if constexpr (kIsUneven<F>) {
     foot.toe_m.y = footing.toe_y_m;
     follow_room(tables, footing);
     const Vec<V> room_m = room_at(time.u, state, footing);
@@ -321,11 +320,11 @@ V slope_of(const V& now, const V& last, const V& before) noexcept {
 
 // Where a foot lifts off, what it and its slope differ by from its flight in the tables, which are
 // read a tick ahead.
-template <class V>
+template <class V, class F>
 void lift_off(const Tables& tables, const Time<V>& time, const Mask<V>& lifts,
               const Landing<V>& landing, const Hips<V>& hips, const Feet<V>& feet,
               const Stride<V>& stride, const Change<V>& change, State<V>& state,
-              Footing<V>& footing) noexcept {
+              F& footing) noexcept {
   const V ticks = state.flight_ticks, phase = state.phase + state.phase_rate,
           share = (state.tick + 1.0f) / (state.roll_ticks + ticks);
   const Stride<V> next =
@@ -345,7 +344,7 @@ void lift_off(const Tables& tables, const Time<V>& time, const Mask<V>& lifts,
   state.gap_m = chosen(lifts, heel - table, state.gap_m);
   state.gap_slope_m = chosen(lifts, Vec<V>{slope(&Vec<V>::x), slope(&Vec<V>::y), slope(&Vec<V>::z)},
                              state.gap_slope_m);
-  if (is_uneven(tables)) {
+  if constexpr (kIsUneven<F>) {
     // How it rises with the hips is no part of it.
     const V rises_m = slope_of(footing.rise_m, footing.last_rise_m[0], footing.last_rise_m[1]);
     state.gap_m.y = lifts ? V(state.gap_m.y - footing.rise_m) : state.gap_m.y;

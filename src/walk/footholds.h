@@ -70,9 +70,9 @@ struct AskedStep {
 };
 
 // Where it would land on level ground. An aim that is taken has no length that a slope shortens.
-template <class V>
+template <class V, class F>
 AskedStep<V> plan_landing(const Tables& tables, const Time<V>& time, const Change<V>& change,
-                          State<V>& state, Footing<V>& footing) noexcept {
+                          State<V>& state, F& footing) noexcept {
   const auto closes = change.closing != V{};
   const V heading = heading_ahead(tables, state, V(time.to_strike + 1.0f));
   const Way<V> to = way_of(heading), along = way_of(V(kWayTurns * heading));
@@ -99,9 +99,8 @@ AskedStep<V> plan_landing(const Tables& tables, const Time<V>& time, const Chang
   const auto keep = [&](const V& now, V& kept) {
     kept = follows ? now : open ? V(kept + (now - kept) * share) : kept;
   };
-  const bool level = tables.terrain == nullptr;
-  V &kept_x_m = level ? state.landing_x_m : footing.level_x_m,
-    &kept_z_m = level ? state.landing_z_m : footing.level_z_m;
+  V *kept_x_m = &state.landing_x_m, *kept_z_m = &state.landing_z_m;
+  if constexpr (kIsUneven<F>) kept_x_m = &footing.level_x_m, kept_z_m = &footing.level_z_m;
   V x_m = along.sine * length_m + to.cosine * asides_m - stood_m - to.sine * lead_m,
     z_m = along.cosine * length_m - to.sine * asides_m + (1.0f - to.cosine) * lead_m,
     rad = heading + (closes ? V{} : V(in_place * ahead_rad));
@@ -118,12 +117,12 @@ AskedStep<V> plan_landing(const Tables& tables, const Time<V>& time, const Chang
       const V from = begins ? now : kept, goal = aimed ? at : V(now + push_m);
       now = moves ? V(from + (goal - from) / left) : now;
     };
-    aim(change.aim_x_m, change.push_x_m, kept_x_m, x_m);
-    aim(change.aim_z_m, change.push_z_m, kept_z_m, z_m);
+    aim(change.aim_x_m, change.push_x_m, *kept_x_m, x_m);
+    aim(change.aim_z_m, change.push_z_m, *kept_z_m, z_m);
     aim(change.aim_rad, V{}, state.landing_rad, rad);
   }
-  keep(x_m, kept_x_m);
-  keep(z_m, kept_z_m);
+  keep(x_m, *kept_x_m);
+  keep(z_m, *kept_z_m);
   keep(rad, state.landing_rad);
   keep(wider_m, state.next_wider_m);
   return {aimed ? V{} : length_m, along, to};

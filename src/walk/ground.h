@@ -12,7 +12,7 @@ inline bool is_uneven(const Tables& tables) noexcept { return tables.terrain != 
 
 // From level ground to a plane.
 template <class V>
-[[gnu::noinline]] Turn<V> tilt_of(const Slope<V>& slope) noexcept {
+Turn<V> tilt_of(const Slope<V>& slope) noexcept {
   const V steep = root(V(1.0f + (slope.x * slope.x + slope.z * slope.z)));
   return unit(Turn<V>{V(steep + 1.0f), -slope.z, V{}, slope.x});
 }
@@ -62,8 +62,7 @@ inline constexpr float kLeastLeft = 0.3f;  // the ground leaves that much of a s
 inline constexpr float kRatioJump_1_s = 2.4f, kFirstRatioJump_1_s = 14.4f;
 
 template <class V>
-[[gnu::noinline]] void lean_into_slope(const Tables& tables, const Change<V>& change,
-                                       Footing<V>& footing) noexcept {
+void lean_into_slope(const Tables& tables, const Change<V>& change, Footing<V>& footing) noexcept {
   const V run_m = most(size(footing.step_m), all<V>(kShortestRun * tables.leg_m)),
           grade = change.stands != V{} ? V{} : V(footing.landing_y_m / run_m),
           most_rad = chosen<V>(grade > V{}, kUphillLean_rad, kDownhillLean_rad);
@@ -81,10 +80,9 @@ V ratio_on_ground(const Change<V>& change, const State<V>& state,
 // that is to end on another tread than it was has another ratio at once, and the tables come to it
 // until the flight begins.
 template <class V>
-[[gnu::noinline]] void follow_ground(const Tables& tables, const Time<V>& time,
-                                     const AskedStep<V>& asked, const Change<V>& change,
-                                     const State<V>& state, Footing<V>& footing,
-                                     Landing<V>& landing) noexcept {
+void follow_ground(const Tables& tables, const Time<V>& time, const AskedStep<V>& asked,
+                   const Change<V>& change, const State<V>& state, Footing<V>& footing,
+                   Landing<V>& landing) noexcept {
   const auto stands = change.stands != V{};
   footing.step_m = landing.x_m * asked.to.sine + landing.z_m * asked.to.cosine;
   const V wanted_m = size(asked.length_m), step_m = size(footing.step_m),
@@ -108,8 +106,8 @@ template <class V>
 
 // Rises are in legs. A riser of 17 cm takes an adult at least 0.84 s; both feet equally long.
 template <class V>
-[[gnu::noinline]] V slowness_of(const Tables& tables, const Mask<V>& right, const State<V>& state,
-                                const Footing<V>& footing) noexcept {
+V slowness_of(const Tables& tables, const Mask<V>& right, const State<V>& state,
+              const Footing<V>& footing) noexcept {
   constexpr float kSlowerOnStairs = 1.2f, kSlowestRise = 0.34f, kSteepRise = 0.15f,
                   kStairStep_s = 0.84f, kStairRise = 0.2f;
   const V rise = least(footing.next_rise, all<V>(kSlowestRise)),
@@ -149,9 +147,9 @@ Sinking<V> sinking(const Change<V>& change, const State<V>& state, const V& tick
 // A quintic from where the hips are to where the landed foot carries them, less what they then sink
 // to the next landing.
 template <class V>
-[[gnu::noinline]] void move_hips_ground(const Tables& tables, const Time<V>& time,
-                                        const Landing<V>& landing, const Change<V>& change,
-                                        const State<V>& state, Footing<V>& footing) noexcept {
+void move_hips_ground(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
+                      const Change<V>& change, const State<V>& state,
+                      Footing<V>& footing) noexcept {
   const auto stands = change.stands != V{}, closes = change.closing != V{},
              strikes = both(no(stands), both(no(time.flies), state.tick == all<V>(1.0f)));
   // How far the next foot lands below the standing one, its heel or its toe.
@@ -215,9 +213,8 @@ inline constexpr float kMostUpright = 0.99f, kSoftUpright = 0.12f;  // sine of a
 // Of a foot over ground of height `base_m`, whose knee is `knee_rad` bent in the tables. One that
 // flies down comes with the hips, and softly: over its ground they are lower by `hover_m` twice.
 template <class V>
-[[gnu::noinline]] V rise_with_hips(const Tables& tables, const Mask<V>& right, const V& knee_rad,
-                                   const V& base_m, const V& hover_m,
-                                   const Footing<V>& footing) noexcept {
+V rise_with_hips(const Tables& tables, const Mask<V>& right, const V& knee_rad, const V& base_m,
+                 const V& hover_m, const Footing<V>& footing) noexcept {
   const auto of = [&](float LegBones::*bone) {
     return chosen<V>(right, tables.leg[1].*bone, tables.leg[0].*bone);
   };
@@ -251,8 +248,8 @@ V arc_sine_of(const V& x) noexcept {
 
 // The pitch of a foot on its toe whose ankle is higher by `rise_m`.
 template <class V>
-[[gnu::noinline]] V pitch_to_rise(const Tables& tables, const Mask<V>& right, const V& rise_m,
-                                  const V& pitch_rad) noexcept {
+V pitch_to_rise(const Tables& tables, const Mask<V>& right, const V& rise_m,
+                const V& pitch_rad) noexcept {
   constexpr float kUpright_rad = 1.57079633f;
   const auto length_of = [](const LegBones& leg) {
     const auto& toe = leg.toe_m;
@@ -284,9 +281,8 @@ inline constexpr float kReplan_m = 0.005f;  // a landing moved by more is planne
 // ground; across a riser not at all, for there the splines raise the foot. And the factor on the
 // foot's lift.
 template <class V>
-[[gnu::noinline]] V ground_line(const Tables& tables, const Landing<V>& landing,
-                                const Vec<V>& heel_m, const V& u, const State<V>& state,
-                                const Footing<V>& footing, V& lift) noexcept {
+V ground_line(const Tables& tables, const Landing<V>& landing, const Vec<V>& heel_m, const V& u,
+              const State<V>& state, const Footing<V>& footing, V& lift) noexcept {
   const V way_x = landing.x_m - state.print_x_m, way_z = landing.z_m - state.print_z_m,
           gone_x = heel_m.x - state.print_x_m, gone_z = heel_m.z - state.print_z_m,
           in_place = all<V>(kClimbsInPlace_m * kClimbsInPlace_m * tables.size * tables.size),
@@ -307,7 +303,7 @@ V climb_over_risers(const Footing<V>& footing) noexcept {
 
 // Moves the splines that are in force to those planned.
 template <class V>
-[[gnu::noinline]] void follow_room(const Tables& tables, Footing<V>& footing) noexcept {
+void follow_room(const Tables& tables, Footing<V>& footing) noexcept {
   for (int k = 0; k < kRoomKnots; ++k) {
     follow(footing.raise_m[k], tables.room, footing.raise[k]);
     follow(footing.shift_m[k], tables.room, footing.shift[k]);
@@ -315,8 +311,7 @@ template <class V>
 }
 // What they move a flying heel by.
 template <class V>
-[[gnu::noinline]] Vec<V> room_at(const V& u, const State<V>& state,
-                                 const Footing<V>& footing) noexcept {
+Vec<V> room_at(const V& u, const State<V>& state, const Footing<V>& footing) noexcept {
   V raise[kRoomKnots], shift[kRoomKnots];
   for (int k = 0; k < kRoomKnots; ++k) raise[k] = footing.raise[k].x, shift[k] = footing.shift[k].x;
   const V away_m = spline_at(shift, V{}, u), sine = 2.0f * state.frame_sine * state.frame_cosine,
@@ -326,8 +321,8 @@ template <class V>
 
 // At a strike the step frame goes to the landing, which is where the foot then stands.
 template <class V>
-[[gnu::noinline]] void change_footing(const Landing<V>& landing, const Mask<V>& strikes,
-                                      const V& flat_toe_y_m, Footing<V>& footing) noexcept {
+void change_footing(const Landing<V>& landing, const Mask<V>& strikes, const V& flat_toe_y_m,
+                    Footing<V>& footing) noexcept {
   const auto set = [&](const V& to, V& number) { number = strikes ? to : number; };
   const auto seen = [&](const Slope<V>& slope) {
     return Slope<V>{V(landing.way.cosine * slope.x - landing.way.sine * slope.z),

@@ -380,9 +380,8 @@ struct Pelvis {
 
 // On uneven ground: into a slope the trunk leans about the hip joints.
 template <class V>
-[[gnu::noinline]] void lean_pelvis(const Tables& tables, const Turn<V>& upright,
-                                   const Turn<V>& turned, const Footing<V>& footing,
-                                   Pelvis<V>& pelvis) noexcept {
+void lean_pelvis(const Tables& tables, const Turn<V>& upright, const Turn<V>& turned,
+                 const Footing<V>& footing, Pelvis<V>& pelvis) noexcept {
   const auto &l = tables.leg[0].hip_m, &r = tables.leg[1].hip_m;
   const Vec<V> middle_m{all<V>(0.5f * (l[0] + r[0])), all<V>(0.5f * (l[1] + r[1])),
                         all<V>(0.5f * (l[2] + r[2]))};
@@ -393,10 +392,9 @@ template <class V>
   pelvis.turn = leans;
 }
 
-template <class V>
+template <class V, class F>
 Pelvis<V> pelvis_over(const Tables& tables, const Time<V>& time, const Hips<V>& hips,
-                      const Stride<V>& stride, const State<V>& state,
-                      const Footing<V>& footing) noexcept {
+                      const Stride<V>& stride, const State<V>& state, const F& footing) noexcept {
   // More bounce lets it sink deeper, less keeps it as low as its lowest: no leg has to be longer.
   const V more = state.bounce.x - 1.0f, y = stride.pelvis_m.y,
           stays = more > V{} ? stride.pelvis_high_m : stride.pelvis_low_m;
@@ -416,7 +414,7 @@ Pelvis<V> pelvis_over(const Tables& tables, const Time<V>& time, const Hips<V>& 
   const Turn<V> lean{half_cosine, V{}, V{}, -half_sine}, sway{cosine, V{}, sine, V{}};
   const Turn<V> upright = hips.heading.turn() * lean, turned = sway * turn_by(tilt);
   pelvis.turn = upright * turned;
-  if (tables.terrain != nullptr) lean_pelvis(tables, upright, turned, footing, pelvis);
+  if constexpr (kIsUneven<F>) lean_pelvis(tables, upright, turned, footing, pelvis);
   pelvis.hip_m[0] = pelvis.turn * by_side<V>(time.right, tables.leg[0].hip_m, tables.leg[1].hip_m);
   pelvis.hip_m[1] =
       pelvis.turn * by_side<V>(no(time.right), tables.leg[0].hip_m, tables.leg[1].hip_m);

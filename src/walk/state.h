@@ -136,6 +136,11 @@ struct Footing {
   Smoothed<V> raise[kRoomKnots], shift[kRoomKnots];
 };
 
+// In its place where the ground is level.
+struct NoFooting {};
+template <class F>
+inline constexpr bool kIsUneven = !std::is_same_v<F, NoFooting>;
+
 template <class V>
 inline constexpr int kStateNumbers = (sizeof(State<V>) + sizeof(Change<V>) + sizeof(Footing<V>)) /
                                      sizeof(V);

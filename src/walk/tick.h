@@ -124,9 +124,8 @@ void one_by_one(const Mask<Floats<kWidth>>& where, Block<kWidth>& block,
 
 // Where the landing on level ground has moved, the ground is asked for another one.
 template <int kWidth>
-[[gnu::noinline]] void choose_footholds(const Tables& tables, const Time<Floats<kWidth>>& time,
-                                        const AskedStep<Floats<kWidth>>& asked,
-                                        Block<kWidth>& block) noexcept {
+void choose_footholds(const Tables& tables, const Time<Floats<kWidth>>& time,
+                      const AskedStep<Floats<kWidth>>& asked, Block<kWidth>& block) noexcept {
   using V = Floats<kWidth>;
   constexpr float kMoved = 2e-5f;        // metres, radians
   constexpr float kPieceSettles = 0.6f;  // of the roll: until then a step may still go elsewhere
@@ -155,8 +154,8 @@ template <int kWidth>
 
 // Where a flight begins, or its landing has moved, it is planned how it keeps clear of the ground.
 template <int kWidth>
-[[gnu::noinline]] void plan_rooms(const Tables& tables, const Mask<Floats<kWidth>>& lifts,
-                                  Block<kWidth>& block) noexcept {
+void plan_rooms(const Tables& tables, const Mask<Floats<kWidth>>& lifts,
+                Block<kWidth>& block) noexcept {
   using V = Floats<kWidth>;
   const State<V>& state = block.state;
   const Vec<V> off = block.footing.room_for_m -
@@ -181,21 +180,24 @@ void end_aims(const Landing<V>& landing, const Mask<V>& strikes, Change<V>& chan
   change.push_waits = strikes ? V{} : change.push_waits;
 }
 
-template <int kWidth>
-void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& poses) noexcept {
+// `footing`: the block's, or none.
+template <int kWidth, class F>
+void advance_on(const Tables& tables, Block<kWidth>& block, F& footing,
+                const Poses& poses) noexcept {
   using V = Floats<kWidth>;
   State<V>& state = block.state;
   Change<V>& change = block.change;
-  Footing<V>& footing = block.footing;
-  const bool uneven = is_uneven(tables);
+  constexpr bool kUneven = kIsUneven<F>;
   begin_walks(tables, block);
-  if (uneven) lean_into_slope(tables, change, footing);
-  smooth_asked(tables, change, uneven ? footing.left.x : all<V>(1.0f), state);
+  if constexpr (kUneven) lean_into_slope(tables, change, footing);
+  V left = all<V>(1.0f);
+  if constexpr (kUneven) left = footing.left.x;
+  smooth_asked(tables, change, left, state);
   const Time<V> time = advance_clock(tables, change, state);
   const AskedStep<V> asked = plan_landing(tables, time, change, state, footing);
-  if (uneven) choose_footholds<kWidth>(tables, time, asked, block);
+  if constexpr (kUneven) choose_footholds<kWidth>(tables, time, asked, block);
   Landing<V> landing = planned_landing(tables, time, asked.to, change, state);
-  if (uneven) {
+  if constexpr (kUneven) {
     follow_ground(tables, time, asked, change, state, footing, landing);
     move_hips_ground(tables, time, landing, change, state, footing);
     plan_rooms<kWidth>(tables, Mask<V>{}, block);
@@ -212,8 +214,10 @@ void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& pose
                              ankle_of(feet.foot[1], feet.sole[1])};
   sink(tables, time, stride, ankle_m, pelvis);
   Leg<V> legs[2];
-  solve_legs(tables, time, stride, feet, pelvis, state, legs);
-  ease_ankles(tables, time, stride, phase, pelvis, change, footing, state, feet, legs);
+  V begun_rad[2][kLegAngles];
+  solve_legs(tables, time, stride, feet, pelvis, state, legs, kUneven ? begun_rad : nullptr);
+  if constexpr (kUneven)
+    ease_ankles(tables, time, stride, phase, pelvis, change, footing, state, feet, begun_rad, legs);
   write_upper_body(tables, pelvis, phase, change.shown, state, poses);
   write_legs(tables, time, feet, legs, poses);
   write_root<kWidth>(tables, pelvis, block, poses);
@@ -223,11 +227,11 @@ void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& pose
   if (any(lifts))
     lift_off(tables, time, lifts, landing, hips, feet, by_clock, change, state, footing);
   keep_swing(feet.foot[0], state);
-  if (uneven)
+  if constexpr (kUneven)
     footing.last_rise_m[1] = footing.last_rise_m[0], footing.last_rise_m[0] = footing.rise_m;
   if (any(strikes)) {
     move_frame<kWidth>(landing, strikes, block);
-    if (uneven) {
+    if constexpr (kUneven) {
       change_footing(landing, strikes, feet.flat_toe_m.y, footing);
       const V slow = slowness_of(tables, no(time.right), state, footing);
       state.slowness = strikes ? slow : state.slowness;
@@ -239,11 +243,21 @@ void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& pose
     begin_lead(tables, strikes, phase, rate, state, change);
     begin_step(tables, time, strikes, change, state);
     rest(change, state);
-    if (uneven) footing.next_rise = change.stands != V{} ? V{} : footing.next_rise;
+    if constexpr (kUneven) footing.next_rise = change.stands != V{} ? V{} : footing.next_rise;
   }
   if (!any(lifts)) return;
   begin_flight(tables, time, lifts, state);
-  if (uneven) plan_rooms<kWidth>(tables, lifts, block);
+  if constexpr (kUneven) plan_rooms<kWidth>(tables, lifts, block);
+}
+
+template <int kWidth>
+void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& poses) noexcept {
+  NoFooting level;
+  if (is_uneven(tables)) {
+    advance_on<kWidth>(tables, block, block.footing, poses);
+  } else {
+    advance_on<kWidth>(tables, block, level, poses);
+  }
 }
 
 }  // namespace

@@ -200,9 +200,8 @@ V faded_pitch(const Time<V>& time, const V& tick, const Change<V>& change,
 
 // Its pitch: what is planned, as far as toe and edge stay off the ground.
 template <class V, class F>
-void pitch_in_flight(const Tables& tables, const Time<V>& time, const Sole<V>& sole,
-                     const Flight<V>& flight, const V& planned, const V& off, const F& footing,
-                     Foot<V>& foot) noexcept {
+void pitch_in_flight(const Time<V>& time, const Sole<V>& sole, const Flight<V>& flight,
+                     const V& planned, const V& off, const F& footing, Foot<V>& foot) noexcept {
   const V u = time.u;
   V height_m = flight.heel_m.y;
   if constexpr (kIsUneven<F>) {
@@ -302,7 +301,7 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
     planned = time.flies ? planned
                          : pitch_to_rise<V>(tables, time.right, footing.rise_m, most(planned, V{}));
   }
-  pitch_in_flight(tables, time, sole, flight, planned, off, footing, foot);
+  pitch_in_flight(time, sole, flight, planned, off, footing, foot);
   feet.base_m = flight.base_m;
   return feet;
 }

@@ -536,7 +536,7 @@ PlannedFlight planned_flight(const Tables& tables, const Floor& floor, const Fra
         fly(tables, time, landing, stride, stride, hips, phase, sole, change, state, footing);
     const float off = faded_pitch(time, tick, change, state);
     Foot<float> foot;
-    pitch_in_flight(tables, time, sole, flies, stride.foot[0].pitch_rad + off, off, footing, foot);
+    pitch_in_flight(time, sole, flies, stride.foot[0].pitch_rad + off, off, footing, foot);
     set_points(leg, frame, flies, foot, flight.sole[i], flight.base[i]);
     flight.left[i] = lands.z - frame.out(doubles(flies.heel_m)).z;
   }

@@ -115,7 +115,7 @@ Hips<V> move_hips(const Tables& tables, const Time<V>& time, const Landing<V>& l
   return hips;
 }
 
-// --- A change of pace: the hips lead, the phase follows -------------------------------------------
+// --- A change of pace: the hips lead, the phase follows ------------------------------------------
 
 // Steps whose ratios differ by more are led. What the phase is off the one found fades in kCarry_s.
 inline constexpr float kOtherPace = 0.02f, kCarry_s = 0.15f, kMostBend_m_s2 = 15.0f;

@@ -1,6 +1,6 @@
 // Fourth: where both feet are, and how they are turned.
 #pragma once
-#include "walk/hips.h"
+#include "walk/ground.h"
 
 namespace gaitpad::anew {
 namespace {
@@ -69,11 +69,13 @@ inline constexpr float kRollEnd = 0.9f;    // of the roll: the toe is down
 // floor, are let through.
 inline constexpr float kMostSink_m = 0.0015f, kSoftPitch_rad = 0.0069813f, kWiderPitch = 0.25f;
 
-// The tables' place of the swinging heel, from its footprint to the landing.
-template <class V>
+// The tables' place of the swinging heel, from its footprint to the landing; `base_m`: the height
+// of the ground line below it.
+template <class V, class F>
 Vec<V> flight_heel(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
                    const Stride<V>& stride, const Hips<V>& hips, const V& phase, const V& u,
-                   const Change<V>& change, const State<V>& state) noexcept {
+                   const Change<V>& change, const State<V>& state, const F& footing,
+                   V& base_m) noexcept {
   const Way<V> left = way_of(state.print_rad);
   const V turns = chosen<V>(time.right, 1.0f, 0.0f);
   const auto seen = [&](const Footprints<V>& prints, const Vec<V>& heel_m, const V& turned) {
@@ -122,13 +124,19 @@ Vec<V> flight_heel(const Tables& tables, const Time<V>& time, const Landing<V>& 
   }
   // A greater factor acts while the foot is high, a smaller one from the lift-off on.
   const V factor = lift_of(time, state), low = least(factor, all<V>(1.0f));
-  const V more =
-      1.0f + (most(factor, all<V>(1.0f)) - 1.0f) * (1.0f - smooth(kLiftFalls, kLiftEnds, u));
+  V more = 1.0f + (most(factor, all<V>(1.0f)) - 1.0f) * (1.0f - smooth(kLiftFalls, kLiftEnds, u));
+  base_m = V{};
+  if constexpr (kIsUneven<F>) {
+    V up{};
+    base_m = ground_line(tables, landing, p, u, state, footing, up);
+    more = more * up;
+  }
   p.y = stride.heel_high_m * low * mix(all<V>(1.0f), more, smoother(V(u * (1.0f / kLiftGrown))));
   // Its toe leaves the floor at once.
   const V left_u = 1.0f - u, square_u = u * left_u;
   const V high_m = tables.size * 16.0f * chosen<V>(closes, kLastLift_m, kFirstLift_m);
   p.y = is_short ? V(p.y + high_m * square_u * square_u) : p.y;
+  if constexpr (kIsUneven<F>) p.y = p.y + base_m;
   return p;
 }
 
@@ -137,9 +145,10 @@ template <class V>
 V gap_share(const Time<V>& time, const Change<V>& change) noexcept {
   return (time.u - change.gap_begin) / change.gap_lasts;
 }
-// The heel from its table's place, `heel_m`, to where it is, and off the floor.
+// The heel from its table's place, `heel_m`, to where it is, and off the floor, whose height is
+// `base_m`.
 template <class V>
-Vec<V> with_gap(const Tables& tables, const Time<V>& time, const Vec<V>& heel_m,
+Vec<V> with_gap(const Tables& tables, const Time<V>& time, const Vec<V>& heel_m, const V& base_m,
                 const Change<V>& change, const State<V>& state) noexcept {
   constexpr float kSoftFloor_m = 0.02f, kSoftFrom = 0.3f, kSoftUntil = 0.7f;
   const V s = gap_share(time, change);
@@ -154,28 +163,31 @@ Vec<V> with_gap(const Tables& tables, const Time<V>& time, const Vec<V>& heel_m,
     of_gap = changed ? V(w3 * (1.0f + s * (3.0f + 6.0f * s))) : of_gap;
     of_slope = changed ? V(w3 * s * (1.0f + 3.0f * s)) : of_slope;
     p.y = both(changed, fading) ? V(p.y + lift * (s * s) * (w * w)) : p.y;
-    falls = both(changed, state.gap_m.y < V{}) ? V(p.y / change.gap_high_m) : falls;
+    falls = both(changed, state.gap_m.y < V{}) ? V((p.y - base_m) / change.gap_high_m) : falls;
   }
   of_gap = fading ? of_gap : V{};
   of_slope = fading ? V(of_slope * change.gap_lasts) : V{};
   p = p + Vec<V>{state.gap_m.x, V(state.gap_m.y * falls), state.gap_m.z} * of_gap +
       state.gap_slope_m * of_slope;
-  V high_m = most(p.y, V{});
+  V high_m = most(p.y, base_m);
   if (any(changed)) {
     const V soft_m = kSoftFloor_m * tables.size * smoother(V(s * (1.0f / kSoftFrom))) *
                      (1.0f - smoother(V((time.u - kSoftUntil) * (1.0f / (1.0f - kSoftUntil)))));
-    high_m = changed ? soft_positive(p.y, most(soft_m, all<V>(1e-6f))) : high_m;
+    high_m =
+        changed ? V(base_m + soft_positive(V(p.y - base_m), most(soft_m, all<V>(1e-6f)))) : high_m;
   }
   p.y = high_m;
   return p;
 }
+// `tick`: of the flight.
 template <class V>
-V pitch_off(const Time<V>& time, const Change<V>& change, const State<V>& state) noexcept {
+V pitch_off(const Time<V>& time, const V& tick, const Change<V>& change,
+            const State<V>& state) noexcept {
   const auto is_short = either(change.starting != V{}, change.closing != V{}),
              changed = change.pitch_lasts != V{};
   const V own_ticks = state.flight_ticks * chosen<V>(is_short, kShortPitchFade, kPitchFade),
           ticks = changed ? change.pitch_lasts : own_ticks,
-          t = (state.tick - (changed ? change.pitch_begin : V{})) / ticks;
+          t = (tick - (changed ? change.pitch_begin : V{})) / ticks;
   return both(time.flies, t < all<V>(1.0f)) ? V(state.swing_pitch_rad * value_left(t) +
                                                 state.swing_pitch_rate * ticks * slope_left(t))
                                             : V{};
@@ -206,19 +218,89 @@ V landed_pitch(const Change<V>& change, const State<V>& state) noexcept {
                           : V{};
 }
 
+// A foot in the air, still without its pitch.
+template <class V>
+struct Flight {
+  Vec<V> heel_m, table_heel_m;
+  V base_m{}, lifted_m{};  // the ground line below it; how much higher the plane that it left is
+  Way<V> way;              // where it points
+  Turn<V> tilt{V{} + 1.0f, V{}, V{}, V{}}, edge;
+};
+
+template <class V, class F>
+Flight<V> fly(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
+              const Stride<V>& by_clock, const Stride<V>& stride, const Hips<V>& hips,
+              const V& phase, const Sole<V>& sole, const Change<V>& change, const State<V>& state,
+              const F& footing) noexcept {
+  Flight<V> flight;
+  const V one = all<V>(1.0f), u = time.u;
+  flight.table_heel_m = flight_heel(tables, time, landing, by_clock, hips, phase, u, change, state,
+                                    footing, flight.base_m);
+  flight.heel_m = with_gap(tables, time, flight.table_heel_m, flight.base_m, change, state);
+  // A low foot that hardly leaves the floor does not roll onto an edge.
+  const V low = mix(one, least(lift_of(time, state), one),
+                    V(smoother(V(u * 2.0f)) * (1.0f - smoother(V((u - 0.6f) * 2.5f)))));
+  const StrideFoot<V>& table = stride.foot[0];
+  flight.edge = edge_of(sole, V(low * table.twist_rad), V(low * table.roll_rad));
+  const Way<V> left = way_of(state.print_rad),
+               flown = way_of(flying_yaw(time, landing, change, state));
+  flight.way = chosen(time.flies, flown, left);
+  if constexpr (kIsUneven<F>) {
+    const Turn<V> from = tilt_of(footing.print), to = tilt_of(footing.landing);
+    const Vec<V>& p = flight.heel_m;
+    flight.lifted_m = footing.print_y_m +
+                      rise_of(footing.print, V(p.x - state.print_x_m), V(p.z - state.print_z_m)) -
+                      flight.base_m;
+    const V goes = time.flies ? V(1.0f - value_left(u)) : V{};
+    flight.tilt = unit(Turn<V>{mix(from.w, to.w, goes), mix(from.x, to.x, goes),
+                               mix(from.y, to.y, goes), mix(from.z, to.z, goes)});
+  }
+  return flight;
+}
+
+// Its pitch: what is planned, as far as toe and edge stay off the ground.
+template <class V, class F>
+void pitch_in_flight(const Time<V>& time, const Sole<V>& sole, const Flight<V>& flight,
+                     const V& planned, const V& off, const F& footing, Foot<V>& foot) noexcept {
+  const V u = time.u;
+  V height_m = flight.heel_m.y;
+  if constexpr (kIsUneven<F>) {
+    // The toe leaves the plane that it stood on, which may be another one than the ground line.
+    const V lifted_m = flight.lifted_m * (1.0f - smoother(V(u * (1.0f / kLiftGround))));
+    height_m = (height_m - (flight.base_m + lifted_m)) * upright(footing.print);
+  }
+  foot.edge = flight.edge;
+  const Vec<V> rolled = foot.edge * sole.line_m;
+  const V ahead = dot(rolled, sole.forward), flat_ahead = dot(sole.line_m, sole.forward);
+  const V steeper = (rolled.y * flat_ahead - sole.line_m.y * ahead) / (sole.foot_m * sole.foot_m);
+  const V across = (flight.way.turn() * (turn_about(sole.side, planned) * foot.edge) * sole.side).y;
+  const V edge_m =
+      sole.half_width_m * size(across) * smooth(0.0f, 0.25f, u) * (1.0f - smooth(0.9f, 1.0f, u));
+  const V deep = (sole.toe_rest_m + edge_m - kMostSink_m - height_m) / sole.foot_m;
+  const V limit = sole.elevation_rad - arc_sine(within(deep, -0.95f, 0.95f)) + arc_sine(steeper);
+  const V soft =
+      kSoftPitch_rad + kWiderPitch * size(off) * smooth(0.0f, 0.1f, u) + edge_m / sole.foot_m;
+  const V pitch = time.flies ? soft_least(planned, limit, soft) : most(planned, V{});
+  foot.heel_m = flight.heel_m;
+  const Turn<V> level = flight.way.turn();
+  set_pitch(sole, kIsUneven<F> ? flight.tilt * level : level, pitch, no(time.flies), foot);
+}
+
 template <class V>
 struct Feet {
   Foot<V> foot[2];  // swing, stand
   Sole<V> sole[2];
   Vec<V> table_heel_m;  // of the swinging one
+  V base_m{};           // the ground line below it
+  Vec<V> flat_toe_m;    // of the standing one, where it is flat on its ground
 };
 
-template <class V>
+template <class V, class F>
 Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
                   const Stride<V>& by_clock, const Stride<V>& stride, const Hips<V>& hips,
-                  const Change<V>& change, const State<V>& state) noexcept {
+                  const Change<V>& change, const State<V>& state, F& footing) noexcept {
   Feet<V> feet;
-  const V one = all<V>(1.0f), flight = state.flight_ticks;
+  const V one = all<V>(1.0f);
   const auto starts = change.starting != V{}, closes = change.closing != V{},
              first_roll = both(starts, no(time.flies));
   {  // The foot that stands: on its heel while it rolls, then on its toe.
@@ -234,47 +316,54 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
     const V rises = starts ? smoother(V(time.u * (1.0f / kHeelRises))) : stays,
             ends = change.gap_begin != V{} ? edge_left(time.u, change) : V{},
             shows = both(closes, time.flies) ? ends : rises;
-    const V pitch = table.pitch_rad * shows + (time.flies ? V{} : off),
-            planted = time.flies ? most(pitch, V{}) : least(pitch, V{});
+    const V pitch = table.pitch_rad * shows + (time.flies ? V{} : off);
+    V planted = time.flies ? most(pitch, V{}) : least(pitch, V{});
+    Turn<V> tilt{one, V{}, V{}, V{}};
+    feet.flat_toe_m = sole.line_m;
+    if constexpr (kIsUneven<F>) {
+      tilt = tilt_of(footing.stand);
+      feet.flat_toe_m = tilt * sole.line_m;
+      // Where the hips have risen over it, it rises on its toe.
+      const V rises_m = rise_with_hips<V>(tables, no(time.right), stride.leg_rad[1][3], V{}, V{},
+                                          footing),
+              begun = starts ? smoother(V(time.u * (1.0f / kFirstRise))) : one;
+      planted = time.flies ? pitch_to_rise<V>(tables, no(time.right), V(rises_m * begun), planted)
+                           : planted;
+    }
     foot.edge = edge_of(sole, table.twist_rad, table.roll_rad);
-    foot.toe_m = sole.line_m;  // flat, from the origin
+    foot.toe_m = feet.flat_toe_m;
     foot.heel_m = {};
-    set_pitch(sole, Turn<V>{one, V{}, V{}, V{}}, planted, time.flies, foot);
+    set_pitch(sole, tilt, planted, time.flies, foot);
   }
   Foot<V>& foot = feet.foot[0];
   const Sole<V>& sole = feet.sole[0] = sole_of<V>(tables, time.right);
-  const StrideFoot<V>& table = stride.foot[0];
-  const V u = time.u;
-  const V off = pitch_off(time, change, state);
+  Flight<V> flight =
+      fly(tables, time, landing, by_clock, stride, hips, state.phase, sole, change, state, footing);
+  feet.table_heel_m = flight.table_heel_m;
+  const V off = pitch_off(time, state.tick, change, state);
   const V lifts =
       smoother(V((state.tick / state.roll_ticks - kHeelStays) * (1.0f / (1.0f - kHeelStays))));
-  const V planned =
-      first_roll ? V(kFirstPitch * by_clock.foot[0].pitch_rad * lifts) : V(table.pitch_rad + off);
-  const Way<V> left = way_of(state.print_rad);
-  Vec<V> p = feet.table_heel_m =
-      flight_heel(tables, time, landing, stride, hips, state.phase, u, change, state);
-  p = with_gap(tables, time, p, change, state);
-  // A low foot that hardly leaves the floor does not roll onto an edge.
-  const V low = mix(one, least(lift_of(time, state), one),
-                    V(smoother(V(u * 2.0f)) * (1.0f - smoother(V((u - 0.6f) * 2.5f)))));
-  foot.edge = edge_of(sole, V(low * table.twist_rad), V(low * table.roll_rad));
-  const V yaw = flying_yaw(time, landing, change, state);
-  const Way<V> flown = way_of(yaw), way = chosen(time.flies, flown, left);
-  // Its toe stays off the floor, and the edge onto which it rolls.
-  const Vec<V> rolled = foot.edge * sole.line_m;
-  const V ahead = dot(rolled, sole.forward), flat_ahead = dot(sole.line_m, sole.forward);
-  const V steeper = (rolled.y * flat_ahead - sole.line_m.y * ahead) / (sole.foot_m * sole.foot_m);
-  const V across = (way.turn() * (turn_about(sole.side, planned) * foot.edge) * sole.side).y;
-  const V edge_m =
-      sole.half_width_m * size(across) * smooth(0.0f, 0.25f, u) * (1.0f - smooth(0.9f, 1.0f, u));
-  const V deep = (sole.toe_rest_m + edge_m - kMostSink_m - p.y) / sole.foot_m;
-  const V limit = sole.elevation_rad - arc_sine(within(deep, -0.95f, 0.95f)) + arc_sine(steeper);
-  const V soft =
-      kSoftPitch_rad + kWiderPitch * size(off) * smooth(0.0f, 0.1f, u) + edge_m / sole.foot_m;
-  const V pitch = time.flies ? soft_least(planned, limit, soft) : most(planned, V{});
-  foot.heel_m = p;
+  V planned = first_roll ? V(kFirstPitch * by_clock.foot[0].pitch_rad * lifts)
+                         : V(stride.foot[0].pitch_rad + off);
   foot.toe_m = {state.toe_x_m, sole.toe_rest_m, state.toe_z_m};
-  set_pitch(sole, way.turn(), pitch, no(time.flies), foot);
+  if constexpr (kIsUneven<F>) {
+    foot.toe_m.y = footing.toe_y_m;
+    follow_room(tables, footing);
+    const Vec<V> room_m = room_at(time.u, state, footing);
+    const V base_m = time.flies ? V(flight.base_m + room_m.y) : footing.print_y_m,
+            hover_m = time.flies ? V(0.5f * footing.early_m * smooth(0.0f, 0.5f, time.u)) : V{};
+    footing.rise_m =
+        rise_with_hips<V>(tables, time.right, stride.leg_rad[0][3], base_m, hover_m, footing);
+    footing.rise_m = first_roll ? V{} : footing.rise_m;
+    const Vec<V> risen_m{room_m.x, V(room_m.y + footing.rise_m), room_m.z};
+    flight.heel_m = flight.heel_m + risen_m;
+    flight.base_m = base_m;
+    flight.heel_m.y = most(flight.heel_m.y, base_m);
+    planned = time.flies ? planned
+                         : pitch_to_rise<V>(tables, time.right, footing.rise_m, most(planned, V{}));
+  }
+  pitch_in_flight(time, sole, flight, planned, off, footing, foot);
+  feet.base_m = flight.base_m;
   return feet;
 }
 
@@ -291,16 +380,18 @@ V slope_of(const V& now, const V& last, const V& before) noexcept {
 
 // Where a foot lifts off, what it and its slope differ by from its flight in the tables, which are
 // read a tick ahead.
-template <class V>
+template <class V, class F>
 void lift_off(const Tables& tables, const Time<V>& time, const Mask<V>& lifts,
               const Landing<V>& landing, const Hips<V>& hips, const Feet<V>& feet,
-              const Stride<V>& stride, const Change<V>& change, State<V>& state) noexcept {
+              const Stride<V>& stride, const Change<V>& change, State<V>& state,
+              F& footing) noexcept {
   const V ticks = state.flight_ticks, phase = state.phase + state.phase_rate,
           share = (state.tick + 1.0f) / (state.roll_ticks + ticks);
   const Stride<V> next =
       read_by_clock(tables, time, landing, phase, share, V(1.0f / ticks), change, state);
+  V base_m{};
   const Vec<V> ahead = flight_heel(tables, time, landing, next, hips, phase, V(1.0f / ticks),
-                                   change, state),
+                                   change, state, footing, base_m),
                &heel = feet.foot[0].heel_m, &table = feet.table_heel_m,
                &last = state.last_heel_m[0], &before = state.last_heel_m[1];
   const auto slope = [&](V Vec<V>::*part) {
@@ -313,6 +404,15 @@ void lift_off(const Tables& tables, const Time<V>& time, const Mask<V>& lifts,
   state.gap_m = chosen(lifts, heel - table, state.gap_m);
   state.gap_slope_m = chosen(lifts, Vec<V>{slope(&Vec<V>::x), slope(&Vec<V>::y), slope(&Vec<V>::z)},
                              state.gap_slope_m);
+  if constexpr (kIsUneven<F>) {
+    // How it rises with the hips is no part of it.
+    const V rises_m = slope_of(footing.rise_m, footing.last_rise_m[0], footing.last_rise_m[1]);
+    state.gap_m.y = lifts ? V(state.gap_m.y - footing.rise_m) : state.gap_m.y;
+    state.gap_slope_m.y = lifts ? V(state.gap_slope_m.y - rises_m * ticks) : state.gap_slope_m.y;
+    const V lifts_y_m = footing.print_y_m + rise_of(footing.print, V(heel.x - state.print_x_m),
+                                                    V(heel.z - state.print_z_m));
+    footing.lift_y_m = lifts ? lifts_y_m : footing.lift_y_m;
+  }
   state.swing_pitch_rad = lifts ? V(pitch - table_pitch) : state.swing_pitch_rad;
   state.swing_pitch_rate = lifts ? rate : state.swing_pitch_rate;
   // In a turn it pivots on its planted toe as its heel rises.
@@ -335,7 +435,7 @@ void change_feet(const Landing<V>& landing, const Mask<V>& strikes, const Feet<V
   const auto moved = [&](const V& x_m, const V& z_m) {
     return back_turn * Vec<V>{x_m - landing.x_m, V{}, z_m - landing.z_m};
   };
-  const Vec<V> print = moved(V{}, V{}), toe = moved(feet.sole[1].line_m.x, feet.sole[1].line_m.z);
+  const Vec<V> print = moved(V{}, V{}), toe = moved(feet.flat_toe_m.x, feet.flat_toe_m.z);
   set(print.x, state.print_x_m), set(print.z, state.print_z_m);
   set(V(-landing.rad), state.print_rad);
   set(toe.x, state.toe_x_m), set(toe.z, state.toe_z_m);

@@ -63,9 +63,17 @@ Landing<V> planned_landing(const Tables& tables, const Time<V>& time, const Way<
   return landing;
 }
 
+// The step that is asked for: its length and the direction of its way, and where it is to point.
 template <class V>
-Landing<V> plan_landing(const Tables& tables, const Time<V>& time, const Change<V>& change,
-                        State<V>& state) noexcept {
+struct AskedStep {
+  V length_m{};
+  Way<V> along, to;
+};
+
+// Where it would land on level ground. An aim that is taken has no length that a slope shortens.
+template <class V, class F>
+AskedStep<V> plan_landing(const Tables& tables, const Time<V>& time, const Change<V>& change,
+                          State<V>& state, F& footing) noexcept {
   const auto closes = change.closing != V{};
   const V heading = heading_ahead(tables, state, V(time.to_strike + 1.0f));
   const Way<V> to = way_of(heading), along = way_of(V(kWayTurns * heading));
@@ -98,13 +106,33 @@ Landing<V> plan_landing(const Tables& tables, const Time<V>& time, const Change<
   const auto keep = [&](const V& now, V& kept) {
     kept = follows ? now : open ? V(kept + (now - kept) * share) : kept;
   };
-  keep(V(along.sine * length_m + to.cosine * asides_m - stood_m - to.sine * lead_m),
-       state.landing_x_m);
-  keep(V(along.cosine * length_m - to.sine * asides_m + (1.0f - to.cosine) * lead_m),
-       state.landing_z_m);
-  keep(V(heading + (closes ? V{} : V(in_place * ahead_rad))), state.landing_rad);
+  V *kept_x_m = &state.landing_x_m, *kept_z_m = &state.landing_z_m;
+  if constexpr (kIsUneven<F>) kept_x_m = &footing.level_x_m, kept_z_m = &footing.level_z_m;
+  V x_m = along.sine * length_m + to.cosine * asides_m - stood_m - to.sine * lead_m,
+    z_m = along.cosine * length_m - to.sine * asides_m + (1.0f - to.cosine) * lead_m,
+    rad = heading + (closes ? V{} : V(in_place * ahead_rad));
+  const auto aimed = change.is_aimed != V{},
+             answers = both(either(change.push_x_m != V{}, change.push_z_m != V{}),
+                            change.push_waits == V{}),
+             moves = either(aimed, answers);
+  if (any(moves)) {
+    // It comes there evenly until it is settled.
+    const auto begins = both(no(time.flies), state.tick == all<V>(1.0f));
+    const V settled = (time.flies ? V{} : state.roll_ticks) + kSettles * state.flight_ticks,
+            left = most(V(settled - state.tick + 1.0f), all<V>(1.0f));
+    const auto aim = [&](const V& at, const V& push_m, const V& kept, V& now) {
+      const V from = begins ? now : kept, goal = aimed ? at : V(now + push_m);
+      now = moves ? V(from + (goal - from) / left) : now;
+    };
+    aim(change.aim_x_m, change.push_x_m, *kept_x_m, x_m);
+    aim(change.aim_z_m, change.push_z_m, *kept_z_m, z_m);
+    aim(change.aim_rad, V{}, state.landing_rad, rad);
+  }
+  keep(x_m, *kept_x_m);
+  keep(z_m, *kept_z_m);
+  keep(rad, state.landing_rad);
   keep(wider_m, state.next_wider_m);
-  return planned_landing(tables, time, to, change, state);
+  return {aimed ? V{} : length_m, along, to};
 }
 
 }  // namespace

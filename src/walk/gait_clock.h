@@ -73,8 +73,10 @@ Mask<V> is_to_walk(const State<V>& state) noexcept {
   return both(asked.walks != V{}, either(on_spot, asked.backward == state.backward));
 }
 
+// `left`: the share of the lengths asked for that uneven ground leaves.
 template <class V>
-void smooth_asked(const Tables& tables, const Change<V>& change, State<V>& state) noexcept {
+void smooth_asked(const Tables& tables, const Change<V>& change, const V& left,
+                  State<V>& state) noexcept {
   constexpr float kGravity_m_s2 = 9.81f, kLeastCycle_s = 0.2f;
   constexpr float kFirstStep = 0.9f;  // of the length asked for
   constexpr float kChestAhead_s = 0.13f, kHeadAhead_s = 0.30f;
@@ -110,7 +112,7 @@ void smooth_asked(const Tables& tables, const Change<V>& change, State<V>& state
   follow(asked.bounce, tables.bounce, state.bounce);
   follow(asked.sway, tables.bounce, state.sway);
   const V both_m = state.length_m[0].x + state.length_m[1].x;
-  follow(V(0.5f * both_m * (1.0f / tables.source_step_m)), tables.step, state.pace);
+  follow(V(0.5f * both_m * left * (1.0f / tables.source_step_m)), tables.step, state.pace);
   follow(within(V(2.0f * state.pace.x), 0.0f, 1.0f), tables.posture, state.posture);
   // A lean of v w / g puts the weight on the standing foot's edge, as on a bicycle.
   const V speed_m_s = both_m / most(cycle_s, all<V>(kLeastCycle_s));
@@ -144,7 +146,8 @@ struct Stages {
   V roll, flight, roll_s, flight_s;
 };
 template <class V>
-Stages<V> stages_of(const Tables& tables, const State<V>& state, const Mask<V>& right) noexcept {
+Stages<V> stages_of(const Tables& tables, const Change<V>& change, const State<V>& state,
+                    const Mask<V>& right) noexcept {
   constexpr float kLeastRoll = 6.0f, kLeastFlight = 12.0f;  // beats
   const Asked<V>& asked = state.asked;
   const auto& share = tables.stage_share;
@@ -153,8 +156,8 @@ Stages<V> stages_of(const Tables& tables, const State<V>& state, const Mask<V>& 
   const V ratio = asked_ratio(tables, state);
   const V rolls = roll_share(roll, ratio), flies = roll + flight - rolls;
   const V lands_s = by_side<V>(no(right), asked.time_s), swings_s = by_side<V>(right, asked.time_s);
-  return {roll, flight, whole_beats(V(2.0f * lands_s * rolls), kLeastRoll),
-          whole_beats(V(2.0f * swings_s * flies), kLeastFlight)};
+  return {roll, flight, whole_beats(V(2.0f * lands_s * change.slowness * rolls), kLeastRoll),
+          whole_beats(V(2.0f * swings_s * change.slowness * flies), kLeastFlight)};
 }
 
 // A start: from the stick to the lift-off, and the first flight, in seconds and of a steady one.
@@ -163,9 +166,10 @@ inline constexpr float kFirstRoll_s = 0.25f, kLeastFirstFlight_s = 0.38f,
 
 // The first flight follows the stick until the foot lifts off: a thumb takes some time.
 template <class V>
-void time_first_flight(const Tables& tables, const Mask<V>& where, State<V>& state) noexcept {
+void time_first_flight(const Tables& tables, const Mask<V>& where, const Change<V>& change,
+                       State<V>& state) noexcept {
   const float tick_s = tables.tick_s, scale = tables.time_scale;
-  const Stages<V> here = stages_of(tables, state, state.right_swings != V{});
+  const Stages<V> here = stages_of(tables, change, state, state.right_swings != V{});
   const V roll_s = whole_beats(all<V>(kFirstRoll_s * scale), 1.0f), roll = ticks_of(roll_s, tick_s),
           flight_s = whole_beats(within(V(kFirstFlight * here.flight_s),
                                         kLeastFirstFlight_s * scale, kMostFirstFlight_s * scale),
@@ -204,7 +208,7 @@ template <class V>
 Time<V> advance_clock(const Tables& tables, const Change<V>& change, State<V>& state) noexcept {
   const auto follows = both(change.starting != V{}, state.flies == V{}),
              runs = change.stands == V{};
-  if (any(follows)) time_first_flight(tables, follows, state);
+  if (any(follows)) time_first_flight(tables, follows, change, state);
   const V stage_end = time_of(tables, state).stage_end, left = ticks_of_stage(state) - state.tick,
           s = 1.0f / left, way = stage_end - state.phase, v0 = state.phase_rate * left,
           v1 = state.end_rate * left, c2 = 3.0f * way - 2.0f * v0 - v1, c3 = v0 + v1 - 2.0f * way;
@@ -217,9 +221,9 @@ Time<V> advance_clock(const Tables& tables, const Change<V>& change, State<V>& s
 // After the roll, where `lifts`: the flight begins.
 template <class V>
 void begin_flight(const Tables& tables, const Time<V>& time, const Mask<V>& lifts,
-                  State<V>& state) noexcept {
-  const Stages<V> here = stages_of(tables, state, time.right),
-                  next = stages_of(tables, state, no(time.right));
+                  const Change<V>& change, State<V>& state) noexcept {
+  const Stages<V> here = stages_of(tables, change, state, time.right),
+                  next = stages_of(tables, change, state, no(time.right));
   // At its end the phase runs at the mean of both stages' rates, so that nothing has a kink there.
   const V end_rate =
       0.5f * (here.flight / state.flight_ticks + next.roll / ticks_of(next.roll_s, tables.tick_s));
@@ -235,7 +239,7 @@ template <class V>
 void begin_step(const Tables& tables, const Time<V>& time, const Mask<V>& strikes,
                 const Change<V>& change, State<V>& state) noexcept {
   const float tick_s = tables.tick_s;
-  const Stages<V> next = stages_of(tables, state, no(time.right));
+  const Stages<V> next = stages_of(tables, change, state, no(time.right));
   const V short_s = state.late_s + state.step_s - (state.roll_ticks + state.flight_ticks) * tick_s;
   const V late_s = within(short_s, -tick_s, tick_s), step_s = next.roll_s + next.flight_s,
           own_roll = ticks_of(V(next.roll_s + late_s), tick_s),

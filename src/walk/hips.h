@@ -274,7 +274,7 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
   const V over = planned_over(time, change) + change.off_over.x;
   V phase = state.phase, rate = state.phase_rate;
   if (any(led)) {
-    const Stages<V> next = stages_of(tables, state, no(time.right));
+    const Stages<V> next = stages_of(tables, change, state, no(time.right));
     const V flight = chosen<V>(time.right, tables.stage_share[3], tables.stage_share[1]),
             strike_phase = time.stage_end + (time.flies ? V{} : flight),
             strike_rate = time.flies ? state.end_rate
@@ -372,7 +372,8 @@ void begin_lead(const Tables& tables, const Mask<V>& strikes, const V& phase, co
   const V own_m = own_step_m<V>(tables, right, state.backward != V{}),
           asked_m = by_side<V>(right, state.asked.length_m),
           smoothed_m = right ? state.length_m[1].x : state.length_m[0].x,
-          last_m = change.starting != V{} ? V(state.ratio_behind * own_m) : smoothed_m;
+          begun_m = tables.terrain == nullptr ? V(state.ratio_behind * own_m) : smoothed_m,
+          last_m = change.starting != V{} ? begun_m : smoothed_m;
   // In the last step of a stop the foot closes beside the other one.
   const auto stops = change.stops != V{}, rests = both(strikes, change.closing != V{}),
              closes = both(both(strikes, no(rests)), both(stops, change.further == V{}));
@@ -415,9 +416,23 @@ struct Pelvis {
   Vec<V> hip_m[2];  // joints, from its place; swing and stand
 };
 
+// On uneven ground: into a slope the trunk leans about the hip joints.
 template <class V>
+void lean_pelvis(const Tables& tables, const Turn<V>& upright, const Turn<V>& turned,
+                 const Footing<V>& footing, Pelvis<V>& pelvis) noexcept {
+  const auto &l = tables.leg[0].hip_m, &r = tables.leg[1].hip_m;
+  const Vec<V> middle_m{all<V>(0.5f * (l[0] + r[0])), all<V>(0.5f * (l[1] + r[1])),
+                        all<V>(0.5f * (l[2] + r[2]))};
+  const Turn<V> leans =
+      upright * (turn_about(Vec<V>{all<V>(1.0f), V{}, V{}}, footing.lean_rad.x) * turned);
+  pelvis.place_m = pelvis.place_m + pelvis.turn * middle_m - leans * middle_m;
+  pelvis.place_m.y = pelvis.place_m.y + footing.hips_m.x;
+  pelvis.turn = leans;
+}
+
+template <class V, class F>
 Pelvis<V> pelvis_over(const Tables& tables, const Time<V>& time, const Hips<V>& hips,
-                      const Stride<V>& stride, const State<V>& state) noexcept {
+                      const Stride<V>& stride, const State<V>& state, const F& footing) noexcept {
   // More bounce lets it sink deeper, less keeps it as low as its lowest: no leg has to be longer.
   const V more = state.bounce.x - 1.0f, y = stride.pelvis_m.y,
           stays = more > V{} ? stride.pelvis_high_m : stride.pelvis_low_m;
@@ -435,7 +450,9 @@ Pelvis<V> pelvis_over(const Tables& tables, const Time<V>& time, const Hips<V>& 
   V sine, cosine;
   sin_cos_small(V(0.5f * state.sway.x * stride.pelvis_yaw_rad), sine, cosine);
   const Turn<V> lean{half_cosine, V{}, V{}, -half_sine}, sway{cosine, V{}, sine, V{}};
-  pelvis.turn = (hips.heading.turn() * lean) * (sway * turn_by(tilt));
+  const Turn<V> upright = hips.heading.turn() * lean, turned = sway * turn_by(tilt);
+  pelvis.turn = upright * turned;
+  if constexpr (kIsUneven<F>) lean_pelvis(tables, upright, turned, footing, pelvis);
   pelvis.hip_m[0] = pelvis.turn * by_side<V>(time.right, tables.leg[0].hip_m, tables.leg[1].hip_m);
   pelvis.hip_m[1] =
       pelvis.turn * by_side<V>(no(time.right), tables.leg[0].hip_m, tables.leg[1].hip_m);

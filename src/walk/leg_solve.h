@@ -113,11 +113,12 @@ Leg<V> solve_leg(const V& thigh_m, const V& shank_m, const Vec<V>& ankle_m, cons
   return leg;
 }
 
-// Swing and stand.
+// Swing and stand. `begun_rad`: what was added to the tables' angles where they started; null where
+// nobody asks.
 template <class V>
 void solve_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stride,
-                const Feet<V>& feet, const Pelvis<V>& pelvis, State<V>& state,
-                Leg<V> (&legs)[2]) noexcept {
+                const Feet<V>& feet, const Pelvis<V>& pelvis, State<V>& state, Leg<V> (&legs)[2],
+                V (*begun_rad)[kLegAngles]) noexcept {
   // What is added to the tables' angles leaks away, and most of what it had changed by goes on: the
   // most with which the swivel still returns without swinging, a double root.
   const float keep = 1.0f - std::min(1.0f, kLeak_per_s * tables.tick_s),
@@ -136,6 +137,7 @@ void solve_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stri
     table_rad[3] = most(table_rad[3], all<V>(kLeastKnee_rad));
     const Vec<V> ankle_m =
         to_pelvis * (ankle_of(feet.foot[k], feet.sole[k]) - pelvis.place_m - pelvis.hip_m[k]);
+    if (begun_rad != nullptr) std::copy_n(state.leg_rad[k], kLegAngles, begun_rad[k]);
     legs[k] =
         solve_leg<V>(chosen<V>(right, r.thigh_m, l.thigh_m), chosen<V>(right, r.shank_m, l.shank_m),
                      ankle_m, to_pelvis * feet.foot[k].turn, table_rad, state.leg_rad[k]);

@@ -60,11 +60,20 @@ void write_root(const Tables& tables, const Pelvis<Floats<kWidth>>& pelvis,
           cosine = state.frame_cosine * state.frame_cosine - state.frame_sine * state.frame_sine;
   const Vec<V>& p = pelvis.place_m;
   const V x_m = cosine * p.x + sine * p.z, z_m = cosine * p.z - sine * p.x;
-  for (int w = 0; w < poses.walks; ++w)
+  for (int w = 0; w < poses.walks; ++w) {
+    const Origin& origin = block.origin[w];
     *poses.root_m[w] =
-        vec3(block.origin[w].x_m + lane(x_m, w), lane(p.y, w), block.origin[w].z_m + lane(z_m, w));
+        vec3(origin.x_m + lane(x_m, w), origin.y_m + lane(p.y, w), origin.z_m + lane(z_m, w));
+  }
   const Turn<V> frame{state.frame_cosine, V{}, state.frame_sine, V{}};
   write_joint(frame * pelvis.turn * same<V>(tables.pelvis_standing), tables.pelvis, poses);
+  for (int w = 0; block.is_placed && w < poses.walks; ++w) {
+    const Placement& placed = block.placed[w];
+    if (placed == Placement{}) continue;
+    *poses.root_m[w] = to_world(placed, *poses.root_m[w]);
+    quat& root = poses.local[w][tables.pelvis];
+    root = rotation_y(placed.heading_rad) * root;
+  }
 }
 
 }  // namespace

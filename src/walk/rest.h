@@ -3,7 +3,8 @@
 // A stop chooses among three ends the first that brakes softly: the flying foot closes beside the
 // standing one; it lands ahead and the other foot closes; one more step comes between. The hips go
 // to their place between the feet along a quintic, whose time is chosen for the least braking. It
-// is rare, so that lanes take their turns.
+// is rare, so that lanes take their turns. On level ground: elsewhere a walk closes with the next
+// step.
 #pragma once
 #include <limits>
 
@@ -85,16 +86,17 @@ inline Flown flown(const Tables& tables, const Change<float>& change,
     hips.behind = footprints_of(tables, time, at.ratio_behind);
     hips.ahead = footprints_of(tables, time, landing.ratio);
     hips.own = footprints_of(tables, time, short_ratio(tables, landing, at));
-    flown.heel_m[k] = with_gap(
-        tables, time,
-        flight_heel(tables, time, landing, stride, hips, at.phase, time.u, change, at), change, at);
+    float base_m = 0.0f;
+    const Vec<float> heel_m = flight_heel(tables, time, landing, stride, hips, at.phase, time.u,
+                                          change, at, NoFooting{}, base_m);
+    flown.heel_m[k] = with_gap(tables, time, heel_m, base_m, change, at);
     if (k == 0) {
       flown.yaw_rad = flying_yaw(time, landing, change, at);
       const float edge = edge_left(time.u, change);
       flown.twist_rad = stride.foot[0].twist_rad + edge * change.gap_twist_rad;
       flown.roll_rad = stride.foot[0].roll_rad + edge * change.gap_roll_rad;
     }
-    flown.pitch_rad[k] = stride.foot[0].pitch_rad + pitch_off(time, change, at);
+    flown.pitch_rad[k] = stride.foot[0].pitch_rad + pitch_off(time, at.tick, change, at);
     at.tick += 1.0f, at.phase += at.phase_rate;
   }
   return flown;
@@ -137,7 +139,8 @@ void change_step(const Tables& tables, bool moves, State<float>& state, Change<f
   change.off_over = {over - planned_over(now, change), 0.0f, 0.0f};
   if (!moves) return;
   change.gap_begin = now.u;
-  plan_landing(tables, now, change, state);
+  NoFooting level;
+  plan_landing(tables, now, change, state, level);
   change.off_ratio = {};
   change.off_ratio.x = ratio_was - ratio();
   if (!flies) return;
@@ -249,6 +252,7 @@ inline void plan_rest(const Tables& tables, State<float>& state, Change<float>& 
               flies ? left_s + (kMostClosing - 1.0f) * state.flight_ticks * tick_s : longest_s,
               none);
       change.closing = 1.0f;
+      change.is_aimed = 0.0f;  // it lands beside the other foot, not where a game wants it
       if (flies) {
         state.flight_ticks = most(state.flight_ticks, state.tick + change.rest_ticks);
         change.closing_ticks = state.flight_ticks - state.tick;
@@ -344,7 +348,7 @@ inline void walk_on(const Tables& tables, State<float>& state, Change<float>& ch
   // As far as the hips, which have braked, can be where the tables have them at its strike.
   const int swing = right ? 1 : 0;
   const float asked_m = state.asked.length_m[swing], tick_s = tables.tick_s;
-  const Stages<float> own = stages_of(tables, state, right);
+  const Stages<float> own = stages_of(tables, change, state, right);
   const Way<float> way = way_of(state.landing_rad);
   const float sign = time.back ? -1.0f : 1.0f;
   const auto along = [&](float x, float z) { return sign * (x * way.sine + z * way.cosine); };

@@ -6,6 +6,8 @@
 // frame. A step is the roll of the foot that has landed (*stand*) and the flight of the other one
 // (*swing*). Rates are per tick, phases in cycles from the right foot's strike in the data.
 #pragma once
+#include "gaitpad/terrain.h"
+#include "gaitpad/walk.h"
 #include "walk/lanes.h"
 
 namespace gaitpad::anew {
@@ -111,16 +113,65 @@ struct Change {
   V gap_begin{}, gap_lasts = V{} + 0.5f, gap_rad{}, gap_twist_rad{}, gap_roll_rad{};
   V gap_high_m = V{} + 1.0f;
   V pitch_begin{}, pitch_lasts{};
-  V asked_ticks{};  // how long one that stands has been asked to walk
+  V asked_ticks{};          // how long one that stands has been asked to walk
+  V slowness = V{} + 1.0f;  // factor on the step's times: on stairs steps take longer
+  // What is asked of the coming landing. 1: it is to be here; else a push moves it by so much, and
+  // 1: the landing after it.
+  V is_aimed{}, aim_x_m{}, aim_z_m{}, aim_rad{}, push_x_m{}, push_z_m{}, push_waits{};
 };
 
+// How a plane rises along x and along z.
 template <class V>
-inline constexpr int kStateNumbers = (sizeof(State<V>) + sizeof(Change<V>)) / sizeof(V);
+struct Slope {
+  V x{}, z{};
+};
+// What uneven ground makes of a walk; a walk on level ground does not read it. Heights are over the
+// step frame: over the ground at the heel of the foot that stands.
+inline constexpr int kRoomKnots = 7;  // inner ones of a spline over the flight
+template <class V>
+struct Footing {
+  // The planes of the foot that stands, of the other one's last footprint, and of the landing.
+  Slope<V> stand, print, landing;
+  V print_y_m{}, toe_y_m{}, landing_y_m{};
+  // Where the foot would land if the ground were level, and for which such place the landing was
+  // chosen last; the share of the step's length that a slope leaves; the rise of the step after
+  // this one, in legs; 1: the sole overhangs an edge.
+  V level_x_m{}, level_z_m{}, level_rad{}, asked_x_m{}, asked_z_m{}, asked_rad{};
+  V share = V{} + 1.0f, next_rise{}, overhangs{};
+  // The ground that the hips go over, per tick; where it settles over the standing foot, what it is
+  // still off, and how long after the strike; how far it then sinks to the next landing, and how
+  // far below that one it is, at it and after it.
+  Off<V> hips_m;
+  V level_m{};
+  Off<V> off_m;
+  V settle_ticks{}, drop_m{}, early_m{}, yield_m{};
+  // The step along the heading, its ratio, and what the tables' ratio is off it; the share of the
+  // wanted lengths that the ground leaves; the trunk's lean into the slope, forwards.
+  V step_m{}, step_ratio{};
+  Off<V> off_ratio;
+  Smoothed<V> left{V{} + 1.0f, V{}}, lean_rad;
+  // The swinging foot: how far it rises with the hips, and did one and two ticks ago; its plane's
+  // height where its heel lifted off; 1: it crosses a riser. What keeps it off the ground: splines
+  // up, and away from a riser, planned for a landing; the same, smoothed and in force.
+  V rise_m{}, last_rise_m[2]{}, lift_y_m{}, crosses{};
+  Vec<V> room_for_m;
+  V raise_m[kRoomKnots]{}, shift_m[kRoomKnots]{};
+  Smoothed<V> raise[kRoomKnots], shift[kRoomKnots];
+};
+
+// In its place where the ground is level.
+struct NoFooting {};
+template <class F>
+inline constexpr bool kIsUneven = !std::is_same_v<F, NoFooting>;
+
+template <class V>
+inline constexpr int kStateNumbers = (sizeof(State<V>) + sizeof(Change<V>) + sizeof(Footing<V>)) /
+                                     sizeof(V);
 static_assert(sizeof(State<float>) <= 512);
 
-// The step frame in the world. Doubles, written at strikes alone.
+// The step frame in the walk's own coordinates. Doubles, written at strikes alone.
 struct Origin {
-  double x_m = 0.0, z_m = 0.0, heading_rad = 0.0;
+  double x_m = 0.0, z_m = 0.0, heading_rad = 0.0, y_m = 0.0;
 };
 
 // A block of walks of one build. Aligned here, for g++ 12 forgets that of registers in a template's
@@ -129,7 +180,11 @@ template <int kWidth>
 struct alignas(64) Block {
   State<Floats<kWidth>> state;
   Change<Floats<kWidth>> change;
+  Footing<Floats<kWidth>> footing;
   Origin origin[kWidth];
+  Placement placed[kWidth];  // of the walk's own coordinates in the world
+  Stretch piece[kWidth];     // of uneven ground: where the swinging foot lands
+  bool is_placed = false;    // a walk of them is placed
 };
 
 // Copies a walk from a lane of one block to a lane of another.
@@ -139,6 +194,9 @@ void copy_walk(const Block<kFrom>& from, int from_lane, Block<kTo>& to, int to_l
     reinterpret_cast<float*>(&to)[n * kTo + to_lane] =
         reinterpret_cast<const float*>(&from)[n * kFrom + from_lane];
   to.origin[to_lane] = from.origin[from_lane];
+  to.placed[to_lane] = from.placed[from_lane];
+  to.is_placed |= from.is_placed;
+  to.piece[to_lane] = from.piece[from_lane];
 }
 
 }  // namespace gaitpad::anew

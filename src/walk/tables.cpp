@@ -96,6 +96,8 @@ void fill_legs(const WalkModel& model, Tables& tables) {
     to.toe_m = floats(from.model.toe_m);
     to.forward = floats(from.forward);
     to.side = floats(from.side);
+    to.ball_m = floats(from.ball_m);
+    to.tip_m = floats(from.tip_m);
     to.thigh_m = static_cast<float>(from.model.thigh_m);
     to.shank_m = static_cast<float>(from.model.shank_m);
     to.elevation_rad = static_cast<float>(from.elevation_rad);
@@ -235,7 +237,12 @@ std::unique_ptr<const Tables> tables_of(const WalkModel& model, double tick_s) {
   tables->posture = of(0.06);
   tables->chest = of(0.10);
   tables->head = of(0.07);
+  tables->room = of(0.04);
+  tables->ground = of(0.30);
+  tables->slope_lean = of(0.30);
   tables->tick_s = static_cast<float>(tick_s);
+  tables->leg_m = static_cast<float>(model.leg_length_m);
+  if (!is_flat(*model.terrain)) tables->terrain = model.terrain;
   return tables;
 }
 

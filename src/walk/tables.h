@@ -47,7 +47,7 @@ struct Filter {
 };
 
 struct LegBones {
-  std::array<float, 3> hip_m, heel_m, toe_m, forward, side;  // LegBuild
+  std::array<float, 3> hip_m, heel_m, toe_m, forward, side, ball_m, tip_m;  // LegBuild
   float thigh_m, shank_m, elevation_rad, foot_m, toe_rest_m, half_width_m, track_m;
   std::array<float, kLegAngles> stand_rad;
   float own_step_m;
@@ -89,7 +89,11 @@ struct Tables {
   int joints, pelvis;
   std::array<float, 4> pelvis_standing;  // w, x, y, z
 
+  std::shared_ptr<const Terrain> terrain;  // none where the ground is level
+  float leg_m;                             // thigh and shank
+
   float tick_s;
+  Filter room, ground, slope_lean;  // of uneven ground
   Filter step, first_step, turn_goal, turn, bounce, lean, posture, chest, head;
 };
 

@@ -1,7 +1,9 @@
 // One tick of the walks of a block, in the order of its data.
 #pragma once
+#include "walk/ground_plan.h"
 #include "walk/pose.h"
 #include "walk/rest.h"
+#include "walk/walk.h"
 
 namespace gaitpad::anew {
 namespace {
@@ -23,6 +25,7 @@ void move_frame(const Landing<Floats<kWidth>>& landing, const Mask<Floats<kWidth
     if (lane(is, w) != 0.0f) {
       origin.x_m += lane(moved.x, w);
       origin.z_m += lane(moved.z, w);
+      origin.y_m += lane(block.footing.landing_y_m, w);
       origin.heading_rad += lane(landing.rad, w);
     }
     set_lane(static_cast<float>(0.5 * wrapped(origin.heading_rad)), w, half_rad);
@@ -63,8 +66,15 @@ void begin_walks(const Tables& tables, Block<kWidth>& block) noexcept {
   if (any(other)) {
     Landing<V> beside{state.print_x_m, state.print_z_m, state.print_rad, way_of(state.print_rad)};
     Feet<V> feet;
-    feet.sole[1] = sole_of<V>(tables, no(right));
+    feet.flat_toe_m = sole_of<V>(tables, no(right)).line_m;
+    Footing<V>& footing = block.footing;
+    if (is_uneven(tables)) {
+      feet.flat_toe_m = tilt_of(footing.stand) * feet.flat_toe_m;
+      footing.landing = chosen(other, footing.print, footing.landing);
+      footing.landing_y_m = other ? footing.print_y_m : footing.landing_y_m;
+    }
     move_frame<kWidth>(beside, other, block);
+    if (is_uneven(tables)) change_footing(beside, other, feet.flat_toe_m.y, footing);
     change_feet(beside, other, feet, Stride<V>{}, state);
     state.right_swings = other ? V(1.0f - state.right_swings) : state.right_swings;
   }
@@ -101,17 +111,16 @@ void rest(const Tables& tables, const Change<V>& change, State<V>& state) noexce
 template <int kWidth, class Work>
 void one_by_one(const Mask<Floats<kWidth>>& where, Block<kWidth>& block,
                 const Work& work) noexcept {
-  using V = Floats<kWidth>;
   if (!any(where)) return;
   if constexpr (kWidth == 1) {
-    work(block.state, block.change);
+    work(block, 0);
   } else {
-    const V is = chosen<V>(where, 1.0f, 0.0f);
+    const Floats<kWidth> is = chosen<Floats<kWidth>>(where, 1.0f, 0.0f);
     for (int w = 0; w < kWidth; ++w) {
       if (lane(is, w) == 0.0f) continue;
       Block<1> one;
       copy_walk(block, w, one, 0);
-      work(one.state, one.change);
+      work(one, w);
       copy_walk(one, 0, block, w);
     }
   }
@@ -123,12 +132,10 @@ void change_ends(const Tables& tables, Block<kWidth>& block) noexcept {
   using V = Floats<kWidth>;
   const auto walks = is_to_walk(block.state), stops = block.change.stops != V{},
              moves = block.change.stands == V{};
-  one_by_one<kWidth>(
-      both(moves, both(no(walks), no(stops))), block,
-      [&](State<float>& state, Change<float>& change) { plan_rest(tables, state, change); });
-  one_by_one<kWidth>(
-      both(moves, both(walks, stops)), block,
-      [&](State<float>& state, Change<float>& change) { walk_on(tables, state, change); });
+  one_by_one<kWidth>(both(moves, both(no(walks), no(stops))), block,
+                     [&](Block<1>& one, int) { plan_rest(tables, one.state, one.change); });
+  one_by_one<kWidth>(both(moves, both(walks, stops)), block,
+                     [&](Block<1>& one, int) { walk_on(tables, one.state, one.change); });
 }
 
 // Whether a flight is asked to be followed by another pace than was known; from time to time.
@@ -142,21 +149,81 @@ Mask<V> is_unforeseen(const Tables& tables, const State<V>& state,
               both(state.flies != V{}, part == floored(part)));
 }
 
+// Where the landing on level ground has moved, the ground is asked for another one.
 template <int kWidth>
-void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& poses,
-                   bool looks_ahead = true) noexcept;
+void choose_footholds(const Tables& tables, const Time<Floats<kWidth>>& time,
+                      const AskedStep<Floats<kWidth>>& asked, Block<kWidth>& block) noexcept {
+  using V = Floats<kWidth>;
+  constexpr float kMoved = 2e-5f;        // metres, radians
+  constexpr float kPieceSettles = 0.6f;  // of the roll: until then a step may still go elsewhere
+  const State<V>& state = block.state;
+  Footing<V>& footing = block.footing;
+  const auto begins = both(no(time.flies), state.tick == all<V>(1.0f)),
+             settles = both(no(time.flies), state.tick <= kPieceSettles * state.roll_ticks);
+  const V moved = most(most(size(V(footing.level_x_m - footing.asked_x_m)),
+                            size(V(footing.level_z_m - footing.asked_z_m))),
+                       size(V(state.landing_rad - footing.asked_rad)));
+  const auto asks = both(block.change.stands == V{}, either(begins, moved > all<V>(kMoved)));
+  if (!any(asks)) return;
+  footing.asked_x_m = asks ? footing.level_x_m : footing.asked_x_m;
+  footing.asked_z_m = asks ? footing.level_z_m : footing.asked_z_m;
+  footing.asked_rad = asks ? state.landing_rad : footing.asked_rad;
+  const V is_first = chosen<V>(begins, 1.0f, 0.0f),
+          is_open = chosen<V>(either(begins, settles), 1.0f, 0.0f);
+  one_by_one<kWidth>(asks, block, [&](Block<1>& one, int w) {
+    const AskedFoothold step{
+        lane(asked.along.sine, w), lane(asked.along.cosine, w),
+        lane(asked.length_m, w),   lane(is_first, w) != 0.0f,
+        lane(is_open, w) != 0.0f,  is_to_walk(one.state) && one.change.closing == 0.0f};
+    choose_foothold(tables, step, one);
+  });
+}
+
+// Where a flight begins, or its landing has moved, it is planned how it keeps clear of the ground.
+template <int kWidth>
+void plan_rooms(const Tables& tables, const Mask<Floats<kWidth>>& lifts,
+                Block<kWidth>& block) noexcept {
+  using V = Floats<kWidth>;
+  const State<V>& state = block.state;
+  const Vec<V> off = block.footing.room_for_m -
+                     Vec<V>{state.landing_x_m, block.footing.landing_y_m, state.landing_z_m};
+  const float most_m = kReplan_m * tables.size;
+  const auto moved = both(state.flies != V{}, dot(off, off) > all<V>(most_m * most_m));
+  const auto plans = either(lifts, moved);
+  if (!any(plans)) return;
+  const V begins = chosen<V>(lifts, 1.0f, 0.0f);
+  one_by_one<kWidth>(
+      plans, block, [&](Block<1>& one, int w) { plan_room(tables, lane(begins, w) != 0.0f, one); });
+}
+
+// What was asked of a landing is over; a push that came too late for it goes on.
+template <class V>
+void end_aims(const Landing<V>& landing, const Mask<V>& strikes, Change<V>& change) noexcept {
+  const Way<V>& way = landing.way;
+  const V x_m = change.push_x_m * change.push_waits, z_m = change.push_z_m * change.push_waits;
+  change.is_aimed = strikes ? V{} : change.is_aimed;
+  change.push_x_m = strikes ? V(way.cosine * x_m - way.sine * z_m) : change.push_x_m;
+  change.push_z_m = strikes ? V(way.cosine * z_m + way.sine * x_m) : change.push_z_m;
+  change.push_waits = strikes ? V{} : change.push_waits;
+}
+
+// `footing`: the block's, or none.
+template <int kWidth, class F>
+void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Poses& poses,
+                bool looks_ahead = true) noexcept;
 
 // Walks ahead, to know when legs will be at their reach: hips sink before that.
-inline void look_ahead(const Tables& tables, State<float>& state, Change<float>& change) noexcept {
+inline void look_ahead(const Tables& tables, Block<1>& block) noexcept {
+  Change<float>& change = block.change;
   const int knot = sink_knot_ticks(tables), all_ticks = (kSinkKnots - 3) * knot,
             left = static_cast<int>(change.sink_ticks), at = left > 0 ? all_ticks - left : 0,
             first = at / knot, gone = at - first * knot;
   std::array<float, kSinkKnots> wants_m{};  // between knots, the most
-  Block<1> ahead;
-  ahead.state = state, ahead.change = change;
+  Block<1> ahead = block;
+  NoFooting level;
   ahead.change.sink_ticks = 0.0f;
   for (int tick = gone; tick < all_ticks; ++tick) {
-    advance_block<1>(tables, ahead, Poses{nullptr, nullptr, 0}, false);
+    advance_on<1>(tables, ahead, level, Poses{nullptr, nullptr, 0}, false);
     float& most_m = wants_m[tick / knot];
     most_m = most(most_m, ahead.change.wants_m);
   }
@@ -172,38 +239,69 @@ inline void look_ahead(const Tables& tables, State<float>& state, Change<float>&
     sinks |= knots_m[k] != 0.0f;
   }
   for (int k = 0; k < kSinkKnots; ++k) change.sink_m[k] = knots_m[k];
-  change.foreseen_m = state.asked.length_m[0] + state.asked.length_m[1];
+  change.foreseen_m = block.state.asked.length_m[0] + block.state.asked.length_m[1];
   change.sink_ticks = sinks ? static_cast<float>(all_ticks - gone) : 0.0f;
 }
 
-template <int kWidth>
-void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& poses,
-                   bool looks_ahead) noexcept {
+// On uneven ground a walk that is to end closes with the next step: a flight's landing has been
+// chosen, and room is made for it there.
+template <class V>
+void close_next(const Mask<V>& strikes, const State<V>& state, Change<V>& change) noexcept {
+  const auto ends = both(both(strikes, no(is_to_walk(state))), change.closing == V{});
+  change.stops = ends ? all<V>(1.0f) : change.stops;
+  for (V& length_m : change.length_m) length_m = ends ? V{} : length_m;
+}
+// Its hips rest as its foot lands.
+template <class V>
+void time_close(const Mask<V>& strikes, const State<V>& state, Change<V>& change) noexcept {
+  const auto closes = both(strikes, change.closing != V{});
+  const V ticks = state.roll_ticks + state.flight_ticks;
+  change.rest_ticks = closes ? ticks : change.rest_ticks;
+  change.closing_ticks = closes ? ticks : change.closing_ticks;
+}
+
+template <int kWidth, class F>
+void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Poses& poses,
+                bool looks_ahead) noexcept {
   using V = Floats<kWidth>;
   State<V>& state = block.state;
   Change<V>& change = block.change;
+  constexpr bool kUneven = kIsUneven<F>;
   const auto follows = change.is_new != V{};  // for a step has begun
   begin_walks(tables, block);
-  change_ends(tables, block);
+  if constexpr (!kUneven) change_ends(tables, block);
   const auto is_new = both(no(follows), change.is_new != V{}),
              is_short = either(either(change.starting != V{}, change.stops != V{}),
                                change.catch_ticks != V{});
-  smooth_asked(tables, change, state);
+  if constexpr (kUneven) lean_into_slope(tables, change, footing);
+  V left = all<V>(1.0f);
+  if constexpr (kUneven) left = footing.left.x;
+  smooth_asked(tables, change, left, state);
   const Time<V> time = advance_clock(tables, change, state);
-  const Landing<V> landing = plan_landing(tables, time, change, state);
+  const AskedStep<V> asked = plan_landing(tables, time, change, state, footing);
+  if constexpr (kUneven) choose_footholds<kWidth>(tables, time, asked, block);
+  Landing<V> landing = planned_landing(tables, time, asked.to, change, state);
+  if constexpr (kUneven) {
+    follow_ground(tables, time, asked, change, state, footing, landing);
+    move_hips_ground(tables, time, landing, change, state, footing);
+    plan_rooms<kWidth>(tables, Mask<V>{}, block);
+  }
   const Stride<V> by_clock =
       read_by_clock(tables, time, landing, state.phase, time.share, time.u, change, state);
   Hips<V> hips = move_hips(tables, time, landing, by_clock, change, state);
   Stride<V> stride;
   const V phase = lead_hips(tables, time, landing, by_clock, state, change, hips, stride);
   keep_pelvis(hips, state);
-  const Feet<V> feet = plan_feet(tables, time, landing, by_clock, stride, hips, change, state);
-  Pelvis<V> pelvis = pelvis_over(tables, time, hips, stride, state);
+  Feet<V> feet = plan_feet(tables, time, landing, by_clock, stride, hips, change, state, footing);
+  Pelvis<V> pelvis = pelvis_over(tables, time, hips, stride, state, footing);
   const Vec<V> ankle_m[2] = {ankle_of(feet.foot[0], feet.sole[0]),
                              ankle_of(feet.foot[1], feet.sole[1])};
   sink(tables, time, stride, ankle_m, change, pelvis);
   Leg<V> legs[2];
-  solve_legs(tables, time, stride, feet, pelvis, state, legs);
+  V begun_rad[2][kLegAngles];
+  solve_legs(tables, time, stride, feet, pelvis, state, legs, kUneven ? begun_rad : nullptr);
+  if constexpr (kUneven)
+    ease_ankles(tables, time, stride, phase, pelvis, change, footing, state, feet, begun_rad, legs);
   // The data's phase: walking backward is walking forward run back (Thorstensson 1986).
   const auto& share = tables.stage_share;
   write_upper_body(tables, pelvis, time.back ? V(share[0] + share[1] + share[2] - phase) : phase,
@@ -213,27 +311,55 @@ void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& pose
 
   const auto lifts = both(no(time.flies), state.tick >= state.roll_ticks),
              strikes = both(time.flies, state.tick >= state.flight_ticks);
-  if (any(lifts)) lift_off(tables, time, lifts, landing, hips, feet, by_clock, change, state);
+  if (any(lifts))
+    lift_off(tables, time, lifts, landing, hips, feet, by_clock, change, state, footing);
   keep_swing(feet.foot[0], state);
+  if constexpr (kUneven)
+    footing.last_rise_m[1] = footing.last_rise_m[0], footing.last_rise_m[0] = footing.rise_m;
   if (any(strikes)) {
     move_frame<kWidth>(landing, strikes, block);
+    if constexpr (kUneven) {
+      change_footing(landing, strikes, feet.flat_toe_m.y, footing);
+      const V slow = slowness_of(tables, no(time.right), state, footing);
+      change.slowness = strikes ? slow : change.slowness;
+      close_next(strikes, state, change);
+    }
     change_feet(landing, strikes, feet, stride, state);
+    end_aims(landing, strikes, change);
     const auto keeps = either(change.led != V{}, change.off_phase.x != V{});
     const V rate = keeps ? change.phase_rate : state.phase_rate;
     begin_lead(tables, strikes, phase, rate, state, change);
     begin_step(tables, time, strikes, change, state);
-    one_by_one<kWidth>(
-        both(strikes, change.closing != V{}), block,
-        [&](State<float>& one, Change<float>& of_one) { time_closing_step(tables, one, of_one); });
+    if constexpr (kUneven) {
+      time_close(strikes, state, change);
+    } else {
+      one_by_one<kWidth>(both(strikes, change.closing != V{}), block, [&](Block<1>& one, int) {
+        time_closing_step(tables, one.state, one.change);
+      });
+    }
     rest(tables, change, state);
+    if constexpr (kUneven) footing.next_rise = change.stands != V{} ? V{} : footing.next_rise;
   }
-  if (any(lifts)) begin_flight(tables, time, lifts, state);
-  const auto looks = either(either(is_new, both(either(lifts, strikes), is_short)),
-                            both(is_to_walk(state), is_unforeseen(tables, state, change)));
-  if (looks_ahead)
-    one_by_one<kWidth>(looks, block, [&](State<float>& one, Change<float>& of_one) {
-      look_ahead(tables, one, of_one);
-    });
+  if (any(lifts)) {
+    begin_flight(tables, time, lifts, change, state);
+    if constexpr (kUneven) plan_rooms<kWidth>(tables, lifts, block);
+  }
+  if constexpr (!kUneven) {
+    if (!looks_ahead) return;
+    const auto looks = either(either(is_new, both(either(lifts, strikes), is_short)),
+                              both(is_to_walk(state), is_unforeseen(tables, state, change)));
+    one_by_one<kWidth>(looks, block, [&](Block<1>& one, int) { look_ahead(tables, one); });
+  }
+}
+
+template <int kWidth>
+void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& poses) noexcept {
+  NoFooting level;
+  if (is_uneven(tables)) {
+    advance_on<kWidth>(tables, block, block.footing, poses);
+  } else {
+    advance_on<kWidth>(tables, block, level, poses);
+  }
 }
 
 }  // namespace

@@ -1,7 +1,7 @@
 // Sixth: the joints that the legs do not set, from the data at this phase.
 #pragma once
 #include "gaitpad/math.h"
-#include "walk/leg_solve.h"
+#include "walk/ankle.h"
 #include "walk/pose_places.h"
 
 namespace gaitpad::anew {

@@ -32,7 +32,7 @@ inline Block<1> taken_over(const WalkState& old, const GaitParams& params) {
   const FootState &stands = old.foot[stand], &swings = old.foot[swing];
   const double yaw = stands.lift_yaw_rad;
   const Placement frame{stands.heel_anchor_m, yaw};
-  block.origin[0] = {frame.place_m.x, frame.place_m.z, yaw};
+  block.origin[0] = {frame.place_m.x, frame.place_m.z, yaw, frame.place_m.y};
   const SinCos half = gaitpad::sin_cos(0.5 * wrapped(yaw));
   to.frame_sine = static_cast<float>(half.sin), to.frame_cosine = static_cast<float>(half.cos);
   const auto smoothed = [](const Damped<double>& from, Smoothed<float>& value) {
@@ -75,6 +75,25 @@ inline Block<1> taken_over(const WalkState& old, const GaitParams& params) {
   place(2.0 * last - now, to.pelvis_x_m[2], to.pelvis_z_m[2]);
   place(swings.heel_anchor_m, to.print_x_m, to.print_z_m);
   place(swings.toe_anchor_m, to.toe_x_m, to.toe_z_m);
+  Footing<float>& footing = block.footing;
+  const auto height = [&](double y_m) { return static_cast<float>(y_m - frame.place_m.y); };
+  const auto slope = [&](const FootPlane& plane) {
+    const vec3 n = from_world({vec3(0.0), yaw}, plane.normal);
+    return Slope<float>{static_cast<float>(-n.x / n.y), static_cast<float>(-n.z / n.y)};
+  };
+  footing.stand = slope(stands.plane), footing.print = slope(swings.plane);
+  footing.print_y_m = height(swings.plane.place_m.y);
+  footing.toe_y_m = height(swings.toe_anchor_m.y);
+  const HipsGround& base = old.path.base;
+  footing.hips_m = {height(base.height_m), static_cast<float>(base.per_tick_m),
+                    static_cast<float>(base.per_tick2_m)};
+  footing.yield_m = static_cast<float>(base.yield_m);
+  footing.next_rise = static_cast<float>(old.path.foothold.next_rise);
+  footing.step_ratio = static_cast<float>(gait.step_ratio);
+  footing.step_m = static_cast<float>(old.path.stride_m[swing]);
+  smoothed(gait.ground_share, footing.left);
+  smoothed(old.path.slope_lean_rad, footing.lean_rad);
+  block.change.slowness = static_cast<float>(old.clock.slowness);
   to.print_rad = static_cast<float>(swings.lift_yaw_rad - yaw);
   to.stand_pitch_rad = static_cast<float>(stands.pitch_fade.value);
   for (int k : {0, 1}) {

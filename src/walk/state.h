@@ -91,8 +91,24 @@ struct Change {
   V asked_ticks{};  // how long one that stands has been asked to walk
 };
 
+// Legs whose weights differ (weights.h); read where any walk of a block has such.
 template <class V>
-inline constexpr int kStateNumbers = (sizeof(State<V>) + sizeof(Change<V>)) / sizeof(V);
+struct Weighted {
+  // 1 or 0: the style has weights that differ; such were in force a tick ago. By Side: what is
+  // asked for, and the same smoothed.
+  V asked{}, acts{};
+  V goal[2][kLegAngles]{};
+  Smoothed<V> weight[2][kLegAngles];
+  // Swing and stand: the running means of the even angles, filtered once and twice; what the
+  // weights add to those, now and a tick ago; how loose the foot is after standing flat.
+  V lagging_rad[2][kLegAngles]{}, mean_rad[2][kLegAngles]{};
+  V shift_rad[2][kLegAngles]{}, last_shift_rad[2][kLegAngles]{};
+  Smoothed<V> loose[2];
+};
+
+template <class V>
+inline constexpr int kStateNumbers = (sizeof(State<V>) + sizeof(Change<V>) + sizeof(Weighted<V>)) /
+                                     sizeof(V);
 static_assert(sizeof(State<float>) <= 512);
 
 // The step frame in the world. Doubles, written at strikes alone.
@@ -106,6 +122,7 @@ template <int kWidth>
 struct alignas(64) Block {
   State<Floats<kWidth>> state;
   Change<Floats<kWidth>> change;
+  Weighted<Floats<kWidth>> weighted;
   Origin origin[kWidth];
 };
 

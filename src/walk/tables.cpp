@@ -60,6 +60,23 @@ std::array<double, kRowNumbers> numbers_of(const StridePlace& place) {
   return all;
 }
 
+void fill_harmonics(const WalkModel& model, Tables& tables) {
+  for (int r = 0; r < kRatios; ++r) {
+    for (auto& side : tables.leg_harmonics[r])
+      for (auto& numbers : side) numbers.fill(0.0f);
+    for (int k = 0; k < kKnots; ++k) {
+      const StrideCell cell = stride_of(model, false, double(k) / kKnots, kRatioStep * r).cell;
+      for (int n = 0; n < 1 + 2 * kHarmonics; ++n) {
+        const SinCos turn = gaitpad::sin_cos(2.0 * kPi * ((n + 1) / 2) * k / kKnots);
+        const double of = (n == 0 ? 1.0 : n % 2 == 1 ? 2.0 * turn.cos : 2.0 * turn.sin) / kKnots;
+        for (int side : {0, 1})
+          for (int j = 0; j < kLegAngles; ++j)
+            tables.leg_harmonics[r][side][j][n] += static_cast<float>(of * cell.leg_rad[side][j]);
+      }
+    }
+  }
+}
+
 void fill_strides(const WalkModel& model, Tables& tables) {
   for (int r = 0; r < kRatios; ++r) {
     std::array<std::array<double, kRowNumbers>, kKnots> sample;
@@ -203,6 +220,7 @@ Filter filter(double time_constant_s, double tick_s) {
 std::unique_ptr<const Tables> tables_of(const WalkModel& model, double tick_s) {
   auto tables = std::make_unique<Tables>();
   fill_strides(model, *tables);
+  fill_harmonics(model, *tables);
   fill_legs(model, *tables);
   fill_upper_body(model, *tables);
   for (int k = 0; k < 4; ++k) tables->stage_share[k] = static_cast<float>(model.share[k]);
@@ -227,6 +245,10 @@ std::unique_ptr<const Tables> tables_of(const WalkModel& model, double tick_s) {
   tables->posture = of(0.06);
   tables->chest = of(0.10);
   tables->head = of(0.07);
+  tables->weights = of(0.15);
+  tables->loosens = of(0.04);  // a foot that stood flat, when a walk begins
+  const double mean_s = 0.5 * model.time_scale;
+  tables->mean_pull = static_cast<float>(tick_s / (mean_s + tick_s));
   tables->tick_s = static_cast<float>(tick_s);
   return tables;
 }

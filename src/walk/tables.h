@@ -29,7 +29,7 @@ static_assert(kRowNumbers == 40);
 
 // As many as a StrideFamily has: half of them are off by 0.17 degrees RMS of a knee, at the
 // lift-off.
-inline constexpr int kKnots = 128, kRatios = 8;
+inline constexpr int kKnots = 128, kRatios = 8, kHarmonics = 2;
 using StrideRows = std::array<std::array<StrideRow, kRatios>, kKnots + 3>;  // one before, two after
 
 // Where strides go: exactly linear in their ratio.
@@ -67,6 +67,9 @@ struct PathJoint {
 
 struct Tables {
   alignas(64) StrideRows forward;
+  // Of the legs' angles over a stride, by Side: mean, then cosine and sine of each harmonic.
+  std::array<std::array<std::array<std::array<float, 1 + 2 * kHarmonics>, kLegAngles>, 2>, kRatios>
+      leg_harmonics;
   FootprintLines footprints;
   std::array<LegBones, 2> leg;
   std::array<float, 4>
@@ -86,6 +89,8 @@ struct Tables {
 
   float tick_s;
   Filter step, first_step, turn_goal, turn, bounce, lean, posture, chest, head;
+  Filter weights, loosens;
+  float mean_pull;  // of the two filters that a leg's running mean goes through
 };
 
 // Of a tick of `tick_s` seconds.

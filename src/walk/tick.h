@@ -66,6 +66,7 @@ void begin_walks(const Tables& tables, Block<kWidth>& block) noexcept {
     feet.sole[1] = sole_of<V>(tables, no(right));
     move_frame<kWidth>(beside, other, block);
     change_feet(beside, other, feet, Stride<V>{}, state);
+    change_weighted_legs(other, block.weighted);
     state.right_swings = other ? V(1.0f - state.right_swings) : state.right_swings;
   }
   const auto set = [&](const V& to, V& number) { number = begins ? to : number; };
@@ -116,6 +117,7 @@ void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& pose
   sink(tables, time, stride, ankle_m, pelvis);
   Leg<V> legs[2];
   solve_legs(tables, time, stride, feet, pelvis, state, legs);
+  weigh_legs(tables, time, stride, feet, pelvis, phase, change, state, block.weighted, legs);
   write_upper_body(tables, pelvis, phase, change.shown, state, poses);
   write_legs(tables, time, feet, legs, poses);
   write_root<kWidth>(tables, pelvis, block, poses);
@@ -127,6 +129,7 @@ void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& pose
   if (any(strikes)) {
     move_frame<kWidth>(landing, strikes, block);
     change_feet(landing, strikes, feet, by_clock, state);
+    change_weighted_legs(strikes, block.weighted);
     const auto keeps = either(change.led != V{}, change.off_phase.x != V{});
     const V rate = keeps ? change.phase_rate : state.phase_rate;
     begin_lead(tables, strikes, phase, rate, state, change);

@@ -1,8 +1,8 @@
 // Sixth: the joints that the legs do not set, from the data at this phase.
 #pragma once
 #include "gaitpad/math.h"
-#include "walk/leg_solve.h"
 #include "walk/pose_places.h"
+#include "walk/weights.h"
 
 namespace gaitpad::anew {
 namespace {

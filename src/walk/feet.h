@@ -9,7 +9,7 @@ template <class V>
 struct Foot {
   Vec<V> heel_m, toe_m;
   V pitch_rad{};  // of the line from heel to toe: 0 flat, toe down positive
-  Turn<V> edge, turn;
+  Turn<V> yaw, edge, turn;
 };
 
 // The numbers of a foot that the swinging one and the standing one differ in, for they are of
@@ -44,6 +44,7 @@ template <class V>
 void set_pitch(const Sole<V>& sole, const Turn<V>& yaw, const V& pitch_rad, const Mask<V>& on_toe,
                Foot<V>& foot) noexcept {
   foot.pitch_rad = pitch_rad;
+  foot.yaw = yaw;
   foot.turn = yaw * (turn_about(sole.side, pitch_rad) * foot.edge);
   const Vec<V> line = foot.turn * sole.line_m;
   const Vec<V> heel_m = foot.toe_m - line, toe_m = foot.heel_m + line;
@@ -55,6 +56,16 @@ void set_pitch(const Sole<V>& sole, const Turn<V>& yaw, const V& pitch_rad, cons
 template <class V>
 V lift_of(const Time<V>& time, const State<V>& state) noexcept {
   return time.right ? state.lift[1].x : state.lift[0].x;
+}
+// At most 1: a lame foot stays low.
+template <class V>
+V low_lift(const Mask<V>& right, const State<V>& state) noexcept {
+  return least(right ? state.lift[1].x : state.lift[0].x, all<V>(1.0f));
+}
+// Of its pitch in the tables, until the middle of its flight.
+template <class V>
+V low_pitch(const V& low, const V& u) noexcept {
+  return mix(low, all<V>(1.0f), smoother(V(2.0f * u)));
 }
 
 // Of the flight: until here the lift-off's own motion fades; a style's factor on the height grows
@@ -159,7 +170,8 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
     // one it stays flat.
     const V rises = starts ? smoother(V(time.u * (1.0f / kHeelRises))) : stays,
             shows = both(closes, time.flies) ? V{} : rises;
-    const V pitch = table.pitch_rad * shows + (time.flies ? V{} : off),
+    const V low = time.flies ? low_lift<V>(no(time.right), state) : one;
+    const V pitch = low * table.pitch_rad * shows + (time.flies ? V{} : off),
             planted = time.flies ? most(pitch, V{}) : least(pitch, V{});
     foot.edge = edge_of(sole, table.twist_rad, table.roll_rad);
     foot.toe_m = sole.line_m;  // flat, from the origin
@@ -178,8 +190,9 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
                                           : V{};
   const V lifts =
       smoother(V((state.tick / state.roll_ticks - kHeelStays) * (1.0f / (1.0f - kHeelStays))));
-  const V planned =
-      first_roll ? V(kFirstPitch * by_clock.foot[0].pitch_rad * lifts) : V(table.pitch_rad + off);
+  const V lowest = low_lift<V>(time.right, state), low_part = low_pitch(lowest, u);
+  const V planned = first_roll ? V(low_part * (kFirstPitch * by_clock.foot[0].pitch_rad * lifts))
+                               : V(low_part * table.pitch_rad + off);
   const Way<V> left = way_of(state.print_rad);
   Vec<V> p = feet.table_heel_m =
       flight_heel(tables, time, landing, stride, hips, state.phase, u, change, state);
@@ -190,8 +203,8 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
   p = p + state.gap_m * of_gap + state.gap_slope_m * of_slope;
   p.y = most(p.y, V{});
   // A low foot that hardly leaves the floor does not roll onto an edge.
-  const V low = mix(one, least(lift_of(time, state), one),
-                    V(smoother(V(u * 2.0f)) * (1.0f - smoother(V((u - 0.6f) * 2.5f)))));
+  const V low =
+      mix(one, lowest, V(smoother(V(u * 2.0f)) * (1.0f - smoother(V((u - 0.6f) * 2.5f)))));
   foot.edge = edge_of(sole, V(low * table.twist_rad), V(low * table.roll_rad));
   const V yaw = state.print_rad + (landing.rad - state.print_rad) * (1.0f - value_left(u)) +
                 state.lift_turn_rad * slope_left(u);
@@ -243,9 +256,10 @@ void lift_off(const Tables& tables, const Time<V>& time, const Mask<V>& lifts,
     return V((slope_of(heel.*part, last.*part, before.*part) - (ahead.*part - table.*part)) *
              ticks);
   };
-  const V pitch = feet.foot[0].pitch_rad, table_pitch = stride.foot[0].pitch_rad,
+  const V low = low_lift<V>(time.right, state);
+  const V pitch = feet.foot[0].pitch_rad, table_pitch = low * stride.foot[0].pitch_rad,
           rate = slope_of(pitch, state.last_pitch_rad[0], state.last_pitch_rad[1]) -
-                 (next.foot[0].pitch_rad - table_pitch);
+                 (low_pitch(low, V(1.0f / ticks)) * next.foot[0].pitch_rad - table_pitch);
   state.gap_m = chosen(lifts, heel - table, state.gap_m);
   state.gap_slope_m = chosen(lifts, Vec<V>{slope(&Vec<V>::x), slope(&Vec<V>::y), slope(&Vec<V>::z)},
                              state.gap_slope_m);

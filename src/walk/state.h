@@ -106,8 +106,16 @@ struct Weighted {
   Smoothed<V> loose[2];
 };
 
+// What else a style asks for; read where any walk of a block has such.
 template <class V>
-inline constexpr int kStateNumbers = (sizeof(State<V>) + sizeof(Change<V>) + sizeof(Weighted<V>)) /
+struct Styled {
+  // Swing and stand: how low a foot's heel is kept where it would rise.
+  Smoothed<V> low[2];
+};
+
+template <class V>
+inline constexpr int kStateNumbers = (sizeof(State<V>) + sizeof(Change<V>) + sizeof(Weighted<V>) +
+                                      sizeof(Styled<V>)) /
                                      sizeof(V);
 static_assert(sizeof(State<float>) <= 512);
 
@@ -123,6 +131,7 @@ struct alignas(64) Block {
   State<Floats<kWidth>> state;
   Change<Floats<kWidth>> change;
   Weighted<Floats<kWidth>> weighted;
+  Styled<Floats<kWidth>> styled;
   Origin origin[kWidth];
 };
 

@@ -247,6 +247,7 @@ std::unique_ptr<const Tables> tables_of(const WalkModel& model, double tick_s) {
   tables->head = of(0.07);
   tables->weights = of(0.15);
   tables->loosens = of(0.04);  // a foot that stood flat, when a walk begins
+  tables->lowers = of(0.03);
   const double mean_s = 0.5 * model.time_scale;
   tables->mean_pull = static_cast<float>(tick_s / (mean_s + tick_s));
   tables->tick_s = static_cast<float>(tick_s);

@@ -89,7 +89,7 @@ struct Tables {
 
   float tick_s;
   Filter step, first_step, turn_goal, turn, bounce, lean, posture, chest, head;
-  Filter weights, loosens;
+  Filter weights, loosens, lowers;
   float mean_pull;  // of the two filters that a leg's running mean goes through
 };
 

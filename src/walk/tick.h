@@ -110,11 +110,14 @@ void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& pose
   Stride<V> stride;
   const V phase = lead_hips(tables, time, landing, by_clock, state, change, hips, stride);
   keep_pelvis(hips, state);
-  const Feet<V> feet = plan_feet(tables, time, landing, by_clock, stride, hips, change, state);
+  Feet<V> feet = plan_feet(tables, time, landing, by_clock, stride, hips, change, state);
   Pelvis<V> pelvis = pelvis_over(tables, time, hips, stride, state);
+  V asked_rad[2]{};
+  keep_heels_low(tables, time, phase, stride, change, state, block.styled, pelvis, feet, asked_rad);
   const Vec<V> ankle_m[2] = {ankle_of(feet.foot[0], feet.sole[0]),
                              ankle_of(feet.foot[1], feet.sole[1])};
-  sink(tables, time, stride, ankle_m, pelvis);
+  sink(tables, time, stride, ankle_m, state, pelvis);
+  reach_with_toe(tables, time, change, pelvis, feet);
   Leg<V> legs[2];
   solve_legs(tables, time, stride, feet, pelvis, state, legs);
   weigh_legs(tables, time, stride, feet, pelvis, phase, change, state, block.weighted, legs);
@@ -122,6 +125,7 @@ void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& pose
   write_legs(tables, time, feet, legs, poses);
   write_root<kWidth>(tables, pelvis, block, poses);
 
+  take_back(asked_rad, feet);
   const auto lifts = both(no(time.flies), state.tick >= state.roll_ticks),
              strikes = both(time.flies, state.tick >= state.flight_ticks);
   if (any(lifts)) lift_off(tables, time, lifts, landing, hips, feet, by_clock, change, state);
@@ -130,6 +134,7 @@ void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& pose
     move_frame<kWidth>(landing, strikes, block);
     change_feet(landing, strikes, feet, by_clock, state);
     change_weighted_legs(strikes, block.weighted);
+    change_styled_feet(strikes, block.styled);
     const auto keeps = either(change.led != V{}, change.off_phase.x != V{});
     const V rate = keeps ? change.phase_rate : state.phase_rate;
     begin_lead(tables, strikes, phase, rate, state, change);

@@ -8,6 +8,7 @@
 #include <cstddef>
 
 #include "walk/leg_solve.h"
+#include "walk/reach.h"
 
 namespace gaitpad::anew {
 namespace {
@@ -35,22 +36,6 @@ inline constexpr int kMostShareSteps = 8;
 inline constexpr float kExactRow_m2 = 1e-10f;  // a pivot above the rounding of floats
 inline constexpr float kKneeSpring = 100.0f;
 inline constexpr float kRoomUsed = 0.8f;  // of a foot's pitch: beyond it gives way no further
-// How far a standing foot may leave the floor with its heel: from here on in its own phase, and
-// wholly so much later.
-inline constexpr float kRiseBegin = 0.20f, kHeelRiseLasts = 0.18f;
-
-// 0 flat .. 1 freely. `right`: the foot's side.
-template <class V>
-V heel_rise(const Tables& tables, const Time<V>& time, const Mask<V>& right, const V& phase,
-            const Mask<V>& is_stand, const Change<V>& change) noexcept {
-  const auto& share = tables.stage_share;
-  const V p = phase - chosen<V>(right, 0.0f, share[0] + share[1]), own = p - floored(p),
-          begin = most(chosen<V>(right, share[0], share[2]), all<V>(kRiseBegin)),
-          rises = smooth(V((own - begin) * (1.0f / kHeelRiseLasts)));
-  const auto rests = both(is_stand, change.closing != V{});
-  const V shown = rests ? V(rises * smoother(V(1.0f - time.share))) : rises;
-  return change.stands != V{} ? V{} : shown;
-}
 
 // A leg to be shared: what its weights ask for, and what comes of it. All of these are numbers of
 // legs side by side.

@@ -105,6 +105,8 @@ inline void take_style(const WalkState& old, const GaitParams& params, Block<1>&
   const int stand = old.clock.swing;
   for (int k : {0, 1}) {
     const int side = k == 0 ? 1 - stand : stand;
+    block.styled.low[k] = {static_cast<float>(old.legs.low[side].x),
+                           static_cast<float>(old.legs.low[side].v)};
     weighted.loose[k] = {static_cast<float>(old.legs.loose[side].x),
                          static_cast<float>(old.legs.loose[side].v)};
     for (int j = 0; j < kLegAngles; ++j) {

@@ -106,9 +106,33 @@ struct Weighted {
   Smoothed<V> loose[2];
 };
 
+// Numbers of UpperBodyParams, in its order: of those by Side the left one's first.
+enum BodyNumber : int {
+  kArmSwing = 0,
+  kArmOut_deg = 2,
+  kArmWeight = 4,
+  kSpineWeight = 16,
+  kLean_deg = 18,
+  kOverLeft_deg = 19,
+  kOverRight_deg = 20,
+  kHand = 21,
+  kLook = 35,
+  kLookYaw_deg = 36,
+  kLookPitch_deg = 37,
+  kLookAt = 38,
+  kLead = 42,
+  kIdle = 43,
+  kBodyNumbers = 44
+};
+
 // What else a style asks for; read where any walk of a block has such.
 template <class V>
 struct Styled {
+  // 1 or 0: the style's upper body is not the data's; it was not in the last tick. What it is to
+  // be, and the same smoothed.
+  V asked{}, acts{};
+  V goal[kBodyNumbers]{};
+  Smoothed<V> body[kBodyNumbers];
   // Swing and stand: how low a foot's heel is kept where it would rise.
   Smoothed<V> low[2];
 };

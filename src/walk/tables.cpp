@@ -1,6 +1,7 @@
 #include "walk/tables.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "gaitpad/curve.h"
@@ -152,15 +153,33 @@ void fill_path(const WalkModel& model, Tables& tables) {
     if (head[i] == model.cycle.pelvis) tables.path.clear();
     if (head[i] == model.cycle.pelvis) continue;
     const bool bends = std::find(spine.begin(), spine.end(), head[i]) != spine.end();
-    PathJoint to{head[i], bends ? 1.0f / static_cast<float>(spine.size()) : 0.0f, 0.0f};
+    const float share = bends ? 1.0f / static_cast<float>(spine.size()) : 0.0f;
+    PathJoint to{head[i], share, 0.0f, share, 0.0f};
     if (i >= body.neck_at) {
       to.of_head = static_cast<float>(i < joints - 1 ? kNeckShare / necks
                                       : necks > 0    ? 1.0 - kNeckShare
                                                      : 1.0);
       to.of_chest -= to.of_head;
+      to.of_look = static_cast<float>(i == joints - 1 ? 1.0
+                                                      : kNeckShare * (i - body.neck_at + 1) /
+                                                            (joints - 1 - body.neck_at));
     }
     tables.path.push_back(to);
   }
+  for (int side : {0, 1}) {
+    const ArmBuild& arm = body.arm[side];
+    if (!arm.is_there) continue;
+    std::vector<int>& path = tables.arm[side].path;
+    for (const int joint : arm.path) {
+      path.push_back(joint);
+      if (joint == model.cycle.pelvis) path.clear();
+      if (joint == arm.joints.shoulder) break;
+    }
+  }
+  tables.chest_standing = wxyz(body.chest_standing);
+  tables.head_standing = wxyz(body.head_standing);
+  const auto plain = std::bit_cast<std::array<double, kBodyNumbers>>(UpperBodyParams{});
+  for (int n = 0; n < kBodyNumbers; ++n) tables.plain_body[n] = static_cast<float>(plain[n]);
 }
 
 void fill_upper_body(const WalkModel& model, Tables& tables) {
@@ -248,6 +267,7 @@ std::unique_ptr<const Tables> tables_of(const WalkModel& model, double tick_s) {
   tables->weights = of(0.15);
   tables->loosens = of(0.04);  // a foot that stood flat, when a walk begins
   tables->lowers = of(0.03);
+  tables->body = of(0.22);
   const double mean_s = 0.5 * model.time_scale;
   tables->mean_pull = static_cast<float>(tick_s / (mean_s + tick_s));
   tables->tick_s = static_cast<float>(tick_s);

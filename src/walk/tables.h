@@ -63,6 +63,12 @@ struct UpperJoint {
 struct PathJoint {
   int joint;
   float of_chest, of_head;
+  float bends, of_look;  // shares of the trunk's bend; of the head's turn, with what is below it
+};
+
+// An arm, from the pelvis on: the joints above the shoulder, then it.
+struct ArmBones {
+  std::vector<int> path;
 };
 
 struct Tables {
@@ -81,6 +87,9 @@ struct Tables {
   std::vector<UpperJoint> upper;
   std::vector<float> upper_rows;  // (kKnots + 3) x upper.size() x 4: x, y, z, w
   std::vector<PathJoint> path;    // from the pelvis on
+  std::array<ArmBones, 2> arm;
+  std::array<float, 4> chest_standing, head_standing;  // w, x, y, z
+  std::array<float, kBodyNumbers> plain_body;          // UpperBodyParams of no style
   std::array<float, 2> most_elbow_swing;
   std::vector<int> still;                  // always the identity
   std::vector<std::pair<int, quat>> kept;  // twist joints in the legs
@@ -89,7 +98,7 @@ struct Tables {
 
   float tick_s;
   Filter step, first_step, turn_goal, turn, bounce, lean, posture, chest, head;
-  Filter weights, loosens, lowers;
+  Filter weights, loosens, lowers, body;
   float mean_pull;  // of the two filters that a leg's running mean goes through
 };
 

@@ -121,7 +121,7 @@ void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& pose
   Leg<V> legs[2];
   solve_legs(tables, time, stride, feet, pelvis, state, legs);
   weigh_legs(tables, time, stride, feet, pelvis, phase, change, state, block.weighted, legs);
-  write_upper_body(tables, pelvis, phase, change.shown, state, poses);
+  write_upper_body(tables, hips, pelvis, phase, change.shown, state, block.styled, poses);
   write_legs(tables, time, feet, legs, poses);
   write_root<kWidth>(tables, pelvis, block, poses);
 

@@ -1,5 +1,7 @@
 // Takes over a walk of the old code at a strike, so that both may be compared from there on.
 #pragma once
+#include <bit>
+
 #include "gaitpad/walk.h"
 #include "walk/walk.h"
 
@@ -87,6 +89,10 @@ inline Block<1> taken_over(const WalkState& old, const GaitParams& params) {
 
 // What a style asks for, beyond what ask() hands over.
 inline void ask_style(const GaitParams& params, Block<1>& block) {
+  Styled<float>& styled = block.styled;
+  styled.asked = params.body == UpperBodyParams{} ? 0.0f : 1.0f;
+  const auto body = std::bit_cast<std::array<double, kBodyNumbers>>(params.body);
+  for (int n = 0; n < kBodyNumbers; ++n) styled.goal[n] = static_cast<float>(body[n]);
   Weighted<float>& weighted = block.weighted;
   weighted.asked = 0.0f;
   for (int side : {0, 1}) {
@@ -102,6 +108,8 @@ inline void take_style(const WalkState& old, const GaitParams& params, Block<1>&
   ask_style(params, block);
   Weighted<float>& weighted = block.weighted;
   weighted.acts = weighted.asked;
+  block.styled.acts = block.styled.asked;
+  for (int n = 0; n < kBodyNumbers; ++n) block.styled.body[n] = {block.styled.goal[n], 0.0f};
   const int stand = old.clock.swing;
   for (int k : {0, 1}) {
     const int side = k == 0 ? 1 - stand : stand;

@@ -124,6 +124,7 @@ void expect_same_legs(const Differences& off) {
   EXPECT_LE(off.root_m, 0.002);
   EXPECT_LE(off.slid_m, kPlanted_m);
 }
+void expect_same_body(const Differences& off) { EXPECT_LE(off.upper_deg, kBound_deg); }
 
 class Weights : public testing::TestWithParam<std::pair<const char*, double>> {};
 
@@ -181,6 +182,11 @@ TEST_P(Shipped, StyleWalksAsInTheOldWalk) {
     const Differences off = walk(walks, 4 * kRate);
     print(off);
     expect_same_legs(off);
+    // Hands that hold something and weights of arms and spine are still missing.
+    constexpr std::array<std::string_view, 4> kMissing = {"carry", "rail_left", "stiff_arms",
+                                                          "muscular"};
+    if (std::find(kMissing.begin(), kMissing.end(), GetParam()) == kMissing.end())
+      expect_same_body(off);
   }
 }
 INSTANTIATE_TEST_SUITE_P(Of, Shipped,
@@ -207,7 +213,9 @@ void expect_same_bits() {
     alone.push_back(of_style.block());
     if (w % 4 == 0) alone.back().state.asked.length_m[1] *= 0.6f;
     copy_walk(alone.back(), 0, block, w);
+    pose[w] = of_style.pose;
   }
+  one = walks[0]->pose;  // joints that no walk writes
   std::array<quat*, kWidth> local;
   std::array<vec3*, kWidth> root;
   for (int w = 0; w < kWidth; ++w) local[w] = pose[w].local.data(), root[w] = &pose[w].root_m;

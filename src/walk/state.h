@@ -133,6 +133,8 @@ struct Styled {
   V asked{}, acts{};
   V goal[kBodyNumbers]{};
   Smoothed<V> body[kBodyNumbers];
+  // Of one who stands: ticks, and how much of breath, sway and glances shows.
+  V idle_ticks{}, idle_share{};
   // Swing and stand: how low a foot's heel is kept where it would rise.
   Smoothed<V> low[2];
 };

@@ -112,6 +112,8 @@ void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& pose
   keep_pelvis(hips, state);
   Feet<V> feet = plan_feet(tables, time, landing, by_clock, stride, hips, change, state);
   Pelvis<V> pelvis = pelvis_over(tables, time, hips, stride, state);
+  const Idle<V> idle = advance_idle(tables, change, state, block.styled);
+  sway(idle, hips.heading, pelvis);
   V asked_rad[2]{};
   keep_heels_low(tables, time, phase, stride, change, state, block.styled, pelvis, feet, asked_rad);
   const Vec<V> ankle_m[2] = {ankle_of(feet.foot[0], feet.sole[0]),
@@ -121,7 +123,7 @@ void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& pose
   Leg<V> legs[2];
   solve_legs(tables, time, stride, feet, pelvis, state, legs);
   weigh_legs(tables, time, stride, feet, pelvis, phase, change, state, block.weighted, legs);
-  write_upper_body(tables, hips, pelvis, phase, change.shown, state, block.styled, poses);
+  write_upper_body(tables, hips, pelvis, idle, phase, change.shown, state, block.styled, poses);
   write_legs(tables, time, feet, legs, poses);
   write_root<kWidth>(tables, pelvis, block, poses);
 

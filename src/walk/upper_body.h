@@ -1,6 +1,7 @@
 // Sixth: the joints that the legs do not set, from the data at this phase.
 #pragma once
 #include "gaitpad/math.h"
+#include "walk/idle.h"
 #include "walk/pose_places.h"
 #include "walk/weights.h"
 
@@ -51,9 +52,9 @@ Turn<V> read_joint(int joint, const Poses& poses) noexcept {
 // each about its parent's upward axis, which that turn does not change.
 template <class V>
 void turn_ahead(const Tables& tables, const Pelvis<V>& pelvis, const State<V>& state,
-                const Styled<V>& styled, const Poses& poses) noexcept {
+                const Mask<V>& is_styled, const Poses& poses) noexcept {
   const V chest_rad = state.chest_ahead_rad.x, head_rad = state.head_ahead_rad.x;
-  const auto leads = both(styled.acts == V{}, either(chest_rad != V{}, head_rad != V{}));
+  const auto leads = both(no(is_styled), either(chest_rad != V{}, head_rad != V{}));
   if (!any(leads)) return;
   const V is = chosen<V>(leads, 1.0f, 0.0f);
   const auto& s = tables.pelvis_standing;
@@ -75,7 +76,7 @@ inline constexpr float kRadians = 0.017453293f;  // a degree
 
 // Brings its numbers nearer to those asked for; those of no style are the data's.
 template <class V>
-void smooth_body(const Tables& tables, Styled<V>& styled) noexcept {
+void smooth_body(const Tables& tables, const Mask<V>& is_styled, Styled<V>& styled) noexcept {
   constexpr float kSettled = 1e-5f;
   const auto asked = styled.asked != V{}, acted = styled.acts != V{};
   auto plain = no(asked);
@@ -85,9 +86,10 @@ void smooth_body(const Tables& tables, Styled<V>& styled) noexcept {
     follow(goal, tables.body, number);
     const auto there =
         both(size(V(number.x - goal)) < all<V>(kSettled), size(number.v) < all<V>(kSettled));
-    styled.body[n].x = there ? goal : number.x;
-    styled.body[n].v = there ? V{} : number.v;
-    plain = both(plain, styled.body[n].x == none);
+    const V value = there ? goal : number.x, rate = there ? V{} : number.v;
+    styled.body[n].x = is_styled ? value : styled.body[n].x;
+    styled.body[n].v = is_styled ? rate : styled.body[n].v;
+    plain = both(plain, value == none);
   }
   styled.acts = chosen<V>(plain, 0.0f, 1.0f);
 }
@@ -197,19 +199,20 @@ Gaze<V> gaze(const Tables& tables, const Turn<V>& chest, const Vec<V>& direction
 
 // Leans the trunk, spreads the arms, and turns the head to where it is to look.
 template <class V>
-void pose_style(const Tables& tables, const Hips<V>& hips, const Pelvis<V>& pelvis, const V& phase,
-                const V& shown, const State<V>& state, const Styled<V>& styled,
-                const Poses& poses) noexcept {
-  constexpr float kLead_s = 0.6f;  // how far ahead of the walk a leading head looks
+void pose_style(const Tables& tables, const Hips<V>& hips, const Pelvis<V>& pelvis,
+                const Idle<V>& idle, const V& phase, const V& shown, const Mask<V>& is_styled,
+                const State<V>& state, const Styled<V>& styled, const Poses& poses) noexcept {
+  constexpr float kHeadStays = 0.8f;  // of the trunk's breath: the head stays so upright
+  constexpr float kLead_s = 0.6f;     // how far ahead of the walk a leading head looks
   const auto of = [&](int number) -> const V& { return styled.body[number].x; };
-  const V is = styled.acts;
+  const V is = chosen<V>(is_styled, 1.0f, 0.0f);
   const auto write = [&](const Turn<V>& q, int joint) {
     for (int w = 0; w < poses.walks; ++w)
       if (lane(is, w) != 0.0f) write_joint(q, joint, w, poses);
   };
   const Turn<V> heading = hips.heading.turn(), from_heading = back(heading);
   const auto seen = [&](const Turn<V>& turn) { return heading * turn * from_heading; };
-  const V forward_rad = kRadians * of(kLean_deg),
+  const V forward_rad = kRadians * of(kLean_deg) - idle.breath_rad,
           left_rad = kRadians * shown *
                      (of(kOverLeft_deg) * stands_alone(tables, phase, false) -
                       of(kOverRight_deg) * stands_alone(tables, phase, true));
@@ -248,7 +251,9 @@ void pose_style(const Tables& tables, const Hips<V>& hips, const Pelvis<V>& pelv
   int neck = 0;
   while (neck < head && tables.path[neck].of_look == 0.0f) ++neck;
   const Turn<V> below = neck > 0 ? trunk.turned[neck - 1] : base;
-  turn_head(tables, turn_y(V(state.head_ahead_rad.x - chest_rad)), trunk);
+  const V turns = state.head_ahead_rad.x - chest_rad + idle.glance_rad,
+          nods = -kHeadStays * idle.breath_rad - idle.nod_rad;
+  turn_head(tables, seen(turn_y(turns) * turn_x(V(-nods))), trunk);
   turn_head(tables, turn_y(V(kLead_s * of(kLead) * state.turn_rad_s.x)), trunk);
   const auto looks = of(kLook) != V{};
   if (any(looks)) {
@@ -272,13 +277,15 @@ void pose_style(const Tables& tables, const Hips<V>& hips, const Pelvis<V>& pelv
 
 template <class V>
 void write_upper_body(const Tables& tables, const Hips<V>& hips, const Pelvis<V>& pelvis,
-                      const V& phase, const V& presence, const State<V>& state, Styled<V>& styled,
-                      const Poses& poses) noexcept {
+                      const Idle<V>& idle, const V& phase, const V& presence, const State<V>& state,
+                      Styled<V>& styled, const Poses& poses) noexcept {
   constexpr float kSoftElbow = 0.1f;
   const Knots<V> knots = knots_at(phase);
   const V swing = arm_swing(tables, state), shown = presence * within(state.posture.x, 0.0f, 1.0f);
-  const bool any_style = any(either(styled.asked != V{}, styled.acts != V{}));
-  if (any_style) smooth_body(tables, styled);
+  const auto idles = styled.idle_share != V{},
+             is_styled = either(either(styled.asked != V{}, styled.acts != V{}), idles);
+  const bool any_style = any(is_styled);
+  if (any_style) smooth_body(tables, is_styled, styled);
   V shoulder[2], elbow[2];
   for (int side : {0, 1}) {
     shoulder[side] = swing;
@@ -313,8 +320,9 @@ void write_upper_body(const Tables& tables, const Hips<V>& hips, const Pelvis<V>
       store(q, poses.local[w][joint.joint]);
     }
   }
-  turn_ahead(tables, pelvis, state, styled, poses);
-  if (any(styled.acts != V{})) pose_style(tables, hips, pelvis, phase, shown, state, styled, poses);
+  turn_ahead(tables, pelvis, state, is_styled, poses);
+  if (any_style)
+    pose_style(tables, hips, pelvis, idle, phase, shown, is_styled, state, styled, poses);
 }
 
 }  // namespace

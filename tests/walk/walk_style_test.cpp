@@ -196,6 +196,42 @@ INSTANTIATE_TEST_SUITE_P(Of, Shipped,
                                          "tired", "tiring"),
                          [](const auto& info) { return std::string(info.param); });
 
+// From the first tick on, beside the old walk, whose stand is the mirrored one: it counts its left
+// foot as the one that landed last.
+TEST(Stand, BreathesSwaysAndLooksRoundAsInTheOldWalk) {
+  constexpr int kSeconds = 30;
+  constexpr double kSame_m = 1e-4, kSame_deg = 0.02;
+  const auto tables = tables_of(adult(), kDt);
+  Pose old_pose, pose;
+  WalkState old = standing(adult(), vec3(0.0), old_pose);
+  pose = old_pose;
+  Block<1> block;
+  stand(*tables, Origin{}, block);
+  Asked<float>& asked = block.state.asked;
+  asked.lift[0] = asked.lift[1] = asked.bounce = asked.sway = 1.0f;
+  quat* local = pose.local.data();
+  vec3* root = &pose.root_m;
+  double off_m = 0.0, off_deg = 0.0, sways_m = 0.0, turns_deg = 0.0;
+  const int head = adult().body.head_path.back(), chest = tables->path.front().joint;
+  for (int tick = 0; tick < kSeconds * kRate; ++tick) {
+    gaitpad::advance(adult(), GaitParams{}, IkMode::robust, kDt, old, old_pose);
+    advance(*tables, block, Poses{&local, &root, 1});
+    if (tick == 0) continue;  // standing() has begun a tick before
+    const vec3 mirrored(-old_pose.root_m.x, old_pose.root_m.y, old_pose.root_m.z);
+    off_m = std::max(off_m, glm::distance(pose.root_m, mirrored));
+    off_deg = std::max(off_deg, turned_deg(old_pose.local[chest], pose.local[chest]));
+    sways_m = std::max(sways_m, std::abs(pose.root_m.x));
+    turns_deg =
+        std::max(turns_deg, turned_deg(adult().cycle.standing_local[head], pose.local[head]));
+  }
+  std::printf("off %.4f mm, %.4f deg; sways %.1f mm, head turns %.1f deg\n", off_m * 1e3, off_deg,
+              sways_m * 1e3, turns_deg);
+  EXPECT_LE(off_m, kSame_m);
+  EXPECT_LE(off_deg, kSame_deg);
+  EXPECT_GT(sways_m, 0.003);
+  EXPECT_GT(turns_deg, 4.0);
+}
+
 // Walks of several styles and phases in a block, and alone: the same numbers to the bit.
 template <int kWidth>
 void expect_same_bits() {

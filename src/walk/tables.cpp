@@ -107,6 +107,7 @@ void fill_legs(const WalkModel& model, Tables& tables) {
   for (int side : {0, 1}) {
     const LegBuild& from = model.leg[side];
     LegBones& to = tables.leg[side];
+    tables.chain[side] = from.chain;
     to.hip_m = floats(from.model.hip_m);
     to.heel_m = floats(from.model.heel_m);
     to.toe_m = floats(from.model.toe_m);

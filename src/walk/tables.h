@@ -78,6 +78,7 @@ struct Tables {
       leg_harmonics;
   FootprintLines footprints;
   std::array<LegBones, 2> leg;
+  std::array<IkChain, 2> chain;  // of paper mode, by Side
   std::array<float, 4>
       stage_share;  // of the phase: roll right, flight left, roll left, flight right
   float most_ratio, size, time_scale, stand_m, stand_roll_rad, rest_lead_m, source_step_m,

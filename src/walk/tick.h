@@ -1,5 +1,6 @@
 // One tick of the walks of a block, in the order of its data.
 #pragma once
+#include "walk/paper.h"
 #include "walk/pose.h"
 
 namespace gaitpad::anew {
@@ -95,13 +96,15 @@ void rest(const Change<V>& change, State<V>& state) noexcept {
   set(0.0f, state.wider_m), set(0.0f, state.next_wider_m);
 }
 
-template <int kWidth>
+// kPaper: with the paper's own solver, of one walk; the body leans into nothing then.
+template <int kWidth, bool kPaper = false>
 void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& poses) noexcept {
   using V = Floats<kWidth>;
   State<V>& state = block.state;
   Change<V>& change = block.change;
   begin_walks(tables, block);
   smooth_asked(tables, change, state);
+  if constexpr (kPaper) state.lean_rad = state.chest_ahead_rad = state.head_ahead_rad = {};
   const Time<V> time = advance_clock(tables, change, state);
   const Landing<V> landing = plan_landing(tables, time, change, state);
   const Stride<V> by_clock =
@@ -112,8 +115,11 @@ void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& pose
   keep_pelvis(hips, state);
   Feet<V> feet = plan_feet(tables, time, landing, by_clock, stride, hips, change, state);
   Pelvis<V> pelvis = pelvis_over(tables, time, hips, stride, state);
-  const Idle<V> idle = advance_idle(tables, change, state, block.styled);
-  sway(idle, hips.heading, pelvis);
+  Idle<V> idle;
+  if constexpr (!kPaper) {
+    idle = advance_idle(tables, change, state, block.styled);
+    sway(idle, hips.heading, pelvis);
+  }
   V asked_rad[2]{};
   keep_heels_low(tables, time, phase, stride, change, state, block.styled, pelvis, feet, asked_rad);
   const Vec<V> ankle_m[2] = {ankle_of(feet.foot[0], feet.sole[0]),
@@ -121,9 +127,15 @@ void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& pose
   sink(tables, time, stride, ankle_m, state, pelvis);
   reach_with_toe(tables, time, change, pelvis, feet);
   Leg<V> legs[2];
-  solve_legs(tables, time, stride, feet, pelvis, state, legs);
-  weigh_legs(tables, time, stride, feet, pelvis, phase, change, state, block.weighted, legs);
-  write_upper_body(tables, hips, pelvis, idle, phase, change.shown, state, block.styled, poses);
+  if constexpr (kPaper) {
+    solve_by_paper(tables, time, phase, change, feet, pelvis, state, block.weighted, legs);
+  } else {
+    solve_legs(tables, time, stride, feet, pelvis, state, legs);
+    weigh_legs(tables, time, stride, feet, pelvis, phase, change, state, block.weighted, legs);
+  }
+  const V swing = kPaper ? all<V>(1.0f) : arm_swing(tables, state);
+  write_upper_body(tables, hips, pelvis, idle, phase, change.shown, swing, state, block.styled,
+                   poses);
   write_legs(tables, time, feet, legs, poses);
   write_root<kWidth>(tables, pelvis, block, poses);
 

@@ -277,11 +277,11 @@ void pose_style(const Tables& tables, const Hips<V>& hips, const Pelvis<V>& pelv
 
 template <class V>
 void write_upper_body(const Tables& tables, const Hips<V>& hips, const Pelvis<V>& pelvis,
-                      const Idle<V>& idle, const V& phase, const V& presence, const State<V>& state,
-                      Styled<V>& styled, const Poses& poses) noexcept {
+                      const Idle<V>& idle, const V& phase, const V& presence, const V& swing,
+                      const State<V>& state, Styled<V>& styled, const Poses& poses) noexcept {
   constexpr float kSoftElbow = 0.1f;
   const Knots<V> knots = knots_at(phase);
-  const V swing = arm_swing(tables, state), shown = presence * within(state.posture.x, 0.0f, 1.0f);
+  const V shown = presence * within(state.posture.x, 0.0f, 1.0f);
   const auto idles = styled.idle_share != V{},
              is_styled = either(either(styled.asked != V{}, styled.acts != V{}), idles);
   const bool any_style = any(is_styled);

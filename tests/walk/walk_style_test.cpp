@@ -26,20 +26,28 @@ GaitParams params_of(double y, const StyleValues& style) {
 // The old walk and the new one, from the same strike on.
 class BothWalks {
  public:
-  BothWalks(double y, const StyleValues& style)
-      : params_(params_of(y, style)),
+  BothWalks(double y, const StyleValues& style, IkMode mode = IkMode::robust)
+      : mode_(mode),
+        params_(params_of(y, style)),
         tables_(tables_of(adult(), kDt)),
         old_(standing(adult(), vec3(0.0), old_pose)) {
     for (int tick = 0; tick < 12 * kRate || !has_just_struck(old_); ++tick) step_old();
     block_ = taken_over(old_, params_);
     take_style(old_, params_, block_);
     pose = old_pose;
+    for (int k = 0; mode == IkMode::paper && k < 2; ++k) {
+      const int stand = old_.clock.swing, side = k == 0 ? 1 - stand : stand;
+      for (int j = 0; j < kLegAngles; ++j)
+        block_.state.leg_rad[k][j] = static_cast<float>(old_.legs.angles_rad[side][j]);
+    }
   }
   void step() {
     step_old();
     quat* local = pose.local.data();
     vec3* root = &pose.root_m;
-    advance(*tables_, block_, Poses{&local, &root, 1});
+    const Poses poses{&local, &root, 1};
+    mode_ == IkMode::paper ? advance_by_paper(*tables_, block_, poses)
+                           : advance(*tables_, block_, poses);
   }
   void ask_for(double y, const StyleValues& style) {
     params_ = params_of(y, style);
@@ -52,7 +60,8 @@ class BothWalks {
   Pose old_pose, pose;
 
  private:
-  void step_old() { gaitpad::advance(adult(), params_, IkMode::robust, kDt, old_, old_pose); }
+  void step_old() { gaitpad::advance(adult(), params_, mode_, kDt, old_, old_pose); }
+  IkMode mode_;
   GaitParams params_;
   std::unique_ptr<const Tables> tables_;
   WalkState old_;
@@ -195,6 +204,20 @@ INSTANTIATE_TEST_SUITE_P(Of, Shipped,
                                          "rail_left", "stiff_arms", "stiff_hip", "stiff_knee",
                                          "tired", "tiring"),
                          [](const auto& info) { return std::string(info.param); });
+
+TEST(Paper, WalksAsTheOldWalkInPaperModeDoes) {
+  StyleValues stiff;
+  ASSERT_TRUE(set_value(stiff, "legs.weight.hip", 0.2));
+  for (const StyleValues& style : {StyleValues{}, stiff}) {
+    for (const double stick : {0.3, 0.8, 1.0}) {
+      BothWalks walks(stick, style, IkMode::paper);
+      const Differences off = walk(walks, 4 * kRate);
+      print(off);
+      for (int j = 0; j < 3; ++j) EXPECT_LE(off.rms_deg[j], kBound_deg);
+      expect_same_body(off);
+    }
+  }
+}
 
 // From the first tick on, beside the old walk, whose stand is the mirrored one: it counts its left
 // foot as the one that landed last.

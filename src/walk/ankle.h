@@ -2,6 +2,7 @@
 // support the heel rises; a foot that has to stand still does neither.
 #pragma once
 #include "walk/leg_solve.h"
+#include "walk/reach.h"
 
 namespace gaitpad::anew {
 namespace {
@@ -9,16 +10,6 @@ namespace {
 // Ankles bend up to 38 degrees, and softly beyond it: people's reach 35 to 40 with a bent knee.
 inline constexpr float kMostBent_rad = 0.66322512f, kSoftBent_rad = 0.10471976f,
                        kSoftFlying_rad = 0.20943951f;
-inline constexpr float kRiseBegin = 0.20f, kHeelRiseLasts = 0.18f;  // phases after its own strike
-
-// How far a standing foot may leave the floor with its heel: 0 flat .. 1 freely.
-template <class V>
-V heel_rise(const Tables& tables, const Mask<V>& right, const V& phase) noexcept {
-  const auto& share = tables.stage_share;
-  const V since = phase - chosen<V>(right, 0.0f, share[0] + share[1]), own = since - floored(since),
-          begin = chosen<V>(right, std::max(kRiseBegin, share[0]), std::max(kRiseBegin, share[2]));
-  return smooth(V((own - begin) * (1.0f / kHeelRiseLasts)));
-}
 
 // Points a flying foot down: as far as the ground allows by its pitch alone, and farther by lifting
 // it so that its toe stays at its height.
@@ -44,15 +35,14 @@ void ease_ankle(const Tables& tables, const Time<V>& time, const Stride<V>& stri
                 const V& bent, int k, const Pelvis<V>& pelvis, const Change<V>& change,
                 const Footing<V>& footing, State<V>& state, Feet<V>& feet,
                 const V (&begun_rad)[kLegAngles], Leg<V>& leg) noexcept {
-  const auto closes = change.closing != V{}, starts = change.starting != V{};
+  const auto starts = change.starting != V{};
   const auto right = k == 0 ? time.right : no(time.right);
   const LegBones &l = tables.leg[0], &r = tables.leg[1];
   const auto flies = k == 0 ? time.flies : Mask<V>{}, stands = k == 0 ? no(time.flies) : time.flies;
   // An ankle that stairs bend while standing would jump where a walk starts.
   const V begun = both(starts, no(time.flies)) ? smooth(V(state.tick / state.roll_ticks))
                                                : all<V>(1.0f),
-          ends = closes ? V(1.0f - smoother(time.share)) : all<V>(1.0f),
-          may = change.stands != V{} ? V{} : V(begun * ends * heel_rise(tables, right, phase));
+          may = begun * heel_rise(tables, time, right, phase, no(Mask<V>{}), change);
   const V soft = chosen<V>(flies, kSoftFlying_rad, kSoftBent_rad),
           excess = soft_positive(bent, soft) * (flies    ? all<V>(1.0f)
                                                 : stands ? may
@@ -61,7 +51,7 @@ void ease_ankle(const Tables& tables, const Time<V>& time, const Stride<V>& stri
   if (!any(eases)) return;
   Foot<V>& foot = feet.foot[k];
   const Sole<V>& sole = feet.sole[k];
-  const Turn<V> yaw = foot.turn * back(turn_about(sole.side, foot.pitch_rad) * foot.edge);
+  const Turn<V> yaw = foot.yaw;
   Foot<V> risen = foot;
   set_pitch(sole, yaw, V(foot.pitch_rad + excess), no(flies), risen);
   if (any(flies)) {
@@ -76,11 +66,8 @@ void ease_ankle(const Tables& tables, const Time<V>& time, const Stride<V>& stri
   }
   // Once more, from where it started: it turns little there, and its knee does not swivel away.
   V start_rad[kLegAngles], off_rad[kLegAngles];
-  for (int j = 0; j < kLegAngles; ++j) {
-    start_rad[j] = stride.leg_rad[k][j] + chosen<V>(right, r.stand_rad[j], l.stand_rad[j]);
-    off_rad[j] = begun_rad[j];
-  }
-  start_rad[3] = most(start_rad[3], all<V>(kLeastKnee_rad));
+  set_table_angles(tables, right, stride, k, start_rad);
+  std::copy_n(begun_rad, kLegAngles, off_rad);
   const Turn<V> to_pelvis = back(pelvis.turn);
   const Vec<V> ankle_m = to_pelvis * (ankle_of(risen, sole) - pelvis.place_m - pelvis.hip_m[k]);
   const Leg<V> again =

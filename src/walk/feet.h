@@ -9,7 +9,7 @@ template <class V>
 struct Foot {
   Vec<V> heel_m, toe_m;
   V pitch_rad{};  // of the line from heel to toe: 0 flat, toe down positive
-  Turn<V> edge, turn;
+  Turn<V> yaw, edge, turn;
 };
 
 // The numbers of a foot that the swinging one and the standing one differ in, for they are of
@@ -44,6 +44,7 @@ template <class V>
 void set_pitch(const Sole<V>& sole, const Turn<V>& yaw, const V& pitch_rad, const Mask<V>& on_toe,
                Foot<V>& foot) noexcept {
   foot.pitch_rad = pitch_rad;
+  foot.yaw = yaw;
   foot.turn = yaw * (turn_about(sole.side, pitch_rad) * foot.edge);
   const Vec<V> line = foot.turn * sole.line_m;
   const Vec<V> heel_m = foot.toe_m - line, toe_m = foot.heel_m + line;
@@ -55,6 +56,16 @@ void set_pitch(const Sole<V>& sole, const Turn<V>& yaw, const V& pitch_rad, cons
 template <class V>
 V lift_of(const Time<V>& time, const State<V>& state) noexcept {
   return time.right ? state.lift[1].x : state.lift[0].x;
+}
+// At most 1: a lame foot stays low.
+template <class V>
+V low_lift(const Mask<V>& right, const State<V>& state) noexcept {
+  return least(right ? state.lift[1].x : state.lift[0].x, all<V>(1.0f));
+}
+// Of its pitch in the tables, until the middle of its flight.
+template <class V>
+V low_pitch(const V& low, const V& u) noexcept {
+  return mix(low, all<V>(1.0f), smoother(V(2.0f * u)));
 }
 
 // Of the flight: a style's factor on the height grows until here, and goes between the others.
@@ -238,7 +249,7 @@ Flight<V> fly(const Tables& tables, const Time<V>& time, const Landing<V>& landi
                                     footing, flight.base_m);
   flight.heel_m = with_gap(tables, time, flight.table_heel_m, flight.base_m, change, state);
   // A low foot that hardly leaves the floor does not roll onto an edge.
-  const V low = mix(one, least(lift_of(time, state), one),
+  const V low = mix(one, low_lift<V>(time.right, state),
                     V(smoother(V(u * 2.0f)) * (1.0f - smoother(V((u - 0.6f) * 2.5f)))));
   const StrideFoot<V>& table = stride.foot[0];
   flight.edge = edge_of(sole, V(low * table.twist_rad), V(low * table.roll_rad));
@@ -316,7 +327,8 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
     const V rises = starts ? smoother(V(time.u * (1.0f / kHeelRises))) : stays,
             ends = change.gap_begin != V{} ? edge_left(time.u, change) : V{},
             shows = both(closes, time.flies) ? ends : rises;
-    const V pitch = table.pitch_rad * shows + (time.flies ? V{} : off);
+    const V low = time.flies ? low_lift<V>(no(time.right), state) : one;
+    const V pitch = low * table.pitch_rad * shows + (time.flies ? V{} : off);
     V planted = time.flies ? most(pitch, V{}) : least(pitch, V{});
     Turn<V> tilt{one, V{}, V{}, V{}};
     feet.flat_toe_m = sole.line_m;
@@ -343,8 +355,9 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
   const V off = pitch_off(time, state.tick, change, state);
   const V lifts =
       smoother(V((state.tick / state.roll_ticks - kHeelStays) * (1.0f / (1.0f - kHeelStays))));
-  V planned = first_roll ? V(kFirstPitch * by_clock.foot[0].pitch_rad * lifts)
-                         : V(stride.foot[0].pitch_rad + off);
+  const V low = low_pitch(low_lift<V>(time.right, state), time.u);
+  V planned = first_roll ? V(low * (kFirstPitch * by_clock.foot[0].pitch_rad * lifts))
+                         : V(low * stride.foot[0].pitch_rad + off);
   foot.toe_m = {state.toe_x_m, sole.toe_rest_m, state.toe_z_m};
   if constexpr (kIsUneven<F>) {
     foot.toe_m.y = footing.toe_y_m;
@@ -398,9 +411,10 @@ void lift_off(const Tables& tables, const Time<V>& time, const Mask<V>& lifts,
     return V((slope_of(heel.*part, last.*part, before.*part) - (ahead.*part - table.*part)) *
              ticks);
   };
-  const V pitch = feet.foot[0].pitch_rad, table_pitch = stride.foot[0].pitch_rad,
+  const V low = low_lift<V>(time.right, state);
+  const V pitch = feet.foot[0].pitch_rad, table_pitch = low * stride.foot[0].pitch_rad,
           rate = slope_of(pitch, state.last_pitch_rad[0], state.last_pitch_rad[1]) -
-                 (next.foot[0].pitch_rad - table_pitch);
+                 (low_pitch(low, V(1.0f / ticks)) * next.foot[0].pitch_rad - table_pitch);
   state.gap_m = chosen(lifts, heel - table, state.gap_m);
   state.gap_slope_m = chosen(lifts, Vec<V>{slope(&Vec<V>::x), slope(&Vec<V>::y), slope(&Vec<V>::z)},
                              state.gap_slope_m);

@@ -209,7 +209,8 @@ void move_hips_ground(const Tables& tables, const Time<V>& time, const Landing<V
 inline constexpr float kStretch = 0.998f, kSoftStretch_m = 0.02f, kMostOnToe = 0.5f,
                        kSoftOnToe = 0.3f;
 inline constexpr float kFirstRise = 0.4f;  // of the first flight: a standing foot has risen
-inline constexpr float kMostUpright = 0.99f, kSoftUpright = 0.12f;  // sine of a foot's pitch
+inline constexpr float kMostUpright = 0.99f,
+                       kSoftUpright = 0.12f;  // of a foot on its toe, as a sine
 
 // Of a foot over ground of height `base_m`, whose knee is `knee_rad` bent in the tables. One that
 // flies down comes with the hips, and softly: over its ground they are lower by `hover_m` twice.

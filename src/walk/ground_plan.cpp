@@ -538,7 +538,8 @@ PlannedFlight planned_flight(const Tables& tables, const Floor& floor, const Fra
         fly(tables, time, landing, stride, stride, hips, phase, sole, change, state, footing);
     const float off = pitch_off(time, tick, change, state);
     Foot<float> foot;
-    pitch_in_flight(time, sole, flies, stride.foot[0].pitch_rad + off, off, footing, foot);
+    const float low = low_pitch(low_lift<float>(time.right, state), time.u);
+    pitch_in_flight(time, sole, flies, low * stride.foot[0].pitch_rad + off, off, footing, foot);
     set_points(leg, frame, flies, foot, flight.sole[i], flight.base[i]);
     flight.left[i] = lands.z - frame.out(doubles(flies.heel_m)).z;
   }

@@ -239,13 +239,17 @@ void show(const V& shown, Stride<V>& stride) noexcept {
 
 inline constexpr float kShownAfter = 0.55f;  // of a first step: all of the tables shows
 
+// What is left of a last step, from its plan on.
+template <class V>
+V closing_left(const Time<V>& time, const Change<V>& change) noexcept {
+  return smoother(V(time.to_strike / most(change.closing_ticks, all<V>(1.0f))));
+}
 // By the plan: how much of the tables shows, and how far the step has come over from the stride
 // behind, at 0, to the one ahead, at 1.
 template <class V>
 V planned_shown(const Time<V>& time, const Change<V>& change) noexcept {
   const V begins = smoother(V(time.share * (1.0f / kShownAfter))),
-          ends = smoother(V(time.to_strike / most(change.closing_ticks, all<V>(1.0f)))),
-          walks = change.closing != V{} ? ends : all<V>(1.0f);
+          walks = change.closing != V{} ? closing_left(time, change) : all<V>(1.0f);
   return change.stands != V{} ? V{} : change.starting != V{} ? begins : walks;
 }
 template <class V>
@@ -464,6 +468,8 @@ Pelvis<V> pelvis_over(const Tables& tables, const Time<V>& time, const Hips<V>& 
 inline constexpr float kReach = 0.9994f, kSoftReach_m = 0.006f, kKnown_m = 0.0015f,
                        kWiderReach = 0.6f, kWidestReach_m = 0.06f, kMostSunk_m = 0.34f,
                        kSoftSunk_m = 0.12f;
+inline constexpr float kLowReach =
+    0.985f;  // of the leg: a foot whose heel stays low reaches so far
 
 // The spline's knots stand so far apart, in seconds at the reference leg.
 inline constexpr float kSinkKnot_s = 0.06f, kSoftSink_m = 0.002f;
@@ -492,7 +498,8 @@ V known_sink(const Tables& tables, const Change<V>& change) noexcept {
 // Lowers it where a leg is asked for more than the tables know. `ankle_m`: swing and stand.
 template <class V>
 void sink(const Tables& tables, const Time<V>& time, const Stride<V>& stride,
-          const Vec<V> (&ankle_m)[2], Change<V>& change, Pelvis<V>& pelvis) noexcept {
+          const Vec<V> (&ankle_m)[2], const State<V>& state, Change<V>& change,
+          Pelvis<V>& pelvis) noexcept {
   const float grown = tables.size;
   V squares{};
   for (int k : {0, 1}) {
@@ -505,7 +512,9 @@ void sink(const Tables& tables, const Time<V>& time, const Stride<V>& stride,
                    chosen<V>(right, tables.leg[1].stand_rad[3], tables.leg[0].stand_rad[3]);
     V sine, cosine;
     sin_cos(knee, sine, cosine);
-    const V known = root(V(a * a + b * b + 2.0f * a * b * cosine));
+    const V table = root(V(a * a + b * b + 2.0f * a * b * cosine)),
+            low = least(right ? state.lift[1].x : state.lift[0].x, all<V>(1.0f)),
+            known = low < all<V>(1.0f) ? mix(V(kLowReach * (a + b)), table, low) : table;
     const Vec<V> way = ankle_m[k] - (pelvis.place_m + pelvis.hip_m[k]);
     const V span = root(dot(way, way)), beyond = (span - known) * (1.0f / grown);
     const V soft = grown * (kSoftReach_m + kWiderReach * least(beyond, all<V>(kWidestReach_m)));

@@ -13,6 +13,7 @@ template <class V>
 struct Leg {
   Turn<V> hip, knee, ankle;
   Mask<V> short_of{};  // the ankle is out of the leg's reach
+  V more_pitch_rad{};  // by which the weights pitch the foot beyond its plan
 };
 
 // What is added to the tables' angles leaks away at this rate.
@@ -113,6 +114,16 @@ Leg<V> solve_leg(const V& thigh_m, const V& shank_m, const Vec<V>& ankle_m, cons
   return leg;
 }
 
+// Of swing (0) or stand (1).
+template <class V>
+void set_table_angles(const Tables& tables, const Mask<V>& right, const Stride<V>& stride, int k,
+                      V (&table_rad)[kLegAngles]) noexcept {
+  for (int j = 0; j < kLegAngles; ++j)
+    table_rad[j] = stride.leg_rad[k][j] +
+                   chosen<V>(right, tables.leg[1].stand_rad[j], tables.leg[0].stand_rad[j]);
+  table_rad[3] = most(table_rad[3], all<V>(kLeastKnee_rad));
+}
+
 // Swing and stand. `begun_rad`: what was added to the tables' angles where they started; null where
 // nobody asks.
 template <class V>
@@ -128,13 +139,12 @@ void solve_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stri
     const auto right = k == 0 ? time.right : no(time.right);
     const LegBones &l = tables.leg[0], &r = tables.leg[1];
     V table_rad[kLegAngles];
+    set_table_angles(tables, right, stride, k, table_rad);
     for (int j = 0; j < kLegAngles; ++j) {
-      table_rad[j] = stride.leg_rad[k][j] + chosen<V>(right, r.stand_rad[j], l.stand_rad[j]);
       const V off = state.leg_rad[k][j];
       state.leg_rad[k][j] = keep * off + ahead * (off - state.last_leg_rad[k][j]);
       state.last_leg_rad[k][j] = off;
     }
-    table_rad[3] = most(table_rad[3], all<V>(kLeastKnee_rad));
     const Vec<V> ankle_m =
         to_pelvis * (ankle_of(feet.foot[k], feet.sole[k]) - pelvis.place_m - pelvis.hip_m[k]);
     if (begun_rad != nullptr) std::copy_n(state.leg_rad[k], kLegAngles, begun_rad[k]);

@@ -32,7 +32,8 @@ void write_legs(const Tables& tables, const Time<V>& time, const Feet<V>& feet,
   for (int k : {0, 1}) {
     const Foot<V>& foot = feet.foot[k];
     toes[k] = back(foot.edge) *
-              turn_about(feet.sole[k].side, level_toe(foot.pitch_rad, k == 0 ? time.u : V{}));
+              turn_about(feet.sole[k].side, level_toe(V(foot.pitch_rad + legs[k].more_pitch_rad),
+                                                      k == 0 ? time.u : V{}));
   }
   for (int side : {0, 1}) {
     const LegBones& bones = tables.leg[side];

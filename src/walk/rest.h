@@ -96,7 +96,9 @@ inline Flown flown(const Tables& tables, const Change<float>& change,
       flown.twist_rad = stride.foot[0].twist_rad + edge * change.gap_twist_rad;
       flown.roll_rad = stride.foot[0].roll_rad + edge * change.gap_roll_rad;
     }
-    flown.pitch_rad[k] = stride.foot[0].pitch_rad + pitch_off(time, at.tick, change, at);
+    flown.pitch_rad[k] =
+        low_pitch(low_lift<float>(time.right, at), time.u) * stride.foot[0].pitch_rad +
+        pitch_off(time, at.tick, change, at);
     at.tick += 1.0f, at.phase += at.phase_rate;
   }
   return flown;

@@ -120,6 +120,54 @@ struct Change {
   V is_aimed{}, aim_x_m{}, aim_z_m{}, aim_rad{}, push_x_m{}, push_z_m{}, push_waits{};
 };
 
+// Legs whose weights differ (weights.h); read where any walk of a block has such.
+template <class V>
+struct Weighted {
+  // 1 or 0: the style has weights that differ; such were in force a tick ago. By Side: what is
+  // asked for, and the same smoothed.
+  V asked{}, acts{};
+  V goal[2][kLegAngles]{};
+  Smoothed<V> weight[2][kLegAngles];
+  // Swing and stand: the running means of the even angles, filtered once and twice; what the
+  // weights add to those, now and a tick ago; how loose the foot is after standing flat.
+  V lagging_rad[2][kLegAngles]{}, mean_rad[2][kLegAngles]{};
+  V shift_rad[2][kLegAngles]{}, last_shift_rad[2][kLegAngles]{};
+  Smoothed<V> loose[2];
+};
+
+// Numbers of UpperBodyParams, in its order: of those by Side the left one's first.
+enum BodyNumber : int {
+  kArmSwing = 0,
+  kArmOut_deg = 2,
+  kArmWeight = 4,
+  kSpineWeight = 16,
+  kLean_deg = 18,
+  kOverLeft_deg = 19,
+  kOverRight_deg = 20,
+  kHand = 21,
+  kLook = 35,
+  kLookYaw_deg = 36,
+  kLookPitch_deg = 37,
+  kLookAt = 38,
+  kLead = 42,
+  kIdle = 43,
+  kBodyNumbers = 44
+};
+
+// What else a style asks for; read where any walk of a block has such.
+template <class V>
+struct Styled {
+  // 1 or 0: the style's upper body is not the data's; it was not in the last tick. What it is to
+  // be, and the same smoothed.
+  V asked{}, acts{};
+  V goal[kBodyNumbers]{};
+  Smoothed<V> body[kBodyNumbers];
+  // Of one who stands: ticks, and how much of breath, sway and glances shows.
+  V idle_ticks{}, idle_share{};
+  // Swing and stand: how low a foot's heel is kept where it would rise.
+  Smoothed<V> low[2];
+};
+
 // How a plane rises along x and along z.
 template <class V>
 struct Slope {
@@ -165,7 +213,8 @@ template <class F>
 inline constexpr bool kIsUneven = !std::is_same_v<F, NoFooting>;
 
 template <class V>
-inline constexpr int kStateNumbers = (sizeof(State<V>) + sizeof(Change<V>) + sizeof(Footing<V>)) /
+inline constexpr int kStateNumbers = (sizeof(State<V>) + sizeof(Change<V>) + sizeof(Weighted<V>) +
+                                      sizeof(Styled<V>) + sizeof(Footing<V>)) /
                                      sizeof(V);
 static_assert(sizeof(State<float>) <= 512);
 
@@ -180,6 +229,8 @@ template <int kWidth>
 struct alignas(64) Block {
   State<Floats<kWidth>> state;
   Change<Floats<kWidth>> change;
+  Weighted<Floats<kWidth>> weighted;
+  Styled<Floats<kWidth>> styled;
   Footing<Floats<kWidth>> footing;
   Origin origin[kWidth];
   Placement placed[kWidth];  // of the walk's own coordinates in the world

@@ -206,39 +206,11 @@ Stride<V> read_stride(const Tables& tables, const Time<V>& time, const V& phase,
   return stride;
 }
 
-// The stride of the foot that flies, at a phase of the clock. In a first
-// and in a last step it flies as in strides of its own length, half of one, and before it lifts off
-// it is read as it will then be; at the end of the last it lands flat.
+// Four neighbours of a row's numbers, from `at` on, at any phase.
 template <class V>
-Stride<V> read_by_clock(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
-                        const V& phase, const V& share, const V& u, const Change<V>& change,
-                        const State<V>& state) noexcept {
-  const auto closes = change.closing != V{}, starts = either(change.starting != V{}, closes);
-  if (!any(starts))
-    return read_stride(tables, time, phase, state.ratio_behind, landing.ratio, smoother(share));
-  Stride<V> stride =
-      read_stride(tables, time, both(starts, no(time.flies)) ? most(phase, time.stage_end) : phase,
-                  starts ? short_ratio(tables, landing, state) : state.ratio_behind, landing.ratio,
-                  closes ? V{} : smoother(starts ? u : share));
-  const V flat = closes ? V(1.0f - smoother(u)) : all<V>(1.0f);
-  StrideFoot<V>& flies = stride.foot[0];
-  flies.pitch_rad = flat * flies.pitch_rad;
-  flies.twist_rad = flat * flies.twist_rad, flies.roll_rad = flat * flies.roll_rad;
-  stride.heel_high_m = starts ? stride.heel_behind_m.y : stride.heel_high_m;
-  return stride;
-}
-
-// The share of what a change of plan has left of twist and roll of the foot that flies.
-template <class V>
-V edge_left(const V& u, const Change<V>& change) noexcept {
-  return 1.0f - smoother(V((u - change.gap_begin) / change.gap_lasts));
-}
-
-// The pelvis alone, at any phase.
-template <class V>
-Vec<V> read_pelvis(const Tables& tables, const Time<V>& time, const V& phase, const V& behind,
-                   const V& ahead, const V& change) noexcept {
-  constexpr int kWidth = kLanes<V>, kAt = offsetof(StrideRow, pelvis_m) / sizeof(float);
+void read_four(const Tables& tables, const Time<V>& time, int at, const V& phase, const V& behind,
+               const V& ahead, const V& change, V (&to)[4]) noexcept {
+  constexpr int kWidth = kLanes<V>;
   const V last = last_ratio<V>(time.back), back = chosen<V>(time.back, 1.0f, 0.0f);
   const Knots<V> knots = knots_at(phase), old = ratios_at(behind, last),
                  next = ratios_at(ahead, last);
@@ -258,13 +230,87 @@ Vec<V> read_pelvis(const Tables& tables, const Time<V>& time, const V& phase, co
     for (int r = begin; r <= end; ++r) {
       Four here{};
       for (int k = 0; k < 4; ++k)
-        here += part<Four>(rows.at(i + k, r) + kAt) * lane(knots.weight[k], w);
+        here += part<Four>(rows.at(i + k, r) + at) * lane(knots.weight[k], w);
       sum += here * weight[r + 1];
     }
     std::memcpy(row[w], &sum, sizeof sum);
   }
+  to_lanes(&row[0][0], 4, to);
+}
+
+// Where one foot's steps are shorter than the other's, the tables of short strides would keep both
+// feet low: then a heel flies as high as in strides in which both go as far as the longer one, and
+// comes down as the tables have it.
+template <class V>
+void raise_limping_heel(const Tables& tables, const Time<V>& time, const V& phase, const V& ratio,
+                        const V& u, const Change<V>& change, const State<V>& state,
+                        Stride<V>& stride) noexcept {
+  // A walk limps from the one difference of both feet's strides on, wholly from the other.
+  constexpr float kEvenSteps = 0.03f, kUnevenSteps = 0.2f, kLeastAsked = 0.1f;
+  // Even styles ask for equal steps, or for the data's own, which may differ.
+  const V &left_m = state.length_m[0].x, &right_m = state.length_m[1].x;
+  const float left_1_m = 1.0f / tables.leg[0].own_step_m,
+              right_1_m = 1.0f / tables.leg[1].own_step_m;
+  const V left = left_m * chosen<V>(time.back, right_1_m, left_1_m),
+          right = right_m * chosen<V>(time.back, left_1_m, right_1_m), longer = most(left, right),
+          shorter = least(left, right);
+  const auto limps = both(both(time.flies, change.closing == V{}),
+                          longer - shorter > kEvenSteps * (longer + kLeastAsked));
+  if (!any(limps)) return;
+  const auto evenness = [](const V& a, const V& b) {
+    return V((least(a, b) + kLeastAsked) / (most(a, b) + kLeastAsked));
+  };
+  const V uneven = 1.0f - most(evenness(left, right), evenness(left_m, right_m)),
+          shows = smooth(kEvenSteps, kUnevenSteps, uneven) * smoother(V(u * 5.0f)) *
+                  (1.0f - smoother(V((u - 0.5f) * 2.5f))),
+          own = time.right ? right : left;
+  const V as_far = ratio * longer / most(own, all<V>(kLeastAsked));
+  V heel_m[4];  // the left one's height, .., the right one's
+  read_four(tables, time, 1, phase, as_far, as_far, V{}, heel_m);
+  const V high_m = most(stride.heel_high_m, time.right ? heel_m[3] : heel_m[0]);
+  stride.heel_high_m = limps ? mix(stride.heel_high_m, high_m, shows) : stride.heel_high_m;
+}
+
+// The stride of the foot that flies, at a phase of the clock. In a first
+// and in a last step it flies as in strides of its own length, half of one, and before it lifts off
+// it is read as it will then be; at the end of the last it lands flat.
+template <class V>
+Stride<V> read_by_clock(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
+                        const V& phase, const V& share, const V& u, const Change<V>& change,
+                        const State<V>& state) noexcept {
+  const auto closes = change.closing != V{}, starts = either(change.starting != V{}, closes);
+  if (!any(starts)) {
+    Stride<V> stride =
+        read_stride(tables, time, phase, state.ratio_behind, landing.ratio, smoother(share));
+    raise_limping_heel(tables, time, phase, landing.ratio, u, change, state, stride);
+    return stride;
+  }
+  Stride<V> stride =
+      read_stride(tables, time, both(starts, no(time.flies)) ? most(phase, time.stage_end) : phase,
+                  starts ? short_ratio(tables, landing, state) : state.ratio_behind, landing.ratio,
+                  closes ? V{} : smoother(starts ? u : share));
+  const V flat = closes ? V(1.0f - smoother(u)) : all<V>(1.0f);
+  StrideFoot<V>& flies = stride.foot[0];
+  flies.pitch_rad = flat * flies.pitch_rad;
+  flies.twist_rad = flat * flies.twist_rad, flies.roll_rad = flat * flies.roll_rad;
+  raise_limping_heel(tables, time, phase, landing.ratio, u, change, state, stride);
+  stride.heel_high_m = starts ? stride.heel_behind_m.y : stride.heel_high_m;
+  return stride;
+}
+
+// The share of what a change of plan has left of twist and roll of the foot that flies.
+template <class V>
+V edge_left(const V& u, const Change<V>& change) noexcept {
+  return 1.0f - smoother(V((u - change.gap_begin) / change.gap_lasts));
+}
+
+// The pelvis alone, at any phase.
+template <class V>
+Vec<V> read_pelvis(const Tables& tables, const Time<V>& time, const V& phase, const V& behind,
+                   const V& ahead, const V& change) noexcept {
   V n[4];
-  to_lanes(&row[0][0], 4, n);
+  read_four(tables, time, offsetof(StrideRow, pelvis_m) / sizeof(float), phase, behind, ahead,
+            change, n);
   return {n[0], n[1], n[2]};
 }
 

@@ -1,6 +1,7 @@
 #include "walk/tables.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 
 #include "gaitpad/curve.h"
@@ -60,6 +61,23 @@ std::array<double, kRowNumbers> numbers_of(const StridePlace& place) {
   return all;
 }
 
+void fill_harmonics(const WalkModel& model, Tables& tables) {
+  for (int r = 0; r < kRatios; ++r) {
+    for (auto& side : tables.leg_harmonics[r])
+      for (auto& numbers : side) numbers.fill(0.0f);
+    for (int k = 0; k < kKnots; ++k) {
+      const StrideCell cell = stride_of(model, false, double(k) / kKnots, kRatioStep * r).cell;
+      for (int n = 0; n < 1 + 2 * kHarmonics; ++n) {
+        const SinCos turn = gaitpad::sin_cos(2.0 * kPi * ((n + 1) / 2) * k / kKnots);
+        const double of = (n == 0 ? 1.0 : n % 2 == 1 ? 2.0 * turn.cos : 2.0 * turn.sin) / kKnots;
+        for (int side : {0, 1})
+          for (int j = 0; j < kLegAngles; ++j)
+            tables.leg_harmonics[r][side][j][n] += static_cast<float>(of * cell.leg_rad[side][j]);
+      }
+    }
+  }
+}
+
 template <std::size_t kOf>
 void fill_strides(const WalkModel& model, bool backward, RowsOf<kOf>& rows) {
   for (std::size_t r = 0; r < kOf; ++r) {
@@ -91,6 +109,7 @@ void fill_legs(const WalkModel& model, Tables& tables) {
   for (int side : {0, 1}) {
     const LegBuild& from = model.leg[side];
     LegBones& to = tables.leg[side];
+    tables.chain[side] = from.chain;
     to.hip_m = floats(from.model.hip_m);
     to.heel_m = floats(from.model.heel_m);
     to.toe_m = floats(from.model.toe_m);
@@ -142,15 +161,33 @@ void fill_path(const WalkModel& model, Tables& tables) {
     if (head[i] == model.cycle.pelvis) tables.path.clear();
     if (head[i] == model.cycle.pelvis) continue;
     const bool bends = std::find(spine.begin(), spine.end(), head[i]) != spine.end();
-    PathJoint to{head[i], bends ? 1.0f / static_cast<float>(spine.size()) : 0.0f, 0.0f};
+    const float share = bends ? 1.0f / static_cast<float>(spine.size()) : 0.0f;
+    PathJoint to{head[i], share, 0.0f, share, 0.0f};
     if (i >= body.neck_at) {
       to.of_head = static_cast<float>(i < joints - 1 ? kNeckShare / necks
                                       : necks > 0    ? 1.0 - kNeckShare
                                                      : 1.0);
       to.of_chest -= to.of_head;
+      to.of_look = static_cast<float>(i == joints - 1 ? 1.0
+                                                      : kNeckShare * (i - body.neck_at + 1) /
+                                                            (joints - 1 - body.neck_at));
     }
     tables.path.push_back(to);
   }
+  for (int side : {0, 1}) {
+    const ArmBuild& arm = body.arm[side];
+    if (!arm.is_there) continue;
+    std::vector<int>& path = tables.arm[side].path;
+    for (const int joint : arm.path) {
+      path.push_back(joint);
+      if (joint == model.cycle.pelvis) path.clear();
+      if (joint == arm.joints.shoulder) break;
+    }
+  }
+  tables.chest_standing = wxyz(body.chest_standing);
+  tables.head_standing = wxyz(body.head_standing);
+  const auto plain = std::bit_cast<std::array<double, kBodyNumbers>>(UpperBodyParams{});
+  for (int n = 0; n < kBodyNumbers; ++n) tables.plain_body[n] = static_cast<float>(plain[n]);
 }
 
 void fill_upper_body(const WalkModel& model, Tables& tables) {
@@ -213,6 +250,7 @@ std::unique_ptr<const Tables> tables_of(const WalkModel& model, double tick_s) {
   fill_strides(model, true, tables->back);
   fill_footprints(model.forward, tables->footprints, tables->most_ratio);
   fill_footprints(model.back, tables->back_footprints, tables->most_back_ratio);
+  fill_harmonics(model, *tables);
   fill_legs(model, *tables);
   fill_upper_body(model, *tables);
   for (int k = 0; k < 4; ++k) tables->stage_share[k] = static_cast<float>(model.share[k]);
@@ -240,6 +278,12 @@ std::unique_ptr<const Tables> tables_of(const WalkModel& model, double tick_s) {
   tables->room = of(0.04);
   tables->ground = of(0.30);
   tables->slope_lean = of(0.30);
+  tables->weights = of(0.15);
+  tables->loosens = of(0.04);  // a foot that stood flat, when a walk begins
+  tables->lowers = of(0.03);
+  tables->body = of(0.22);
+  const double mean_s = 0.5 * model.time_scale;
+  tables->mean_pull = static_cast<float>(tick_s / (mean_s + tick_s));
   tables->tick_s = static_cast<float>(tick_s);
   tables->leg_m = static_cast<float>(model.leg_length_m);
   if (!is_flat(*model.terrain)) tables->terrain = model.terrain;

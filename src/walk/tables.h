@@ -29,7 +29,7 @@ static_assert(kRowNumbers == 40);
 
 // As many as a StrideFamily has: half of them are off by 0.17 degrees RMS of a knee, at the
 // lift-off.
-inline constexpr int kKnots = 128, kRatios = 8;
+inline constexpr int kKnots = 128, kRatios = 8, kHarmonics = 2;
 template <std::size_t kOf>
 using RowsOf = std::array<std::array<StrideRow, kOf>, kKnots + 3>;  // one before, two after
 using StrideRows = RowsOf<kRatios>;
@@ -67,13 +67,23 @@ struct UpperJoint {
 struct PathJoint {
   int joint;
   float of_chest, of_head;
+  float bends, of_look;  // shares of the trunk's bend; of the head's turn, with what is below it
+};
+
+// An arm, from the pelvis on: the joints above the shoulder, then it.
+struct ArmBones {
+  std::vector<int> path;
 };
 
 struct Tables {
   alignas(64) StrideRows forward;
   alignas(64) BackRows back;
   FootprintLines footprints, back_footprints;
+  // Of the legs' angles over a stride ahead, by Side: mean, then cosine and sine of each harmonic.
+  std::array<std::array<std::array<std::array<float, 1 + 2 * kHarmonics>, kLegAngles>, 2>, kRatios>
+      leg_harmonics;
   std::array<LegBones, 2> leg;
+  std::array<IkChain, 2> chain;  // of paper mode, by Side
   std::array<float, 4>
       stage_share;  // of the phase: roll right, flight left, roll left, flight right
   float most_ratio, most_back_ratio, size, time_scale, stand_m, stand_roll_rad, rest_lead_m,
@@ -83,6 +93,9 @@ struct Tables {
   std::vector<UpperJoint> upper;
   std::vector<float> upper_rows;  // (kKnots + 3) x upper.size() x 4: x, y, z, w
   std::vector<PathJoint> path;    // from the pelvis on
+  std::array<ArmBones, 2> arm;
+  std::array<float, 4> chest_standing, head_standing;  // w, x, y, z
+  std::array<float, kBodyNumbers> plain_body;          // UpperBodyParams of no style
   std::array<float, 2> most_elbow_swing;
   std::vector<int> still;                  // always the identity
   std::vector<std::pair<int, quat>> kept;  // twist joints in the legs
@@ -95,6 +108,8 @@ struct Tables {
   float tick_s;
   Filter room, ground, slope_lean;  // of uneven ground
   Filter step, first_step, turn_goal, turn, bounce, lean, posture, chest, head;
+  Filter weights, loosens, lowers, body;
+  float mean_pull;  // of the two filters that a leg's running mean goes through
 };
 
 // Of a tick of `tick_s` seconds.

@@ -1,6 +1,8 @@
 // One tick of the walks of a block, in the order of its data.
 #pragma once
+#include "walk/ankle.h"
 #include "walk/ground_plan.h"
+#include "walk/paper.h"
 #include "walk/pose.h"
 #include "walk/rest.h"
 #include "walk/walk.h"
@@ -76,6 +78,7 @@ void begin_walks(const Tables& tables, Block<kWidth>& block) noexcept {
     move_frame<kWidth>(beside, other, block);
     if (is_uneven(tables)) change_footing(beside, other, feet.flat_toe_m.y, footing);
     change_feet(beside, other, feet, Stride<V>{}, state);
+    change_weighted_legs(other, block.weighted);
     state.right_swings = other ? V(1.0f - state.right_swings) : state.right_swings;
   }
   const auto set = [&](const V& to, V& number) { number = begins ? to : number; };
@@ -207,13 +210,15 @@ void end_aims(const Landing<V>& landing, const Mask<V>& strikes, Change<V>& chan
   change.push_waits = strikes ? V{} : change.push_waits;
 }
 
-// `footing`: the block's, or none.
-template <int kWidth, class F>
+// `footing`: the block's, or none. kPaper: with the paper's own solver, of one walk; the body leans
+// into nothing then.
+template <int kWidth, bool kPaper, class F>
 void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Poses& poses,
                 bool looks_ahead = true) noexcept;
 
 // Walks ahead, to know when legs will be at their reach: hips sink before that.
-inline void look_ahead(const Tables& tables, Block<1>& block) noexcept {
+template <bool kPaper>
+void look_ahead(const Tables& tables, Block<1>& block) noexcept {
   Change<float>& change = block.change;
   const int knot = sink_knot_ticks(tables), all_ticks = (kSinkKnots - 3) * knot,
             left = static_cast<int>(change.sink_ticks), at = left > 0 ? all_ticks - left : 0,
@@ -223,7 +228,7 @@ inline void look_ahead(const Tables& tables, Block<1>& block) noexcept {
   NoFooting level;
   ahead.change.sink_ticks = 0.0f;
   for (int tick = gone; tick < all_ticks; ++tick) {
-    advance_on<1>(tables, ahead, level, Poses{nullptr, nullptr, 0}, false);
+    advance_on<1, kPaper>(tables, ahead, level, Poses{nullptr, nullptr, 0}, false);
     float& most_m = wants_m[tick / knot];
     most_m = most(most_m, ahead.change.wants_m);
   }
@@ -260,7 +265,39 @@ void time_close(const Mask<V>& strikes, const State<V>& state, Change<V>& change
   change.closing_ticks = closes ? ticks : change.closing_ticks;
 }
 
-template <int kWidth, class F>
+// Legs and upper body, and the root.
+template <int kWidth, bool kPaper, class F>
+void pose_walks(const Tables& tables, const Time<Floats<kWidth>>& time,
+                const Hips<Floats<kWidth>>& hips, const Stride<Floats<kWidth>>& stride,
+                const Pelvis<Floats<kWidth>>& pelvis, const Idle<Floats<kWidth>>& idle,
+                const Floats<kWidth>& phase, Block<kWidth>& block, const F& footing,
+                Feet<Floats<kWidth>>& feet, const Poses& poses) noexcept {
+  using V = Floats<kWidth>;
+  constexpr bool kUneven = kIsUneven<F>;
+  State<V>& state = block.state;
+  const Change<V>& change = block.change;
+  Leg<V> legs[2];
+  if constexpr (kPaper) {
+    solve_by_paper(tables, time, phase, change, feet, pelvis, state, block.weighted, legs);
+  } else {
+    V begun_rad[2][kLegAngles];
+    solve_legs(tables, time, stride, feet, pelvis, state, legs, kUneven ? begun_rad : nullptr);
+    if constexpr (kUneven)
+      ease_ankles(tables, time, stride, phase, pelvis, change, footing, state, feet, begun_rad,
+                  legs);
+    weigh_legs(tables, time, stride, feet, pelvis, phase, change, state, block.weighted, legs);
+  }
+  const V swing = kPaper ? all<V>(1.0f) : arm_swing(tables, state);
+  // The data's phase: walking backward is walking forward run back (Thorstensson 1986).
+  const auto& share = tables.stage_share;
+  write_upper_body(tables, hips, pelvis, idle,
+                   time.back ? V(share[0] + share[1] + share[2] - phase) : phase, change.shown,
+                   swing, state, block.styled, poses);
+  write_legs(tables, time, feet, legs, poses);
+  write_root<kWidth>(tables, pelvis, block, poses);
+}
+
+template <int kWidth, bool kPaper, class F>
 void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Poses& poses,
                 bool looks_ahead) noexcept {
   using V = Floats<kWidth>;
@@ -277,6 +314,7 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
   V left = all<V>(1.0f);
   if constexpr (kUneven) left = footing.left.x;
   smooth_asked(tables, change, left, state);
+  if constexpr (kPaper) state.lean_rad = state.chest_ahead_rad = state.head_ahead_rad = {};
   const Time<V> time = advance_clock(tables, change, state);
   const AskedStep<V> asked = plan_landing(tables, time, change, state, footing);
   if constexpr (kUneven) choose_footholds<kWidth>(tables, time, asked, block);
@@ -294,21 +332,22 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
   keep_pelvis(hips, state);
   Feet<V> feet = plan_feet(tables, time, landing, by_clock, stride, hips, change, state, footing);
   Pelvis<V> pelvis = pelvis_over(tables, time, hips, stride, state, footing);
+  Idle<V> idle;
+  if constexpr (!kPaper) {
+    idle = advance_idle(tables, change, state, block.styled);
+    sway(idle, hips.heading, pelvis);
+  }
+  V asked_rad[2]{};
+  keep_heels_low(tables, time, phase, stride, change, state, block.styled, pelvis, feet, asked_rad);
   const Vec<V> ankle_m[2] = {ankle_of(feet.foot[0], feet.sole[0]),
                              ankle_of(feet.foot[1], feet.sole[1])};
-  sink(tables, time, stride, ankle_m, change, pelvis);
-  Leg<V> legs[2];
-  V begun_rad[2][kLegAngles];
-  solve_legs(tables, time, stride, feet, pelvis, state, legs, kUneven ? begun_rad : nullptr);
-  if constexpr (kUneven)
-    ease_ankles(tables, time, stride, phase, pelvis, change, footing, state, feet, begun_rad, legs);
-  // The data's phase: walking backward is walking forward run back (Thorstensson 1986).
-  const auto& share = tables.stage_share;
-  write_upper_body(tables, pelvis, time.back ? V(share[0] + share[1] + share[2] - phase) : phase,
-                   change.shown, state, poses);
-  write_legs(tables, time, feet, legs, poses);
-  write_root<kWidth>(tables, pelvis, block, poses);
+  sink(tables, time, stride, ankle_m, state, change, pelvis);
+  reach_with_toe(tables, time, change, pelvis, feet);
+  if (looks_ahead)  // nobody sees a walk that is walked ahead
+    pose_walks<kWidth, kPaper>(tables, time, hips, stride, pelvis, idle, phase, block, footing,
+                               feet, poses);
 
+  take_back(asked_rad, feet);
   const auto lifts = both(no(time.flies), state.tick >= state.roll_ticks),
              strikes = both(time.flies, state.tick >= state.flight_ticks);
   if (any(lifts))
@@ -325,6 +364,8 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
       close_next(strikes, state, change);
     }
     change_feet(landing, strikes, feet, stride, state);
+    change_weighted_legs(strikes, block.weighted);
+    change_styled_feet(strikes, block.styled);
     end_aims(landing, strikes, change);
     const auto keeps = either(change.led != V{}, change.off_phase.x != V{});
     const V rate = keeps ? change.phase_rate : state.phase_rate;
@@ -348,17 +389,17 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
     if (!looks_ahead) return;
     const auto looks = either(either(is_new, both(either(lifts, strikes), is_short)),
                               both(is_to_walk(state), is_unforeseen(tables, state, change)));
-    one_by_one<kWidth>(looks, block, [&](Block<1>& one, int) { look_ahead(tables, one); });
+    one_by_one<kWidth>(looks, block, [&](Block<1>& one, int) { look_ahead<kPaper>(tables, one); });
   }
 }
 
-template <int kWidth>
+template <int kWidth, bool kPaper = false>
 void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& poses) noexcept {
   NoFooting level;
   if (is_uneven(tables)) {
-    advance_on<kWidth>(tables, block, block.footing, poses);
+    advance_on<kWidth, kPaper>(tables, block, block.footing, poses);
   } else {
-    advance_on<kWidth>(tables, block, level, poses);
+    advance_on<kWidth, kPaper>(tables, block, level, poses);
   }
 }
 

@@ -10,6 +10,10 @@ void advance(const Tables& tables, Block<4>& block, const Poses& poses) noexcept
   advance_block<4>(tables, block, poses);
 }
 
+void advance_by_paper(const Tables& tables, Block<1>& block, const Poses& poses) noexcept {
+  advance_block<1, true>(tables, block, poses);
+}
+
 namespace {
 
 // Each foot goes to the nearest place where its sole has room.

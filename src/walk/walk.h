@@ -15,6 +15,9 @@ void advance(const Tables& tables, Block<4>& block, const Poses& poses) noexcept
 void advance(const Tables& tables, Block<8>& block, const Poses& poses) noexcept;
 void advance(const Tables& tables, Block<16>& block, const Poses& poses) noexcept;
 
+// The same with the paper's own solver (IkMode::paper).
+void advance_by_paper(const Tables& tables, Block<1>& block, const Poses& poses) noexcept;
+
 // Sets up a walk that stands there, and faces that way; on uneven ground where its soles have room.
 void stand(const Tables& tables, const Origin& place, Block<1>& block) noexcept;
 

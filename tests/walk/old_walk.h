@@ -1,5 +1,7 @@
 // Takes over a walk of the old code at a strike, so that both may be compared from there on.
 #pragma once
+#include <bit>
+
 #include "gaitpad/walk.h"
 #include "walk/walk.h"
 
@@ -105,6 +107,50 @@ inline Block<1> taken_over(const WalkState& old, const GaitParams& params) {
     }
   }
   return block;
+}
+
+// What a style asks for, beyond what ask() hands over.
+inline void ask_style(const GaitParams& params, Block<1>& block) {
+  Styled<float>& styled = block.styled;
+  styled.asked = params.body == UpperBodyParams{} ? 0.0f : 1.0f;
+  const auto body = std::bit_cast<std::array<double, kBodyNumbers>>(params.body);
+  for (int n = 0; n < kBodyNumbers; ++n) styled.goal[n] = static_cast<float>(body[n]);
+  Weighted<float>& weighted = block.weighted;
+  weighted.asked = 0.0f;
+  for (int side : {0, 1}) {
+    for (int j = 0; j < kLegAngles; ++j) {
+      weighted.goal[side][j] = static_cast<float>(params.weight[side][j]);
+      if (weighted.goal[side][j] != 1.0f) weighted.asked = 1.0f;
+    }
+  }
+}
+
+// What a walk's style has made of it, at the strike.
+inline void take_style(const WalkState& old, const GaitParams& params, Block<1>& block) {
+  ask_style(params, block);
+  Weighted<float>& weighted = block.weighted;
+  weighted.acts = weighted.asked;
+  block.styled.acts = block.styled.asked;
+  for (int n = 0; n < kBodyNumbers; ++n) block.styled.body[n] = {block.styled.goal[n], 0.0f};
+  const int stand = old.clock.swing;
+  for (int k : {0, 1}) {
+    const int side = k == 0 ? 1 - stand : stand;
+    block.styled.low[k] = {static_cast<float>(old.legs.low[side].x),
+                           static_cast<float>(old.legs.low[side].v)};
+    weighted.loose[k] = {static_cast<float>(old.legs.loose[side].x),
+                         static_cast<float>(old.legs.loose[side].v)};
+    for (int j = 0; j < kLegAngles; ++j) {
+      const auto of = [&](const auto& angles_rad) {
+        return static_cast<float>(angles_rad[side][j]);
+      };
+      weighted.lagging_rad[k][j] = of(old.legs.lagging_rad);
+      weighted.mean_rad[k][j] = of(old.legs.mean_rad);
+      weighted.shift_rad[k][j] = of(old.legs.angles_rad) - of(old.legs.even_rad);
+      weighted.last_shift_rad[k][j] = of(old.legs.last_shift_rad);
+      const Damped<double>& weight = old.gait.weight[k][j];
+      weighted.weight[k][j] = {static_cast<float>(weight.x), static_cast<float>(weight.v)};
+    }
+  }
 }
 
 }  // namespace gaitpad::anew

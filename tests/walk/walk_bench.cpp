@@ -1,9 +1,11 @@
 // Processor time of a walk's tick, new and old, over bare playback of its motion.
 #include <ctime>
 
+#include "gaitpad/config_files.h"
 #include "gaitpad/crowd.h"
 #include "motion/stencil.h"
 #include "tests/animation/made_walker.h"
+#include "tests/folders.h"
 #include "tests/walk/old_walk.h"
 
 namespace gaitpad::anew {
@@ -115,6 +117,29 @@ void measure() {
     row("new, 1,000 in lanes of 8", new_ns<8>(*tables, moments, kCrowd));
   if (__builtin_cpu_supports("avx512dq"))
     row("new, 1,000 in lanes of 16", new_ns<16>(*tables, moments, kCrowd));
+  // Four walks of the styles of `gaitpad bench`, over four even ones; alone, and side by side.
+  std::vector<Block<1>> even, styled;
+  for (const char* name : {"even", "stiff_hip", "stiff_knee", "limp_left"}) {
+    const StyleValues style =
+        value_of(load_style(kSourceFolder + "/config/styles/" + name + ".toml"));
+    for (const bool is_styled : {false, true}) {
+      Stick stick;
+      stick.left = vec2(0.0, 0.8);
+      const GaitParams of_style =
+          gait_params(stick, is_styled ? style : StyleValues{}, gait_limits(adult()));
+      WalkState from = standing(adult(), vec3(0.0), pose);
+      const auto step = [&] {
+        gaitpad::advance(adult(), of_style, IkMode::robust, kDt, from, pose);
+      };
+      for (int tick = 0; tick < 4 * kRate || !has_just_struck(from); ++tick) step();
+      Block<1> block = taken_over(from, of_style);
+      take_style(from, of_style, block);
+      (is_styled ? styled : even).push_back(block);
+    }
+  }
+  std::printf("four styled over four even: alone %.2f, in lanes of 4 %.2f\n",
+              new_ns<1>(*tables, styled, 4) / new_ns<1>(*tables, even, 4),
+              new_ns<4>(*tables, styled, 4) / new_ns<4>(*tables, even, 4));
   const auto model = std::make_shared<const WalkModel>(adult());
   std::vector<CrowdMember> members(kCrowd);
   for (CrowdMember& member : members) member.model = model;

@@ -254,7 +254,9 @@ void raise_limping_heel(const Tables& tables, const Time<V>& time, const V& phas
   const V left = left_m * chosen<V>(time.back, right_1_m, left_1_m),
           right = right_m * chosen<V>(time.back, left_1_m, right_1_m), longer = most(left, right),
           shorter = least(left, right);
-  const auto limps = both(both(time.flies, change.closing == V{}),
+  // The last steps of a stop are as long as it needs them.
+  const auto walks = both(change.stops == V{}, change.closing == V{}),
+             limps = both(both(time.flies, walks),
                           longer - shorter > kEvenSteps * (longer + kLeastAsked));
   if (!any(limps)) return;
   const auto evenness = [](const V& a, const V& b) {

@@ -69,6 +69,7 @@ void stand(const Tables& tables, const Origin& place, Block<1>& block) noexcept 
   if (tables.terrain != nullptr) stand_on_ground(tables, block);
   state.roll_ticks = state.flight_ticks = 1.0f;
   state.lift[0].x = state.lift[1].x = state.bounce.x = state.sway.x = 1.0f;
+  state.asked.lift[0] = state.asked.lift[1] = state.asked.bounce = state.asked.sway = 1.0f;
   state.step_time_s.x = 0.5f;
   block.change.stands = 1.0f;
   block.change.shown = 0.0f;

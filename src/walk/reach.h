@@ -87,7 +87,7 @@ void keep_heels_low(const Tables& tables, const Time<V>& time, const V& phase,
   const auto is_low = least(state.lift[0].x, state.lift[1].x) < all<V>(1.0f - kAsGoodAsOne),
              acts = either(is_low, either(styled.low[0].x != V{}, styled.low[1].x != V{}));
   if (!any(acts)) return;
-  const auto none = no(acts == acts);
+  const Mask<V> none{};
   const V presence = change.shown * within(state.posture.x, 0.0f, 1.0f);
   Mask<V> rolls[2] = {none, no(time.flies)};
   V low[2];

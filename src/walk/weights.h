@@ -368,7 +368,7 @@ void weigh_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stri
   const auto keep = [&](const V& to, V& number) { number = acts ? to : number; };
 
   const Turn<V> to_pelvis = back(pelvis.turn);
-  const auto none = no(zero == zero);
+  const Mask<V> none{};
   Mask<V> uneven[2];
   LegToShare<V> shared[2];
   for (int k : {0, 1}) {

@@ -50,7 +50,9 @@ void RunMeter::look(const WalkerSample& sample, const Walker& walker, Character&
       const auto& [is_planted, place_m] = points[p];
       if (is_planted && foot.is_planted[p]) {
         const double slip_m = glm::length(place_m - foot.planted_m[p]);
-        if (!(slip_m <= character.slip_m)) character.slip_m = slip_m;  // NaN is kept
+        // A slip that is not a number stays: later ones must not hide it.
+        if (!std::isnan(character.slip_m) && !(slip_m <= character.slip_m))
+          character.slip_m = slip_m;
       } else if (is_planted) {
         foot.planted_m[p] = place_m;
       }

@@ -169,8 +169,8 @@ std::int64_t nanoseconds(std::chrono::steady_clock::time_point time) {
   return std::chrono::nanoseconds(time.time_since_epoch()).count();
 }
 
-// Makes it a report without content. Its bytes are not cleared, because they are many and nobody
-// reads them.
+// Makes it a report without content. Its bytes are not cleared, because they are many and are not
+// read.
 void make_event(Report& report, ReportKind kind, std::uint16_t device, std::int64_t time_ns) {
   report.time_ns = time_ns;
   report.device = device;

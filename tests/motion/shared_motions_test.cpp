@@ -1,5 +1,5 @@
-// Every shared motion loads, and walks or gives the known reason; a motion in two formats is the
-// same.
+// Every shared motion loads, and walks or gives the known reason; a motion in two formats gives the
+// same poses.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

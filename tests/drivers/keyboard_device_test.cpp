@@ -30,7 +30,7 @@ class KeyboardDeviceTest : public testing::Test {
     device_ = value_of(open_keyboard(stick_));
     layout_ = value_of(pad_layout(device_->info(), {}));
   }
-  // Reads like the I/O thread, for `ms` or until the stick is at `until`.
+  // Reads like the I/O thread for `ms`, or until the stick is at `until`.
   std::vector<Seen> seen_for(int ms, std::optional<vec2> until = std::nullopt) {
     std::vector<Seen> all;
     const std::int64_t end_ns = now_ns() + ms * kMillisecond_ns;

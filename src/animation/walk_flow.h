@@ -1248,7 +1248,7 @@ void pitch_in_flight(const WalkModel& model, const StateOf<V>& state, Side side,
                    (1.0 - smoothstep(kEdgeDown, 1.0, u));
   const V limit =
       highest_pitch<V>(leg, height, edge_m - kMostSink_m) + rolled_elevation<V>(leg, point.pose);
-  // The tables keep the toe off the floor, so the limit is the softer, the more the pitch differs
+  // The tables keep the toe off the floor, so the limit gets softer as the pitch differs more
   // from theirs.
   const V soft =
       kSoftPitch + kWiderPitch * abs_of(off_rad) * smoothstep(0.0, 0.1, u) + edge_m / leg.foot_m;

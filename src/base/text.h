@@ -67,7 +67,8 @@ inline bool is_utf8(std::string_view text) noexcept { return utf8_bytes(text) ==
 // user input) passes through this before a terminal: control characters including C1, characters
 // that change the direction of text, and invalid UTF-8 are escaped as \x1b or \u202e.
 std::string printable(std::string_view text);
-// The same for several lines: keeps '\n'.
+// Makes several lines printable; keeps '
+// '.
 std::string printable_lines(std::string_view text);
 // The text in double quotes for an error sentence: printable, of at most 60 bytes, then "...".
 inline constexpr std::size_t kMaxQuotedBytes = 60;

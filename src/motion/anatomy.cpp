@@ -498,7 +498,7 @@ ArmChain named_arm(const Figure& figure, const Legs& legs, NamedSide side) {
 
 // The two longest neighbouring bones of similar length between `top` and a leaf.
 ArmChain shaped_arm(const Figure& figure, int top, int leaf) {
-  std::vector<int> chain;  // from the top, joints in one place only once
+  std::vector<int> chain;  // joints from the top; of joints in one place only one
   for (const int j : path_below(figure.skeleton, top, leaf)) {
     if (chain.empty() || figure.distance(j, chain.back()) > 0.0) chain.push_back(j);
   }

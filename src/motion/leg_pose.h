@@ -36,7 +36,7 @@ double knee_at_span(const LegModel& leg, double span_m) noexcept;
 // Both legs standing upright with flat feet. If one is longer, the pelvis rolls, by 10 degrees at
 // most, as a person's does; the longer leg bends by the rest.
 struct Stand {
-  double pelvis_m = 0.0;  // its height over the floor
+  double pelvis_m = 0.0;  // height of the pelvis over the floor
   double roll_rad = 0.0;  // of the pelvis about +z, left side up positive
   std::array<LegAngles, 2> angles{};
 };

@@ -44,7 +44,8 @@ void TickClock::set_pace(double pace, std::int64_t tick, std::int64_t now_ns) no
   if (stood_still) {
     last_late_ns_ = 0;
   } else {
-    run_anew(tick, std::min(before_ns, due_ns(tick + 1)));  // at most one tick from now
+    // The next tick is due at most one tick from now.
+    run_anew(tick, std::min(before_ns, due_ns(tick + 1)));
   }
 }
 

@@ -72,13 +72,13 @@ struct EvdevAbilities {
 
 struct EvdevState {
   std::array<std::int32_t, evdev::kAbsMax + 1> axis{};
-  std::bitset<evdev::kKeyMax + 1> keys;  // pressed
+  std::bitset<evdev::kKeyMax + 1> keys;  // pressed keys
 };
 
 // The place of a code's value in the report.
 struct EvdevField {
   EvdevCode code;
-  bool is_hat = false;  // a whole hat: this code and the next
+  bool is_hat = false;  // the code is a whole hat: this code and the next one
   std::uint16_t bit_offset = 0;
   std::uint8_t bit_size = 0;
   std::int32_t min = 0, max = 0;

@@ -15,10 +15,10 @@ inline constexpr int kOutlineDirections = 192;  // evenly spaced, the first one 
 inline constexpr int kCircularityBins = 48;     // bin k is centred on k times 7.5 degrees
 
 struct Outline {
-  vec2 middle{0.0};  // raw; the directions start here
+  vec2 middle{0.0};  // raw position from which the directions start
   // Raw radius by direction, counter-clockwise from +x; 0: not seen.
   std::array<double, kOutlineDirections> radius{};
-  std::int64_t samples = 0;  // used for it
+  std::int64_t samples = 0;  // number of samples from which it was made
 };
 // `sigma`: noise of one position, so that the outermost of many samples is not taken for the gate.
 // Spikes are left out.

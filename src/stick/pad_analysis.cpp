@@ -19,8 +19,9 @@ namespace {
 constexpr double kLeastJudgedHalfRange = 0.1001, kGreatestCentre = 0.89;
 constexpr double kGreatestInner = 0.89, kLeastSpan = 0.0501, kGreatestOuter = 0.95;
 
-constexpr double kLeastInner = 0.05;         // raw; a good stick returns within 5 %
-constexpr double kAssumedHysteresis = 0.05;  // raw, if the stick was let go only once
+constexpr double kLeastInner = 0.05;  // least inner zone, raw; good sticks return within 5 %
+// Assumed hysteresis, raw, of a stick that was released only once.
+constexpr double kAssumedHysteresis = 0.05;
 // Two-dimensional noise exceeds 5.5 sigma once in four million reports, and less than once in
 // 20,000 if the measured sigma is 15 % too small.
 constexpr double kSigmasOfRest = 5.5;
@@ -33,20 +34,23 @@ constexpr double kSigmasOfWander = 5.0;  // a minute shows more of it than the s
 
 // Beyond these no calibration helps.
 constexpr double kUselessZone = 0.3;      // raw; the stick would do nothing for a third of its way
-constexpr double kUselessReach = 0.5;     // raw, from the centre
+constexpr double kUselessReach = 0.5;     // least useful reach, raw, from the centre
 constexpr double kUselessSigma = 0.05;    // raw; a tenth of the travel of the shortest usable reach
 constexpr double kUselessDrift = 0.002;   // raw a second: leaves a zone of 0.1 within a minute
 constexpr double kUselessWander = 0.029;  // raw, in a second; within a minute it leaves any zone
-constexpr double kDriftSure_s = 5.0;      // at rest, if the stick was let go only once
-constexpr double kLeastRate_hz = 22.5;    // slower reports show no movement by itself
-constexpr int kFewestDirections = 44;     // of 48; the unseen ones may be weak
+// Least rest for a drift of a stick that was released only once.
+constexpr double kDriftSure_s = 5.0;
+// Least report rate: slower reports show no movement by itself.
+constexpr double kLeastRate_hz = 22.5;
+constexpr int kFewestDirections = 44;  // fewest directions of 48; the unseen ones may be weak
 constexpr int kUselessDropOuts = 2;
-constexpr double kUselessPassing = 0.2;  // a minute
-constexpr int kUselessStuck = 2;         // a single one may be a lost report
+// Jumps a minute beyond the filter that make a stick useless.
+constexpr double kUselessPassing = 0.2;
+constexpr int kUselessStuck = 2;  // a single frozen time may be a lost report
 // Beyond these a stick is worn: two or three times what new ones show.
 constexpr double kWornHysteresis = 0.06, kWornSigma = 0.01, kWornCentre = 0.12, kWornReach = 0.8;
 constexpr double kWornWander = 0.01;
-constexpr double kWornSteps = 1.5;  // smaller noise comes from the steps
+constexpr double kWornSteps = 1.5;  // in steps: smaller noise comes from the steps
 constexpr int kWornJumps = 3;
 // A thumb or a finger that lies on a stick holds it aside, while its range stays symmetric. After
 // kSureRests rests this is no accident.
@@ -55,8 +59,8 @@ constexpr std::size_t kSureRests = 14;
 
 struct Side {
   const char* name;
-  std::optional<double> reach;  // raw, from the centre
-  int direction;                // of the outline
+  std::optional<double> reach;  // smallest reach, raw, from the centre
+  int direction;                // its direction in the outline
 };
 std::array<Side, 4> sides_of(const StickStatistics& s) {
   const vec2 centre = s.centre.value_or(vec2(0.0));

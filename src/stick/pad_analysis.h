@@ -15,11 +15,11 @@ enum class Verdict : std::uint8_t { good, worn, replace, unknown };
 const char* name_of(Verdict verdict) noexcept;
 
 struct StickAdvice {
-  StickCalibration calibration;  // unknown parts are as for an unknown stick
-  double inner_zone = 0.0;       // raw: max(0.05, 3 sigma + hysteresis)
-  double outer_zone = 0.0;       // raw
+  StickCalibration calibration;  // parts that are not known have the values for an unknown stick
+  double inner_zone = 0.0;       // raw radius: max(0.05, 3 sigma + hysteresis)
+  double outer_zone = 0.0;       // raw radius
   Verdict verdict = Verdict::unknown;
-  std::string reason;  // one sentence with its numbers
+  std::string reason;  // the reason of the verdict: one sentence with numbers
   // Parts of `calibration` that were seen and are not doubted.
   bool has_centre = false, has_range = false;
 };
@@ -30,7 +30,7 @@ TriggerCalibration trigger_advice(const TriggerStatistics& statistics) noexcept;
 // The whole pad: statistics of its sticks and triggers, and the calibration that follows.
 
 struct StickAnalysis {
-  std::vector<StickTrack> tracks;  // in the frame of the advice
+  std::vector<StickTrack> tracks;  // tracks in the frame of the advice
   StickStatistics statistics;
   StickAdvice advice;
 };

@@ -116,7 +116,7 @@ std::optional<double> median_within(std::span<const Held> values, double least, 
 }  // namespace
 
 TriggerStatistics trigger_statistics(std::span<const TriggerTrack> tracks) {
-  constexpr double kNear = 0.15;  // of an end
+  constexpr double kNear = 0.15;  // distance from an end, raw, that counts as near
   TriggerStatistics result;
   for (const TriggerTrack& track : tracks)
     result.samples += static_cast<std::int64_t>(track.size());

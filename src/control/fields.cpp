@@ -12,7 +12,8 @@ namespace gaitpad {
 namespace {
 
 constexpr double kMostFactor = 3.0;  // on hip sway, hip bounce and the flight's height
-constexpr double kMostStride_m = 20.0, kMostSpeed_m_s = 20.0;  // a giant's; its limits bound them
+// A giant's values; its limits bound them.
+constexpr double kMostStride_m = 20.0, kMostSpeed_m_s = 20.0;
 
 // Accessors to the numbers of a style.
 template <double StyleValues::*number>

@@ -18,7 +18,7 @@ struct HeightPicture {
 // Reads a picture of at most 4 MiB and kMaxPictureSide samples a side. Damage is an error. Gamma
 // and colour profiles in the file are ignored, because heights are not colours.
 Result<HeightPicture> load_height_picture(const std::string& path);
-// The same from the bytes of a file; errors begin with `name`.
+// Reads a picture from the bytes of a file; errors begin with `name`.
 Result<HeightPicture> height_picture(std::string_view png, const std::string& name);
 
 }  // namespace gaitpad

@@ -14,7 +14,7 @@
 namespace gaitpad {
 namespace {
 
-constexpr int kOwn = 5;  // the table of the data's own stride
+constexpr int kOwn = 5;  // index of the table of the data's own stride
 // Iterations. In most clips angles then are within 2e-2 rad of the converged solution (the rest is
 // mostly at nearly straight knees); more iterations make no walk smoother or closer to its data.
 constexpr int kFirstSolve = 7, kNextSolve = 3;
@@ -371,7 +371,7 @@ Result<StrideFamily> stride_family(const GaitCycle& cycle) {
   std::thread beside;
   if (std::thread::hardware_concurrency() > 1) {
     beside = std::thread(solve_back);
-  } else {  // no second core, or no threads at all
+  } else {  // there is no second core, or no thread can be started
     solve_back();
   }
   const bool forwards_solved = builder.solve();

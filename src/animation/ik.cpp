@@ -87,7 +87,7 @@ bool do_fit(const IkChain& chain, std::span<const IkRow> rows) noexcept {
   return chain.dofs >= 0 && chain.dofs <= kMaxIkDofs && rows.size() <= kMaxIkRows;
 }
 
-// What check() of the options accepts, without a sentence.
+// True for a count that check() of the options accepts; makes no sentence.
 bool is_count(int count, int least) noexcept {
   return count >= least && count <= kMostIkIterations;
 }

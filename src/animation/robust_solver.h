@@ -16,7 +16,7 @@ namespace {
 inline constexpr double kLeastDampingSquared = 1e-20;
 inline constexpr double kGrowth = 0.1;
 inline constexpr double kGrowthUp = 8.0, kGrowthDown = 0.25;
-inline constexpr double kFarthest = 0.5;  // metres: the largest |dX| that one step uses
+inline constexpr double kFarthest = 0.5;  // the largest |dX| that one step uses, metres
 // The error counts as constant if kPatience iterations together reduce it by less than the share
 // kLeastGain of itself, or of kGainFrom metres if that is larger.
 inline constexpr int kPatience = 6;

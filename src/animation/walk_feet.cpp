@@ -67,7 +67,7 @@ void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept {
       state.gait.turn_rate.x * heel_rise<double>(model, at, side) * tick.dt_s * ticks;
   foot.eased_heel = {.value = lifts.heel_m, .rate = slope_m / ticks, .bend = {}, .off = {}};
   foot.eased_pitch = {.value = lifts.pitch_rad, .rate = pitch_rate, .bend = {}, .off = {}};
-  // This foot's difference from the tables fades.
+  // The foot's difference from the tables fades by its eased values, so no gap is left.
   foot.gap_m = foot.gap_slope_m = vec3(0.0);
   foot.gap_begin = 0.0;
   foot.gap_lasts = kLiftFade;

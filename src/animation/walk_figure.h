@@ -394,7 +394,7 @@ Quat<V> turn_xzy(const HalfTurns<V>& half, int x) noexcept {
   return Quat<V>(w * yc - j * ys, i * yc - k * ys, w * ys + j * yc, k * yc + i * ys);
 }
 
-// Where the walks' poses are written: local rotations by joint.
+// The output of the walks' poses: local rotations by joint.
 template <int kWidth>
 using Locals = std::array<quat*, kWidth>;
 

@@ -31,7 +31,7 @@ struct FootGoal {
 };
 
 enum class FootEnd { heel, toe };
-FootEnd end_effector(const FootState& foot) noexcept {  // by Table I
+FootEnd end_effector(const FootState& foot) noexcept {  // the stage decides, as in Table I
   return foot.mode == FootMode::support ? FootEnd::toe : FootEnd::heel;
 }
 

@@ -251,7 +251,7 @@ FootPlane plane_under(const Floor& terrain, const LegBuild& leg, const vec3& hee
   const vec3 sole = yaw * (leg.tip_m - leg.model.heel_m), across = yaw * leg.side;
   const double length = horizontal_length(sole), half = leg.half_width_m;
   const vec3 along = vec3(sole.x, 0.0, sole.z) / length;
-  // Of the ground, at shares of the sole's length and half width.
+  // Height of the ground at shares of the sole's length and half width.
   const auto height = [&](double a, double c) {
     const vec3 p = heel_m + along * (a * length) + across * (c * half);
     return ground_at(terrain, p.x,
@@ -371,7 +371,7 @@ constexpr double kLeastShare = 0.3;  // least share of a step's length that the 
 constexpr double kGroundSmoothing_s = 0.3;
 constexpr double kRatioJump_1_s = 2.4;        // greatest rate of the ratio; sticks change it more
                                               // slowly
-constexpr double kFirstRatioJump_1_s = 14.4;  // the rate for a first step
+constexpr double kFirstRatioJump_1_s = 14.4;  // greatest rate of the ratio in a first step
 
 // Lets the ratio change smoothly. If a step changes the tread on which it will end, its ratio
 // changes at once; until the flight begins the tables are read for the new length.
@@ -424,9 +424,9 @@ namespace {
 // When the hips rise and sink. Up, the knee that lands bent straightens until late single support;
 // down, the standing knee holds, and yields from the middle of single support until the landed foot
 // has taken the weight (McFadyen & Winter 1988).
-constexpr double kRiseLasts = 0.9;                         // share of the step
+constexpr double kRiseLasts = 0.9;                         // share of the step for a rise
 constexpr double kSinkBegin = 0.5, kSinkBeginBack = 0.35;  // shares of the flight
-constexpr double kSinkEnd = 0.25;                          // share of the roll
+constexpr double kSinkEnd = 0.25;                          // share of the roll: end of the sinking
 constexpr double kSinkBeginClosing =
     0.15;  // share at which both feet stand with straight knees after the landing
 // The yield of the knee of a foot that lands from a height: kYield legs from great heights, half of

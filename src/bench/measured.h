@@ -43,7 +43,7 @@ class Cores {
 // Times of a unit of a work or of one of its stages.
 struct BenchRow {
   const Work* work = nullptr;
-  int stage = -1;          // index in kStages; -1: the whole work
+  int stage = -1;          // number of the stage in kStages; -1: the whole work
   std::vector<double> ns;  // a unit's time in each round
   // The smallest value that at least this share of the rounds do not exceed.
   double quantile(double share) const;

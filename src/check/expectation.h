@@ -30,7 +30,7 @@ enum CharacterMeasure {
   kIkFailures,
   kDistance,  // distance on the ground, along the path of the hips
   kSpeed,     // kDistance over the time in which the character was not idle
-  kHeading,   // of the character at the end, positive to the left
+  kHeading,   // heading at the end, positive to the left
   kEndX,      // x of the pelvis at the end
   kEndZ,
   kStepLeft,  // mean length of the left foot's steps
@@ -97,7 +97,7 @@ class RunMeter {
 };
 
 struct Expected {
-  int measure = 0;  // index in kOfRun or kOfCharacter
+  int measure = 0;  // number of the measure in kOfRun or kOfCharacter
   double value = 0.0, within = 0.0;
 };
 // A file that the replay depends on.

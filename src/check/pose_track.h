@@ -35,7 +35,8 @@ struct PoseChannel {
 class PoseTrack {
  public:
   static constexpr double kLengthStep_m = 1e-4;
-  static constexpr double kAngleStep = 1.0 / 16384.0;  // 0.007 degrees
+  // Step of the stored rotations: 0.007 degrees.
+  static constexpr double kAngleStep = 1.0 / 16384.0;
 
   // `ticks`: the length of the run. Keeps the first ticks, as many as fit into kMaxCells.
   PoseTrack(const Simulation& simulation, int rate_hz, std::int64_t ticks);
@@ -71,7 +72,7 @@ double distance_of(const PoseChannel& a, const PoseChannel& b, std::size_t tick)
 struct PoseDifference {
   struct Place {
     std::size_t tick = 0, channel = 0;
-    double distance = 0.0;  // as distance_of() measures it
+    double distance = 0.0;  // distance of the two channels, by distance_of()
   };
   // The first tick with a differing bit, and its channel with the largest distance.
   Place first;

@@ -16,8 +16,8 @@ struct CheckOptions {
   std::vector<std::string> config_folders;
   bool updates = false;             // writes expectations that failed or are missing
   bool with_curves = false;         // finds the curves of the first joint that differs
-  std::optional<double> max_hours;  // as in SessionSpec::Replay
-  bool user_styles = false;         // as in SessionSpec::Replay
+  std::optional<double> max_hours;  // limit on a recording's length, as in SessionSpec::Replay
+  bool user_styles = false;         // the user's own styles may be named, as in SessionSpec::Replay
 };
 
 // A recording and the files beside it.
@@ -56,7 +56,7 @@ struct JointCurves {
   int rate_hz = 0;
   std::size_t first_tick = 0;  // number of the first tick that differs
   std::array<std::vector<double>, 3> before, after;
-  std::vector<double> distance;  // at each tick, in degrees or metres
+  std::vector<double> distance;  // distance of both curves at each tick, degrees or metres
 };
 struct CheckResult {
   bool is_met = false;  // the recording meets its expectation, or the renewed one after an update

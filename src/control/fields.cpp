@@ -11,7 +11,8 @@
 namespace gaitpad {
 namespace {
 
-constexpr double kMostFactor = 3.0;  // on hip sway, hip bounce and the flight's height
+// Largest factor on hip sway, hip bounce and the flight's height.
+constexpr double kMostFactor = 3.0;
 // A giant's values; its limits bound them.
 constexpr double kMostStride_m = 20.0, kMostSpeed_m_s = 20.0;
 

@@ -9,7 +9,7 @@ namespace gaitpad {
 
 // One key of a section: one number, or the weights of all DOFs of a joint.
 struct StyleField {
-  std::string_view name;  // within its section: `stride_length`, `weight.knee`
+  std::string_view name;  // the key within its section: `stride_length`, `weight.knee`
   std::string_view unit;  // "m", "s", "deg"; "x": a factor; "": a share or a weight
   double min, max;        // range of the value in files and commands
   std::span<double> (*values)(StyleValues& style, int side);

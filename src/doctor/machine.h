@@ -15,7 +15,7 @@ namespace gaitpad {
 
 // One pad with all its nodes.
 struct PadHardware {
-  std::string path;  // as in DeviceListing::pad_path
+  std::string path;  // equal for all nodes of one pad (DeviceListing::pad_path)
   std::string name;
   BusType bus = BusType::unknown;
   std::uint16_t vendor = 0, product = 0;

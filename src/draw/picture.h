@@ -101,7 +101,8 @@ struct Pixels {
   int width = 0, height = 0;
   std::vector<std::uint8_t> rgba;  // four bytes for each pixel, rows from the top, opaque
 };
-// Both write beside `path` first and rename: on error the old file is unchanged.
+// Both functions write beside `path` first and rename, so that an error leaves the old file
+// unchanged.
 std::optional<Error> write_png(const std::string& path, Pixels pixels);
 std::optional<Error> write_png(const std::string& path, cairo_surface_t* surface);
 

@@ -36,7 +36,7 @@ using PlotPoint = vec2;  // x and y in the plot's units
 struct PlotSeries {
   std::string letter;  // drawn at the curve's end, to tell curves apart without colour
   Colour colour;
-  double width_px = 1.6;  // at scale 1; the window rounds it to whole pixels
+  double width_px = 1.6;  // width of the line at scale 1; the window rounds it to whole pixels
   std::vector<PlotPoint> points;
   bool is_dashed = false;
 };

@@ -47,7 +47,7 @@ class LineReader {
 struct RawBone {
   AsfBone bone;
   EulerOrder order = {0, 1, 2};
-  vec3 angles{0.0};  // in the unit of the file
+  vec3 angles{0.0};  // turn of the bone's axes, in the file's angle unit
   bool has_direction = false, has_length = false;
   int line = 0;
 };

@@ -21,8 +21,8 @@ inline constexpr bool is_rotation(AsfChannel c) noexcept { return c <= AsfChanne
 struct AsfBone {
   std::string name;
   int parent = -1;
-  vec3 direction{0.0};    // unit length, towards the bone's end; 0 for the root
-  double length = 0.0;    // in the unit of the file
+  vec3 direction{0.0};    // unit vector to the bone's end; 0 for the root
+  double length = 0.0;    // length of the bone in the file's unit
   quat axes = kIdentity;  // rotation of the bone's axes to the world's
   std::array<AsfChannel, 6> channel{};
   int channels = 0;
@@ -47,9 +47,10 @@ Result<Asf> parse_asf(std::string_view text, const std::string& name);
 
 struct Amc {
   int frames = 0;
-  double angle_unit = kDegree;  // rad; :DEGREES or :RADIANS, otherwise the skeleton's
-  double frame_rate_hz = 0.0;   // frames a second; 0: not stated, which is usual
-  std::vector<double> values;   // values, frame by frame; in the file's units
+  // The file's angle unit in radians; without :DEGREES or :RADIANS the skeleton's.
+  double angle_unit = kDegree;
+  double frame_rate_hz = 0.0;  // frames a second; 0: not stated, which is usual
+  std::vector<double> values;  // values, frame by frame; in the file's units
 };
 
 // Parses a motion of the skeleton `asf`. Frame numbers start anywhere and grow by one. A bone

@@ -13,7 +13,7 @@ inline constexpr int kMaxPictureSide = 1024;
 
 struct HeightPicture {
   int columns = 0, rows = 0;
-  std::vector<std::uint16_t> samples;  // from the upper left corner, 0 black .. 65535 white
+  std::vector<std::uint16_t> samples;  // heights from the upper left corner, 0 black .. 65535 white
 };
 // Reads a picture of at most 4 MiB and kMaxPictureSide samples a side. Damage is an error. Gamma
 // and colour profiles in the file are ignored, because heights are not colours.

@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::size_t kMostPoses = 64;
 constexpr int kStrides = 4;
-constexpr double kLeastGap = 0.005;  // between two keys of one channel, share of the stride
+// Least distance of two keys of one channel, a share of the stride.
+constexpr double kLeastGap = 0.005;
 
 // The channels that a pose can key. Each side's phases count from its own strike: in a symmetric
 // walk the left leg has the right leg's values half a stride later. The trunk's values then repeat

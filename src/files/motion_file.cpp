@@ -127,7 +127,7 @@ AcclaimJoints joints_of(const Asf& asf) {
 
 struct BonePose {
   quat rotation;
-  vec3 translation;  // from its rest position, in its parent's frame
+  vec3 translation;  // place relative to the rest position, in the parent's frame
 };
 
 BonePose pose_of(const AsfBone& bone, const double* values, double angle_unit) {

@@ -54,8 +54,9 @@ class TomlTable {
 
   // All keys in the order of the file, for tables whose keys are data. They do not become known.
   std::vector<std::string> keys() const;
-  int line() const;                      // Number of the table's first line.
-  int line(std::string_view key) const;  // of the key's value; the table's if it is absent
+  int line() const;  // Number of the table's first line.
+  // Number of the key's line; the table's if the key is absent.
+  int line(std::string_view key) const;
 
  private:
   friend class TomlFile;

@@ -468,7 +468,8 @@ const Field* nth_field(const ReportDescriptor& d, std::uint8_t report_id, const 
 // Facts about the controls beside the descriptor: from a pad file, or from SDL.
 struct KnownControls {
   std::optional<ButtonOrder> order;
-  const ControlMap* controls = nullptr;  // of a pad file: the others keep their default
+  // Controls of a pad file; those that it does not name keep their default.
+  const ControlMap* controls = nullptr;
   // True for controls of SDL's mapping: the pad has no others.
   const ControlMap* all_controls = nullptr;
 };

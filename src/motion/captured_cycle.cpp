@@ -14,7 +14,7 @@ namespace {
 // --- One stride as a periodic function -----------------------------------------------------------
 
 constexpr int kPoints = 256;    // samples of the closed stride, before its harmonics are taken
-constexpr double kFade = 0.12;  // of the stride, at most, on either side of the seam
+constexpr double kFade = 0.12;  // longest fade on either side of the seam, a share of the stride
 constexpr double kLeastFade = 0.08;
 constexpr int kFullHarmonics = 10;  // harmonics above this number fade out to kHarmonics
 
@@ -449,7 +449,7 @@ Hinge knee_hinge(const CapturedLeg& leg, const quat& pelvis_standing,
   for (int i = 0; i < kCycleSamples; ++i) {
     const vec3 thigh = glm::normalize(leg.knee_m[i] - leg.hip_m[i]);
     const vec3 shank = glm::normalize(leg.ankle_m[i] - leg.knee_m[i]);
-    across[i] = glm::cross(thigh, shank);  // its length is the sine of the flexion
+    across[i] = glm::cross(thigh, shank);  // a vector whose length is the sine of the flexion
     const vec3 left = pelvis[i] * glm::conjugate(pelvis_standing) * kLeft;
     if (glm::dot(across[i], left) > 0.0) most = std::max(most, glm::length(across[i]));
   }

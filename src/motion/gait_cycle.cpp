@@ -63,11 +63,14 @@ namespace {
 
 // --- Building a cycle from a motion --------------------------------------------------------------
 
-constexpr double kBackwards = 0.5;        // cosine between the hips' front and the travel
-constexpr double kLongestFlat = 0.35;     // of the stride after a strike: by then the toe is down
-constexpr double kMostFlight = 0.02;      // of the stride with both feet in the air; more is a run
-constexpr double kMostSlide_legs = 0.25;  // of a standing foot; dragging gaits reach half of it
-constexpr double kStill_legs_s = 0.6;     // leg lengths a second: 0.5 m/s for an adult
+constexpr double kBackwards = 0.5;  // cosine between the hips' front and the travel
+// Share of the stride after a strike at which the toe is down.
+constexpr double kLongestFlat = 0.35;
+// Share of the stride with both feet in the air; more is a run.
+constexpr double kMostFlight = 0.02;
+// Greatest slide of a standing foot; dragging gaits reach half of it.
+constexpr double kMostSlide_legs = 0.25;
+constexpr double kStill_legs_s = 0.6;  // leg lengths a second: 0.5 m/s for an adult
 constexpr double kInAir_legs = 0.024;  // 20 mm of an adult's leg: captured floors are that uneven
 
 // A foot point's track over the samples, in the travel frame.

@@ -14,7 +14,7 @@ namespace {
 // --- Tracks of a motion's feet -------------------------------------------------------------------
 
 constexpr double kFastest_legs_s = 14.0;  // faster than any sprinter's foot: a jump in the data
-constexpr std::size_t kFlatPercent = 10;  // of all frames: in these a walker's foot is flat
+constexpr std::size_t kFlatPercent = 10;  // share of all frames in which a walker's foot is flat
 
 bool is_jump(const vec3& a, const vec3& b, double most_m) {
   return !(glm::distance(a, b) <= most_m);
@@ -99,7 +99,8 @@ constexpr double kShortestRest_s = 0.06;
 constexpr double kShortestSwing_s = 0.15, kLongestSwing_s = 1.8;
 constexpr double kShortestSwing_legs = 0.15, kLongestSwing_legs = 2.6;
 
-constexpr double kMostSamples = 200.0;  // in a window: bounds the work for absurd frame times
+// Most samples in a window, which bounds the work for absurd frame times.
+constexpr double kMostSamples = 200.0;
 
 // Number of samples in a window of that time, at least 1.
 int count_of(double time_s, double sample_s) {
@@ -310,7 +311,8 @@ struct SwingSearch {
   int flat = 0;                // sample at which it ends
   double standing_heel_m = 0;  // height at `flat`
   int fastest_toe = 0;         // the search for the toe-off begins here, backwards
-  int pushing = 0;             // and ends here: the toe is slowest while the heel rises
+  int pushing = 0;             // sample at which the search ends: the toe is slowest while the heel
+                               // rises
 };
 
 SwingSearch search_of(const FeetTracks& tracks, const Run& run, double limit_m_s) {

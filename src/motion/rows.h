@@ -32,6 +32,7 @@ struct SummedRows {
 };
 template <int kWidth>
 void sum_rows(const SummedRows& rows) noexcept;
-void sum_rows(const SummedRows& rows) noexcept;  // as wide as lanes_in_use(); at least 4 numbers
+// Uses registers as wide as lanes_in_use(), of at least 4 numbers.
+void sum_rows(const SummedRows& rows) noexcept;
 
 }  // namespace gaitpad

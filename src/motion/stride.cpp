@@ -140,7 +140,8 @@ bool is_stride(const std::vector<FootEvent>& events, std::size_t from, std::size
   return count == std::array{1, 1, 1, 1};
 }
 
-// The period within 4 % of the events' period that has the smallest seam.
+// The period within 4 % of the events' period at which the last pose fits the first one best (the
+// smallest seam).
 double best_period(const WalkTrack& track, const SampleRange& range, double start, double period) {
   double best = period, least = seam(track, range, start, period);
   for (int k = -16; k <= 16; ++k) {
@@ -254,7 +255,8 @@ int steps_in_place(const WalkTrack& track, const SampleRange& range) {
 // The error sentence. Its numbers show whether the motion is too short for a stride.
 std::string why_no_stride(const FeetTracks& feet, const WalkTrack& track) {
   constexpr double kFastestWalk_legs_s = 3.6;  // leg lengths a second: 3 m/s for an adult
-  double moved_m = -1.0, time_s = 0.0;         // of the range in which the hips move farthest
+  // Way and duration of the range in which the hips move farthest.
+  double moved_m = -1.0, time_s = 0.0;
   int steps = 0;
   for (const SampleRange& range : feet.ranges) {
     double here_m = 0.0;

@@ -173,7 +173,7 @@ Vec<V> heel_at(const RatiosOf<V>& at, const KnotsOf<V>& knots, const MaskOf<V>& 
       if (weight == 0.0) continue;
       const StrideTable& table = (*at.tables[lane])[at.first[lane] + n];
       for (int m = 0; m < 4; ++m) {
-        // Also reads the numbers that follow the heel, to fill a register.
+        // Reads the numbers that follow the heel as well, to fill a register.
         const auto& heel = table.knot[knots.of(lane, m)].foot[side].heel_m;
         rows.add(lane, reinterpret_cast<const HeelOf<double>&>(heel),
                  weight * lane_of(knots.weight[m], lane));

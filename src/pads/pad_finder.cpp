@@ -111,7 +111,7 @@ Result<std::vector<PadSighting>> recorded_pads(const PadFiles& files, const PadS
   return sightings;
 }
 
-// How exactly a text fits a pad. The pads that fit best are meant.
+// The ways in which a text fits a pad, the least exact first. The pads that fit best are meant.
 enum class Fit { none, part_of_name, name, unique_id, model, node };
 
 // True if the text is `vvvv:pppp` in hexadecimal.
@@ -283,8 +283,8 @@ constexpr auto kSlowRetry = 5000ms;
 constexpr auto kQuickOpening = 100ms;
 // A device that is gone again within kShortLife waits up to kMaxRest before it is opened again.
 constexpr auto kShortLife = 1000ms, kMaxRest = 1000ms;
-// How long a newly plugged pad may take until the preferred driver sees it, and until the kernel
-// has bound its own driver to it.
+// Waits for a newly plugged pad: until the preferred driver sees it, and until the kernel has bound
+// its own driver to it.
 constexpr auto kDriverPatience = 700ms, kKernelPatience = 2000ms;
 // Longest wait for a pad's unique id: its node appears before the kernel's driver has asked for the
 // id.

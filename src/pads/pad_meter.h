@@ -21,7 +21,7 @@ struct ReportWindow {
   double duration_s = 1.0;
   std::int64_t reports = 0, bad_reports = 0;
   std::vector<double> interval_us, latency_us;
-  std::vector<double> frame_us;  // from each report to the line on the terminal that shows it
+  std::vector<double> frame_us;  // times from each report to the line on the terminal that shows it
 };
 
 struct MonitoredPad {

@@ -192,7 +192,7 @@ struct FlightFigures {
   double ticks = 0.0, peak_m = 0.0;
   double reach_m = 0.0;      // distance that the heel covers in the flight
   double clearance_m = 0.0;  // smallest height of the toe in mid-flight
-  double step_m = 0.0;       // from the standing heel to the landing heel
+  double step_m = 0.0;       // distance from the standing heel to the landing heel
 };
 
 // Means over the steady flights of a foot.

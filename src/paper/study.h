@@ -107,7 +107,7 @@ class Study {
 
   const PaperSource& source() const { return source_; }
   const WalkModel& model() const { return *model_; }
-  // The same motion on longer or shorter legs.
+  // The motion on longer or shorter legs.
   Result<WalkModel> model_with_legs(double leg_ratio) const;
   // A straight walk, kPaperStick forward, long enough for figure_stride().
   const Walk& walk(const std::string& style, IkMode mode);

@@ -87,7 +87,7 @@ class Builder {
   Mannequin& mannequin_;
   const WalkModel& model_;
   const UpperBodyJoints& joints_;
-  JointFrames standing_;    // world, facing +z, the feet on the floor
+  JointFrames standing_;    // joint frames in the world, facing +z, the feet on the floor
   std::vector<int> trunk_;  // the trunk's joints from the root upwards to the head
   // Middles of the left and right joints; estimated if an arm is missing.
   vec3 hips_m_{0.0}, shoulders_m_{0.0};
@@ -389,7 +389,7 @@ constexpr double kStickLine_px = 3.2;
 constexpr double kLongestEnd = 0.5,
                  kLongestLine = 0.9;  // longest drawn bone, in leg lengths; joints of meshes may be
                                       // far off
-// How deep a foot may be in the ground; a deeper one is beside a riser.
+// Greatest depth of a foot in the ground; a deeper foot is beside a riser.
 constexpr double kDeepest_m = 0.05;
 constexpr double kShortestLine = 0.015,
                  kShortestDotted = 0.045;  // shortest bone with dots at its joints, in leg lengths;

@@ -30,7 +30,7 @@ struct Capsule {
 struct SceneLine {  // a line of constant width in pixels, for stick figures; casts a faint shadow
   vec3 a_m{0.0}, b_m{0.0};
   Colour colour;
-  double width_px = 3.0;  // at scale 1
+  double width_px = 3.0;  // width of the line at scale 1
 };
 struct Trail {  // a line of past places, oldest first; it fades towards the old end
   std::vector<vec3> points_m;
@@ -45,7 +45,8 @@ inline glm::vec4 row(const vec3& v, double w) {
 // round, for a fraction of the cost. It casts no shadow. Relative to SceneContent::crowd_origin_m.
 struct FlatCapsule {
   glm::vec4 a_radius{0.0f}, b_radius{0.0f};
-  // As in Capsule. A negative width at b: both ends are inside other capsules and have no caps.
+  // Direction and widths as in Capsule, and the colour. A negative width at b: both ends are inside
+  // other capsules and have no caps.
   glm::vec4 wide_width_a{0.0f}, colour_width_b{0.0f};
   float ground_m = 0.0f;  // height of the ground below the capsule
 };

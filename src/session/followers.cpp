@@ -167,7 +167,7 @@ GaitParams Followers::params_of(int member, const GaitParams& first, const WalkS
   const double behind_m = glm::dot(vec3(off_m.x, 0.0, off_m.z), ahead);
   // Distance from the way, + to the left.
   const double beside_m = off_m.x * ahead.z - off_m.z * ahead.x;
-  const double speed = speed_m_s(first);  // at least 0
+  const double speed = speed_m_s(first);  // speed_m_s() is at least 0
 
   GaitOverrides overrides;
   GaitLimits limits = kind.limits;

@@ -60,7 +60,7 @@ struct LiveSession::Impl {
   Simulation simulation;
   Cast cast;
   Script script;
-  std::vector<Style> styles;  // that commands may name; used by the viewing thread only
+  std::vector<Style> styles;  // styles that commands may name; used by the viewing thread only
   // Style lists that the loop uses or has given back. They are freed here, never on the loop's
   // thread.
   std::deque<std::shared_ptr<const std::vector<Style>>> style_lists;

@@ -215,7 +215,8 @@ constexpr std::size_t kUsed = 4096;           // reports that wait for a frame: 
 constexpr std::int64_t kDueWait_ns = 2'000'000, kDueNap_ns = 100'000;
 constexpr std::chrono::milliseconds kBeat{80};
 constexpr double kFullBeatSpeed_m_s = 1.5;
-constexpr double kFeltBeat = 0.25;  // of full strength; less does not turn a motor in 80 ms
+// Share of full strength; a weaker beat does not turn a motor in 80 ms.
+constexpr double kFeltBeat = 0.25;
 constexpr auto kRelaxed = std::memory_order_relaxed;
 
 static_assert(std::atomic<double>::is_always_lock_free);

@@ -47,7 +47,7 @@ class TickClock {
   double pace() const noexcept { return pace_; }
 
   enum class Begin {
-    on_time,  // at most one tick late
+    on_time,  // the tick began at most one tick late
     late,
     // More than a second late: this tick is due now, and the clock restarts with it.
     after_standstill,  // much too late all at once: the process was stopped
@@ -80,7 +80,7 @@ class TimeHistogram {
   double percentile_us(double share) const noexcept;
   double median_us() const noexcept { return percentile_us(0.5); }
   double max_us() const noexcept;
-  // How many durations lie in each step of `width_ns`, the longer ones in the last, within 1 %.
+  // Counts the durations in each step of `width_ns`, the longer ones in the last step, within 1 %.
   void count_steps(std::int64_t width_ns, std::span<std::int64_t> counts) const noexcept;
 
  private:
@@ -148,7 +148,7 @@ class LiveLoop {
   struct Options {
     int rate_hz = kDefaultRateHz;
     bool rumble = true;
-    int frame_ticks = 1;  // as in SessionSpec::Live
+    int frame_ticks = 1;  // number of ticks between two frames, as in SessionSpec::Live
     // Receives each tick for other programs; may be null.
     Latest<StreamedTick>* stream = nullptr;
     ForwardMail* forward = nullptr;

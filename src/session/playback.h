@@ -18,7 +18,7 @@
 namespace gaitpad {
 
 struct PreparedTrace {
-  Trace trace;  // its events, and the script's, with their ticks
+  Trace trace;  // the recording's events, and the script's, with their ticks
   std::int64_t ticks = 0;
   SimulationConfig config;  // the configuration, with the rate to run at
   Simulation start;

@@ -244,7 +244,7 @@ void PoseStream::run() {
   }
 }
 
-// It is no error if the receiver is missing or too slow: the datagrams are lost.
+// A missing or slow receiver is no error: the datagrams are lost.
 void PoseStream::send(const StreamedTick& tick) {
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     const Source& source = sources_[i];

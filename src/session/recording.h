@@ -112,7 +112,7 @@ class Recording {
  public:
   struct Options {
     std::string path;
-    std::optional<int> rate_hz;  // of the ticks; none: there is no loop, only times
+    std::optional<int> rate_hz;  // rate of the ticks; none: there is no loop, only times
     RecordingLines::Limits limits;
     RecordedSession session{};
   };
@@ -121,8 +121,9 @@ class Recording {
   static Result<std::unique_ptr<Recording>> start(const Options& options, RecordedDevices devices);
   ~Recording();
 
-  // Both from one thread, wait-free. add(): `tick` used the report. clock(): `tick` began at
-  // `time_ns`, and the next ones follow at rate * pace (0: they stand still).
+  // Both functions are called from one thread and never wait. add(): `tick` used the report.
+  // clock(): `tick` began at `time_ns`, and the next ones follow at rate * pace (0: they stand
+  // still).
   void add(std::int64_t tick, const Report& report) noexcept;
   void clock(std::int64_t tick, std::int64_t time_ns, double pace = 1.0) noexcept;
   // Changes the styles from `tick` on. Both lists must outlive the recording.

@@ -111,7 +111,7 @@ class PlaybackShow final : public Show {
     const std::int64_t end_ns = now_ns() + kComputing_ns;
     do {
       is_there_ = playback_->seek(tick(), kTicksAtOnce);
-      take_samples();  // after each part, so that no sample is lost
+      take_samples();  // taken after each part, so that no sample is lost
     } while (!is_there_ && now_ns() < end_ns);
   }
 

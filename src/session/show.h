@@ -29,8 +29,8 @@ struct Timeline {
 class Show {
  public:
   static Result<std::unique_ptr<Show>> open(const SessionSpec& spec);
-  // The same in two parts, so that a running show ends only if the next one can be opened:
-  // prepare() reads the files; the function that it returns opens the show and is called once.
+  // Opening in two parts, so that a running show ends only if the next one can be opened: prepare()
+  // reads the files; the function that it returns opens the show and is called once.
   using Start = std::function<Result<std::unique_ptr<Show>>()>;
   static Result<Start> prepare(const SessionSpec& spec);
   virtual ~Show() = default;

@@ -16,19 +16,23 @@ namespace gaitpad {
 namespace {
 
 constexpr std::int64_t kBucketNs = 100 * kMillisecondNs;
-constexpr double kStillWithin = 0.04;  // between means over 0.1 s: 3 sigma of a very noisy stick
+// Limit on the difference of means over 0.1 s: 3 sigma of a very noisy stick.
+constexpr double kStillWithin = 0.04;
 // Anything shorter is a spike: to another place and back within three reports.
 constexpr std::int64_t kSpikeNs = 40 * kMillisecondNs;
 
 constexpr std::int64_t kStillNs = 500 * kMillisecondNs;
 constexpr std::int64_t kNearNs = 1500 * kMillisecondNs;
-constexpr double kAway = 0.3;           // distance from the rest at which a stick is pushed
-constexpr double kAwayUnknown = 0.5;    // from the middle, while the rest is not known
-constexpr double kFarthestRest = 0.45;  // from the middle; farther out a stick is held
-constexpr std::size_t kMaxRests = 64;   // further releases are ignored
-constexpr double kAside = 0.1;          // from the middle; few sticks rest so far off
+constexpr double kAway = 0.3;  // distance from the rest at which a stick is pushed
+// Such a distance from the middle, while the rest is not known.
+constexpr double kAwayUnknown = 0.5;
+// Greatest distance of a rest from the middle; farther out a stick is held.
+constexpr double kFarthestRest = 0.45;
+constexpr std::size_t kMaxRests = 64;  // further releases are ignored
+// A rest this far from the middle is rare, so more releases are asked for.
+constexpr double kAside = 0.1;
 
-constexpr double kOfReach = 0.6;      // of the farthest that was seen: counts as pushed out
+constexpr double kOfReach = 0.6;      // share of the farthest position: pushed out
 constexpr double kOfMedianRim = 0.6;  // less is a cut corner; a square gate has 0.71
 // Limits of the travel between two reports along the rim: less is noise, more is a spike.
 constexpr double kLeastTravel = 15.0 * kDegree, kMostTravel = 90.0 * kDegree;

@@ -31,7 +31,7 @@ class StillWatch {
   const vec2& mean() const noexcept { return mean_; }
 
  private:
-  vec2 sum_{0.0};  // of the running tenth of a second, times nanoseconds
+  vec2 sum_{0.0};  // sum of the positions in the running tenth of a second, times nanoseconds
   std::int64_t sum_ns_ = 0;
   vec2 mean_{0.0};
   std::int64_t still_ns_ = 0;
@@ -193,7 +193,7 @@ class CalibrationGuide {
 
  private:
   struct Stick {
-    int side = 0;  // 0 left, 1 right
+    int side = 0;  // side of the control: 0 left, 1 right
     ReleaseWatch release;
     TurnWatch turn;
     PushWatch push;

@@ -5,7 +5,8 @@ namespace gaitpad {
 namespace {
 
 constexpr std::uint64_t kPause_ns = 50'000'000;  // a pause, as long as a slow pad's interval
-constexpr double kMovementTravel = 0.5;          // raw; less is noise, or too slow for every report
+// Least travel of a movement, raw; less is noise, or too slow for every report.
+constexpr double kMovementTravel = 0.5;
 constexpr double kOutOfRange = 8.0;
 
 }  // namespace

@@ -32,9 +32,10 @@ constexpr double kLeastSpread = 0.1 * kSpacing * kSpacing;
 // the slowest pad's two turns, narrow enough for a corner.
 constexpr double kSelectionWidth = 3.0 * kSpacing;
 constexpr int kFewOfDirection = 8;
-constexpr int kSelectionRounds = 6;         // rounds of selecting samples; three or four are enough
-constexpr double kSelectionQuantile = 0.9;  // of the samples' heights: the search begins there
-constexpr double kSigmas = 3.0;             // this far below the line a sample is still on the rim
+constexpr int kSelectionRounds = 6;  // rounds of selecting samples; three or four are enough
+// Quantile of the samples' heights at which the search begins.
+constexpr double kSelectionQuantile = 0.9;
+constexpr double kSigmas = 3.0;  // this far below the line a sample is still on the rim
 
 using Radii = std::array<double, kOutlineDirections>;  // raw radius in each direction
 
@@ -272,9 +273,11 @@ constexpr double kSharp = 0.6;  // sine of the angle by which a corner turns at 
 // A side's reach is known if the outline was seen this near to it: on both sides of it, or straight
 // there.
 constexpr double kOfSide = 15.0 * kDegree, kStraight = 3.0 * kSpacing;
-constexpr int kParts = 8;                        // parts of each piece of the outline, for the bins
-constexpr double kLeastCircularityRadius = 0.2;  // as in dualshock-tools
-constexpr int kLeastFilledBins = 44;             // with fewer bins the error is not comparable
+constexpr int kParts = 8;  // parts of each piece of the outline, for the bins
+// Smallest radius that counts, as in dualshock-tools.
+constexpr double kLeastCircularityRadius = 0.2;
+// Fewest bins with a radius; with fewer the error is not comparable.
+constexpr int kLeastFilledBins = 44;
 
 double cross(const vec2& a, const vec2& b) noexcept { return a.x * b.y - a.y * b.x; }
 
@@ -530,7 +533,8 @@ std::array<double, kCircularityBins> least_reaches(const Outline& outline) noexc
 }
 
 std::optional<int> unpressed_direction(const Outline& outline, std::span<const vec2> pushes) {
-  constexpr double kDeep = 0.1, kAsFar = 0.06;  // raw lengths
+  // Raw lengths: depth of a dent, and how far a push may exceed the outline.
+  constexpr double kDeep = 0.1, kAsFar = 0.06;
   Radii farthest = outline.radius;
   const auto direction = [&](const vec2& push) {
     const vec2 p = push - outline.middle;
@@ -670,7 +674,8 @@ namespace {
 // Counts whole turns in either direction; turning back begins anew.
 struct Turning {
   int turns = 0;
-  double turned = 0.0, farthest = 0.0;  // of the running turn, as parts of a whole one
+  // The running turn and its farthest point, as parts of a whole turn.
+  double turned = 0.0, farthest = 0.0;
   void add(double angle) noexcept {
     turned += angle;
     if (std::fabs(turned) > std::fabs(farthest) && turned * farthest >= 0.0) farthest = turned;

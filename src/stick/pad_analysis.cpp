@@ -25,7 +25,8 @@ constexpr double kAssumedHysteresis = 0.05;
 // Two-dimensional noise exceeds 5.5 sigma once in four million reports, and less than once in
 // 20,000 if the measured sigma is 15 % too small.
 constexpr double kSigmasOfRest = 5.5;
-constexpr double kSigmasOfRim = 4.5;  // at the rim one report in 300,000 is not full
+// Distance of full output from the rim in sigmas: one report in 300,000 is not full.
+constexpr double kSigmasOfRim = 4.5;
 // From 0.14 on full deflection could be less than 0.96, where the sideways zone takes most off it.
 constexpr double kLeastSideways = 0.11, kGreatestSideways = 0.14;
 constexpr double kSigmasOfForward = 4.0;
@@ -33,11 +34,15 @@ constexpr double kSpreadOfDisplaced = 1.1;
 constexpr double kSigmasOfWander = 5.0;  // a minute shows more of it than the second measured
 
 // Beyond these no calibration helps.
-constexpr double kUselessZone = 0.3;      // raw; the stick would do nothing for a third of its way
-constexpr double kUselessReach = 0.5;     // least useful reach, raw, from the centre
-constexpr double kUselessSigma = 0.05;    // raw; a tenth of the travel of the shortest usable reach
-constexpr double kUselessDrift = 0.002;   // raw a second: leaves a zone of 0.1 within a minute
-constexpr double kUselessWander = 0.029;  // raw, in a second; within a minute it leaves any zone
+// A larger inner zone, raw: the stick would do nothing for a third of its way.
+constexpr double kUselessZone = 0.3;
+constexpr double kUselessReach = 0.5;  // least useful reach, raw, from the centre
+// A larger sigma, raw: a tenth of the travel of the shortest usable reach.
+constexpr double kUselessSigma = 0.05;
+// A faster drift, raw a second: it leaves a zone of 0.1 within a minute.
+constexpr double kUselessDrift = 0.002;
+// More wander, raw in a second: within a minute it leaves any zone.
+constexpr double kUselessWander = 0.029;
 // Least rest for a drift of a stick that was released only once.
 constexpr double kDriftSure_s = 5.0;
 // Least report rate: slower reports show no movement by itself.
@@ -50,7 +55,8 @@ constexpr int kUselessStuck = 2;  // a single frozen time may be a lost report
 // Beyond these a stick is worn: two or three times what new ones show.
 constexpr double kWornHysteresis = 0.06, kWornSigma = 0.01, kWornCentre = 0.12, kWornReach = 0.8;
 constexpr double kWornWander = 0.01;
-constexpr double kWornSteps = 1.5;  // in steps: smaller noise comes from the steps
+// Noise of a worn stick, in steps: smaller noise comes from the steps.
+constexpr double kWornSteps = 1.5;
 constexpr int kWornJumps = 3;
 // A thumb or a finger that lies on a stick holds it aside, while its range stays symmetric. After
 // kSureRests rests this is no accident.
@@ -60,7 +66,7 @@ constexpr std::size_t kSureRests = 14;
 struct Side {
   const char* name;
   std::optional<double> reach;  // smallest reach, raw, from the centre
-  int direction;                // its direction in the outline
+  int direction;                // direction of that reach in the outline
 };
 std::array<Side, 4> sides_of(const StickStatistics& s) {
   const vec2 centre = s.centre.value_or(vec2(0.0));
@@ -115,7 +121,7 @@ bool may_be_held(const StickStatistics& s) noexcept {
          s.rests.size() < kSureRests;
 }
 
-// The jumps that the median of three takes out.
+// Number of jumps that the median of three reports removes.
 std::int64_t single_jumps(const StickStatistics& s) noexcept { return s.jumps - s.long_jumps; }
 
 double share_of_jumps(const StickStatistics& s) noexcept {
@@ -434,8 +440,8 @@ StickAnalysis stick_analysis(std::vector<StickTrack> tracks, const vec2& step,
   return analysis;
 }
 
-// Both sticks come in the same reports. The one that moved tells their rate best: repeated values
-// of one that rests may look like lost reports.
+// Gives both sticks the timing of the one that moved, because they come in the same reports:
+// repeated values of a resting stick may look like lost reports.
 void share_timing(StickStatistics& a, StickStatistics& b) noexcept {
   const StickStatistics& best = a.rate_hz.value_or(0.0) >= b.rate_hz.value_or(0.0) ? a : b;
   const bool is_silent_at_rest = (a.rate_hz && !a.gaps) || (b.rate_hz && !b.gaps);

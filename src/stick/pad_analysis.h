@@ -34,7 +34,8 @@ struct StickAnalysis {
   StickStatistics statistics;
   StickAdvice advice;
 };
-struct PadAnalysis {  // left, right; none if the pad has no such control
+// Results for the left and the right control; none if the pad has no such control.
+struct PadAnalysis {
   std::array<std::optional<StickAnalysis>, 2> stick;
   std::array<std::optional<TriggerStatistics>, 2> trigger;
 };

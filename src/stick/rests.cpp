@@ -163,7 +163,7 @@ struct Release {
   std::vector<Still> stills;  // still times at one place, in the order of time
   std::size_t track = 0;
   RestPoint rest;  // mean of all reports; its weight is their number
-  vec2 from{0.0};  // unit, the side from which the stick returned; 0: not seen
+  vec2 from{0.0};  // unit vector to the side from which the stick returned; 0: not seen
 };
 
 constexpr double kSamePlace = 0.02;
@@ -211,7 +211,7 @@ struct ReturnModel {
   vec2 home{0.0};          // mean rest of the releases that are used
   vec2 drift{0.0};         // drift per second; 0 unless it was asked for
   double residual = 0.0;   // sum of squared differences of both axes
-  double spread_s2 = 0.0;  // of the times: the part that `from` does not explain
+  double spread_s2 = 0.0;  // spread of the times that `from` does not explain
 };
 enum class Explain { home, returns, returns_and_drift };
 
@@ -690,7 +690,7 @@ void set_sigma(RestStatistics& to, const Evidence& evidence, const vec2& step) {
 // Estimated from the changes over 0.2 s, less the part that noise and flipping codes explain. The
 // median over the hands-off times, because a thumb may lie on the stick in some of them.
 double wander_of(std::span<const HandsOff> times, const vec2& drift, const vec2& step) {
-  constexpr std::size_t kLag = 2;                    // in blocks of 0.1 s
+  constexpr std::size_t kLag = 2;                    // compared blocks are 0.2 s apart
   constexpr double kShare = kLag * 0.1 - 0.1 / 3.0;  // s; a block is a mean over 0.1 s
   constexpr double kFewest = 8.0;                    // fewest changes of both axes
   std::vector<double> squares, noises;

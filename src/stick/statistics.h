@@ -44,7 +44,8 @@ StickStatistics stick_statistics(std::span<const StickTrack> tracks, const vec2&
 
 struct TriggerStatistics {
   std::int64_t samples = 0;
-  std::optional<double> released, pressed;  // raw 0..1; pressed: none if it was never pressed
+  // Levels of a trigger, raw 0..1; pressed: none if it was never pressed.
+  std::optional<double> released, pressed;
 };
 TriggerStatistics trigger_statistics(std::span<const TriggerTrack> tracks);
 

@@ -137,9 +137,10 @@ double reports_stood(double hold_s, double interval_s) noexcept {
 
 namespace {
 
-constexpr double kSmallestSpike = 0.03;     // least height of a spike, raw; less is noise
-constexpr double kShortMovement_s = 0.04;   // no hand moves there and back in a shorter time
-constexpr double kLongestDropOut_s = 0.12;  // with edges of one report that no hand can make
+constexpr double kSmallestSpike = 0.03;    // least height of a spike, raw; less is noise
+constexpr double kShortMovement_s = 0.04;  // no hand moves there and back in a shorter time
+// Longest jump there and back with edges of one report, which no hand can make.
+constexpr double kLongestDropOut_s = 0.12;
 constexpr double kShortestDropOut_s = 0.0035;
 // Longest interval for drop-outs: a spring takes two reports or more.
 constexpr double kSlowestForDropOuts_s = 0.025;

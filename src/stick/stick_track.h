@@ -113,7 +113,8 @@ double typical_interval_s(std::span<const StickTrack> tracks);
 
 struct ReportTiming {
   std::optional<double> rate_hz, jitter_ms;  // none: there are too few reports
-  std::optional<std::int64_t> gaps;          // none: as above, or silence means nothing on this pad
+  // None: there are too few reports, or the pad is silent at rest.
+  std::optional<std::int64_t> gaps;
 };
 // `repeats_expected`: the chance that a report at rest repeats the one before it, given noise and
 // step. A pad that repeats less often reports changes only, so its gaps cannot be counted.

@@ -16,13 +16,15 @@ namespace {
 // ---- Finding the stills
 
 constexpr double kCell_s = 0.02;
-constexpr std::size_t kMostCells = 86400 * 50;  // cells of a day, for all tracks together
+// Most cells, for all tracks together: those of a day.
+constexpr std::size_t kMostCells = 86400 * 50;
 // A place is still if the means of the 0.1 s before it and behind it are equal.
 constexpr std::size_t kHalfWindow = 5, kWindow = 2 * kHalfWindow;  // lengths in cells
 constexpr std::size_t kShortestStill = 5;                          // length in cells
 constexpr std::size_t kSettling = 3;  // cells of a half window that may belong to a movement
-constexpr double kSlow = 0.006;       // raw, between the halves of a window: 0.06 a second
-constexpr double kNoiseLimit = 4.5;   // limit of the noise in standard deviations
+// Largest raw difference of the halves of a window at rest: 0.06 a second.
+constexpr double kSlow = 0.006;
+constexpr double kNoiseLimit = 4.5;  // limit of the noise in standard deviations
 
 // 20 ms of a track. Weights count reports, see reports_stood().
 struct Cell {
@@ -184,9 +186,10 @@ std::vector<std::vector<Cell>> cells_of(std::span<const StickTrack> tracks, doub
 
 // ---- Which of them are rests
 
-constexpr double kFarthestHome = 0.5;  // raw; farther out a stick is held, not at rest
+constexpr double kFarthestHome = 0.5;  // farthest rest, raw; farther out a stick is held
 
-constexpr double kReleaseMovement = 0.2;      // raw; less movement between two rests is no release
+// Least movement of a release, raw; less between two rests is none.
+constexpr double kReleaseMovement = 0.2;
 constexpr std::size_t kShortestMovement = 3;  // length in cells
 
 bool is_near_middle(const vec2& p) noexcept {

@@ -24,7 +24,7 @@ constexpr double kSmooth = 20.0;  // weight of second differences between sample
 constexpr double kPelvisSmooth = 5000.0, kPelvisSmoothUp = 4000.0;
 // Weights per square metre, for the knee per square radian.
 constexpr double kPlanted = 3e5, kFloor = 3e6, kKnee = 1e4;
-constexpr double kLevel = 5e2;  // for a sole that is level and points ahead, per square metre
+constexpr double kLevel = 5e2;  // weight of a sole that is level and points ahead, per square metre
 // Weights per square metre of second differences, for heels that come to rest and toes that begin
 // to move smoothly.
 constexpr double kSoftStrike = 3e4, kSoftToeDown = 1.3e4;
@@ -468,7 +468,7 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
           across.by_angle[j] -= heel.by_angle[j];
           along.by_angle[j] -= heel.by_angle[j];
         }
-        // Neither depends on the pelvis.
+        // These differences do not depend on the pelvis' place.
         std::array<int, kLegDofs> where;
         for (int j = 0; j < kLegDofs; ++j) where[j] = i * kUnknowns + leg_unknown(side) + j;
         const double want_x = (leg.toe_m - leg.heel_m).x;

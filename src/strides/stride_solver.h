@@ -58,7 +58,8 @@ class StrideSolver {
   void begin(const StrideProblem& problem);
   void fill(const StrideProblem& problem, const std::vector<StrideSample>& x);
   bool move(std::vector<StrideSample>& x);
-  std::unique_ptr<System> system_;  // of the previous problem, kept for its sparsity pattern
+  // Equations of the previous problem, kept for their sparsity pattern.
+  std::unique_ptr<System> system_;
 };
 
 }  // namespace gaitpad

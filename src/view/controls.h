@@ -65,7 +65,7 @@ struct ActionInfo {
   SDL_Keycode key;         // SDLK_UNKNOWN: none
   SDL_Keycode second_key;  // another key with the same effect
   int button;              // a PadButton; -1: none
-  std::string_view name;   // of the action, for example "pause"
+  std::string_view name;   // the action's name, for example "pause"
   std::string_view group;  // heading on the help page
   std::string_view text;   // one line for the help page
 };
@@ -77,7 +77,7 @@ struct Chord {
   SDL_Keycode key;
   bool has_shift;
   Action action;
-  std::string_view name;  // of the chord, for example "Ctrl+Z"
+  std::string_view name;  // the keys' names, for example "Ctrl+Z"
 };
 std::span<const Chord> chords() noexcept;
 // The name of a key: "Space", "F1", "W"; "?" for an unknown key.

@@ -22,7 +22,7 @@ constexpr double kOnePerson_m = 4.2;                      // least framing dista
 constexpr double kWithCrowd_m = 9.0;                      // least framing distance with a crowd
 constexpr double kLabelAbove_m = 0.14;                    // height of a name above the head
 constexpr double kHalfLabel_px = 40.0, kLabel_px = 22.0;  // half a name's width; its height
-// How far a foot reaches in front of and behind the root, in body heights.
+// Distance of a foot in front of or behind the root, in body heights.
 constexpr double kReach = 0.25;
 constexpr double kHeadReach = 0.5;  // how far the head reaches, as a share of the feet's reach
 

@@ -25,7 +25,7 @@ void draw_solver_panel(Ui& ui);
 void draw_loop_panel(Ui& ui);
 
 enum class PanelColumn { left, right };
-// What a panel is about: the session, the selected walker, or a walker that it changes.
+// The subject of a panel: the session, the selected walker, or a walker that it changes.
 enum class PanelSubject { session, walker, changed_walker };
 
 struct PanelInfo {

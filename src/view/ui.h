@@ -91,7 +91,7 @@ struct UiInput {
   std::string pad_name{};              // the driving pad; empty: none
   double pad_rate_hz = 0.0;
   double pace = 1.0;
-  double frames_per_second = 0.0;  // 0: not shown, as in pictures
+  double frames_per_second = 0.0;  // mean over the last half second; 0: not shown, as in pictures
   double memory_mib = 0.0;         // memory of the whole program; 0: unknown
   std::string recording{};         // file that is being recorded; empty: none
   std::string source{};            // name of the played trace, for the bar

@@ -211,7 +211,7 @@ std::vector<std::string> text_lines(const ImFont* font, std::string_view text, f
     }
     const std::size_t blank = part.rfind(' ');
     std::size_t cut = blank == std::string_view::npos || blank == 0 ? part.size() : blank;
-    if (cut == 0) break;  // not even one letter fits
+    if (cut == 0) break;  // there is no room for even one letter
     lines.push_back(rest.substr(0, cut));
     rest.erase(0, rest.find_first_not_of(' ', cut));
   }

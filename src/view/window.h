@@ -30,7 +30,7 @@ struct WindowGlance {
 
 struct WindowOptions {
   SessionSpec session;  // a live session, or a playback if session.replay.trace is not empty
-  // What to do without a display, for the error.
+  // Advice without a display, for the error.
   std::string without_display = "play --no-window walks without one";
   std::string program = "gaitpad";  // the program's name and version, for the report of a self-test
   // Folder of new recordings and pictures, made when missing; empty: the working directory. If the
@@ -65,7 +65,7 @@ struct WindowOptions {
 };
 struct WindowResult {
   RunSummary summary;                // the summary of the last session
-  std::optional<LiveStatus> status;  // of the last session; none if it was a playback
+  std::optional<LiveStatus> status;  // status of the last session; none if it was a playback
   std::int64_t frames = 0;
   double frames_per_second = 0.0;
   // When the first frame was handed to the display, by CLOCK_MONOTONIC; 0: none was.

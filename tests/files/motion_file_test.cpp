@@ -167,7 +167,7 @@ TEST(Load, SharedFilesStandOnTheFloor) {
     const auto m = load_motion(entry);
     ASSERT_TRUE(m) << m.error().message;
     const bool has_floor =
-        name != "bvhfiles_example.bvh" && name != "wisc_example.bvh";  // not walks
+        name != "bvhfiles_example.bvh" && name != "wisc_example.bvh";  // these are not walks
     if (!has_floor) continue;
     const std::array<int, 2> toes = {m->legs[0].toe, m->legs[1].toe};
     const auto tracks = joint_tracks_m(*m, toes);

@@ -131,7 +131,7 @@ TEST(Camera, FollowsEquallyAtAnyFrameRate) {
   const vec3 velocity(0.5, 0.0, 1.3);
   const vec3 slow = followed(velocity, 20), fast = followed(velocity, 480);
   EXPECT_LT(glm::distance(slow, fast), 1e-9);
-  // It does not lag behind a character that walks at constant velocity.
+  // The camera does not lag behind a character that walks at constant velocity.
   const vec3 expected = Camera{}.target_m + velocity * 2.0;
   EXPECT_LT(glm::distance(slow, expected), 2e-3);
 }

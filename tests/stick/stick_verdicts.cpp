@@ -23,7 +23,7 @@ namespace {
 
 // ---- The kinds
 
-// What a kind of stick must give: a verdict, or a behaviour of the calibrated stick.
+// The requirement on a kind of stick: a verdict, or a behaviour of the calibrated stick.
 enum class Must {
   be_good,
   pass,

@@ -1112,7 +1112,7 @@ TEST_F(WindowFiles, PicturesAreTheSameEveryTime) {
   options_.panels = {Panel::pad, Panel::loop};
   options_.frames = 20;
   options_.screenshot = own_.at("still.png");
-  // Of a recording, or of a live session that ends by hand.
+  // Pictures of a recording, or of a live session that ends by hand.
   for (const std::string& trace : {round_, std::string()}) {
     options_.session.replay.trace = trace;
     std::array<std::string, 2> pictures;

@@ -64,7 +64,7 @@ using BvhOrder = std::array<int, 3>;
 // heading is near its pole. `local` holds samples x joints.
 std::vector<BvhOrder> euler_orders(const Skeleton& skeleton, std::span<const quat> local);
 
-// How poses are written. The caller fills it.
+// Format of a file that is written. The caller fills it.
 struct BvhLayout {
   double metres_per_unit = 1.0;       // length of a unit of the file, 1e-9 .. 1e6
   double frame_time_s = 1.0 / 240.0;  // time between two poses, 1e-5 .. 10

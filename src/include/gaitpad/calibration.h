@@ -27,7 +27,8 @@ namespace gaitpad {
 
 // The range of an axis, measured when a pad is calibrated.
 struct AxisCalibration {
-  double min = -1.0, centre = 0.0, max = 1.0;  // raw; min < centre < max, at least 0.1 apart
+  // Ends and centre, raw; min < centre < max, at least 0.1 apart.
+  double min = -1.0, centre = 0.0, max = 1.0;
   bool operator==(const AxisCalibration&) const = default;
 };
 enum class ZoneShape : std::uint8_t {
@@ -153,7 +154,7 @@ struct StickMeasured {
 inline constexpr double kMostGyroBias_rad_s = 1.0;
 struct CalibrationFile {
   std::string name;
-  std::string unique_id, port;  // of the device that the file is for; empty: any
+  std::string unique_id, port;  // unique id and port of the device that the file is for; empty: any
   // Devices that the file is for; empty: none, unless unique_id is given.
   std::vector<DevicePattern> devices;
   // Drivers that the file is for: hidraw, usb, evdev, sdl; empty: any.
@@ -187,7 +188,7 @@ std::string calibration_text(const CalibrationFile& file);
 int calibration_fit(const CalibrationFile& file, const DeviceIdentity& device);
 struct FoundCalibration {
   CalibrationFile file;
-  std::vector<std::string> problems;  // one sentence for each file or folder that was skipped
+  std::vector<std::string> problems;  // sentences about files and folders that were skipped
 };
 // The best fitting *.toml file of the folders; among equals the earlier folder, then the first
 // name. The defaults for an unknown stick if none fits. A folder that does not exist is no problem.

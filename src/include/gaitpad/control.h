@@ -41,7 +41,7 @@ inline constexpr double kFullFatigueLeaves = 0.4;
 
 // The gait of a character at full deflection. gait_limits() fills it; a program may change it.
 struct GaitLimits {
-  double max_speed_m_s = kMaxSpeed_m_s;  // 0.001 .. 50
+  double max_speed_m_s = kMaxSpeed_m_s;  // greatest speed straight ahead, 0.001 .. 50
   // Greatest step length, the mean of both feet, 0.001 .. 50.
   double max_step_m = std::sqrt(60.0 * kWalkRatio_m_min * kMaxSpeed_m_s);
   // Each foot's step length over the mean of both, by Side, 0 .. 50.

@@ -108,9 +108,9 @@ enum class Detach { never, allowed };
 struct DriverEntry {
   const char* name;
   const char* library;  // name of the library that the driver needs, for messages
-  // Both are null if gaitpad was built without the library. `find` never fails: a device that it
-  // cannot look at is listed with its problem. The error of `open` is one sentence that names the
-  // node.
+  // `find` and `open` are null if gaitpad was built without the library. `find` never fails: a
+  // device that it cannot look at is listed with its problem. The error of `open` is one sentence
+  // that names the node.
   std::vector<DeviceListing> (*find)();
   Result<std::unique_ptr<Device>> (*open)(const DeviceListing& listing, Detach detach);
 };

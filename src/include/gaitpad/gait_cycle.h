@@ -85,8 +85,9 @@ struct GaitCycle {
   // Events as phases, in the order right strike, left toe-off, left strike, right toe-off. A foot
   // strikes when its heel is down and still; its toe is off when it begins to leave the place from
   // which it pushes. (The built-in walk has those of its published curves.)
-  std::array<double, 2> strike{};   // right = 0, left about 0.5
-  std::array<double, 2> toe_off{};  // left about 0.12, right about 0.62
+  // Strikes of the left and the right foot: right = 0, left about 0.5.
+  std::array<double, 2> strike{};
+  std::array<double, 2> toe_off{};  // toe-offs: left about 0.12, right about 0.62
 
   std::vector<CycleSample> samples;  // kCycleSamples of them, periodic
   // kCycleSamples x joints: every joint's local rotation (joint 0: in the travel frame), periodic,

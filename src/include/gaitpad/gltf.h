@@ -14,7 +14,7 @@
 
 namespace gaitpad {
 
-// How poses are written. The caller fills it.
+// Format of a file that is written. The caller fills it.
 struct GltfLayout {
   std::string name;    // name of the body
   double fps = 240.0;  // poses in a second, 0.001 .. 10,000

@@ -37,7 +37,7 @@ struct LiveStatus {
   // Number of times that the clock was set forward because ticks take too long.
   std::int64_t overloads = 0;
   double skipped_s = 0.0;                          // total time by which the clock was set forward
-  double late_us_median = 0.0, late_us_max = 0.0;  // from when a tick was due until it began
+  double late_us_median = 0.0, late_us_max = 0.0;  // delays from when a tick was due until it began
   double tick_us_median = 0.0, tick_us_max = 0.0;  // duration of a tick, without the sleep
   // Times from the arrival of a report to the tick that uses it, at pace 1.
   double wait_us_median = 0.0, wait_us_max = 0.0;

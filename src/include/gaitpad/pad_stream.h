@@ -86,7 +86,7 @@ inline constexpr std::size_t kMaxPads = kMaxTraceDevices;  // most different pad
 // Largest ring, which takes 1 GB.
 inline constexpr std::size_t kMostRingReports = std::size_t{1} << 20;
 
-// How a stream is started; the caller fills it.
+// Options of a stream; the caller fills them.
 struct PadStreamOptions {
   PadFiles files;  // files about pads, read by load_pad_files()
   PadSelector selector;

@@ -62,7 +62,8 @@ struct Report {
   std::uint16_t device = kNoDevice;  // index in the list of devices of a session or trace
   ReportKind kind = ReportKind::input;
   std::uint16_t size = 0;  // at most kMaxReportBytes; a longer one is no report
-  std::array<std::uint8_t, kMaxReportBytes> bytes;  // only the first `size` are set
+  // The content, of which the first `size` bytes are set.
+  std::array<std::uint8_t, kMaxReportBytes> bytes;
 };
 // The text of a command.
 inline std::string_view text_of(const Report& r) noexcept {

@@ -117,7 +117,8 @@ struct FootPose : FootPoseOf<double> {
 inline constexpr int kFlightKnots = 8;
 using FlightSpline = std::array<double, kFlightKnots - 1>;
 struct FlightRoom {
-  FlightSpline raise_m{}, shift_m{};  // as planned: a shift up, and one along z away from a riser
+  // Planned knots: a shift up, and one along z away from a riser.
+  FlightSpline raise_m{}, shift_m{};
   std::array<Damped<double>, kFlightKnots - 1> raise, shift;  // the present knots, smoothed
   vec3 planned_for_m{0.0};                                    // landing for which it is planned
 };
@@ -218,7 +219,7 @@ struct StepClock {
   int tick = 0, stage_ticks = 1;  // ticks since the stage began, and ticks of the stage
   int roll_ticks = 0, flight_ticks = 0;
   int last_step_ticks = 0;                // ticks of the step before
-  bool started = false;                   // between the first lean and the last landing
+  bool started = false;                   // the walk is between its first lean and its last landing
   bool starting = false;                  // the running step is the first one
   bool stopping = false;                  // the hips are moving to their place of rest
   bool closing = false;                   // the running step brings the feet together
@@ -294,7 +295,7 @@ struct PathFlow {
   V last_heading_rad{}, last_ratio{};
   Vec<V> landing_m{};
   V landing_heading_rad{};
-  std::array<V, 2> stride_m{};  // as in WalkFrame
+  std::array<V, 2> stride_m{};  // length of each foot's step, as in WalkFrame
   Damped<V> lean_rad;           // lean of the whole body into a turn, to the left positive
   Vec<V> sway_m{};              // sway of a standing character's hips, on the ground
 };

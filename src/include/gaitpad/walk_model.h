@@ -81,7 +81,8 @@ struct UpperBodyModel {
   vec3 neck_m{0.0};
   std::vector<int> head_path;  // joints from the root to the head; empty: there is no head
   int neck_at = 0;             // index in head_path of the first neck joint (or the head)
-  quat head_standing = kIdentity, chest_standing = kIdentity;  // world rotations
+  // World rotations of head and chest in the standing pose.
+  quat head_standing = kIdentity, chest_standing = kIdentity;
 };
 
 inline constexpr int kMaxBetween = 8;  // most twist joints between two joints of a leg

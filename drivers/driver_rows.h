@@ -30,8 +30,8 @@ Result<std::unique_ptr<Device>> open_sdl_device(const DeviceListing& listing, De
 // file without running SDL. Empty: there are none.
 std::vector<std::string> sdl_library_lines();
 
-// A recording is never found, only named: one listing for each device in it. `node` is the path of
-// the file, with `#2` and so on from the second device on.
+// The listings of a recording, one for each device in it; a recording is used only if it is named.
+// `node` is the path of the file, with `#2` and so on from the second device on.
 Result<std::vector<DeviceListing>> trace_listings(const std::string& path);
 // Finds nothing: a recording is only used if it is named.
 std::vector<DeviceListing> find_trace_devices();

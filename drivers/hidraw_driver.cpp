@@ -193,8 +193,8 @@ class HidrawDevice final : public Device {
     HidrawPort port(handle_.get(), fd_, is_numbered_);
     quirks_->start(port, started);
     quirks_->amend(info_);
-    // Asked only on a cable: over Bluetooth a pad reports when it connects, and some block on
-    // requests.
+    // The first packet is asked for only on a cable: over Bluetooth a pad reports when it connects,
+    // and some block on requests.
     if (info_.bus == BusType::usb) first_size_ = first_packet(port, info_.descriptor, buffer_);
     OutPacket still;
     quirks_->rumble({}, still);

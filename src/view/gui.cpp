@@ -22,7 +22,7 @@ namespace {
 constexpr double kBodyPixels = 14.5, kSmallPixels = 12.0, kTickPixels = 10.5, kTitlePixels = 17.0;
 constexpr double kLeastScale = 0.5, kMaxAsked = 4.0;
 constexpr double kMaxScale = kMaxAsked * kMostTypeSize;
-constexpr double kMaxDisplayScale = 3.0;  // a display that reports more is assumed to be wrong
+constexpr double kMaxDisplayScale = 3.0;  // a larger scale of a display is assumed to be wrong
 constexpr double kUsualDotsPerInch = 96.0;
 constexpr std::size_t kMaxFontBytes = 64 << 20;
 

@@ -92,8 +92,8 @@ class KeyboardDevice final : public Device {
   }
 
  private:
-  // True if a change has come; else the reader may sleep. A change at that moment is seen by the
-  // second look or makes fd() readable.
+  // True if the stick has reached its goal; it then goes to sleep. A change at that moment is seen
+  // by the second look or makes fd() readable.
   bool has_arrived() noexcept {
     if (position_ != stick_->wanted()) return false;
     stick_->sleep();

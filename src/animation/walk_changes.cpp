@@ -28,7 +28,7 @@ constexpr double kInPlace = 0.1;  // steps with a smaller ratio turn on the spot
 constexpr double kNewFlight = 0.1;
 // Share of a closing flight until which the walk may still go on.
 constexpr double kTurnsBack = 0.45;
-constexpr double kGoesOn = 0.7;  // least share of the asked step with which a walk goes on
+constexpr double kGoesOn = 0.7;  // share of the asked step that a walk goes on with
 constexpr double kNearStrike_s = 0.15, kLands_s = 0.08, kRollsOn_s = 0.05;
 constexpr double kLow_m = 0.001;
 // Factor on the data's height from which on a flight counts as high.

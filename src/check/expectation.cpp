@@ -50,7 +50,7 @@ void RunMeter::look(const WalkerSample& sample, const Walker& walker, Character&
       const auto& [is_planted, place_m] = points[p];
       if (is_planted && foot.is_planted[p]) {
         const double slip_m = glm::length(place_m - foot.planted_m[p]);
-        // A NaN replaces the value, so that it shows.
+        // Written so that a NaN is not ignored.
         if (!(slip_m <= character.slip_m)) character.slip_m = slip_m;
       } else if (is_planted) {
         foot.planted_m[p] = place_m;

@@ -48,7 +48,7 @@ constexpr std::chrono::milliseconds kLook{20};
 // Longest time that the opening of a pad may take.
 constexpr std::int64_t kOpening_ns = 8 * kSecond_ns;
 
-// Removes everything that identifies the pad from the kept files.
+// Removing everything that identifies the pad from the kept files.
 
 // A Bluetooth address as bytes, most significant first, else the text itself.
 std::vector<std::uint8_t> identity_bytes(const std::string& unique_id) {

@@ -153,7 +153,7 @@ TEST_F(XboxPad, ElitePadsHavePaddlesUnlessTheyMapThemThemselves) {
   };
   use(true, kMicrosoft, 0x02e3);  // the first Elite pad
   expect_paddles(of_gip({}, 33), 32, {2, 8, 1, 4});
-  // The pad maps P1 to its button b.
+  // The pad presses its button b for P1.
   expect_read(of_gip({{32, 0x02}, {4, 0x20}, {18, 0x00}}, 33), "buttons b");
   use(true, kMicrosoft, 0x0b00);
   expect_paddles(of_gip({}, 38), 18, {1, 2, 4, 8});

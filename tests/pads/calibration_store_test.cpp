@@ -334,7 +334,7 @@ TEST(ChangesSince, EachChangeHasBothNumbersAndWhatItMeans) {
            {[](CalibrationFile& f) { f.measured[0]->circularity_error = 12.25; },
             "left stick: its circularity error is 12.2 %, 8.0 % in the file: the directions differ "
             "more in how far it reaches"},
-           // a turned frame gives one remark and no others
+           // A turned frame gives one remark and no others.
            {[](CalibrationFile& f) {
               f.calibration.left.frame = {RawDirection::plus_y, RawDirection::plus_x};
               f.calibration.left.x.centre = 0.5;

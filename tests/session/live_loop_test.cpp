@@ -303,7 +303,7 @@ struct LoopParts {
   std::optional<Simulation> simulation;
   std::unique_ptr<Recording> recording;
   Script script;
-  // receives the ticks that are streamed to other programs
+  // Receives the ticks that are streamed to other programs.
   std::unique_ptr<Latest<StreamedTick>> stream = std::make_unique<Latest<StreamedTick>>();
   std::unique_ptr<ForwardMail> forward = std::make_unique<ForwardMail>();
   std::unique_ptr<LiveLoop> loop;

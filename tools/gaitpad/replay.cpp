@@ -19,7 +19,7 @@
 namespace gaitpad {
 namespace {
 
-// Largest crowd whose frames are written; each member opens three files.
+// Most members of a crowd that get files; each opens three.
 constexpr int kMaxCrowdFiles = 256;
 // The speed of a replay is printed if the replay took longer than this.
 constexpr double kLong_s = 5.0;

@@ -110,7 +110,7 @@ PosedLegOf<V> pose_side(const Tick& tick, std::span<const Walking> walks, const 
   for (int lane = 0; any(mends) && lane < kWidthOf<V>; ++lane) {
     if (!is_set(mends, lane)) continue;
     WalkState& walk = *walks[std::min(lane, count - 1)].state;
-    // Lanes beyond `count` repeat the last walk, whose pose must not be written again.
+    // Lanes beyond `count` repeat the last walk and get its leg, which is mended already.
     if (lane < count) {
       get_lane(even, lane, walk.legs.even_rad[side]);
       get_lane(posed, lane, one);

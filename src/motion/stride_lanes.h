@@ -51,7 +51,7 @@ using TablesOf = std::array<const std::vector<StrideTable>*, kWidthOf<V>>;
 template <class V>
 struct RatiosOf {
   TablesOf<V> tables;
-  std::array<int, kWidthOf<V>> first;  // index of the first knot; may be -1 if its weight is 0
+  std::array<int, kWidthOf<V>> first;  // index of the first table; may be -1 if its weight is 0
   std::array<V, 4> weight;
 };
 template <class V>

@@ -25,8 +25,8 @@ class PacketSource {
 
 class SharedPad;
 
-// The device. Pads are opened and closed on the finder's threads while the I/O thread reads the
-// others.
+// The device that the pads share. The finder's threads open and close pads while the I/O thread
+// reads others.
 struct SharedDevice {
   explicit SharedDevice(std::unique_ptr<PacketSource> packets) : source(std::move(packets)) {}
   std::mutex mutex;  // guards the two members below; not held while waiting

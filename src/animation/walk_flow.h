@@ -197,7 +197,7 @@ FootprintsOf<V> track_of(const WalkModel& model, const MaskOf<V>& backward,
             value<V>(backward, numbers(back.per_ratio)[k], numbers(forward.per_ratio)[k]) * at;
   return track;
 }
-// The running step's length relative to the data's.
+// Length of the running step, relative to the step of the data that it follows.
 template <class V>
 V ratio_of_step(const WalkModel& model, const MomentOf<V>& at, const StateOf<V>& state) noexcept {
   // In a cycle that is run back, a foot makes the step that the other one makes forwards.

@@ -11,7 +11,7 @@ namespace gaitpad {
 namespace {
 
 constexpr std::array<Side, 2> kSides = {kLeftSide, kRightSide};
-// The paper's frames on the screen, for which the bound on jumps is stated.
+// The display's frame rate for which the paper states its bound on jumps.
 constexpr double kPrintRate_hz = 60.0;
 
 std::size_t first_tick(double after_s) { return static_cast<std::size_t>(after_s * kPaperRate_hz); }

@@ -33,15 +33,15 @@ constexpr double kSigmasOfForward = 4.0;
 constexpr double kSpreadOfDisplaced = 1.1;
 constexpr double kSigmasOfWander = 5.0;  // a minute shows more of it than the second measured
 
-// Beyond these no calibration helps.
-// A larger inner zone, raw: the stick would do nothing for a third of its way.
+// Limits beyond which no calibration helps.
+// Greatest useful inner zone, raw: beyond it a third of the stick's way does nothing.
 constexpr double kUselessZone = 0.3;
 constexpr double kUselessReach = 0.5;  // least useful reach, raw, from the centre
-// A larger sigma, raw: a tenth of the travel of the shortest usable reach.
+// Greatest useful sigma, raw: a tenth of the least useful reach.
 constexpr double kUselessSigma = 0.05;
-// A faster drift, raw a second: it leaves a zone of 0.1 within a minute.
+// Fastest useful drift, raw a second: a faster one leaves a zone of 0.1 within a minute.
 constexpr double kUselessDrift = 0.002;
-// More wander, raw in a second: within a minute it leaves any zone.
+// Greatest useful wander, raw in a second: a greater one leaves any zone within a minute.
 constexpr double kUselessWander = 0.029;
 // Least rest for a drift of a stick that was released only once.
 constexpr double kDriftSure_s = 5.0;

@@ -23,7 +23,7 @@ struct StickAdvice {
   // Parts of `calibration` that were seen and are not doubted.
   bool has_centre = false, has_range = false;
 };
-// `statistics` are in `frame`.
+// The positions of `statistics` are given in `frame`.
 StickAdvice stick_advice(const StickStatistics& statistics, const StickFrame& frame);
 TriggerCalibration trigger_advice(const TriggerStatistics& statistics) noexcept;
 

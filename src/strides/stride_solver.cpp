@@ -16,7 +16,7 @@ namespace {
 constexpr int kPelvis = 3, kUnknowns = kPelvis + 2 * kLegDofs;  // numbers of unknowns of one sample
 
 // Weights of squared residuals, relative to a change of 1 rad of a knee.
-constexpr double kDegreeCosts_m = 0.04;  // a pelvis this far off costs as much as one degree
+constexpr double kDegreeCosts_m = 0.04;  // an error of the pelvis that costs as much as 1 degree
 constexpr double kPelvisWeight = (kDegree / kDegreeCosts_m) * (kDegree / kDegreeCosts_m);
 constexpr double kHip = 1.8, kAnkle = 1.8;
 constexpr double kSmooth = 20.0;  // weight of second differences between samples

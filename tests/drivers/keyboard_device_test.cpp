@@ -81,8 +81,8 @@ TEST_F(KeyboardDeviceTest, TellsItsRestOnceAndIsSilentThen) {
   EXPECT_EQ(wakes_, 0);
 }
 
-// Measured by time stamps, so that a late thread does not matter: a step covers the time since the
-// last one, at most 16 ms.
+// Time stamps measure the durations, so that a late thread does not matter: a step covers the time
+// since the last step, at most 16 ms.
 TEST_F(KeyboardDeviceTest, ForwardIsReachedIn150MillisecondsAndTheExactMiddleIn100) {
   seen_for(20);
   for (const auto& [wanted, whole_s] : {std::pair(vec2(0.0, 1.0), 0.15), {vec2(0.0), 0.10}}) {

@@ -249,7 +249,7 @@ class HidrawDevice final : public Device {
   bool was_late_ = false;
   std::int64_t lost_ = 0;
   std::vector<std::string> remarks_;
-  // Has one byte more than the longest report, to detect longer ones.
+  // One byte larger than the longest report, so that longer reports are detected.
   std::array<std::uint8_t, kMaxReportBytes + 1> buffer_{};
   std::size_t first_size_ = 0;  // size of the first packet, which is in buffer_; 0: it was read
 };

@@ -805,8 +805,8 @@ void lead_hips(const Tick& tick, MomentOf<V>& at, StateOf<V>& state, PlanOf<V>& 
     phase = settles ? gait.phase - gait.off_phase.x : phase;
     rate = settles ? V{} : rate;
   }
-  // If the hips do not lead, they are at the tables' place, with its rate and acceleration by
-  // differences.
+  // If the hips do not lead, the pelvis takes the tables' place; its velocity and acceleration are
+  // differences of the last places.
   const Vec<V> moved = by_tables - last, before = last - path.last_pelvis_m;
   // Bounded, because the path moves if a landing jumps to another tread.
   const double most = kMostBend_m_s2 * tick.dt_s * tick.dt_s;

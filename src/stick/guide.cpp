@@ -24,7 +24,7 @@ constexpr std::int64_t kSpikeNs = 40 * kMillisecondNs;
 constexpr std::int64_t kStillNs = 500 * kMillisecondNs;
 constexpr std::int64_t kNearNs = 1500 * kMillisecondNs;
 constexpr double kAway = 0.3;  // distance from the rest at which a stick is pushed
-// Such a distance from the middle, while the rest is not known.
+// Distance from the middle at which a stick is pushed, while its rest is not known.
 constexpr double kAwayUnknown = 0.5;
 // Greatest distance of a rest from the middle; farther out a stick is held.
 constexpr double kFarthestRest = 0.45;

@@ -26,9 +26,9 @@ Outline outline_of(std::span<const StickTrack> tracks, const vec2& middle, doubl
 // The raw point of the outline in direction k (modulo the number of directions).
 vec2 point_of(const Outline& outline, int k) noexcept;
 
-// The direction in which it reaches least far; none if no direction was seen.
+// The direction in which the outline reaches least far; none if no direction was seen.
 std::optional<int> worst_direction(const Outline& outline) noexcept;
-// The direction (of the outline) in which it lies deepest inside the shapes that gates have, as if
+// The direction in which the outline lies deepest inside the shapes that gates have, as if
 // the stick was turned there without being pressed to its rim; none if there is no such direction.
 // Directions in which a push (`pushes`: raw) was held and reached no farther are left out: there
 // the gate itself is short.

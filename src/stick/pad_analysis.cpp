@@ -103,7 +103,7 @@ std::vector<std::string> short_sides(const StickStatistics& s, double least) {
   return reasons;
 }
 
-// Whether its range was seen to all four sides.
+// Whether the stick's range was seen to all four sides.
 bool is_turned(const StickStatistics& s) noexcept {
   return s.min_x && s.max_x && s.min_y && s.max_y;
 }
@@ -111,11 +111,11 @@ bool is_turned(const StickStatistics& s) noexcept {
 vec2 middle_of_range(const StickStatistics& s) noexcept {
   return 0.5 * vec2(*s.min_x + *s.max_x, *s.min_y + *s.max_y);
 }
-// The distance of its rest from the middle of its range; 0 if that is not known.
+// The distance of the stick's rest from the middle of its range; 0 if one of them is not known.
 double off_middle(const StickStatistics& s) noexcept {
   return s.centre && is_turned(s) ? glm::length(*s.centre - middle_of_range(s)) : 0.0;
 }
-// Whether something may have held it aside at every rest.
+// Whether something may have held the stick aside at every rest.
 bool may_be_held(const StickStatistics& s) noexcept {
   return off_middle(s) >= kHeldCentre && glm::length(middle_of_range(s)) <= kSymmetric &&
          s.rests.size() < kSureRests;

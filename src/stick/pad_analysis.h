@@ -46,9 +46,9 @@ PadAnalysis analysis_of(const PadLayout& layout, const PadTracks& tracks,
 bool has_a_centre(const PadAnalysis& analysis) noexcept;
 // Whether the verdict on the stick (0 left, 1 right) is not `unknown`: a file takes it over.
 bool is_known(const PadAnalysis& analysis, std::size_t side) noexcept;
-// Whether it can calibrate anything: a stick is known.
+// Whether the analysis can calibrate anything: a stick is known.
 bool is_useful(const PadAnalysis& analysis) noexcept;
-// The reason why it is not useful: a sentence without a full stop.
+// The reason why the analysis is not useful: a sentence without a full stop.
 std::string why_useless(const PadAnalysis& analysis);
 // Writes the advice for sticks whose verdict is not `unknown` into `file`, and triggers that were
 // pressed. The rest of the calibration that `file` holds stays: an unknown stick, the range of a

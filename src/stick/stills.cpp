@@ -216,7 +216,7 @@ std::optional<Extent> turned_extent(std::span<const StickTrack> tracks) {
 // stay together.
 std::vector<Still>::iterator sort_out_rests(std::vector<Still>& found,
                                             std::span<const StickTrack> tracks) {
-  constexpr double kSquare = 0.0625, kSame = 3;  // raw distances, squared
+  constexpr double kSquare = 0.0625, kSame = 3;  // side of a square, raw; distance in squares
   // Distance from the middle, raw; worn sticks rest up to that far off.
   constexpr double kNearMiddle = 0.25;
   struct Place {

@@ -18,8 +18,8 @@ struct Still {
   // Includes the hold of the last position; silence counts for 2 s at most.
   double duration_s = 0.0;
   vec2 mean{0.0};  // raw mean, weighted as if the pad streamed
-  // Unit: the side from which it came back since the rest before, or since the track began; 0: it
-  // was hardly moved.
+  // Unit vector: the side from which the stick came back since the rest before, or since the track
+  // began; 0: the stick was hardly moved.
   vec2 from{0.0};
 };
 // A time in which the stick was not held: from when it has settled after a release, or from the

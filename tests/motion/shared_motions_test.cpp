@@ -30,7 +30,7 @@ const std::map<std::string, std::string> kNoWalks = {
     {"cmu_11_01.amc", "holds no walk whose events are in order: the left toe leaves"},
     {"cmu_11_01_motionbuilder.bvh", "holds no walk: both feet leave the floor, it is a run"},
     {"mass_run.bvh", "the hips go 2.92 m in 0.55 s, it is a run"},
-    // poses
+    // Files with single poses.
     {"skeleton.asf", "has fewer than 6 frames"},
     {"daz3d_170_joints.bvh", "has fewer than 6 frames"},
     {"geno_bind_6channels.bvh", "has fewer than 6 frames"},

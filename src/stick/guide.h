@@ -57,11 +57,11 @@ class ReleaseWatch {
   int count() const noexcept { return static_cast<int>(rests_.size()); }
   int wanted() const noexcept;     // Number of releases that are wanted.
   bool is_aside() const noexcept;  // True if the stick rests off the raw middle.
-  int sides() const noexcept;      // quarters (right, front, left, back) from which it was let go
+  int sides() const noexcept;      // number of sides (of four) from which it was let go
   bool is_away() const noexcept { return is_away_; }
   // Time of rest since the last release.
   std::int64_t rested_ns() const noexcept { return near_ns_; }
-  // Once complete it stays so while the other stick is moved.
+  // Stays true while the other stick is moved.
   bool is_complete() const noexcept { return is_complete_; }
   // The stick stands still, but too far out to be at rest.
   bool is_held() const noexcept;
@@ -200,7 +200,7 @@ class CalibrationGuide {
     // Raw positions, from the rest, of the pushes forward, right, back, left.
     std::array<std::optional<vec2>, 4> pushed;
     std::string advice;        // what was wrong with the last push; empty: nothing
-    bool turns_again = false;  // it is turned again: its pushes went farther
+    bool turns_again = false;  // asks for another turn: the pushes went farther
   };
   struct Trigger {
     int side = 0;
@@ -211,7 +211,7 @@ class CalibrationGuide {
   };
   struct Piece {  // the tracks of a finished step
     GuideStep step = GuideStep::rest;
-    bool continues = false;  // the piece before, without a cut between them
+    bool continues = false;  // goes on from the piece before without a cut
     std::int64_t reports = 0;
     PadTracks tracks;
   };

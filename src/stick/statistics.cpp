@@ -29,7 +29,7 @@ void add_rim(StickStatistics& to, std::span<const StickTrack> tracks, const Exte
   if (reach.min_y) to.min_y = std::max(*reach.min_y, extent.least.y);
   if (reach.max_y) to.max_y = std::min(*reach.max_y, extent.most.y);
   to.circularity_error = circularity_error(to.outline);
-  // One that wanders is not where it was between its turn and its pushes.
+  // A stick that wanders has moved between its turn and its pushes.
   constexpr double kWanders = 0.02;
   if (to.wander < kWanders) to.unpressed = unpressed_direction(to.outline, to.pushes);
   to.rim_samples = to.outline.samples;

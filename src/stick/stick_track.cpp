@@ -268,7 +268,7 @@ std::size_t spike_length(const StickTrack& track, std::size_t i, const Scale& sc
   return 0;
 }
 
-// Returns whether there were any.
+// Returns whether there were spikes.
 bool remove_spikes(StickTrack& track, const Scale& scale, CleanTracks& counts) {
   bool is_any = false;
   for (std::size_t i = 1; i + 1 < track.size(); ++i) {

@@ -69,7 +69,7 @@ double weight_of(int k) {
 // Place of a foot's point and its derivatives by the unknowns of its sample.
 struct PointRows {
   vec3 place_m;
-  // Derivatives by the leg's angles; by the pelvis' place it is the identity.
+  // Derivatives by the leg's angles. The derivative by the pelvis' place is the identity.
   std::array<vec3, kLegDofs> by_angle;
 };
 

@@ -79,7 +79,7 @@ template <class M>
 inline bool is_set(const M& mask, int lane) noexcept {
   return mask[lane] != 0;
 }
-// The inverse of a bool; masks of bools are combined by & and |, which return int.
+// The inverse of a mask. Masks of bools are combined by & and |, which return int.
 inline bool not_of(bool mask) noexcept { return !mask; }
 inline bool not_of(int mask) noexcept { return mask == 0; }
 template <class M>

@@ -470,7 +470,7 @@ struct KnownControls {
   std::optional<ButtonOrder> order;
   // Controls of a pad file; those that it does not name keep their default.
   const ControlMap* controls = nullptr;
-  // True for controls of SDL's mapping: the pad has no others.
+  // Controls of SDL's mapping for the pad, which then has no others.
   const ControlMap* all_controls = nullptr;
 };
 

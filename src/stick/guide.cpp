@@ -28,7 +28,7 @@ constexpr double kAway = 0.3;  // distance from the rest at which a stick is pus
 constexpr double kAwayUnknown = 0.5;
 // Greatest distance of a rest from the middle; farther out a stick is held.
 constexpr double kFarthestRest = 0.45;
-constexpr std::size_t kMaxRests = 64;  // further releases are ignored
+constexpr std::size_t kMaxRests = 64;  // places of further releases are ignored
 // A rest this far from the middle is rare, so more releases are asked for.
 constexpr double kAside = 0.1;
 

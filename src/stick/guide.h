@@ -57,7 +57,7 @@ class ReleaseWatch {
   int count() const noexcept { return static_cast<int>(rests_.size()); }
   int wanted() const noexcept;     // Number of releases that are wanted.
   bool is_aside() const noexcept;  // True if the stick rests off the raw middle.
-  int sides() const noexcept;      // number of sides (of four) from which it was let go
+  int sides() const noexcept;      // Number of sides (of four) from which it was let go.
   bool is_away() const noexcept { return is_away_; }
   // Time of rest since the last release.
   std::int64_t rested_ns() const noexcept { return near_ns_; }

@@ -188,7 +188,7 @@ std::vector<std::vector<Cell>> cells_of(std::span<const StickTrack> tracks, doub
 
 constexpr double kFarthestHome = 0.5;  // farthest rest, raw; farther out a stick is held
 
-// Least movement of a release, raw; less between two rests is none.
+// Least distance from a rest that counts as a movement between two rests, raw.
 constexpr double kReleaseMovement = 0.2;
 constexpr std::size_t kShortestMovement = 3;  // length in cells
 

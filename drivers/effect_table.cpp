@@ -9,7 +9,7 @@ void EffectTable::set_target(EffectTarget* target) noexcept {
   for (auto& entry : entries_) {
     if (!entry) continue;
     entry->id_on_target = -1;
-    // An effect that this pad refuses stays silent on it.
+    // A pad that refuses an effect stays without it.
     if (target_ != nullptr) static_cast<void>(upload_to_target(*entry));
   }
   if (target_ != nullptr && gain_) static_cast<void>(target_->send(FF_GAIN, *gain_));
@@ -28,7 +28,7 @@ int EffectTable::upload(const ff_effect& effect) noexcept {
   auto& entry = entries_[static_cast<std::size_t>(effect.id)];
   Entry next = entry.value_or(Entry{});
   next.effect = effect;
-  if (effect.type == FF_PERIODIC) {  // samples, in the memory of another program
+  if (effect.type == FF_PERIODIC) {  // a wave's samples are in the memory of another program
     next.effect.u.periodic.custom_len = 0;
     next.effect.u.periodic.custom_data = nullptr;
   }

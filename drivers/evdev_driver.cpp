@@ -32,7 +32,7 @@ namespace gaitpad {
 namespace {
 
 constexpr int kMaxEventsAtOpening = 4096;
-constexpr int kMaxErrorsInARow = 64;  // then the pad counts as gone
+constexpr int kMaxErrorsInARow = 64;  // more errors in a row: the pad counts as gone
 constexpr std::chrono::milliseconds kMaxUpload{250};
 
 // ---- An open node
@@ -46,11 +46,11 @@ struct InputNode {
   bool may_write = false;
 };
 
-// A bit in the version, set by kernel drivers that choose codes of their own (sony, playstation,
+// A bit in the version, set by kernel drivers that choose their own codes (sony, playstation,
 // nintendo).
 constexpr int kArrangedByKernel = 0x8000;
 
-// A sentence for errno; of a permission it also tells the cure.
+// A sentence for errno; if permission is missing it also says how to get it.
 Error open_error(const std::string& node, int error) {
   const std::string access = error == EACCES || error == EPERM ? access_problem(node) : "";
   return Error{access.empty() ? fmt::format("{}: {}", node, std::strerror(error)) : access};
@@ -68,7 +68,7 @@ EvdevAbilities abilities_of(const libevdev* device) {
   return abilities;
 }
 
-// A file of the node's input device.
+// Text of a file in the sysfs folder of the node's input device.
 std::string in_sysfs(const std::string& node, const char* name) {
   return fmt::format("/sys/class/input/{}/device/{}", node.substr(node.rfind('/') + 1), name);
 }
@@ -79,10 +79,12 @@ Result<InputNode> open_input_node(const std::string& node, int mode) {
   opened.fd = OwnedFd(::open(node.c_str(), mode | O_NONBLOCK | O_CLOEXEC));
   if (opened.fd.get() < 0) return open_error(node, errno);
   opened.may_write = mode == O_RDWR;
-  // Set before libevdev reads the state, because a change of clock drops queued events.
+  // The clock is set before libevdev reads the state, because a change of clock drops queued
+  // events.
   int clock = CLOCK_MONOTONIC;
   if (::ioctl(opened.fd.get(), EVIOCSCLOCKID, &clock) != 0) return open_error(node, errno);
-  libevdev_set_log_function(nullptr, nullptr);  // it would print to stderr about odd devices
+  // It would print warnings about unusual devices to stderr.
+  libevdev_set_log_function(nullptr, nullptr);
   libevdev* device = nullptr;
   const int status = libevdev_new_from_fd(opened.fd.get(), &device);
   if (status != 0) return open_error(node, -status);
@@ -139,7 +141,7 @@ class OwnEffect {
     is_playing_ = times != 0;
     return true;
   }
-  EffectTarget* target_ = nullptr;  // null: there is no such effect
+  EffectTarget* target_ = nullptr;  // null: the effect does not exist
   std::int16_t id_ = -1;
   bool is_playing_ = false;
 };
@@ -154,7 +156,7 @@ class EvdevDevice final : public EventNode {
     poll_fds_[1] = {wake_.fd(), POLLIN, 0};
     take_state();
     for (int i = 0; i < kMaxEventsAtOpening && next_packet() == Status::report; ++i) continue;
-    lost_ = 0;  // events from before the opening are not lost
+    lost_ = 0;  // events from before the opening do not count as lost
     start_motors();
   }
   ~EvdevDevice() override { own_effect_.remove(); }
@@ -189,11 +191,12 @@ class EvdevDevice final : public EventNode {
   EvdevLayout layout_;
   EvdevState state_;
   OwnEffect own_effect_;
-  Bell wake_;  // readable until the first report, which has the present state, is read
+  // Makes the device readable until the first report, which has the present state, is read.
+  Bell wake_;
   std::array<pollfd, 2> poll_fds_{};
   bool is_first_ = true;
   int errors_in_a_row_ = 0;
-  std::int64_t time_ns_ = 0;  // of the newest report; never goes back
+  std::int64_t time_ns_ = 0;  // stamp of the newest report; never decreases
   std::int64_t lost_ = 0;
   std::vector<std::string> remarks_;
 };
@@ -206,7 +209,8 @@ void EvdevDevice::start_motors() {
     return;
   }
   if (!libevdev_has_event_code(node_.device.get(), EV_FF, FF_RUMBLE)) return;
-  // A virtual device is answered by a program, which may take long for each change.
+  // Measures the time, because a virtual device is answered by a program, which may take long for
+  // each change.
   const auto start = std::chrono::steady_clock::now();
   if (!own_effect_.upload(*this)) return;
   if (std::chrono::steady_clock::now() - start <= kMaxUpload) return;
@@ -284,7 +288,8 @@ void EvdevDevice::resynchronise() noexcept {
 // Reads up to the end of one packet of events (SYN_REPORT). `report`: the packet is complete.
 Device::Status EvdevDevice::next_packet() noexcept {
   // With BLOCKING libevdev reads from the kernel only after it has returned all events of the last
-  // read. So events before an unplugging are not lost, and a packet costs one system call, not ten.
+  // read. So events before an unplugging are not lost, and a packet takes one system call instead
+  // of ten.
   constexpr unsigned kFlags = LIBEVDEV_READ_FLAG_NORMAL | LIBEVDEV_READ_FLAG_BLOCKING;
   while (true) {
     input_event event{};
@@ -311,7 +316,7 @@ Device::Status EvdevDevice::next_packet() noexcept {
   }
 }
 
-// Whether the pad has sent nothing yet. Its axes then read 0, which would be a push far left and
+// True if the pad has sent nothing yet. Its axes then read 0, which would be a push far left and
 // forward if their range is 0..255. A stick that is really held there shows when it moves.
 bool EvdevDevice::is_untouched() const noexcept {
   bool is_at_an_end = false;
@@ -336,7 +341,7 @@ Device::Status EvdevDevice::read(Report& report) noexcept {
   return Status::report;
 }
 
-// Node numbers are reused: between finding and opening the node may have become another device.
+// True if the node has become another device between finding and opening: node numbers are reused.
 bool is_another(const libevdev* device, const DeviceInfo& info) {
   const char* port = libevdev_get_phys(device);
   const auto of_device = [](std::string_view path) { return path.substr(0, path.rfind("/input")); };
@@ -355,7 +360,7 @@ bool has_key_between(const libevdev* device, unsigned first, unsigned end) {
   return false;
 }
 
-// The kind of device that the node is if it is no pad; empty: it is a pad.
+// The kind of device that the node is, such as a keyboard; empty: it is a pad.
 const char* what_else(const libevdev* device, const SystemNode& node) {
   if (libevdev_has_property(device, INPUT_PROP_ACCELEROMETER) || node.name.ends_with("(IMU)") ||
       node.name.ends_with(" IMU")) {
@@ -384,9 +389,9 @@ bool cannot_have_a_stick(const std::string& node) {
   return !bits.empty() && std::string_view("37bfBF").find(bits.back()) == std::string_view::npos;
 }
 
-// The facts about a node from when it was opened.
+// The facts about a node that were read when it was opened.
 struct Seen {
-  std::string other;  // what it is if it is no pad
+  std::string other;  // the kind of device, if it is no pad
   std::vector<std::uint8_t> descriptor;
 };
 // Nodes seen, by the sysfs path of the input device, whose number is never reused. They are kept

@@ -50,7 +50,7 @@ class EvdevVirtualPad final : public VirtualPad {
   void answer_erasing(std::uint32_t request, EffectTable& effects) noexcept;
 
   OwnedFd fd_;
-  Uinput uinput_;  // does not close fd_
+  Uinput uinput_;  // does not close fd_, which this class owns
 };
 
 input_event event_of(std::uint16_t type, std::uint16_t code, std::int32_t value) noexcept {
@@ -61,7 +61,7 @@ input_event event_of(std::uint16_t type, std::uint16_t code, std::int32_t value)
   return event;
 }
 
-// One system call for up to a whole pad's events.
+// Writes the events by one system call, which has room for a whole pad's.
 bool EvdevVirtualPad::write(std::span<const VirtualPadEvent> events) noexcept {
   if (events.empty()) return true;
   std::array<input_event, 64> packet;
@@ -85,7 +85,7 @@ void EvdevVirtualPad::serve_effects(EffectTable& effects) noexcept {
   }
 }
 
-// A program that has given up meanwhile has no request any more.
+// A request may have vanished, if the program has given up meanwhile.
 void EvdevVirtualPad::answer_upload(std::uint32_t request, EffectTable& effects) noexcept {
   uinput_ff_upload upload{};
   upload.request_id = request;

@@ -36,9 +36,10 @@ namespace {
 using namespace std::chrono_literals;
 using Status = Device::Status;
 
-constexpr int kMaxRefusedInARow = 64;  // packets to look at before other pads get their turn
-constexpr int kMaxErrorsInARow = 64;   // then the pad counts as gone
-constexpr int kKernelRing = 63;        // reports that hidraw keeps for a slow reader
+// After this number of refused packets in a row other pads get their turn.
+constexpr int kMaxRefusedInARow = 64;
+constexpr int kMaxErrorsInARow = 64;  // more errors in a row: the pad counts as gone
+constexpr int kKernelRing = 63;       // number of reports that hidraw keeps for a slow reader
 constexpr auto kKernelStart = 3s;
 constexpr long kBlindPeriod_ns = 1'000'000;
 
@@ -51,22 +52,23 @@ using Handle = std::unique_ptr<hid_device, CloseHandle>;
 
 struct OpenNode {
   Handle handle;
-  int fd = -1;  // the handle's own; -1: not found
+  int fd = -1;  // the descriptor that the handle has open; -1: it was not found
 };
 
-// The kernel always expects a report id, 0 if the pad has none; quirks only write one that
-// exists.
+// Puts the id 0 before the bytes if the pad has no ids: the kernel always expects an id, but quirks
+// only write one that exists.
 std::vector<std::uint8_t> with_id(bool is_numbered, std::span<const std::uint8_t> packet) {
   std::vector<std::uint8_t> whole(packet.begin(), packet.end());
   if (!is_numbered) whole.insert(whole.begin(), 0);
   return whole;
 }
 
-// hidapi does not expose its file descriptor, which the I/O thread needs for poll(): it is looked
-// for among those of this process.
+// Opens a node and finds its file descriptor among those of this process: hidapi does not expose
+// it, and the I/O thread needs it for poll().
 Result<OpenNode> open_hidraw_node(const std::string& node) {
-  // hidapi 0.13 frees its text of the last error on each opening, whichever thread opens; and which
-  // descriptor is new could not be told while another thread opens the same node.
+  // One opening at a time: hidapi 0.13 frees its text of the last error on each opening, on any
+  // thread, and the new descriptor could not be identified while another thread opens the same
+  // node.
   static std::mutex mutex;
   const std::lock_guard lock(mutex);
   struct stat status {};
@@ -83,7 +85,7 @@ Result<OpenNode> open_hidraw_node(const std::string& node) {
   return opened;
 }
 
-// The report descriptor; empty: it cannot be read.
+// The report descriptor; empty if it cannot be read.
 std::vector<std::uint8_t> hidraw_descriptor(int fd) {
   int size = 0;
   hidraw_report_descriptor descriptor{};
@@ -94,7 +96,7 @@ std::vector<std::uint8_t> hidraw_descriptor(int fd) {
   return std::vector<std::uint8_t>(descriptor.value, descriptor.value + size);
 }
 
-// Node numbers are reused: between finding and opening the node may have become another device.
+// True if the node has become another device between finding and opening: node numbers are reused.
 bool is_another_hidraw(int fd, const DeviceInfo& info) {
   hidraw_devinfo now{};
   if (fd < 0 || ::ioctl(fd, HIDIOCGRAWINFO, &now) < 0) return false;
@@ -105,7 +107,7 @@ bool is_another_hidraw(int fd, const DeviceInfo& info) {
          (!info.physical_path.empty() && info.physical_path != port.data());
 }
 
-// The quirks' way to the open pad.
+// Lets quirks exchange packets with the open pad.
 class HidrawPort final : public PadPort {
  public:
   HidrawPort(hid_device* handle, int fd, bool is_numbered)
@@ -191,8 +193,8 @@ class HidrawDevice final : public Device {
     HidrawPort port(handle_.get(), fd_, is_numbered_);
     quirks_->start(port, started);
     quirks_->amend(info_);
-    // Asked only on a cable: over Bluetooth a pad reports when it connects, and some block on
-    // requests.
+    // The first packet is asked for only on a cable: over Bluetooth a pad reports when it connects,
+    // and some block on requests.
     if (info_.bus == BusType::usb) first_size_ = first_packet(port, info_.descriptor, buffer_);
     OutPacket still;
     quirks_->rumble({}, still);
@@ -232,23 +234,24 @@ class HidrawDevice final : public Device {
   DeviceInfo info_;
   std::string node_;
   Handle handle_;
-  int fd_ = -1;                 // the handle's
-  std::optional<Timer> timer_;  // if that is unknown: ready every millisecond
+  int fd_ = -1;                 // the descriptor that the handle has open; -1: unknown
+  std::optional<Timer> timer_;  // if the descriptor is unknown: readable every millisecond
   pollfd wait_on_{};
   std::unique_ptr<PadQuirks> quirks_;
-  std::unique_ptr<PacketSender> sender_;  // null: no motors
+  std::unique_ptr<PacketSender> sender_;  // null: the pad has no motors
   bool is_numbered_;
   bool is_rumbling_ = false, is_raw_ = false;
   PlugWatch plug_;
-  bool is_unplugged_ = false;  // reports from before are still to be read
+  bool is_unplugged_ = false;  // the pad is gone, but reports from before are still to be read
   int errors_in_row_ = 0;
-  int reports_in_row_ = kKernelRing;  // what came before the opening is no loss
+  // Starts at the ring's size: reports from before the opening do not count as lost.
+  int reports_in_row_ = kKernelRing;
   bool was_late_ = false;
   std::int64_t lost_ = 0;
   std::vector<std::string> remarks_;
-  // One byte more than the longest report, to detect longer ones.
+  // One byte larger than the longest report, so that longer reports are detected.
   std::array<std::uint8_t, kMaxReportBytes + 1> buffer_{};
-  std::size_t first_size_ = 0;  // of the first packet, which is in the buffer
+  std::size_t first_size_ = 0;  // size of the first packet, which is in buffer_; 0: it was read
 };
 
 Status HidrawDevice::read(Report& report) noexcept {
@@ -278,7 +281,7 @@ Status HidrawDevice::read(Report& report) noexcept {
     if (fill(std::span(buffer_).first(static_cast<std::size_t>(size)), report))
       return Status::report;
   }
-  return Status::nothing;  // there may be more: the node stays ready
+  return Status::nothing;  // nothing yet: if there are more packets, the node stays readable
 }
 
 bool HidrawDevice::fill(std::span<const std::uint8_t> packet, Report& report) noexcept {
@@ -318,8 +321,8 @@ Status HidrawDevice::after_error(int error) noexcept {
   return Status::gone;
 }
 
-// If the ring's reports are read without an empty read, it was full, and the kernel has dropped
-// what came then without notice. The next report is the pad's state.
+// If as many reports are read without an empty read as the ring holds, it was full, and the kernel
+// has dropped later ones without notice. The next report is the pad's state.
 void HidrawDevice::count_waiting() noexcept {
   if (++reports_in_row_ != kKernelRing) return;
   ++lost_;

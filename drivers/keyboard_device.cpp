@@ -12,11 +12,12 @@ namespace gaitpad {
 namespace {
 
 constexpr std::int64_t kPeriod_ns = 4'000'000;
-constexpr std::int64_t kMaxStep_ns = 4 * kPeriod_ns;  // a delayed thread does not jump
+// Longest step of the stick, so that it does not jump after a delay of the thread.
+constexpr std::int64_t kMaxStep_ns = 4 * kPeriod_ns;
 constexpr double kOut_per_s = 1.0 / 0.15, kBack_per_s = 1.0 / 0.10;
 constexpr std::uint16_t kReportBytes = 4;
 
-// Game Pad: X and Y of 16 bits, -32767..32767, no report id.
+// A descriptor of a game pad: X and Y of 16 bits, -32767..32767, no report id.
 constexpr std::array<std::uint8_t, 23> kDescriptor = {
     0x05, 0x01, 0x09, 0x05, 0xa1, 0x01, 0x16, 0x01, 0x80, 0x26, 0xff, 0x7f,
     0x75, 0x10, 0x95, 0x02, 0x09, 0x30, 0x09, 0x31, 0x81, 0x02, 0xc0};
@@ -30,7 +31,7 @@ Counts counts_of(const vec2& position) noexcept {
   return {count(position.x), count(position.y)};
 }
 
-// Rounded towards 0, so that a diagonal does not become longer than 1.
+// Converts to counts. Rounds towards 0, so that a diagonal does not become longer than 1.
 Counts counts_inside(const vec2& position) noexcept {
   const auto count = [](double x) { return static_cast<std::int16_t>(x * KeyboardStick::kFull); };
   return {count(position.x), count(position.y)};
@@ -91,7 +92,8 @@ class KeyboardDevice final : public Device {
   }
 
  private:
-  // Goes to sleep then. A change at that moment is seen by the second look or makes fd() readable.
+  // True if the stick has reached its goal; it then goes to sleep. A change at that moment is seen
+  // by the second look or makes fd() readable.
   bool has_arrived() noexcept {
     if (position_ != stick_->wanted()) return false;
     stick_->sleep();
@@ -104,7 +106,8 @@ class KeyboardDevice final : public Device {
   }
   Status fill(Report& report, std::int64_t time_ns) noexcept {
     reported_ = counts_of(position_);
-    const Counts hid = {reported_[0], static_cast<std::int16_t>(-reported_[1])};  // y grows back
+    // HID's y grows backwards.
+    const Counts hid = {reported_[0], static_cast<std::int16_t>(-reported_[1])};
     for (std::size_t i = 0; i < hid.size(); ++i) {
       const auto bits = static_cast<std::uint16_t>(hid[i]);
       report.bytes[2 * i] = static_cast<std::uint8_t>(bits & 0xff);
@@ -121,9 +124,10 @@ class KeyboardDevice final : public Device {
   const std::array<pollfd, 2> poll_fds_;
   vec2 position_{0.0};
   Counts reported_{};
-  bool is_first_ = true;  // like most pads it reports its rest when it is opened
+  // Makes the first report the stick's rest, as most pads do when they are opened.
+  bool is_first_ = true;
   bool is_moving_ = false;
-  std::int64_t last_ns_ = 0, next_ns_ = 0;  // of the last step, of the next one
+  std::int64_t last_ns_ = 0, next_ns_ = 0;  // times of the last and of the next step
 };
 
 }  // namespace

@@ -6,14 +6,14 @@
 
 namespace gaitpad {
 
-using OpenDescriptors = std::vector<int>;  // ascending
+using OpenDescriptors = std::vector<int>;  // numbers of file descriptors, ascending
 
-// The descriptors of this process that are open on that character device, by /proc/self/fd.
+// The descriptors of this process, by /proc/self/fd, that are open on that character device.
 OpenDescriptors open_descriptors(dev_t node);
 
-// The descriptor that was opened between the two calls; -1: it cannot be told. Another thread may
-// close a descriptor of the same node meanwhile, and its number be reused: if there is only one
-// afterwards, that is the new one, even if it was there before.
+// The descriptor that was opened between the two calls; -1: it cannot be identified. Another thread
+// may close a descriptor of the same node meanwhile, and its number be reused: if only one is open
+// afterwards, that is the new one, even if its number was there before.
 int new_descriptor(const OpenDescriptors& before, const OpenDescriptors& after);
 
 }  // namespace gaitpad

@@ -28,25 +28,26 @@ class OwnedFd {
   int fd_;
 };
 
-// CLOCK_MONOTONIC, as Report::time_ns.
+// The time of CLOCK_MONOTONIC, as in Report::time_ns.
 inline std::int64_t now_ns() noexcept {
   timespec now{};
   ::clock_gettime(CLOCK_MONOTONIC, &now);
   return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
 }
 
-// Sleeps until then; at once if it is over. A signal may end it early.
+// Sleeps until that time; returns at once if it is over. A signal may end the sleep early.
 inline void sleep_until(std::int64_t time_ns) noexcept {
   const timespec until = {static_cast<time_t>(time_ns / 1'000'000'000),
                           static_cast<long>(time_ns % 1'000'000'000)};
   ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
 }
 
-// A bell that one thread rings and another waits for.
+// One thread rings it, another waits for it.
 class Bell {
  public:
   Bell() : fd_(::eventfd(0, EFD_NONBLOCK | EFD_CLOEXEC)) {}
-  int fd() const noexcept { return fd_.get(); }  // -1: no file descriptors are left
+  // Readable after ring(); -1: no file descriptors are left.
+  int fd() const noexcept { return fd_.get(); }
   // Any thread; never waits.
   void ring() noexcept {
     const std::uint64_t one = 1;
@@ -61,17 +62,19 @@ class Bell {
   OwnedFd fd_;
 };
 
-// A moment to wait for.
+// Becomes readable at a set time.
 class Timer {
  public:
   Timer() : fd_(::timerfd_create(CLOCK_MONOTONIC, TFD_NONBLOCK | TFD_CLOEXEC)) {}
-  int fd() const noexcept { return fd_.get(); }  // -1: no file descriptors are left
-  // fd() is readable from this time of now_ns() on, then after each period; 0: never, no period.
+  // Readable when the time has come; -1: no file descriptors are left.
+  int fd() const noexcept { return fd_.get(); }
+  // Makes fd() readable from this time of now_ns() on, and again after each period. 0: never; no
+  // period.
   void set(std::int64_t time_ns, std::int64_t period_ns = 0) noexcept {
     const itimerspec moment{time_of(period_ns), time_of(time_ns)};
     ::timerfd_settime(fd(), TFD_TIMER_ABSTIME, &moment, nullptr);
   }
-  // Whether the time has come since the last call; fd() is not readable then.
+  // True if the time has come since the last call; fd() is then no longer readable.
   bool take() noexcept {
     std::uint64_t count = 0;
     return ::read(fd(), &count, sizeof count) == sizeof count;

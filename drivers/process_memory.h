@@ -1,10 +1,10 @@
-// The memory of this process.
+// The memory that this process uses.
 #pragma once
 #include <cstdint>
 
 namespace gaitpad {
 
-// All that it has mapped, and what of that is in memory now. 0 if not known.
+// Bytes that the process has mapped, and bytes of those that are in memory now. 0 if not known.
 std::int64_t mapped_bytes();
 std::int64_t resident_bytes();
 

@@ -21,9 +21,10 @@ namespace gaitpad {
 namespace {
 
 constexpr int kPriority = 20;  // above ordinary threads, below what sound servers ask for
-constexpr std::size_t kStackBytes = std::size_t{256} << 10;  // more than a tick needs
+// Part of the stack that is kept in memory; more than a tick needs.
+constexpr std::size_t kStackBytes = std::size_t{256} << 10;
 constexpr std::size_t kPageBytes = 4096;
-constexpr rlim_t kGrowthBytes = rlim_t{16} << 20;  // of stacks, once they are locked
+constexpr rlim_t kGrowthBytes = rlim_t{16} << 20;  // how far stacks may grow after they were locked
 
 std::atomic<int> locks{0};
 
@@ -31,14 +32,15 @@ std::string cause(const char* call, int number) {
   return fmt::format("{}: {}", call, std::strerror(number));
 }
 
-// The limits of an ordinary user may allow a lower priority only.
+// The priority that is asked for: the limits of an ordinary user may allow only a lower one.
 int allowed_priority() {
   rlimit limit{};
   if (::getrlimit(RLIMIT_RTPRIO, &limit) != 0 || limit.rlim_cur == 0) return kPriority;
   return static_cast<int>(std::min<rlim_t>(limit.rlim_cur, kPriority));
 }
 
-// If a locked stack grows beyond the limit, the program gets a segmentation fault.
+// True if the limit on locked memory leaves room for growing stacks: a locked stack that grows
+// beyond it ends the program by a segmentation fault.
 bool has_room_below_limit() {
   rlimit limit{};
   if (::geteuid() == 0 || ::getrlimit(RLIMIT_MEMLOCK, &limit) != 0) return true;
@@ -46,7 +48,7 @@ bool has_room_below_limit() {
   return static_cast<rlim_t>(mapped_bytes()) + kGrowthBytes <= limit.rlim_cur;
 }
 
-// So that the stack of the next ticks is in memory.
+// Writes to the stack, so that the part that the next ticks use is in memory.
 [[gnu::noinline]] void touch_stack() noexcept {
   std::array<volatile char, kStackBytes> stack;
   for (std::size_t i = 0; i < stack.size(); i += kPageBytes) stack[i] = 0;
@@ -54,8 +56,9 @@ bool has_room_below_limit() {
 
 }  // namespace
 
-// MCL_CURRENT alone would read in every page of every library and the whole of every thread's
-// stack; MCL_FUTURE would do so for all that a renderer maps later.
+// Locks pages when they are first touched: MCL_CURRENT alone would read in every page of every
+// library and of every thread's stack; MCL_FUTURE would do so for all memory that a renderer maps
+// later.
 std::optional<std::string> lock_memory() {
   touch_stack();
   if (!has_room_below_limit()) return cause("mlockall", ENOMEM);
@@ -68,9 +71,11 @@ void unlock_memory() noexcept {
   if (--locks == 0) ::munlockall();
 }
 
-// glibc's pthread_setschedparam() knows no SCHED_RESET_ON_FORK; pid 0 is the calling thread.
+// Uses the system call: glibc's pthread_setschedparam() does not know SCHED_RESET_ON_FORK. pid 0 is
+// the calling thread.
 std::optional<std::string> take_priority(RealtimeRank rank) {
-  ::prctl(PR_SET_TIMERSLACK, 1UL);  // ns; counts for ordinary threads, which have 50 us
+  // Latest end of a sleep, ns, while the thread is ordinary; the default is 50 us.
+  ::prctl(PR_SET_TIMERSLACK, 1UL);
   sched_param parameter{};
   const int highest = allowed_priority();
   parameter.sched_priority = rank == RealtimeRank::loop ? highest : std::max(1, highest - 1);

@@ -5,12 +5,12 @@
 
 namespace gaitpad {
 
-// Keeps what is in memory now, and what will be touched later of what has been allocated, from
-// being swapped out; for the whole process. It reads nothing in, and memory allocated afterwards
-// does not count, so it is quick and takes no memory, however much a renderer maps. Call it from
-// the thread that needs it (its stack is touched) after everything was allocated and written to.
-// Undo each success by one unlock_memory(). Returns the cause if it is refused: `mlockall: Cannot
-// allocate memory`.
+// Keeps this process's memory from being swapped out: what is in memory now, and what is touched
+// later of the memory allocated so far. It reads nothing in, and memory allocated afterwards is not
+// locked, so it is quick and takes no memory, however much a renderer maps. Call it from the thread
+// that needs it (its stack is touched) after everything was allocated and written to. Undo each
+// success by one unlock_memory(). Returns the cause if it is refused: `mlockall: Cannot allocate
+// memory`.
 std::optional<std::string> lock_memory();
 void unlock_memory() noexcept;
 
@@ -19,9 +19,10 @@ void unlock_memory() noexcept;
 // library busy for some milliseconds. Returns the cause if it is refused.
 enum class RealtimeRank { loop, pads };
 std::optional<std::string> take_priority(RealtimeRank rank);
-// Makes it an ordinary thread again: one that never sleeps would leave no time for the others.
+// Makes the calling thread ordinary again: one that never sleeps would leave no time for the
+// others.
 void give_up_priority() noexcept;
-// How the calling thread is scheduled: `SCHED_FIFO 20`, `normal priority`.
+// The calling thread's scheduling in words: `SCHED_FIFO 20`, `normal priority`.
 std::string time_policy();
 
 // One sentence that says what was refused and how to allow it; nothing if nothing was refused.

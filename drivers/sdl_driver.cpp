@@ -1,9 +1,9 @@
-// Game controllers of SDL2, where a user asks for the driver `sdl`. SDL names their controls, by
-// its own data base and the user's; here they are one constant HID pad. SDL has one list of
-// joysticks, one set of hints and one queue of events for the whole program, which may be a host
-// program. So hints are only set if the program has no joysticks, and nothing of others is taken
-// off the queue: an event watch sees each joystick event when SDL creates it, on any thread, and
-// stores the controller's state for the open device. SDL has nothing to poll(): it looks at its
+// Game controllers of SDL2, for users who ask for the driver `sdl`. SDL names their controls, by
+// its own data base and the user's; here they all have one constant HID descriptor. SDL has one
+// list of joysticks, one set of hints and one queue of events for the whole program, which may be a
+// host program. So hints are only set if the program has no joysticks, and no events of others are
+// taken off the queue: an event watch sees each joystick event when SDL creates it, on any thread,
+// and stores the controller's state for the open device. SDL has nothing to poll(): it looks at its
 // joysticks when it is asked to, here once a millisecond.
 #include <SDL2/SDL.h>
 #include <dlfcn.h>
@@ -33,7 +33,7 @@ namespace gaitpad {
 namespace {
 
 // SDL's functions under their own names. Its library is loaded when this driver is first asked for:
-// with the forty that it needs, that takes longer than to replay a recording.
+// loading it with the forty libraries that it needs takes longer than replaying a recording.
 // clang-format off
 #define GAITPAD_SDL_FUNCTIONS(each) \
   each(SDL_AddEventWatch) each(SDL_DelEventWatch) each(SDL_Delay) each(SDL_FilterEvents) \
@@ -53,11 +53,11 @@ namespace {
 GAITPAD_SDL_FUNCTIONS(GAITPAD_SDL_POINTER)
 #undef GAITPAD_SDL_POINTER
 
-// Loads the library; returns what prevents it. Empty: all functions can be called. A program that
-// has SDL already keeps its own.
+// Loads the library; returns the reason if that fails. Empty: all functions can be called. A
+// program that has loaded SDL already keeps its own.
 std::string load_library() {
   constexpr const char* kLibrary = "libSDL2-2.0.so.0";
-  void* library = RTLD_DEFAULT;  // a null pointer
+  void* library = RTLD_DEFAULT;  // the handle RTLD_DEFAULT is a null pointer
   if (::dlsym(RTLD_DEFAULT, "SDL_GetRevision") == nullptr) {
     library = ::dlopen(kLibrary, RTLD_NOW | RTLD_NODELETE);
     if (library == nullptr) return fmt::format("{} cannot be loaded", kLibrary);
@@ -79,8 +79,8 @@ const std::string& library_problem() {
   return problem;
 }
 
-// When to look at SDL's joysticks: once a millisecond. All open devices share the timer; whichever
-// finds it expired updates SDL for all of them.
+// Expires once a millisecond, when SDL's joysticks have to be updated. All open devices share the
+// timer; whichever finds it expired updates SDL for all of them.
 std::shared_ptr<Timer> millisecond_timer() {
   static std::mutex mutex;
   static std::weak_ptr<Timer> running;
@@ -96,12 +96,12 @@ constexpr int kAxes = SDL_CONTROLLER_AXIS_TRIGGERRIGHT + 1,
               kButtons = SDL_CONTROLLER_BUTTON_TOUCHPAD + 1;
 static_assert(kAxes == 6 && kButtons == 21, "the descriptor below states as many");
 
-// Every controller: SDL's axes and buttons in SDL's order.
+// The descriptor of every controller: SDL's axes and buttons in SDL's order.
 constexpr std::uint8_t kDescriptor[] = {
-    0x05, 0x01, 0x09, 0x05, 0xa1, 0x01,              // game pad
+    0x05, 0x01, 0x09, 0x05, 0xa1, 0x01,              // collection: game pad
     0x09, 0x30, 0x09, 0x31, 0x09, 0x33, 0x09, 0x34,  // X Y Rx Ry, the sticks:
     0x16, 0x00, 0x80, 0x26, 0xff, 0x7f, 0x75, 0x10, 0x95, 0x04, 0x81, 0x02,  // -32768 .. 32767
-    0x09, 0x32, 0x09, 0x35, 0x15, 0x00, 0x95, 0x02, 0x81, 0x02,  // Z Rz, the triggers: from 0
+    0x09, 0x32, 0x09, 0x35, 0x15, 0x00, 0x95, 0x02, 0x81, 0x02,  // Z Rz, the triggers: 0 .. 32767
     0x05, 0x09, 0x19, 0x01, 0x29, 0x15, 0x25, 0x01, 0x75, 0x01, 0x95, 0x15, 0x81, 0x02,  // buttons
     0x95, 0x03, 0x81, 0x03, 0xc0};
 // Buttons are b0, b1 ..., axes are counted by their usages: X Y Z Rx Ry Rz.
@@ -114,7 +114,7 @@ constexpr const char* kMapping =
 
 struct ControllerState {
   std::array<Sint16, kAxes> axes{};
-  std::uint32_t buttons = 0;  // a bit each
+  std::uint32_t buttons = 0;  // a bit for each button
 };
 
 ControllerState current_state(SDL_GameController* controller) {
@@ -137,8 +137,8 @@ std::uint32_t difference(const ControllerState& a, const ControllerState& b) noe
   return bits;
 }
 
-// False while the left stick is in a corner that no stick reaches: the kernel says 0, the end of
-// most axes, until the pad has sent something.
+// False while the left stick is in a corner that no stick reaches: until the pad has sent something
+// the kernel reports 0, which is the end of most axes.
 bool is_known(const ControllerState& state) noexcept {
   const auto is_end = [](int value) { return std::abs(value) >= 32767; };
   return !is_end(state.axes[0]) || !is_end(state.axes[1]);
@@ -167,10 +167,11 @@ struct Inbox {
   };
   SDL_GameController* controller = nullptr;
   SDL_JoystickID id = -1;
-  ControllerState before;  // the first entry
+  ControllerState before;  // the state before the first entry
   std::deque<Entry> entries;
   bool removed = false;
-  std::int64_t lost = 0;  // the oldest entries, if the reader is too slow
+  // Number of the oldest entries that were dropped because the reader was too slow.
+  std::int64_t lost = 0;
 
   const ControllerState& newest() const { return entries.empty() ? before : entries.back().state; }
   void drop_oldest() {
@@ -193,9 +194,9 @@ void Inbox::put(std::int64_t time_ns) {
   entries.push_back({time_ns, state});
 }
 
-// Just before SDL reports a joystick as removed, it lets go of all controls, of the axes to where
-// they were first seen (one end, if the pad had sent nothing yet). These entries are dropped: what
-// they changed is as SDL left it.
+// Drops the entries that SDL makes just before it reports a joystick as removed. It then releases
+// all controls, and moves the axes to where they were first seen (one end, if the pad had sent
+// nothing yet).
 void Inbox::mark_removed() {
   removed = true;
   const ControllerState left = current_state(controller);
@@ -208,8 +209,8 @@ void Inbox::mark_removed() {
   }
 }
 
-// The next state: SDL reports each control by itself, so entries are joined up to the second change
-// of one control, so that no change is lost. False: there is none.
+// Takes the next state out. SDL reports each control by itself, so entries are merged up to the
+// second change of one control, so that no change is lost. False: there is none.
 bool Inbox::take(Entry& entry) {
   std::uint32_t changed = 0;
   while (!entries.empty()) {
@@ -222,7 +223,7 @@ bool Inbox::take(Entry& entry) {
   return changed != 0;
 }
 
-// SDL's joysticks, started on first use: that takes up to a second.
+// SDL's joysticks. They are started on first use, which takes up to a second.
 class Sdl {
  public:
   static Sdl& started() {
@@ -231,7 +232,7 @@ class Sdl {
     return sdl;
   }
   Sdl(const Sdl&) = delete;
-  // Takes events of our open joysticks off the queue, if no other part of the program empties it.
+  // Takes events of our open joysticks off the queue, if no other part of the program does so.
   void clear_queue() noexcept;
   ~Sdl() {
     if (!problem_.empty()) return;
@@ -239,9 +240,9 @@ class Sdl {
     SDL_QuitSubSystem(SDL_INIT_GAMECONTROLLER);
   }
 
-  const std::string& problem() const { return problem_; }  // empty: it runs
+  const std::string& problem() const { return problem_; }  // Why SDL does not run; empty: it runs.
 
-  // The caller has locked SDL's joysticks, so that no change is lost between state and inbox.
+  // Call it with SDL's joysticks locked, so that no change is lost between state and inbox.
   void add(Inbox& inbox) {
     const std::lock_guard lock(mutex_);
     inboxes_.push_back(&inbox);
@@ -250,8 +251,8 @@ class Sdl {
     const std::lock_guard lock(mutex_);
     std::erase(inboxes_, &inbox);
   }
-  // Calls `use` with the inbox of each open device of that joystick, filled by any thread that
-  // updates SDL's joysticks.
+  // Calls `use` with the inbox of each open device of that joystick. Any thread that updates SDL's
+  // joysticks fills the inboxes.
   template <typename Use>
   void with_inboxes(SDL_JoystickID id, Use use) {
     const std::lock_guard lock(mutex_);
@@ -260,7 +261,7 @@ class Sdl {
   }
 
  private:
-  struct ThreadStorage {  // SDL allocates some for each thread that it did not start
+  struct ThreadStorage {  // frees what SDL allocates for each thread that it did not start
     ThreadStorage() = default;
     ~ThreadStorage() {
       if (library_problem().empty()) SDL_TLSCleanup();
@@ -270,9 +271,9 @@ class Sdl {
   static int SDLCALL watch(void* self, SDL_Event* event);
   static int SDLCALL is_of_others(void* self, SDL_Event* event);
   std::string problem_;
-  bool has_host_ = false;  // the program had started SDL's events before
+  bool has_host_ = false;  // the program had started SDL's events before this driver
   std::mutex mutex_;
-  std::vector<Inbox*> inboxes_;  // of all open devices
+  std::vector<Inbox*> inboxes_;  // inboxes of all open devices
 };
 
 // HIDAPI is off because its drivers send packets to pads while they look for them. Buttons are
@@ -296,7 +297,7 @@ Sdl::Sdl() : problem_(library_problem()) {
   SDL_AddEventWatch(&Sdl::watch, this);
 }
 
-// The joystick of an event about a control or about unplugging; -1: another event.
+// The joystick that an event about a control or about unplugging concerns; -1: another event.
 SDL_JoystickID joystick_of(const SDL_Event& event) noexcept {
   switch (event.type) {
     case SDL_JOYAXISMOTION:
@@ -364,7 +365,7 @@ using ControllerHandle = std::unique_ptr<SDL_GameController, ControllerClosing>;
 
 class SdlDevice : public Device {
  public:
-  // The caller has locked SDL's joysticks, so that no change is lost between state and inbox.
+  // Call it with SDL's joysticks locked, so that no change is lost between state and inbox.
   SdlDevice(ControllerHandle controller, const DeviceListing& listing, std::shared_ptr<Timer> timer)
       : controller_(std::move(controller)),
         info_(listing.info),
@@ -397,13 +398,13 @@ class SdlDevice : public Device {
   DeviceInfo info_;
   std::shared_ptr<Timer> timer_;
   pollfd poll_fd_;
-  std::optional<ControllerState> first_;  // at the opening, if it is known
-  Inbox inbox_;                           // filled by the watch
-  Inbox read_;                            // what was taken from it
+  std::optional<ControllerState> first_;  // the state at the opening, if it is known
+  Inbox inbox_;                           // the watch puts new states here
+  Inbox read_;                            // what was taken from inbox_ and is being read
 };
 
-// SDL does not report the first small movement of an axis, so the state is also read; locked, so
-// that no event comes in between.
+// Reads the present state as well, because SDL does not report the first small movement of an axis;
+// with the joysticks locked, so that no event comes in between.
 void SdlDevice::fetch() noexcept {
   if (timer_->take()) update_joysticks();
   const JoystickLock lock;
@@ -415,7 +416,7 @@ void SdlDevice::fetch() noexcept {
   });
 }
 
-// First the state at the opening, if it is known, then every change.
+// Returns the state at the opening first, if it is known, then every change.
 Device::Status SdlDevice::read(Report& report) noexcept {
   if (const auto first = std::exchange(first_, std::nullopt)) {
     write(*first, now_ns(), report);
@@ -429,14 +430,14 @@ Device::Status SdlDevice::read(Report& report) noexcept {
   return read_.removed ? Status::gone : Status::nothing;
 }
 
-// SDL's path of the device with this index; the joysticks are locked.
+// SDL's path of the device with this index. Call it with the joysticks locked.
 std::string node_of(int index) {
   const char* path = SDL_JoystickPathForIndex(index);
   if (path) return path;
   return fmt::format("sdl joystick {}", SDL_JoystickGetDeviceInstanceID(index));
 }
 
-// `system` is null for a joystick without a node; the joysticks are locked.
+// `system` is null for a joystick without a node. Call it with the joysticks locked.
 DeviceListing listing_of(int index, const SystemNode* system) {
   DeviceListing listing = system ? listing_of(*system, "sdl") : DeviceListing{};
   const SDL_JoystickGUID guid = SDL_JoystickGetDeviceGUID(index);
@@ -457,7 +458,7 @@ DeviceListing listing_of(int index, const SystemNode* system) {
   return listing;
 }
 
-// Whether the node is the motion sensor or touchpad of a pad, whose buttons are on another node.
+// True if the node is the motion sensor or touchpad of a pad, whose buttons are on another node.
 // udev may not have marked it yet.
 bool is_part_of_pad(const SystemNode& node) {
   return node.is_motion_sensor || node.is_touchpad || node.name.ends_with("(IMU)") ||
@@ -473,7 +474,8 @@ std::vector<DeviceListing> joysticks_among(const std::vector<SystemNode>& nodes)
     const auto node = std::find_if(nodes.begin(), nodes.end(),
                                    [&](const SystemNode& n) { return n.node == name; });
     const bool known = node != nodes.end();
-    if (!known && name.starts_with("/dev/")) continue;  // unplugged; SDL does not know yet
+    // The pad was unplugged, which SDL does not know yet.
+    if (!known && name.starts_with("/dev/")) continue;
     if (known && is_part_of_pad(*node)) continue;
     listings.push_back(listing_of(i, known ? &*node : nullptr));
   }
@@ -494,7 +496,8 @@ std::vector<DeviceListing> find_sdl_devices() {
   const auto is_missing = [&](const SystemNode& node) {
     return is_joystick(node) && !is_listed(listings, node) && access_problem(node.node).empty();
   };
-  // SDL learns of a new node from udev, as we do, perhaps a moment later.
+  // Number of attempts to find a node in SDL, which learns of it from udev, as we do, perhaps a
+  // little later.
   constexpr int kTries = 10;
   constexpr std::uint32_t kPause_ms = 10;
   for (int i = 0; sdl.problem().empty() && i < kTries; ++i) {

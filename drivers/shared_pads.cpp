@@ -13,10 +13,10 @@ namespace gaitpad {
 
 namespace {
 
-constexpr int kMaxPackets = 64;  // read in a row, before other pads get their turn
+constexpr int kMaxPackets = 64;  // after this number of packets in a row other pads get their turn
 constexpr std::size_t kInbox = 64;
 
-// The quirks' way to the device: it writes and does not ask.
+// Lets quirks write to the device; reading is not possible here.
 class WritingPort final : public PadPort {
  public:
   explicit WritingPort(PacketSource& source) : source_(source) {}
@@ -92,7 +92,7 @@ class SharedPad final : public Device {
  private:
   enum class Ring { no, yes };
 
-  // Drops the oldest packet if the pad's packets are not read.
+  // Adds a packet; drops the oldest one if the pad's packets are not read.
   void put(const Report& packet, Ring ring) noexcept {
     if (count_ == kInbox) {
       ++lost_;
@@ -118,7 +118,7 @@ class SharedPad final : public Device {
   std::shared_ptr<SharedDevice> device_;
   DeviceInfo info_;
   std::unique_ptr<PadQuirks> quirks_;
-  Bell bell_;  // rings for packets that another pad's read has put into the inbox
+  Bell bell_;  // rings when another pad's read has put packets into the inbox
   std::vector<pollfd> fds_;
   std::array<Report, kInbox> inbox_;
   std::size_t first_ = 0, count_ = 0;

@@ -45,7 +45,7 @@ std::string property(udev_device* device, const char* name) {
 }
 bool is_marked(udev_device* device, const char* name) { return property(device, name) == "1"; }
 
-// The kernel puts texts in quotes in places; a name may carry blanks at its end.
+// Removes quotes and blanks: the kernel puts some texts in quotes, and a name may end with blanks.
 std::string unquoted(std::string_view value) { return std::string(trimmed(value, " \"\n")); }
 
 std::uint16_t hex16(std::string_view digits) {
@@ -140,7 +140,7 @@ std::optional<SystemNode> system_node(udev_device* device, std::string_view subs
   return node;
 }
 
-// event2 before event10.
+// Orders by number: event2 before event10.
 bool is_before(const SystemNode& a, const SystemNode& b) {
   return a.node.size() != b.node.size() ? a.node.size() < b.node.size() : a.node < b.node;
 }
@@ -187,7 +187,7 @@ std::vector<SystemNode> system_nodes(std::string_view subsystem) {
        entry = udev_list_entry_get_next(entry)) {
     const UdevDevice device(
         udev_device_new_from_syspath(context.get(), udev_list_entry_get_name(entry)));
-    if (!device) continue;  // gone since the scan
+    if (!device) continue;  // the device was unplugged after the scan
     if (auto node = system_node(device.get(), subsystem)) nodes.push_back(std::move(*node));
   }
   std::sort(nodes.begin(), nodes.end(), is_before);
@@ -225,7 +225,7 @@ double usb_poll_rate_hz(const std::string& interface_path) {
     if (sysfs_text(entry.path() / "direction") != "in") continue;
     if (sysfs_text(entry.path() / "type") != "Interrupt") continue;
     const std::string interval = sysfs_text(entry.path() / "interval");
-    std::string_view unit = interval;  // behind the number
+    std::string_view unit = interval;  // the letters after the number
     const double value = take_number<double>(unit).value_or(0.0);
     if (value <= 0.0) return 0.0;
     return unit == "us" ? 1e6 / value : unit == "ms" ? 1e3 / value : 0.0;
@@ -235,7 +235,7 @@ double usb_poll_rate_hz(const std::string& interface_path) {
 
 namespace {
 
-// `Unknown` is nothing.
+// A word of the power supply; empty for `Unknown`.
 std::string power_word(const fs::path& path) {
   const std::string word = lower_case(sysfs_text(path));
   return word == "unknown" ? std::string() : word;
@@ -243,7 +243,7 @@ std::string power_word(const fs::path& path) {
 
 }  // namespace
 
-// The power supply stands below the HID device, the interface, or the GIP client.
+// The battery's folder is below that of the HID device, the interface, or the GIP client.
 std::optional<Battery> battery_of(const std::string& pad_path) {
   if (pad_path.empty()) return std::nullopt;
   std::vector<fs::path> owners = {pad_path};

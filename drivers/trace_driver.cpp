@@ -18,14 +18,15 @@
 namespace gaitpad {
 namespace {
 
-constexpr std::int64_t kTail_us = 1'000'000;  // like a replay: one more second without a Q: line
+// Without a Q: line the recording ends a second after the last event, as in a replay.
+constexpr std::int64_t kTail_us = 1'000'000;
 
 // One run of a file. All of its open devices share it and its start time.
 struct Playback {
-  Trace trace;                            // behind the quirks of its pads
-  std::vector<TraceEvent> raw_events;     // before them
-  std::int64_t start_ns = 0;              // CLOCK_MONOTONIC
-  std::int64_t first_us = 0, end_us = 0;  // of the file
+  Trace trace;                            // the trace after the quirks of its pads
+  std::vector<TraceEvent> raw_events;     // the events before the quirks
+  std::int64_t start_ns = 0;              // start by CLOCK_MONOTONIC
+  std::int64_t first_us = 0, end_us = 0;  // times of the file's first event and of its end
 
   std::int64_t due_ns(std::int64_t time_us) const noexcept {
     return start_ns + (time_us - first_us) * 1000;
@@ -34,7 +35,8 @@ struct Playback {
 
 Playback started_playback(Trace trace) {
   Playback playback;
-  // If the file has T: lines, only the times of each single device are in order.
+  // The first and the last event are searched for: if the file has T: lines, only the times of each
+  // single device are in order.
   const auto [first, last] = std::ranges::minmax_element(trace.events, {}, &TraceEvent::time_us);
   if (first != trace.events.end()) {
     playback.first_us = first->time_us;
@@ -105,7 +107,7 @@ class TraceFileDevice final : public Device {
     const std::vector<TraceEvent>& events = *events_;
     while (next_ < events.size() && events[next_].device != device_) ++next_;
   }
-  // The time of the next event; after the last one, of the end.
+  // The time at which the next event is due; after the last one, that of the end.
   std::int64_t due_ns() const noexcept {
     const std::vector<TraceEvent>& events = *events_;
     return next_ < events.size() ? playback_->due_ns(events[next_].time_us) : end_ns_;
@@ -124,7 +126,7 @@ std::string node_of(const std::string& path, std::size_t device) {
   return device == 0 ? path : fmt::format("{}#{}", path, device + 1);
 }
 
-// The reverse of node_of(); the name of a file may contain a `#` itself.
+// Splits a node of node_of() into path and number; the path may contain a `#` itself.
 std::pair<std::string, std::size_t> path_and_device(const std::string& node) {
   const std::size_t mark = node.rfind('#');
   if (mark == std::string::npos) return {node, 0};

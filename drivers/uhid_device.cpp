@@ -12,7 +12,7 @@
 namespace gaitpad {
 namespace {
 
-// Texts of the kernel's structures, cut to fit.
+// Copies a text into a field of the kernel's structures, cut to fit.
 template <std::size_t n>
 void put_text(const std::string& text, std::uint8_t (&field)[n]) {
   std::copy_n(text.begin(), std::min(text.size(), n - 1), field);

@@ -18,12 +18,13 @@ class UhidDevice {
   // Error: there is no /dev/uhid or no permission, or the kernel refuses the descriptor.
   static Result<UhidDevice> create(const DeviceInfo& info);
 
-  // When it is readable, call answer(): the kernel's driver asks for reports when it is bound, and
-  // waits for the answer. There is none in a recording, so it is told that the device has none.
+  // If it is readable, call answer(): the kernel's driver asks for reports when it is bound, and
+  // waits for the answer. A recording has no answers, so the driver is told that the device has
+  // none.
   pollfd fd() const noexcept { return {fd_.get(), POLLIN, 0}; }
   void answer() noexcept;
-  bool is_bound() const noexcept { return is_bound_; }  // the kernel's driver has begun
-  // False: the kernel has refused it.
+  bool is_bound() const noexcept { return is_bound_; }  // True when the kernel's driver has begun.
+  // False: the kernel has refused the report.
   bool send(std::span<const std::uint8_t> report) noexcept;
 
  private:

@@ -1,6 +1,6 @@
-// USB pads without the kernel's input layer: HID-class pads as they describe themselves,
-// vendor-class pads (Xbox) as their quirks state them. While a pad is open the kernel's driver
-// is detached, and only with the user's consent.
+// USB pads without the kernel's input layer: HID-class pads by their own descriptors, vendor-class
+// pads (Xbox) by those that their quirks state. While a pad is open the kernel's driver is
+// detached, which needs the user's consent.
 #include <errno.h>
 #include <fcntl.h>
 #include <fmt/format.h>
@@ -41,7 +41,7 @@ struct FreeConfig {
 
 // ---- Taking the interface from the kernel
 
-// `NODE: WHAT: the library's word for the error`
+// An error: `NODE: WHAT: the library's word for the error`.
 Error usb_error(const std::string& node, std::string_view what, int error) {
   return Error{fmt::format("{}: {}: {}", node, what, libusb_strerror(error))};
 }
@@ -54,7 +54,7 @@ struct CloseHandle {
 };
 
 // Starts libusb without discovery, if it can do that for one context: the devices are known from
-// sysfs. Its options for all contexts are the host's.
+// sysfs. Its options for all contexts are left to the host program.
 int start_libusb(libusb_context*& context) {
 #if LIBUSB_API_VERSION >= 0x0100010A
   const libusb_init_option option = {LIBUSB_OPTION_NO_DEVICE_DISCOVERY, {0}};
@@ -64,8 +64,9 @@ int start_libusb(libusb_context*& context) {
 #endif
 }
 
-// A USB interface in our hands: its device's node is open and the kernel driver detached. All of it
-// is undone at the end, also if the process dies. One context a pad: no events of other pads.
+// A claimed USB interface: its device's node is open and the kernel driver detached. All of it is
+// undone at the end, even if the process dies. Each pad has its own context, so that it receives no
+// events of other pads.
 class ClaimedInterface {
  public:
   static Result<std::unique_ptr<ClaimedInterface>> claim(const std::string& node,
@@ -116,8 +117,8 @@ Result<bool> ClaimedInterface::open(const std::string& node) {
 
 Result<bool> ClaimedInterface::detach_and_claim(const std::string& node,
                                                 const std::string& kernel_driver) {
-  // The watcher runs even if no driver is bound now: one may have been until a program that had
-  // taken the pad, and the watcher of that program, were killed.
+  // Start the watcher even if no driver is bound now: one may have been bound until a program that
+  // had taken the pad, and that program's watcher, were killed.
   auto watcher = ReattachWatcher::start(node, number_);
   if (!watcher) return watcher.error();
   watcher_ = std::make_unique<ReattachWatcher>(std::move(*watcher));
@@ -139,8 +140,8 @@ ClaimedInterface::~ClaimedInterface() {
   if (is_claimed_) libusb_release_interface(handle(), number_);
   if (!watcher_) return;
   const int error = libusb_attach_kernel_driver(handle(), number_);
-  // BUSY: it has a driver again. NOT_FOUND: the kernel has none that fits. Else the watcher keeps
-  // trying.
+  // BUSY: the interface has a driver again. NOT_FOUND: the kernel has none that fits. After any
+  // other error the watcher keeps trying.
   if (error == LIBUSB_SUCCESS || error == LIBUSB_ERROR_NO_DEVICE || error == LIBUSB_ERROR_BUSY ||
       error == LIBUSB_ERROR_NOT_FOUND) {
     watcher_->dismiss();
@@ -151,7 +152,7 @@ ClaimedInterface::~ClaimedInterface() {
 
 struct PadDescription {
   UsbEndpoints endpoints;
-  std::uint16_t hid_version = 0;  // bcdHID
+  std::uint16_t hid_version = 0;  // the field bcdHID
 };
 
 void read_endpoint(const libusb_endpoint_descriptor& endpoint, UsbEndpoints& endpoints) {
@@ -159,7 +160,8 @@ void read_endpoint(const libusb_endpoint_descriptor& endpoint, UsbEndpoints& end
   if ((endpoint.bEndpointAddress & LIBUSB_ENDPOINT_IN) == 0) {
     if (endpoints.out == 0) endpoints.out = endpoint.bEndpointAddress;
   } else if (endpoints.in == 0) {
-    const int packets = 1 + (endpoint.wMaxPacketSize >> 11 & 3);  // of a high-bandwidth endpoint
+    // Packets per transaction of a high-bandwidth endpoint.
+    const int packets = 1 + (endpoint.wMaxPacketSize >> 11 & 3);
     endpoints.in = endpoint.bEndpointAddress;
     endpoints.in_packet_bytes =
         static_cast<std::uint16_t>((endpoint.wMaxPacketSize & 0x7ff) * packets);
@@ -198,7 +200,8 @@ Result<PadDescription> describe_pad(const std::string& node, libusb_device_handl
   return Error{node + ": no endpoint to read reports from"};
 }
 
-// Read from the pad itself: the kernel's copy may be corrected for the kernel's driver.
+// The descriptor as the pad itself sends it: the kernel's copy may be corrected for the kernel's
+// driver.
 std::vector<std::uint8_t> report_descriptor(libusb_device_handle* handle, std::uint8_t interface) {
   std::vector<std::uint8_t> bytes(kMaxDescriptorBytes);
   const int count = libusb_control_transfer(
@@ -208,8 +211,8 @@ std::vector<std::uint8_t> report_descriptor(libusb_device_handle* handle, std::u
   return bytes;
 }
 
-// A report may be longer than a packet (low-speed pads have packets of 8 bytes). It then comes in
-// several packets, and a transfer must have room for all of them.
+// Sets the size of transfers. A report may be longer than a packet (low-speed pads have packets of
+// 8 bytes). It then comes in several packets, and a transfer must have room for all of them.
 void fit_transfers(const std::vector<std::uint8_t>& descriptor, UsbEndpoints& endpoints) {
   std::size_t longest = 1;
   if (const auto parsed = parse_descriptor(descriptor)) {
@@ -226,8 +229,8 @@ void fit_transfers(const std::vector<std::uint8_t>& descriptor, UsbEndpoints& en
 
 // ---- An open pad
 
-// The second interface of a pad whose first one is HID, by its bulk endpoints: commands and
-// answers.
+// The second interface of a pad whose first one is HID: sends commands and receives answers by its
+// bulk endpoints.
 class CommandInterface {
  public:
   explicit CommandInterface(libusb_device_handle* handle) : handle_(handle) {
@@ -273,7 +276,7 @@ class CommandInterface {
   bool is_claimed_ = false;
 };
 
-// The quirks' way to the pad while it starts; here waiting is allowed.
+// Lets quirks exchange packets with the pad while it starts; here waiting is allowed.
 class StartPort final : public PadPort {
  public:
   StartPort(UsbTransfers& transfers, libusb_device_handle* handle, std::uint8_t interface)
@@ -321,7 +324,8 @@ class StartPort final : public PadPort {
   }
 
  private:
-  // A pad without ids sends none, but `packet` begins with one.
+  // Asks for a report. `packet` begins with the id 0 if the pad has no ids, though the pad sends
+  // none.
   std::size_t get_report(std::uint16_t kind, std::uint8_t id,
                          std::span<std::uint8_t> packet) noexcept {
     const std::size_t skip = id == 0 ? 1 : 0;
@@ -337,7 +341,7 @@ class StartPort final : public PadPort {
   UsbTransfers& transfers_;
   libusb_device_handle* handle_;
   std::uint8_t interface_;
-  std::unique_ptr<CommandInterface> commands_;  // from the first command on
+  std::unique_ptr<CommandInterface> commands_;  // opened by the first command
   Report report_;
 };
 
@@ -392,7 +396,8 @@ class UsbDevice final : public Device {
   std::vector<std::string> take_remarks() override { return quirks_->take_remarks(); }
 
  private:
-  // Fills `report` with the oldest input report that has arrived, and answers packets before it.
+  // Fills `report` with the oldest input report that has arrived, and sends replies to the packets
+  // before it.
   bool take_input(Report& report) noexcept {
     while (take_packet(report)) {
       const std::span<const std::uint8_t> packet(report.bytes.data(), report.size);
@@ -418,17 +423,18 @@ class UsbDevice final : public Device {
   }
 
   DeviceInfo info_;
-  Report first_;  // the first packet; size 0: none
+  Report first_;  // the first packet; its size is 0 if there is none
   std::unique_ptr<PadQuirks> quirks_;
   std::unique_ptr<ClaimedInterface> interface_;
-  std::unique_ptr<UsbTransfers> transfers_;  // destroyed before the interface
+  // Declared after the interface, so that it is destroyed before it.
+  std::unique_ptr<UsbTransfers> transfers_;
   OutPacket reply_;
   PlugWatch plug_;
   std::uint8_t interface_number_ = 0;
   bool is_rumbling_ = false, is_raw_ = false;
 };
 
-// The quirks and descriptor of a vendor-class pad; without quirks for all others.
+// The quirks and descriptor of a vendor-class pad; no quirks for other pads.
 VendorPad quirks_of(const UsbInterfaceClass& ids, const DeviceInfo& info) {
   for (const auto make : {make_xbox_360_pad, make_gip_pad}) {
     if (auto pad = make(ids, info); pad.quirks) return pad;
@@ -484,7 +490,8 @@ class UsbPackets final : public PacketSource {
 
  private:
   std::unique_ptr<ClaimedInterface> interface_;
-  std::unique_ptr<UsbTransfers> transfers_;  // destroyed before the interface
+  // Declared after the interface, so that it is destroyed before it.
+  std::unique_ptr<UsbTransfers> transfers_;
 };
 
 Result<std::shared_ptr<SharedDevice>> claim_shared(const std::string& node,
@@ -504,13 +511,13 @@ Result<std::shared_ptr<SharedDevice>> claim_shared(const std::string& node,
       std::make_unique<UsbPackets>(std::move(*claimed), std::move(*transfers)));
 }
 
-// The interfaces that are open, by their sysfs folders.
+// The shared devices that are open, by the sysfs folders of their interfaces.
 struct SharedInterfaces {
   static SharedInterfaces& all() {
     static SharedInterfaces interfaces;
     return interfaces;
   }
-  std::mutex mutex;  // also while one is claimed, so that none is claimed twice
+  std::mutex mutex;  // held also while an interface is claimed, so that none is claimed twice
   std::map<std::string, std::weak_ptr<SharedDevice>> open;
 };
 

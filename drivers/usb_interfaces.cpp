@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Empty or incomplete if the device is being unplugged.
+// The entries of a folder; none or some if the device is being unplugged.
 std::vector<fs::path> entries(const fs::path& folder) {
   std::vector<fs::path> paths;
   std::error_code error;
@@ -90,7 +90,7 @@ std::string boot_device(const UsbInterface& interface) {
 }
 
 std::string usb_physical_path(const std::string& device_path, std::uint8_t interface_number) {
-  // The controller is the folder above the root hub's: .../0000:00:14.0/usb1/1-1/1-1.2
+  // Find the controller: the folder above the root hub's, as in .../0000:00:14.0/usb1/1-1/1-1.2
   fs::path hub(device_path);
   const auto is_root_hub = [](const fs::path& path) {
     const std::string name = path.filename().string();

@@ -21,7 +21,8 @@ namespace {
 // Everything up to `watch` runs in the child of a process with threads, so it uses system calls
 // only: no heap, no locks, nothing of which a sanitizer would need the parent's state.
 
-// The dying process holds the interface until its node is closed, a moment after the link.
+// `again`: the attempt came too early. The dying process holds the interface until its node is
+// closed, a little later than the link.
 enum class Attempt { again, done };
 
 Attempt try_to_reattach(const char* node, int interface_number) {
@@ -52,7 +53,7 @@ void close_others(int kept) {
   for (int fd = 0; fd < kept; ++fd) ::close(fd);
 }
 
-// Ends the process without the cleanup of the program or of a sanitizer.
+// Ends the child process without the cleanup of the program or of a sanitizer.
 [[noreturn]] void leave(int status) {
   for (;;) ::syscall(SYS_exit_group, status);
 }
@@ -61,7 +62,7 @@ void close_others(int kept) {
   constexpr int kAttempts = 250;
   constexpr timespec kPause = {0, 20'000'000};
   ::setsid();  // Ctrl-C in the terminal must not end the watcher
-  // A process of its own, which needs no waitpid() when it ends.
+  // Make the watcher a grandchild, which this process need not wait for by waitpid().
   if (const pid_t watcher = ::_Fork(); watcher != 0) leave(watcher < 0 ? errno : 0);
   close_others(link);
   char word = 0;
@@ -69,7 +70,7 @@ void close_others(int kept) {
   do {
     count = ::read(link, &word, 1);
   } while (count < 0 && errno == EINTR);
-  if (count > 0) leave(0);  // dismissed
+  if (count > 0) leave(0);  // the parent has dismissed the watcher
   for (int i = 0; i < kAttempts; ++i) {
     if (try_to_reattach(node, interface_number) == Attempt::done) break;
     ::nanosleep(&kPause, nullptr);
@@ -90,14 +91,14 @@ Result<ReattachWatcher> ReattachWatcher::start(const std::string& node,
   int ends[2] = {-1, -1};
   if (::socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, ends) != 0)
     return start_error(node, errno);
-  // All signals stay blocked in the child: no handler of the parent runs there.
+  // All signals are blocked in the child, so that no handler of the parent runs there.
   sigset_t all = {}, before = {};
   ::sigfillset(&all);
   ::pthread_sigmask(SIG_SETMASK, &all, &before);
   const pid_t process = ::fork();
   if (process == 0) watch(ends[0], node.c_str(), interface_number);
   int cause = process < 0 ? errno : 0, status = 0;
-  // No process to wait for: the program lets the kernel bury its children.
+  // waitpid() fails if the program lets the kernel remove its children's records.
   if (process > 0 && ::waitpid(process, &status, 0) == process) cause = WEXITSTATUS(status);
   ::pthread_sigmask(SIG_SETMASK, &before, nullptr);
   ::close(ends[0]);

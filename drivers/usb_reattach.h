@@ -14,18 +14,19 @@ namespace gaitpad {
 
 class ReattachWatcher {
  public:
-  // Call it before detaching. `node`: the device's, /dev/bus/usb/BBB/DDD.
+  // Call it before detaching. `node`: node of the USB device, /dev/bus/usb/BBB/DDD.
   static Result<ReattachWatcher> start(const std::string& node, std::uint8_t interface_number);
-  // Destroying it is like the death of this process: the watcher re-attaches.
+  // Destroying the object has the same effect as the death of this process: the watcher
+  // re-attaches.
   ReattachWatcher(ReattachWatcher&&) noexcept = default;
   ReattachWatcher& operator=(ReattachWatcher&&) = delete;
 
-  // The driver is attached again, or the device is gone: ends the watcher.
+  // Ends the watcher. Call it when the driver is attached again, or the device is gone.
   void dismiss() noexcept;
 
  private:
   explicit ReattachWatcher(OwnedFd link) : link_(std::move(link)) {}
-  OwnedFd link_;  // the watcher waits until this is closed
+  OwnedFd link_;  // pipe to the watcher, which waits until this end is closed
 };
 
 }  // namespace gaitpad

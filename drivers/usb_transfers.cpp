@@ -13,8 +13,8 @@ using std::chrono::milliseconds;
 
 constexpr std::uint8_t kSetReport = 0x09, kToInterface = 0x21, kOutputReport = 2,
                        kFeatureReport = 3;
-constexpr unsigned int kOutTimeoutMs =
-    1000;  // so that a pad that takes no packet does not block the queue
+// Time limit of an OUT transfer, so that a pad that takes no packet does not block the queue.
+constexpr unsigned int kOutTimeoutMs = 1000;
 constexpr std::int64_t kRecoverPauseNs = 100'000'000;
 
 bool is_device_lost(int error) noexcept { return error == LIBUSB_ERROR_NO_DEVICE; }
@@ -116,7 +116,8 @@ void UsbTransfers::finish_in(InSlot& slot) noexcept {
   if (is_closing_) return;
   if (is_done && slot.transfer->actual_length > 0) {
     slot.state = InSlot::State::filled;
-    // Outside of handle_events: while libusb waits for the answer to a control request.
+    // arrival_ns_ is 0 outside of handle_events(): while libusb waits for the answer to a control
+    // request.
     slot.time_ns = arrival_ns_ != 0 ? arrival_ns_ : now_ns();
     filled_[filled_count_++] = &slot;
   } else if (status == LIBUSB_TRANSFER_COMPLETED) {
@@ -155,7 +156,8 @@ void UsbTransfers::begin_recovery() noexcept {
   }
 }
 
-// Without a waiting transfer only the node itself shows the unplugging.
+// True if the node reports a hang-up. Without a waiting transfer only the node itself shows the
+// unplugging.
 bool UsbTransfers::has_hung_up() noexcept {
   ::poll(poll_fds_.data(), poll_fds_.size(), 0);
   return std::any_of(poll_fds_.begin(), poll_fds_.end(),
@@ -177,7 +179,7 @@ void UsbTransfers::recover() noexcept {
     error = libusb_clear_halt(handle_, endpoints_.in);
     is_recovering_ = error != LIBUSB_SUCCESS;
     if (!is_recovering_) {
-      ++lost_;  // not earlier: the errors of a pad that is being unplugged are no loss
+      ++lost_;  // counted only now: the errors of a pad that is being unplugged are no loss
       submit_all();
     }
   }
@@ -189,7 +191,8 @@ void UsbTransfers::recover() noexcept {
 bool UsbTransfers::send(const OutPacket& packet) noexcept {
   const bool has_way = endpoints_.out != 0 || endpoints_.is_hid;
   if (is_gone_ || !has_way || packet.size == 0 || packet.size > packet.bytes.size()) return false;
-  // If the queue is full the newest packet replaces the last: of motors it may be the stop.
+  // If the queue is full the newest packet replaces the last one: of packets for motors the newest
+  // may be the stop.
   if (queued_ == kOutPackets) --queued_;
   if (queued_ == 0) has_out_failed_ = false;
   queue_[queued_++] = packet;
@@ -211,7 +214,7 @@ void UsbTransfers::fill_out(const OutPacket& packet) noexcept {
   }
   const std::uint8_t id = endpoints_.is_numbered ? packet.bytes[0] : 0;
   const std::uint8_t kind = packet.is_feature ? kFeatureReport : kOutputReport;
-  // The id 0 is not sent.
+  // The id 0 is not sent to the pad.
   const std::uint16_t skip = packet.is_feature && id == 0 ? 1 : 0;
   libusb_fill_control_setup(out_buffer_.data(), kToInterface, kSetReport,
                             static_cast<std::uint16_t>(kind << 8 | id), endpoints_.interface_number,
@@ -271,7 +274,8 @@ void UsbTransfers::set_timer() noexcept {
   const bool must_recover = (is_recovering_ && waiting_count_ == 0) || is_out_halted_;
   std::int64_t next_ns = must_recover && !is_gone_ ? std::max<std::int64_t>(recover_ns_, 1) : 0;
   if (repeat_ns_ != 0 && !is_gone_) next_ns = next_ns ? std::min(next_ns, repeat_ns_) : repeat_ns_;
-  if (next_ns == timer_ns_) return;  // nearly always, so a report costs no further system call
+  // True for nearly every report, which then costs no further system call.
+  if (next_ns == timer_ns_) return;
   timer_ns_ = next_ns;
   timer_.set(next_ns);
 }

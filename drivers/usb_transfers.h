@@ -21,13 +21,14 @@
 
 namespace gaitpad {
 
-// The endpoints, from the interface's descriptor.
+// The endpoints that the interface's descriptor states.
 struct UsbEndpoints {
   std::uint8_t interface_number = 0;
   std::uint8_t in = 0;
-  std::uint16_t in_packet_bytes = 0;  // wMaxPacketSize
-  std::size_t in_bytes = 0;           // of one transfer: room for the longest report
-  std::uint8_t out = 0;               // 0: none; HID packets are sent as SET_REPORT
+  std::uint16_t in_packet_bytes = 0;  // the endpoint's wMaxPacketSize
+  std::size_t in_bytes = 0;           // size of an IN transfer: room for the longest report
+  // Address of the OUT endpoint; 0: there is none, and HID packets are sent as SET_REPORT.
+  std::uint8_t out = 0;
   bool is_hid = false;
   bool is_numbered = false;  // HID packets begin with their report id
 };
@@ -38,7 +39,7 @@ class UsbTransfers {
   static Result<std::unique_ptr<UsbTransfers>> start(libusb_context* context,
                                                      libusb_device_handle* handle,
                                                      const UsbEndpoints& endpoints);
-  ~UsbTransfers();  // cancels all transfers
+  ~UsbTransfers();  // Cancels all transfers.
   UsbTransfers(const UsbTransfers&) = delete;
   UsbTransfers& operator=(const UsbTransfers&) = delete;
 
@@ -46,15 +47,16 @@ class UsbTransfers {
   std::span<const pollfd> poll_fds() const noexcept { return poll_fds_; }
   // Receives and sends packets; waits at most `timeout`.
   void handle_events(std::chrono::milliseconds timeout) noexcept;
-  // Takes the oldest packet that has arrived: bytes, size, time. False: none.
+  // Takes the oldest packet that has arrived: bytes, size, time. False: none has arrived.
   bool take_packet(Report& packet) noexcept;
-  // Queues the packet. False: the pad cannot be written to.
+  // Queues a packet. False: the pad cannot be written to.
   bool send(const OutPacket& packet) noexcept;
-  // Waits until all queued packets have left. False: one did not.
+  // Waits until all queued packets have been sent. False: one was not.
   bool flush(std::chrono::milliseconds timeout) noexcept;
 
   bool is_gone() const noexcept { return is_gone_; }
-  std::int64_t lost() const noexcept { return lost_; }  // stalls, overflows, errors on the wire
+  // Number of stalls, overflows and errors on the wire.
+  std::int64_t lost() const noexcept { return lost_; }
 
  private:
   struct InSlot {
@@ -89,26 +91,28 @@ class UsbTransfers {
   libusb_device_handle* handle_;
   UsbEndpoints endpoints_;
   std::vector<pollfd> poll_fds_;
-  Timer timer_;                  // for recovering and repeating
-  std::int64_t timer_ns_ = 0;    // the time it is set to; 0: not set
-  std::int64_t now_ns_ = 0;      // of the last handle_events()
-  std::int64_t arrival_ns_ = 0;  // of the packets that it receives; 0: it is not running
+  Timer timer_;                // wakes the reader for recovering from a stall and for repeating a
+                               // packet
+  std::int64_t timer_ns_ = 0;  // the time for which timer_ is set; 0: it is not set
+  std::int64_t now_ns_ = 0;    // time of the last handle_events()
+  // Arrival time of the packets while handle_events() runs; otherwise 0.
+  std::int64_t arrival_ns_ = 0;
 
   std::array<InSlot, kInSlots> in_;
-  std::array<InSlot*, kInSlots> filled_{};  // oldest first
+  std::array<InSlot*, kInSlots> filled_{};  // slots with a packet, oldest first
   std::size_t filled_count_ = 0, waiting_count_ = 0;
 
-  std::array<OutPacket, kOutPackets> queue_;  // the first one is being sent
+  std::array<OutPacket, kOutPackets> queue_;  // packets to send; the first one is being sent
   std::size_t queued_ = 0;
   libusb_transfer* out_ = nullptr;
   std::vector<std::uint8_t> out_buffer_;
   bool is_out_waiting_ = false, has_out_failed_ = false;
   OutPacket repeated_;
-  std::int64_t repeat_ns_ = 0;  // the time; 0: nothing to repeat
+  std::int64_t repeat_ns_ = 0;  // time of the next repetition; 0: nothing is repeated
 
   bool is_gone_ = false, is_closing_ = false;
   bool is_recovering_ = false, is_out_halted_ = false;
-  std::int64_t recover_ns_ = 0;  // no attempt before
+  std::int64_t recover_ns_ = 0;  // time before which there is no attempt to recover
   std::int64_t lost_ = 0;
 };
 

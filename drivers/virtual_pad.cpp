@@ -12,13 +12,13 @@ namespace {
 // Not a USB vendor's id: it marks our own virtual pad.
 constexpr int kOwnVendor = 0x6761, kOwnProduct = 0x7470;
 
-// Codes by PadButton, as far as Linux's gamepads name them.
+// Linux's codes of the buttons, as far as its gamepads have them; in the order of PadButton.
 constexpr std::array<std::uint16_t, kButtonDpadUp> kCodes = {
     BTN_A,     BTN_B,      BTN_X,      BTN_Y,  BTN_SELECT, BTN_MODE,
     BTN_START, BTN_THUMBL, BTN_THUMBR, BTN_TL, BTN_TR,
 };
 
-// 0: a direction of the hat, or a button that the kind does not have.
+// The code of a button. 0: it is a direction of the hat, or the kind of pad does not have it.
 std::uint16_t code_of(int button, XboxKind kind) {
   if (button < kButtonDpadUp) return kCodes[static_cast<std::size_t>(button)];
   if (button < kButtonMisc1 || kind == XboxKind::xbox_360) return 0;

@@ -36,29 +36,31 @@ struct VirtualPadShape {
   std::string name;
   BusType bus = BusType::virtual_bus;
   std::uint16_t vendor = 0, product = 0, version = 0;
-  std::string port;  // the kernel's `phys`; VirtualPad::create() puts kVirtualPort in front
+  std::string port;  // the kernel's `phys`; VirtualPad::create() puts kVirtualPort before it
   std::vector<VirtualPadAxis> axes;
   std::vector<std::uint16_t> keys;
-  std::vector<std::uint16_t> effects;  // codes of EV_FF
+  std::vector<std::uint16_t> effects;  // codes of EV_FF: kinds of effects, and the gain
   bool operator==(const VirtualPadShape&) const = default;
 };
 
-// Whether such a pad is seen, whatever its ids: gaitpad must not read its own output.
+// True if the device is such a pad, whatever its ids: gaitpad must not read its own output.
 bool is_virtual_pad(const DeviceInfo& info) noexcept;
-// Stands in place of the port at which it is plugged in.
+// Beginning of a virtual pad's port.
 inline constexpr std::string_view kVirtualPort = "gaitpad/";
 
-// Made in the kernel; destroying it unplugs it.
+// A pad that the kernel has made; destroying the object unplugs it.
 class VirtualPad {
  public:
   // Error: there is no /dev/uinput or no permission, or gaitpad was built without libevdev.
   static Result<std::unique_ptr<VirtualPad>> create(const VirtualPadShape& shape);
   virtual ~VirtualPad() = default;
 
-  virtual std::string node() const = 0;  // /dev/input/event7
-  // Sends a packet and its SYN_REPORT; nothing if it is empty. False: the kernel has refused it.
+  virtual std::string node() const = 0;  // Path of its node: /dev/input/event7.
+  // Sends a packet and its SYN_REPORT; sends nothing if it is empty. False: the kernel has refused
+  // it.
   virtual bool write(std::span<const VirtualPadEvent> events) noexcept = 0;
-  // Readable when a program asks for an effect: it waits until serve_effects() has answered.
+  // Readable when a program asks for an effect: the program waits until serve_effects() has
+  // answered.
   virtual pollfd fd() const noexcept = 0;
   virtual void serve_effects(EffectTable& effects) noexcept = 0;
 };
@@ -66,30 +68,31 @@ class VirtualPad {
 // ---- The Xbox pads' layout
 
 struct VirtualPadState {
-  Stick stick{};                    // calibrated
-  std::array<double, 2> trigger{};  // left, right; 0 released .. 1 pressed
-  std::uint32_t buttons = 0;        // as PadState::buttons
+  Stick stick{};                    // the calibrated sticks
+  std::array<double, 2> trigger{};  // left and right trigger; 0 released .. 1 pressed
+  std::uint32_t buttons = 0;        // bits as in PadState::buttons
 };
 
 enum class XboxKind {
-  calibrated,  // under gaitpad's own name and ids, with every button; triggers are 0..1023
-  xbox_360,    // as the kernel shows an Xbox 360 pad; triggers are 0..255
+  calibrated,  // gaitpad's own name and ids, every button; triggers are 0..1023
+  xbox_360,    // the pad that the kernel shows for an Xbox 360 pad; triggers are 0..255
 };
 VirtualPadShape shape_of(XboxKind kind);
-// A stick's full deflection.
+// An axis's value at a stick's full deflection.
 inline constexpr int kFullStick = 32767;
 
-// The events that turn one state into the other, without the SYN_REPORT at the end. y grows
+// The events that change one state into the other, without the SYN_REPORT at the end. y grows
 // backwards; the D-pad is a hat.
 std::vector<VirtualPadEvent> events_between(const VirtualPadState& from, const VirtualPadState& to,
                                             XboxKind kind = XboxKind::calibrated);
 
-// XboxKind::calibrated in the kernel.
+// A virtual pad of the kind XboxKind::calibrated.
 class XboxPad {
  public:
-  static Result<XboxPad> create();  // as VirtualPad::create()
+  // Makes the pad in the kernel; errors are those of VirtualPad::create().
+  static Result<XboxPad> create();
   std::string node() const { return pad_->node(); }
-  // Sends what has changed. False: the kernel has refused it.
+  // Sends the changes. False: the kernel has refused them.
   bool set(const VirtualPadState& state) noexcept;
 
  private:

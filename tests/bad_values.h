@@ -1,4 +1,5 @@
-// Bad values for the fields of public structs, made from a field's range, and how many were fed.
+// Bad values for the fields of public structs, made from a field's range, and the number of values
+// that were fed.
 #pragma once
 #include <cmath>
 #include <functional>
@@ -12,7 +13,7 @@ namespace gaitpad {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// What no number within [least, most] may be.
+// Numbers that a field with the range [least, most] must refuse.
 inline std::vector<double> bad_numbers(double least, double most) {
   std::vector<double> bad = {kNaN, kInfinity, -kInfinity};
   for (const double value :
@@ -22,7 +23,8 @@ inline std::vector<double> bad_numbers(double least, double most) {
   }
   return bad;
 }
-// The same of whole numbers, counts and indices, all of which are an int.
+// Whole numbers (counts and indices, all of type int) that a field with the range [least, most]
+// must refuse.
 inline std::vector<double> bad_counts(double least, double most) {
   std::vector<double> bad;
   for (const double value :
@@ -35,7 +37,7 @@ inline std::vector<double> bad_counts(double least, double most) {
   return bad;
 }
 
-// A field of T: its name as sentences have it, how it is set, and its bad values.
+// A field of T: its name in sentences, how it is set, and its bad values.
 template <class T>
 struct FedField {
   std::string name;

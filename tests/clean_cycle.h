@@ -1,4 +1,4 @@
-// A cycle with its clean strides, as a session loads it: from the tests' own cache where it was
+// A cycle with its clean strides, as a session loads it; read from the tests' own cache if it was
 // solved before.
 #pragma once
 #include "files/stride_cache.h"

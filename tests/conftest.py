@@ -28,7 +28,7 @@ def pytest_configure(config):
 
 
 def pytest_collection_modifyitems(config, items):
-    """Neighbours stay together, so that a part still shares what a file's tests share."""
+    """Chooses the part of this run. Neighbours stay together, so that a part still shares what a file's tests share."""
     if config.getoption("--slice"):
         part, parts = map(int, config.getoption("--slice").split("/"))
         first, last = (len(items) * k // parts for k in (part - 1, part))
@@ -45,7 +45,7 @@ def program(pytestconfig):
 
 @pytest.fixture(scope="session")
 def run(program):
-    """support.program.run with the program: run("pads", "--json").stdout"""
+    """A function that runs the program: run("pads", "--json").stdout"""
     return functools.partial(programs.run, program)
 
 
@@ -60,7 +60,7 @@ def started(program):
 
 
 def pytest_terminal_summary(terminalreporter):
-    """One pair of lines a skipped case, as GoogleTest prints them."""
+    """Prints a pair of lines for each skipped case, as GoogleTest does."""
     for report in terminalreporter.stats.get("skipped", ()):
         path, line, reason = report.longrepr
         terminalreporter.write_line(f"{path}:{line}: Skipped\n{reason.removeprefix('Skipped: ')}")

@@ -51,7 +51,7 @@ FOREIGN = {
 
 
 def text_of(page):
-    """Without its blocks of code."""
+    """The page without its blocks of code."""
     return re.sub(r"^```.*?^```", "", page.read_text(), flags=re.S | re.M)
 
 
@@ -113,7 +113,7 @@ def test_the_glossary_has_thirty_terms_and_its_banned_words_occur_nowhere():
 
 
 def test_the_help_has_no_banned_word(program, tmp_path):
-    """The manual pages are made of the help."""
+    """The manual pages are made of the help, so they have no banned word either."""
     subprocess.run([program, "__manual", tmp_path], check=True)
     words = re.compile(r"\b(?:" + "|".join(banned_words()) + r")\b", flags=re.I)
     manuals = sorted(tmp_path.glob("*.1"))
@@ -175,7 +175,7 @@ def blocks_of(page):
 
 
 def statements_of(block):
-    """Its commands: a line, with those that it continues on, or a here-document."""
+    """The commands of a block: a line with those that it continues on, or a here-document."""
     lines, found = block.splitlines(), []
     while lines:
         text = lines.pop(0)
@@ -196,7 +196,7 @@ def is_command(statement):
 
 
 def ended(statement):
-    """The statement so that it ends without a person, and the statuses that it may end with."""
+    """A statement that ends without a person, and its permitted exit statuses."""
     statement = re.sub(r"[ ]+# .*$", "", statement) if "\n" not in statement else statement
     for option, most in (("--frames", 20), ("--crowd", 20)):  # as the page has it, but soon over
         statement = re.sub(rf"{option} (\d+)", lambda m: f"{option} {min(int(m.group(1)), most)}", statement)
@@ -221,7 +221,7 @@ def ended(statement):
 
 
 def needs_again(statement, later):
-    """Whether one of the later commands of a page names a file or folder that this one writes."""
+    """True if a later command of a page names a file or folder that this one writes."""
     written = re.findall(r"(?:--out|--record|--plot|--screenshot|--video|--junit|>) ?(\S+)|mkdir -p (\S+)", statement)
     return any(re.search(rf"{re.escape(''.join(path))}(?![\w-])", text) for path in written for text in later)
 
@@ -246,7 +246,7 @@ def workshop(program, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def have_run():
-    """The commands of the pages so far."""
+    """The commands that the pages have run so far."""
     return set()
 
 

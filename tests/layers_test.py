@@ -139,7 +139,7 @@ def library_of(room):
 
 
 def home_of(target):
-    """The room of an included header, or None where it is none of a room's."""
+    """The room of an included header; None if it belongs to no room."""
     if target == "gaitpad.h":
         return "src/c_api"
     if target.startswith("gaitpad/"):
@@ -150,7 +150,7 @@ def home_of(target):
 
 
 def own_header_problem(root, room, target):
-    """Why `room` (None: a tool) may not include "target", or None."""
+    """The reason why `room` (None: a tool) may not include "target"; None if it may."""
     if not any((root / top / target).exists() for top in ("src", "src/include", ".")):
         return "is not a path from src/, src/include/ or the root"
     home = home_of(target)

@@ -18,7 +18,7 @@ inline int entries_in(const std::filesystem::path& folder) {
   return static_cast<int>(std::distance(std::filesystem::directory_iterator(folder), {}));
 }
 
-// All of a file; "" where there is none.
+// The whole text of a file; "" if there is none.
 inline std::string text_in(const std::filesystem::path& file) {
   std::ifstream stream(file, std::ios::binary);
   return {std::istreambuf_iterator<char>(stream), {}};
@@ -34,9 +34,9 @@ class OwnFolder {
     std::filesystem::permissions(path, std::filesystem::perms::owner_all, ignored);
     std::filesystem::remove_all(path, ignored);
   }
-  // The path of a file or folder in it, whether it exists or not.
+  // The path of a file or folder in this folder, whether it exists or not.
   std::string at(const std::string& name) const { return (path / name).string(); }
-  // Writes a file, and the folders that it needs; returns its path.
+  // Writes a file and makes the folders that it needs; returns its path.
   std::string write(const std::string& name, const std::string& text = "") const {
     std::filesystem::create_directories((path / name).parent_path());
     std::ofstream(path / name, std::ios::binary) << text;
@@ -51,7 +51,7 @@ class OwnFolder {
   }();
 };
 
-// An environment variable for the length of a test; null: not set.
+// Sets an environment variable for the length of a test; null unsets it.
 class Environment {
  public:
   Environment(const char* name, const char* value) : name_(name) {

@@ -18,7 +18,7 @@ inline const std::string kPadRecordings = kSharedData + "/hid/",
 #define GAITPAD_NEEDS(folder) \
   if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << folder << " is not there"
 
-// Paths of a folder's files of one ending, by name; none where there is no folder.
+// Paths of a folder's files with this ending, ordered by name; none if there is no folder.
 inline std::vector<std::string> files_in(const std::string& folder, const std::string& ending) {
   std::vector<std::string> paths;
   std::error_code ignored;

@@ -18,7 +18,7 @@ PAGES = sorted(page for page in ROOT.glob("docs/*.md") if FENCED.search(page.rea
 
 
 def blocks_of(page):
-    """(language, text, what it prints or None)"""
+    """The blocks of a page as (language, text, what it prints or None)."""
     return [found.groups() for found in FENCED.finditer(page.read_text())]
 
 
@@ -99,9 +99,9 @@ def test_a_quote_is_what_its_source_says(page, source):
 
 
 @pytest.mark.parametrize("said, false", [
-    ("add_section(*ground, shape)", "add_part(*ground, shape)"),  # no such function
-    ("std::make_shared<Terrain>()", "std::make_unique<const Terrain>()"),  # another type
-    ("SlopeSection{3.0, 0.1}", "SlopeSection{3.0, 9.0}"),  # refused when it runs
+    ("add_section(*ground, shape)", "add_part(*ground, shape)"),  # this function does not exist
+    ("std::make_shared<Terrain>()", "std::make_unique<const Terrain>()"),  # the value has another type
+    ("SlopeSection{3.0, 0.1}", "SlopeSection{3.0, 9.0}"),  # the value is refused when the program runs
 ], ids=["a name", "a type", "a value"])
 def test_a_false_snippet_is_found(said, false, built, motion, tmp_path):
     language, text, _ = SNIPPETS["my-ground-1"]

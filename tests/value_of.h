@@ -7,14 +7,14 @@
 
 namespace gaitpad {
 
-// The value; where there is none the test ends here and fails with the cause.
+// Returns the value; if there is none, the test ends here and fails with the cause.
 template <class T>
 T value_of(Result<T> result) {
   if (!result) throw std::runtime_error(result.error().message);
   return std::move(*result);
 }
 
-// Why there is none; "accepted" where there is one.
+// The reason why there is no value; "accepted" if there is one.
 template <class T>
 std::string cause_of(const Result<T>& result) {
   return result ? "accepted" : result.error().message;

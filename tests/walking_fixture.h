@@ -1,5 +1,5 @@
-// Characters of the program's own files in a simulation, every tick in a history, as the window
-// sees them.
+// Characters of the program's own files in a simulation; every tick is kept in a history, which the
+// window shows.
 #pragma once
 #include <gtest/gtest.h>
 
@@ -18,7 +18,7 @@ namespace gaitpad {
 
 class WalkingTest : public testing::Test {
  protected:
-  // Characters in these styles.
+  // Starts characters in these styles.
   void start(const std::vector<std::string>& styles, int crowd = 0,
              const std::string& terrain = "") {
     SessionSpec spec;

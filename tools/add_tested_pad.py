@@ -19,7 +19,7 @@ BUSES = {3: "USB", 5: "Bluetooth"}
 
 
 class Refused(Exception):
-    """One sentence: which file, and why."""
+    """The folder is refused; the message is one sentence: which file, and why."""
 
 
 def read_report(folder):
@@ -53,7 +53,7 @@ def ids(report):
 
 # ---- the row -----------------------------------------------------------------------------------
 def plain(text):
-    """Foreign text for a cell."""
+    """Text from outside, made safe for a cell of the table."""
     return re.sub(r"[^\x20-\x7e]|[|<>`\\]", "?", text)
 
 
@@ -134,7 +134,7 @@ def changed_usages(rows, control):
 
 
 def source(control, rows):
-    """The usage in the form of config/pads; None: nothing changed."""
+    """The usage in the form of config/pads; None if nothing changed."""
     for usage, values in changed_usages(rows, control):
         page, number = (int(part, 16) for part in usage.split(":"))
         is_axis = control["control"].startswith(("left_", "right_"))
@@ -150,7 +150,7 @@ def source(control, rows):
 
 
 def draft(report, rows):
-    """Text of a pad file for controls that were decoded as others; empty: none were."""
+    """Text of a pad file for controls that were decoded as others; empty if there are none."""
     axes, buttons = {}, {}
     for control in report["controls"]:
         found = source(control, rows) if control["result"] == "wrong" else None

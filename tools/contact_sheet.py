@@ -39,7 +39,7 @@ class Strip:
 
 
 def cycle_marks(ankle, pelvis, forward, rate):
-    """Frames where the ankle is farthest ahead of the pelvis, at least 0.5 s apart."""
+    """Numbers of the frames where the ankle is farthest ahead of the pelvis, at least 0.5 s apart."""
     ahead = (ankle - pelvis) @ forward
     found = []
     for k in range(1, len(ahead) - 1):
@@ -90,7 +90,7 @@ def source_strip(path, walk, title):
 
 
 def side_view(strip, k):
-    """(J, 2) positions and (2, 2) heels at frame k: forward from the pelvis, up."""
+    """Places (J, 2) of joints and (2, 2) of heels at frame k: forward from the pelvis, up."""
     a, b = strip.marks[0], strip.marks[-1]
     travel = (strip.position[b, strip.pelvis] - strip.position[a, strip.pelvis]) * [1, 0, 1]
     forward = travel / np.linalg.norm(travel)
@@ -126,7 +126,7 @@ def _below_leg(strip, joint):
 
 
 def frames_of(strip):
-    """Frames of two cycles; of one cycle if the clip has only one, of the whole clip if it has none."""
+    """The frames of two cycles; of one cycle if the clip has only one, of the whole clip if it has none."""
     marks = strip.marks if len(strip.marks) > 1 else [0, len(strip.position) - 1]
     strip.marks = marks
     frames = [np.linspace(a, b, POSES_A_CYCLE, endpoint=False) for a, b in zip(marks[:-1], marks[1:])]
@@ -146,7 +146,7 @@ def draw_strip(axes, strip):
 
 
 def draw_knees(axes, strip):
-    """Knee bend over one cycle of each leg from the right heel strike, degrees."""
+    """Draws the knee bend over one cycle of each leg from the right heel strike, degrees."""
     a, b = strip.marks[:2]
     for side in (0, 1):
         hip, knee, ankle = (strip.position[a:b + 1, j] for j in strip.legs[side][:3])

@@ -25,7 +25,7 @@ DESCRIPTOR = bytes.fromhex("""
 c0
 """)
 
-# seconds, sideways (+ right), forward; straight lines between
+# seconds, sideways (+ right), forward; the stick moves in straight lines between these points
 STICK = [
     (0.0, 0.0, 0.0),
     (1.0, 0.0, 0.0),
@@ -58,7 +58,7 @@ def count(value):
 
 
 def report_at(t):
-    """The thumb trembles by less than a count; the middle rests at 0x7f or 0x80."""
+    """The report at that time. The thumb trembles by less than a count; the middle rests at 0x7f or 0x80."""
     x, y = stick_at(t)
     tremble = 0.003 * math.sin(2 * math.pi * 9.0 * t) if (x, y) != (0.0, 0.0) else 0.0
     return [count(x + tremble), count(-y - tremble), 0x80, 0x80, 0x08, 0x00]

@@ -41,7 +41,7 @@ class Missing(Exception):
 
 # ---- rows ------------------------------------------------------------------------------------
 def number(value):
-    """Four significant digits at most, without an exponent where a reader does not need one."""
+    """The number as text: at most four significant digits, without an exponent if readers do not need one."""
     if value is None:
         return "unknown"
     if value == 0:
@@ -55,14 +55,14 @@ def row(name, worst, allowed="", unit="", runs=None, failed=0, where=""):
 
 
 def distance(value, bound):
-    """Grows with the value relative to its bound."""
+    """Distance of the value from its bound; it grows with the value relative to the bound."""
     low_high = re.match(r"(-?[\d.e-]+)\.\.(-?[\d.e-]+)$", bound)
     if low_high:
         return abs(value - 0.5 * (float(low_high[1]) + float(low_high[2])))
     return -value if bound.startswith(">=") else value
 
 
-# Shown although they have no bound.
+# rows that are shown although they have no bound
 FOR_COMPARISON = {"raw playback slides, root as in the file", "raw playback slides, root scaled"}
 
 
@@ -80,7 +80,7 @@ def worst_rows(results):
     rows = []
     for (name, bound, unit), found in groups.items():
         _, _, value, label = max(found)
-        where = label if len({f[2] for f in found}) > 1 else ""  # else no run is worse than others
+        where = label if len({f[2] for f in found}) > 1 else ""  # the name of the run, if other runs are better
         rows.append(row(name, value, bound, unit, len(found), sum(f[0] for f in found), where))
     return rows
 
@@ -142,7 +142,7 @@ def measure_kept(options, text=None):
                     f"{len(found['refused'])} files hold no walk and are refused with the reason."}
 
 
-TERRAIN = {  # column of terrain_sweep: (name, unit, allowed)
+TERRAIN = {  # column of terrain_sweep: (name, unit, allowed value)
     "high_mm": ("a planted heel or toe off the ground", "mm", "<= 5"),
     "slid_mm": ("a planted heel or toe moves", "mm", "<= 1"),
     "sunk_mm": ("any part of a sole below the ground or inside a riser, any tick", "mm",
@@ -192,7 +192,7 @@ def measure_bench(options, text=None):
     rows = []
 
     def add(name, label, key="ns", characters=None, **others):
-        """The row of that name, in its own unit; `others` are keys that it has to have."""
+        """Adds the row of that name, in its own unit; `others` are keys that it has to have."""
         for b in found:
             if b["name"] != name or characters not in (None, b["characters"]):
                 continue
@@ -271,7 +271,7 @@ FRAMES_S = 20
 
 
 def measure_frames(options, text=None):
-    """Four characters in the window at each rate; `text`: the summaries of such runs, a list."""
+    """Measures four characters in the window at each rate; `text`: the summaries of such runs, a list."""
     if text is None:
         program, runs = needed(options.build / "gaitpad"), []
         display = () if os.environ.get("DISPLAY") else ("env", "SDL_VIDEODRIVER=offscreen")
@@ -355,7 +355,7 @@ def measure_sticks(options, text=None):
 
 
 def measure_by(script):
-    """A measurement by a script of tests/ that prints rows with --json."""
+    """Measures by a script of tests/ that prints rows with --json."""
     def measure(options, text=None):
         return {"rows": read_rows(text or output_of(PYTHON, script, needed(options.build / "gaitpad"), "--json", may_fail=True))}
     return measure
@@ -397,7 +397,7 @@ def measure_worn(options, text=None):
         raise Missing("test_session did not print the lines of WornStick")
     sticks = int(walk[1])
     rests = re.search(r"\[ +OK \] WornStick.RestNeverMovesIt", text)
-    at_rest = f"0 of {sticks * 20000}" if rests else "not measured"  # RestNeverMovesIt: 20000 each
+    at_rest = f"0 of {sticks * 20000}" if rests else "not measured"  # 20000 positions of each stick
     return {"rows": [
         row("sideways drift of a walk straight ahead, one stride", float(walk[2]), "<= 1", "mm",
             sticks),
@@ -665,7 +665,7 @@ def table(name, rows):
 
 
 def page_of(results):
-    """results: section -> (rows, text about its measurement)."""
+    """The page. results: section -> (rows, text about its measurement)."""
     lines = HEAD.splitlines()
     for name, (_, _, title, _, before, after) in SECTIONS.items():
         lines += ["", f"## {title}", "", *wrapped(before), ""]

@@ -13,7 +13,7 @@ import time
 
 
 def watch(processor, period_s, answer):
-    """Counts until SIGTERM, writes `late worst_us`."""
+    """Counts late ticks until SIGTERM, then writes `late worst_us`."""
     os.sched_setaffinity(0, {processor})
     os.sched_setscheduler(0, os.SCHED_FIFO, os.sched_param(os.sched_get_priority_max(os.SCHED_FIFO)))
     is_over = []

@@ -15,7 +15,7 @@ def per_mille(count, ticks):
 
 
 def broken_promises(s, seconds):
-    """One sentence per failure that neither a slow host nor an ordinary priority excuses."""
+    """Failures that neither a slow host nor an ordinary priority excuses, one sentence each."""
     ticks, rate_hz, time_s = s["ticks"], s["rate_hz"], s["time_s"]
     # Tick 0 is due at time 0. At the end, late ticks may be missing.
     due = int((time_s - s["skipped_s"]) * rate_hz) + 1
@@ -40,7 +40,7 @@ def reasons_not_to_judge(s, steal):
 
 
 def verdict(s, control, steal, seconds):
-    """(sentence, exit status)"""
+    """The verdict as (sentence, exit status)."""
     broken = list(broken_promises(s, seconds))
     found = (f"{per_mille(s['overruns'], s['ticks']):.3f} in 1000 ticks began more than one period late, "
              f"{s['skipped_s']:.1f} s were skipped, none ran twice")

@@ -18,7 +18,7 @@ constexpr std::array<std::uint32_t, 256> crc32_table() noexcept {
 }
 inline constexpr std::array<std::uint32_t, 256> kCrc32Table = crc32_table();
 
-// `before`: the checksum of the bytes before these; 0: none.
+// The checksum of these bytes. `before`: the checksum of the bytes before them; 0: none.
 constexpr std::uint32_t crc32(std::span<const std::uint8_t> bytes,
                               std::uint32_t before = 0) noexcept {
   std::uint32_t crc = ~before;

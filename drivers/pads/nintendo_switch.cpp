@@ -21,11 +21,11 @@ using Clock = std::chrono::steady_clock;
 using std::chrono::milliseconds;
 
 constexpr std::uint16_t kNintendo = 0x057e;
-enum : std::uint16_t {  // products
+enum : std::uint16_t {  // product ids
   kJoyConLeft = 0x2006,
   kJoyConRight = 0x2007,
   kProController = 0x2009,
-  kChargingGrip = 0x200e,  // one interface for each Joy-Con in it
+  kChargingGrip = 0x200e,  // has one interface for each Joy-Con in it
   kSnes = 0x2017,
   kN64 = 0x2019,
   kMegaDrive = 0x201e,
@@ -33,7 +33,7 @@ enum : std::uint16_t {  // products
 };
 enum : std::uint8_t { kLeftKind = 1, kRightKind = 2, kNesLeftKind = 9, kNesRightKind = 10 };
 
-enum : std::uint8_t {  // first byte of a packet
+enum : std::uint8_t {  // first bytes of packets
   kOutSubcommand = 0x01,
   kOutRumble = 0x10,
   kOutUsb = 0x80,
@@ -42,12 +42,12 @@ enum : std::uint8_t {  // first byte of a packet
   kInSimple = 0x3f,
   kInUsb = 0x81,
 };
-enum : std::uint8_t {  // behind kOutUsb
+enum : std::uint8_t {  // second bytes, after kOutUsb
   kUsbHandshake = 0x02,
   kUsbFastSerial = 0x03,
-  kUsbStayHid = 0x04,  // do not fall back to Bluetooth; has no answer
+  kUsbStayHid = 0x04,  // keep using USB instead of Bluetooth; has no answer
 };
-enum : std::uint8_t {  // subcommands
+enum : std::uint8_t {  // numbers of subcommands
   kDeviceInfo = 0x02,
   kSetReportMode = 0x03,
   kReadFlash = 0x10,
@@ -55,14 +55,14 @@ enum : std::uint8_t {  // subcommands
   kEnableVibration = 0x48,
 };
 
-// Time limit of the whole start; how often a request is tried, and how long it waits for an answer
-// among the input reports, which come every 8 to 15 ms.
+// Time limit of the whole start; number of times that a request is sent; wait for its answer among
+// the input reports, which come every 8 to 15 ms.
 constexpr milliseconds kStart = 1900ms;
 constexpr int kTries = 3;
 constexpr milliseconds kAnswer = 200ms;
 constexpr milliseconds kUsbAnswer = 100ms;
 constexpr int kMaxPacketsAwaited = 512;
-// A motor stops by itself unless the packet is repeated.
+// Period of a packet for the motors, which stop by themselves without it.
 constexpr milliseconds kRumbleRepeat = 50ms;
 
 constexpr std::size_t kPacketBytes = 64;
@@ -70,9 +70,9 @@ constexpr std::size_t kAckAt = 13, kSubcommandAt = 14, kAddressAt = 15, kLengthA
                       kFlashAt = 20, kKindAt = 17;
 
 // The addresses of the sticks' calibration in the flash memory, 9 bytes each.
-constexpr std::uint32_t kFactoryAddress = 0x603d;  // left, right
+constexpr std::uint32_t kFactoryAddress = 0x603d;  // left stick, right stick
 constexpr std::size_t kFactoryBytes = 18;
-constexpr std::uint32_t kUserAddress = 0x8010;  // per stick a mark, then the 9 bytes
+constexpr std::uint32_t kUserAddress = 0x8010;  // for each stick 2 marking bytes, then 9 bytes
 constexpr std::size_t kUserBytes = 22;
 constexpr std::size_t kStickBytes = 9, kMarkBytes = 2;
 constexpr std::array<std::uint8_t, kMarkBytes> kMark = {0xb2, 0xa1};
@@ -80,23 +80,24 @@ constexpr std::array<std::uint8_t, kMarkBytes> kMark = {0xb2, 0xa1};
 // The calibration of accelerometer and gyroscope: twelve numbers, the gyroscope's zeros from the
 // seventh on, its counts at 936 degrees a second from the tenth on.
 constexpr std::uint32_t kFactoryMotionAddress = 0x6020;
-constexpr std::uint32_t kUserMotionAddress = 0x8026;  // a mark before it
+// Address of the mark before the user's numbers.
+constexpr std::uint32_t kUserMotionAddress = 0x8026;
 constexpr std::size_t kMotionBytes = 24, kGyroZeros = 6, kGyroTurns = 9;
 constexpr double kTurn_rad_s = 936.0 * kDegree;
-constexpr double kUsualTurn = 13371.0;  // counts
+constexpr double kUsualTurn = 13371.0;  // counts at 936 degrees a second that most pads have
 
 constexpr int kBlank = 0xfff, kMaxCount = 0xfff;
-// Limits of a working stick: the centre is off by at most half of the way, and each way is at least
-// an eighth of the range.
+// Limits of a working stick: the centre is off by at most half of the way, and the way to each side
+// is at least an eighth of the range.
 constexpr int kMinCentre = 1024, kMaxCentre = 3072, kMinWay = 256;
 
-struct StickRange {  // counts; x, then y
+struct StickRange {  // counts of x, then of y
   std::array<int, 2> min{}, centre{}, max{};
 };
 // The range that Linux's hid-nintendo assumes for a pad without calibration.
 constexpr StickRange kUsualRange = {{500, 500}, {2000, 2000}, {3500, 3500}};
 
-// Two numbers of 12 bits in three bytes.
+// Unpacks two numbers of 12 bits from three bytes.
 std::array<int, 2> unpacked(std::span<const std::uint8_t, 3> bytes) noexcept {
   return {bytes[0] | ((bytes[1] & 0x0f) << 8), (bytes[1] >> 4) | (bytes[2] << 4)};
 }
@@ -109,7 +110,8 @@ struct RangeOrder {
 };
 constexpr RangeOrder kLeftOrder = {0, 1, 2}, kRightOrder = {2, 0, 1}, kSwitch2Order = {1, 0, 2};
 
-// None: blank or out of limits.
+// The range of a stick from its 9 bytes. None: the memory is blank or the numbers are out of
+// limits.
 std::optional<StickRange> stick_range(std::span<const std::uint8_t, kStickBytes> bytes,
                                       const RangeOrder& order) noexcept {
   const std::array<std::array<int, 2>, 3> pairs = {unpacked(bytes.subspan<0, 3>()),
@@ -129,7 +131,7 @@ std::optional<StickRange> stick_range(std::span<const std::uint8_t, kStickBytes>
   return range;
 }
 
-// None: blank, or numbers that no such chip has.
+// The gyroscope's calibration. None: the memory is blank, or has numbers that no such chip has.
 std::optional<FactoryGyro> gyro_of(std::span<const std::uint8_t, kMotionBytes> bytes) noexcept {
   const auto number = [bytes](std::size_t i) {
     return static_cast<double>(static_cast<std::int16_t>(bytes[2 * i] | bytes[2 * i + 1] << 8));
@@ -150,7 +152,7 @@ FactoryAxis factory_axis(const StickRange& range, std::size_t axis) noexcept {
   return {fraction(range.min[axis]), fraction(range.centre[axis]), fraction(range.max[axis])};
 }
 
-// The same axis for a stick that is turned by half a turn.
+// The same axis of a stick that is turned by 180 degrees.
 FactoryAxis mirrored(const FactoryAxis& axis) noexcept {
   return {-axis.max, -axis.centre, -axis.min};
 }
@@ -159,8 +161,9 @@ FactoryAxis mirrored(const FactoryAxis& axis) noexcept {
 // config/pads/nintendo.toml has an entry for it: ff57:0009.
 constexpr std::uint8_t kNesMark[] = {0x06, 0x57, 0xff, 0x09, 0x09, 0xa1, 0x01, 0xc0};
 
-// Index (0..100) in the published table of amplitudes of a strength 0..1, by the table's formulas
-// for each octave; below 0.12 a fit to it. Beyond its end the motors may be damaged.
+// Index (0..100) of a strength 0..1 in the published table of amplitudes, by the table's formulas
+// for each octave; below 0.12 by a fit to it. The table's end is not exceeded, because that may
+// damage the motors.
 int amplitude_index(double strength) noexcept {
   if (strength <= 0.0) return 0;
   const double octaves = strength > 0.23   ? 32.0 * std::log2(strength * 8.7)
@@ -169,9 +172,9 @@ int amplitude_index(double strength) noexcept {
   return std::clamp(static_cast<int>(std::lround(octaves)), 1, 100);
 }
 
-// 320 Hz with the weak and 160 Hz with the strong strength, as the four bytes of one actuator.
+// The four bytes for one actuator: 320 Hz with the weak strength and 160 Hz with the strong one.
 std::array<std::uint8_t, 4> vibration(const Rumble& rumble) noexcept {
-  constexpr double kFull = 1.003;  // the table's last row
+  constexpr double kFull = 1.003;  // amplitude in the table's last row
   const int high = amplitude_index(rumble.weak / 65535.0 * kFull);
   const int low = amplitude_index(rumble.strong / 65535.0 * kFull);
   return {0x00, static_cast<std::uint8_t>(0x01 + 2 * high),
@@ -192,8 +195,8 @@ class SwitchPad final : public PadQuirks {
     if (product_ == kJoyConLeft || product_ == kJoyConRight || product_ == kChargingGrip)
       ask_kind(port);
     if (!has_stick(Side::left) && !has_stick(Side::right)) return;
-    // Linux's driver also listens, and while it waits for a reply it takes any reply for its own.
-    // So the memory is read with as few packets as possible.
+    // The kernel's driver also listens, and while it waits for a reply it takes any reply for its
+    // own. So the memory is read with as few packets as possible.
     std::array<std::uint8_t, kFactoryBytes> factory{};
     std::array<std::uint8_t, kUserBytes> user{};
     const bool has_factory = read_flash(port, kFactoryAddress, factory);
@@ -256,8 +259,8 @@ class SwitchPad final : public PadQuirks {
     ask(port, kEnableVibration, std::to_array<std::uint8_t>({0x01}));
   }
 
-  // Only these have sticks: a Joy-Con one, held sideways, the Pro Controller two, the N64's the
-  // left.
+  // True for pads with that stick: a Joy-Con has one and is held sideways, the Pro Controller has
+  // two, the N64's has the left one.
   bool has_stick(Side side) const noexcept {
     if (kind_ == kNesLeftKind || kind_ == kNesRightKind) return false;
     if (product_ == kProController) return true;
@@ -270,7 +273,7 @@ class SwitchPad final : public PadQuirks {
     return product_ != kN64 && product_ != kSnes && product_ != kMegaDrive;
   }
 
-  // The user's calibration comes before the factory's.
+  // Reads the gyroscope's calibration; the user's is preferred to the factory's.
   std::optional<FactoryGyro> asked_gyro(PadPort& port) {
     std::array<std::uint8_t, kMarkBytes + kMotionBytes> user{};
     const auto own = std::span<const std::uint8_t>(user);
@@ -364,7 +367,8 @@ class SwitchPad final : public PadQuirks {
     return true;
   }
 
-  // The user's calibration of a stick comes before the factory's; both may be empty.
+  // The range of a stick: the user's calibration is preferred to the factory's; both may be
+  // missing.
   static std::optional<StickRange> chosen_range(std::span<const std::uint8_t> factory,
                                                 std::span<const std::uint8_t> user, Side side) {
     const std::size_t number = side == Side::left ? 0 : 1;
@@ -395,7 +399,8 @@ class SwitchPad final : public PadQuirks {
     const StickRange l = left.value_or(kUsualRange), r = right.value_or(kUsualRange);
     const FactoryAxis left_x = factory_axis(l, 0), left_y = factory_axis(l, 1),
                       right_x = factory_axis(r, 0), right_y = factory_axis(r, 1);
-    // A Joy-Con held sideways: the left one is turned to the left, the right one to the right.
+    // A single Joy-Con is held sideways: the left one is turned to the left, the right one to the
+    // right.
     if (has_left && has_right)
       sticks_ = FactorySticks{left_x, left_y, right_x, right_y};
     else if (product_ == kN64)
@@ -409,7 +414,7 @@ class SwitchPad final : public PadQuirks {
   std::string name_;
   std::uint16_t product_;
   bool is_usb_;
-  std::uint8_t kind_ = 0;  // as the pad says; 0: unknown
+  std::uint8_t kind_ = 0;  // kind of controller as the pad says; 0: unknown
   Clock::time_point end_;
   std::uint8_t count_ = 0;
   std::optional<FactorySticks> sticks_;
@@ -419,28 +424,30 @@ class SwitchPad final : public PadQuirks {
 
 // ---- Switch 2
 
-// A command, its argument and what follows; the header has the length of that.
+// A command, its argument and its data; the packet's header has the length of the data.
 struct Switch2Command {
   std::uint8_t command, argument;
   std::uint8_t size = 0;
   std::array<std::uint8_t, 20> data{};
 };
-constexpr std::uint8_t kAllFeatures = 0x27;  // buttons, sticks, motion, motors
-// In SDL's order; what those without a word do is not known.
+// Bits of all features: buttons, sticks, motion, motors.
+constexpr std::uint8_t kAllFeatures = 0x27;
+// The commands in SDL's order; the purpose of those without a comment is not known.
 constexpr Switch2Command kStartSwitch2[] = {
     {0x07, 0x01},
     {0x16, 0x01},
-    {0x0c, 0x02, 4, {kAllFeatures}},  // which features there are
+    {0x0c, 0x02, 4, {kAllFeatures}},  // selects the features
     {0x11, 0x03},
     {0x0a, 0x08, 20, {0x01, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff, 0x35, 0x00, 0x46}},
-    {0x0c, 0x04, 4, {kAllFeatures}},  // switches them on
+    {0x0c, 0x04, 4, {kAllFeatures}},  // switches the features on
     {0x10, 0x01},
-    {0x01, 0x01},                                                      // the motors
-    {0x03, 0x0d, 8, {0x01, 0x00, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff}}  // reports, by this interface
+    {0x01, 0x01},                                                      // starts the motors
+    {0x03, 0x0d, 8, {0x01, 0x00, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff}}  // requests reports by this
+                                                                       // interface
 };
 constexpr std::uint32_t kFactoryBlock = 0x013080, kUserBlock = 0x1fc040, kNextStick = 0x40;
-// Places in the answer to a reading of the flash memory: of the block, and in it of the
-// calibration.
+// Places in the answer to a reading of the flash memory: where the block begins, and where the
+// calibration is in it.
 constexpr std::size_t kBlockAt = 0x10, kFactoryAt = kBlockAt + 0x28, kAnswerBytes = 0x50;
 
 class Switch2Pad final : public PadQuirks {
@@ -473,7 +480,7 @@ class Switch2Pad final : public PadQuirks {
     return port.command(std::span(packet).first(8u + command.size), answer);
   }
 
-  // The user's calibration of a stick (0 left, 1 right) comes before the factory's.
+  // The range of a stick (0 left, 1 right): the user's calibration is preferred to the factory's.
   static std::optional<StickRange> stored_range(PadPort& port, std::uint32_t stick) {
     for (const std::uint32_t block : {kUserBlock, kFactoryBlock}) {
       const std::uint32_t address = block + stick * kNextStick;

@@ -11,7 +11,7 @@ using namespace std::chrono_literals;
 
 struct PacketSender::State {
   Write write;
-  std::mutex mutex;  // guards all below
+  std::mutex mutex;  // guards all members below
   std::condition_variable changed;
   std::optional<OutPacket> next;
   bool is_ending = false, has_ended = false, has_failed = false;

@@ -13,14 +13,15 @@ class PacketSender {
  public:
   using Write = std::function<bool(const OutPacket&)>;
 
-  // Only the thread calls `write`; it is destroyed when the thread has ended. Null: no thread can
-  // be started.
+  // Only the thread calls `write`; `write` is destroyed when the thread has ended. Null: no thread
+  // can be started.
   static std::unique_ptr<PacketSender> create(Write write);
-  // A waiting packet is still sent. If the pad does not take it within a tenth of a second, the
+  // Sends a waiting packet first. If the pad does not take it within a tenth of a second, the
   // thread goes on alone, with what `write` owns, until its write returns.
   ~PacketSender();
 
-  // Never waits; replaces a packet that was not sent yet. False: the packet before was not sent.
+  // Never waits; replaces a packet that was not sent yet. False: sending the previous packet
+  // failed.
   bool send(const OutPacket& packet) noexcept;
 
  private:

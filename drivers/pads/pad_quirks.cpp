@@ -25,7 +25,8 @@ std::size_t first_packet(PadPort& port, const std::vector<std::uint8_t>& descrip
     if (field.kind != FieldKind::input || field.usage != usage::kX || field.application != *pad)
       continue;
     const std::size_t size = report_bytes(*parsed, field.kind, field.report_id);
-    const std::size_t skipped = field.report_id == 0 ? 1 : 0;  // an answer always has an id
+    // The answer begins with an id even if the reports have none.
+    const std::size_t skipped = field.report_id == 0 ? 1 : 0;
     if (size + skipped > packet.size()) continue;
     const auto answer = packet.first(size + skipped);
     if (port.input(field.report_id, answer) != answer.size()) continue;

@@ -22,14 +22,14 @@ namespace {
 // ---- The GameCube adapter. Bytes are from SDL's SDL_hidapi_gamecube.c.
 
 constexpr std::uint16_t kNintendo = 0x057e, kAdapter = 0x0337;
-constexpr std::uint16_t kPlugPage = 0xff37;  // ff37:0001 .. 0004 mark the plug that a listing is
+constexpr std::uint16_t kPlugPage = 0xff37;  // usages ff37:0001 .. 0004 mark the plug of a listing
 constexpr int kPlugs = 4;
 // Report 21: for each plug a type byte, two of buttons, two sticks, two triggers.
 constexpr std::uint8_t kPlugReport = 0x21, kSetMotors = 0x11;
 // SDL sends the id alone, by libusb; hidraw refuses a report without data (Linux hidraw.c).
 constexpr std::array<std::uint8_t, 2> kStart = {0x13, 0x00};
-// Bits of the type: has a controller, it is a wireless one (without a motor), the second USB cable
-// that feeds the motors is plugged in.
+// Bits of the type: a controller is there; it is a wireless one (without a motor); the second USB
+// cable, which feeds the motors, is plugged in.
 constexpr std::uint8_t kHasController = 0x30, kIsWireless = 0x20, kHasPower = 0x04;
 constexpr std::size_t kPlugBytes = 9, kReportBytes = 1 + kPlugs * kPlugBytes;
 // The sticks of these controllers move by 88 counts, not to the ends of their bytes.
@@ -39,20 +39,20 @@ std::vector<std::uint8_t> plug_descriptor(int plug) {
   const auto before = static_cast<std::uint8_t>(kPlugBytes * (plug - 1) + 1),
              behind = static_cast<std::uint8_t>(kPlugBytes * (kPlugs - plug));
   std::vector<std::uint8_t> d = {
-      0x05, 0x01, 0x09, 0x05,   0xa1, 0x01, 0x85, kPlugReport,              // game pad
-      0x75, 0x08, 0x95, before, 0x81, 0x03,                                 // other plugs, type
+      0x05, 0x01, 0x09, 0x05,   0xa1, 0x01, 0x85, kPlugReport,  // collection: game pad
+      0x75, 0x08, 0x95, before, 0x81, 0x03,                     // other plugs' bytes; the type
       0x05, 0x09, 0x19, 0x01,   0x29, 0x0c, 0x15, 0x00,        0x25, 0x01,  // 12 buttons
       0x75, 0x01, 0x95, 0x0c,   0x81, 0x02, 0x95, 0x04,        0x81, 0x03,  //
       0x05, 0x01, 0x09, 0x30,   0x09, 0x31, 0x09, 0x32,        0x09, 0x35,  // stick, C stick
       0x26, 0xff, 0x00, 0x75,   0x08, 0x95, 0x04, 0x81,        0x02,        //
-      0x09, 0x33, 0x09, 0x34,   0x95, 0x02, 0x81, 0x02};                    // triggers
+      0x09, 0x33, 0x09, 0x34,   0x95, 0x02, 0x81, 0x02};                    // triggers L and R
   if (behind > 0) d.insert(d.end(), {0x95, behind, 0x81, 0x03});
   d.insert(d.end(),
            {0xc0, 0x06, 0x37, 0xff, 0x09, static_cast<std::uint8_t>(plug), 0xa1, 0x01, 0xc0});
   return d;
 }
 
-// Whether each motor runs. One packet sets them all, so the plugs of an adapter share this.
+// Which motors run. One packet sets them all, so the plugs of an adapter share this.
 using AdapterMotors = std::array<std::atomic<bool>, kPlugs>;
 
 std::shared_ptr<AdapterMotors> motors_of(const std::string& adapter) {
@@ -81,7 +81,7 @@ class GameCubePlug final : public PadQuirks {
     return is_plugged_;
   }
   bool is_plugged() const noexcept override { return is_plugged_; }
-  // The motors only know on and off.
+  // The motors can only be on or off.
   void rumble(const Rumble& rumble, OutPacket& packet) noexcept override {
     (*motors_)[plug_] = has_motor_ && (rumble.strong != 0 || rumble.weak != 0);
     packet = {};
@@ -97,14 +97,14 @@ class GameCubePlug final : public PadQuirks {
   }
 
  private:
-  std::size_t plug_;  // from 0
+  std::size_t plug_;  // number of the plug, from 0
   std::shared_ptr<AdapterMotors> motors_;
   bool is_plugged_ = true, has_motor_ = false;
 };
 
 // ---- Several pad collections in one descriptor
 
-// A pad collection of another listing; the usage is undefined in HID.
+// Replaces the pad collections of the other listings; HID does not define this usage.
 constexpr std::uint32_t kOtherPad = usage_of(0x01, 0x00);
 
 bool is_pad(std::uint32_t application) {
@@ -141,14 +141,14 @@ std::vector<PadCollection> pad_collections(const ReportDescriptor& d) {
   return all;
 }
 
-// The indices of the least significant bytes of the application collections' usages.
+// Indices of the least significant bytes of the application collections' usages.
 std::vector<std::size_t> application_usages(const std::vector<std::uint8_t>& d) {
   std::vector<std::size_t> places;
   int depth = 0;
   std::size_t usage_at = 0;
   for (std::size_t at = 0; at < d.size();) {
     const std::uint8_t prefix = d[at];
-    if (prefix == 0xfe) {  // a long item
+    if (prefix == 0xfe) {  // skips a long item
       at += 3 + (at + 1 < d.size() ? d[at + 1] : 0u);
       continue;
     }
@@ -180,7 +180,7 @@ std::vector<std::uint8_t> without_other_pads(std::vector<std::uint8_t> descripto
   return descriptor;
 }
 
-// Hands on the reports of one collection.
+// Passes on the reports of one collection.
 class OneOfSeveral final : public PadQuirks {
  public:
   explicit OneOfSeveral(std::set<std::uint8_t> others) : others_(std::move(others)) {}
@@ -278,16 +278,20 @@ using Status = Device::Status;
 
 enum : std::uint16_t { kLeft = 0x2006, kRight = 0x2007, kPair = 0x2008, kGrip = 0x200e };
 
-// Report 0x30, from dekuNukem's Nintendo_Switch_Reverse_Engineering (bluetooth_hid_notes.md):
-// buttons of the right one, shared, of the left one; then three bytes for each stick.
+// The Joy-Cons' full report, from dekuNukem's Nintendo_Switch_Reverse_Engineering
+// (bluetooth_hid_notes.md): buttons of the right one, shared ones, buttons of the left one; then
+// three bytes for each stick.
 constexpr std::uint8_t kFull = 0x30;
 constexpr std::size_t kRightButtons = 3, kSharedButtons = 4, kLeftButtons = 5, kLeftStick = 6,
                       kRightStick = 9, kStickBytes = 3, kPairBytes = kPairSideByte;
-constexpr std::uint8_t kSharedLeft = 0x29, kSharedRight = 0x16;  // minus, stick, capture; plus ...
+// Shared buttons of the left one (minus, stick, capture) and the right one (plus, ...).
+constexpr std::uint8_t kSharedLeft = 0x29, kSharedRight = 0x16;
 constexpr std::array<std::uint8_t, kStickBytes> kCentred = {0x00, 0x08, 0x80};
-constexpr int kMaxSkippedInARow = 64;  // other reports, before other pads get their turn
+// After this number of other reports in a row other pads get their turn.
+constexpr int kMaxSkippedInARow = 64;
 
-// A single Joy-Con's factory sticks are for holding it sideways; these are for holding it upright.
+// Turns an axis: a single Joy-Con's factory sticks are for holding it sideways, a pair's for
+// holding it upright.
 FactoryAxis mirrored(const FactoryAxis& axis) noexcept {
   return {-axis.max, -axis.centre, -axis.min};
 }
@@ -316,7 +320,7 @@ class JoyConPair final : public Device {
     return std::span(fds_).first(fd_count_);
   }
 
-  // One after the other, so that a fast side does not keep the slow one waiting.
+  // Reads the sides in turns, so that a fast side does not keep the slow one waiting.
   Status read(Report& report) noexcept override {
     int silent = 0;
     for (int i = 0; i < kMaxSkippedInARow && silent < 2; ++i) {
@@ -349,7 +353,7 @@ class JoyConPair final : public Device {
     }
     return both;
   }
-  // Each side has a gyroscope; a pair's is the right one's.
+  // Each side has a gyroscope; that of the right side is used for the pair.
   std::optional<FactoryGyro> factory_gyro() const override { return sides_[1]->factory_gyro(); }
   std::int64_t lost() const noexcept override { return sides_[0]->lost() + sides_[1]->lost(); }
   std::vector<std::string> take_remarks() override {
@@ -368,7 +372,7 @@ class JoyConPair final : public Device {
     }
   }
 
-  // Takes this side's half into the common state, and puts the state into the report.
+  // Merges this side's half into the common state, and puts the state into the report.
   bool merge(Report& report) noexcept {
     if (report.size < kPairBytes || report.bytes[0] != kFull) return false;
     const bool is_left = turn_ == 0;
@@ -384,9 +388,9 @@ class JoyConPair final : public Device {
     return true;
   }
 
-  std::array<std::unique_ptr<Device>, 2> sides_;  // left, right
+  std::array<std::unique_ptr<Device>, 2> sides_;  // the left and the right Joy-Con
   DeviceInfo info_;
-  std::size_t turn_ = 1;  // the side that was read last
+  std::size_t turn_ = 1;  // index of the side that was read last
   std::array<std::uint8_t, kPairBytes> state_{};
   std::array<pollfd, 8> fds_{};
   std::size_t fd_count_ = 0;
@@ -395,7 +399,7 @@ class JoyConPair final : public Device {
 bool is_joy_con(const DeviceListing& single, std::uint16_t product) {
   const DeviceInfo& info = single.info;
   if (info.vendor != kNintendo || info.product != product || !single.problem.empty()) return false;
-  // NES controllers have the same ids.
+  // NES controllers have the same ids as a Joy-Con, so the name decides.
   return product == kGrip || info.name.find("NES") == std::string::npos;
 }
 

@@ -13,7 +13,7 @@ namespace gaitpad {
 namespace {
 
 struct RecordedPad {
-  std::unique_ptr<PadQuirks> quirks;  // null: its packets are reports already
+  std::unique_ptr<PadQuirks> quirks;  // null: the device's packets are reports already
   PlugWatch plug;
 };
 
@@ -28,10 +28,10 @@ RecordedPad recorded_pad(const DeviceInfo& info) {
   return {make_pad_quirks(info), {}};
 }
 
-// False: the event is to be left out.
+// False: the event has to be left out.
 bool accept(RecordedPad& pad, TraceEvent& event, std::vector<std::uint8_t>& bytes) {
   const std::span<const std::uint8_t> packet(bytes.data() + event.first_byte, event.size);
-  OutPacket reply;  // it was sent when the packet came
+  OutPacket reply;  // is not used: it was sent when the packet came
   const bool is_input = pad.quirks->accept(packet, reply);
   if (Report plug; pad.plug.has_changed(*pad.quirks, plug)) {
     event.kind = plug.kind;
@@ -56,9 +56,10 @@ void accept_packets(Trace& trace) {
   std::vector<TraceEvent> events;
   events.reserve(trace.events.size());
   for (TraceEvent event : trace.events) {
-    if (event.kind == ReportKind::added)  // quirks serve a pad until it is unplugged
+    // Quirks are made anew: they serve a pad until it is unplugged.
+    if (event.kind == ReportKind::added)
       pads[event.device] = recorded_pad(trace.devices[event.device].info);
-    // An empty report stays, so that it is counted.
+    // An empty report is kept, so that it is counted.
     const bool is_packet =
         event.kind == ReportKind::input && event.size > 0 && pads[event.device].quirks;
     if (!is_packet || accept(pads[event.device], event, trace.bytes)) events.push_back(event);

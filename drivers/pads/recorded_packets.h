@@ -7,8 +7,8 @@ namespace gaitpad {
 
 // Leaves out packets that are no input, replaces those that together make a state by the state, and
 // turns an adapter's messages about its plugs into plugging and unplugging. A session (a trace with
-// ticks) stays as it is: it was recorded behind the quirks. So does what evdev or SDL have handed
-// on.
+// ticks) stays unchanged, because it was recorded behind the quirks; so do devices of evdev and
+// SDL.
 void accept_packets(Trace& trace);
 
 }  // namespace gaitpad

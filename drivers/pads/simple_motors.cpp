@@ -19,7 +19,7 @@ void set_stadia(const Rumble& rumble, OutPacket& packet) noexcept {
   packet.size = 5;
 }
 
-// Strengths 0..100; both motors, the triggers' ones off, until the next packet.
+// Strengths are 0..100; runs both motors, not those of the triggers, until the next packet.
 void set_xbox_bluetooth(const Rumble& rumble, OutPacket& packet) noexcept {
   packet.bytes = {0x03,
                   0x0f,

@@ -17,13 +17,14 @@ namespace {
 
 constexpr std::uint16_t kSony = 0x054c;
 constexpr std::uint16_t kDualSenseEdge = 0x0df2, kAdapter = 0x0ba0;
-// The second status byte of a DualShock 4's report 0x01 (hid-playstation.c).
+// Place of a DualShock 4's second status byte in report 0x01 (hid-playstation.c).
 constexpr std::size_t kAdapterStateAt = 31;
 constexpr std::uint8_t kHasNoPad = 0x04;
-constexpr std::size_t kBluetoothBytes = 78;  // full input and output reports of both families
+// Size of the full input and output reports of both families.
+constexpr std::size_t kBluetoothBytes = 78;
 constexpr std::size_t kChecksumBytes = 4;
 
-// The byte that the checksum has before the report.
+// The byte that comes before the report in the checksum.
 enum class Direction : std::uint8_t { input = 0xa1, output = 0xa2, feature = 0xa3 };
 
 std::uint32_t checksum(Direction direction, std::span<const std::uint8_t> report) noexcept {
@@ -42,13 +43,13 @@ bool is_intact(Direction direction, std::span<const std::uint8_t> report) noexce
   return checksum(direction, report.first(covered)) == le32(report.last<kChecksumBytes>());
 }
 
-// Zeros instead: a report in a recording that was made by hand. A pad sends that by chance once in
-// 2^32 reports.
+// True if the checksum's place holds zeros, as in a recording that was made by hand. A pad sends
+// that by chance once in 2^32 reports.
 bool has_no_checksum(std::span<const std::uint8_t> report) noexcept {
   return le32(report.last<kChecksumBytes>()) == 0;
 }
 
-// Appends the checksum.
+// Appends the checksum to a packet.
 void seal(OutPacket& packet, std::size_t size) noexcept {
   const std::size_t covered = size - kChecksumBytes;
   const std::uint32_t sum = checksum(Direction::output, std::span(packet.bytes).first(covered));
@@ -57,15 +58,17 @@ void seal(OutPacket& packet, std::size_t size) noexcept {
   packet.size = size;
 }
 
-// The motors take the upper byte; a weak rumble is not rounded to 0.
+// The motor's byte: the upper half, but at least 1 for a weak rumble.
 std::uint8_t motor(std::uint16_t strength) noexcept {
   return strength == 0 ? 0 : std::max<std::uint8_t>(1, static_cast<std::uint8_t>(strength >> 8));
 }
 
-// The calibration of a gyroscope: what it counted at rest and while it was turned both ways about
-// each axis, then the speed of both turns in degrees a second. The reports no longer contain the
-// counts at rest (hid-playstation.c: "bias"). None: numbers that no such chip has.
-enum class TurnOrder { by_axis, by_way };  // plus and minus of each axis; all plus, then all minus
+// The calibration of a gyroscope: its counts at rest and while it was turned both ways about each
+// axis, then the speed of both turns in degrees a second. The pad has already subtracted the counts
+// at rest from its reports (hid-playstation.c: "bias"). None: the numbers are impossible for such a
+// chip.
+// Plus and minus of each axis in turn; first plus of all axes, then minus.
+enum class TurnOrder { by_axis, by_way };
 constexpr std::size_t kGyroBytes = 23;
 std::optional<FactoryGyro> gyro_of(std::span<const std::uint8_t> feature, TurnOrder order) {
   constexpr double kUsual_rad_s = 2048.0 / 32767.0 * kDegree;
@@ -97,7 +100,7 @@ class SonyQuirks : public PadQuirks {
         is_bluetooth_(device.bus == BusType::bluetooth),
         full_report_(full_report) {}
 
-  // The wireless adapter sends reports even without a pad.
+  // False for a wireless adapter without a pad, which sends reports all the same.
   bool is_plugged() const noexcept final { return is_plugged_; }
 
   bool accept(std::span<const std::uint8_t> packet, OutPacket& reply) noexcept final {
@@ -118,7 +121,7 @@ class SonyQuirks : public PadQuirks {
   std::vector<std::string> take_remarks() final { return std::exchange(remarks_, {}); }
 
  protected:
-  // Reads the calibration of the gyroscope. Over Bluetooth that switches the pad over.
+  // Reads the calibration of the gyroscope. Over Bluetooth this makes the pad send full reports.
   bool ask_for_gyro(PadPort& port, std::uint8_t id, TurnOrder order) {
     std::array<std::uint8_t, 64> bytes{};
     const std::size_t size = std::min(port.feature(id, bytes), bytes.size());
@@ -142,7 +145,7 @@ class SonyQuirks : public PadQuirks {
   std::vector<std::string> remarks_;
 };
 
-// On USB the pad sends nothing until two features were read: Linux's hid-sony.c
+// A DualShock 3. On USB it sends nothing until two features were read: Linux's hid-sony.c
 // (sixaxis_set_operational_usb), whose third step makes some copies rumble without end.
 class DualShock3 final : public PadQuirks {
  public:
@@ -156,7 +159,7 @@ class DualShock3 final : public PadQuirks {
     std::array<std::uint8_t, 8> address{};
     if (port.feature(0xf2, state) == 0)
       remarks_.push_back(name_ + ": does not answer the start over USB");
-    port.feature(0xf5, address);  // its answer begins with another id
+    port.feature(0xf5, address);  // not checked for its id: the answer begins with another one
   }
   std::vector<std::string> take_remarks() override { return std::exchange(remarks_, {}); }
 
@@ -172,7 +175,8 @@ class DualShock4 final : public SonyQuirks {
  public:
   explicit DualShock4(const DeviceInfo& device) : SonyQuirks(device, 0x11) {}
 
-  // Over Bluetooth 0x05 works with every firmware that Linux knows, 0x02 with the first ones.
+  // Over Bluetooth feature 0x05 works with every firmware that Linux knows, 0x02 with the first
+  // ones.
   void start(PadPort& port, StartedBy started) final {
     if (!is_bluetooth_) {
       ask_for_gyro(port, 0x02, TurnOrder::by_axis);
@@ -184,12 +188,13 @@ class DualShock4 final : public SonyQuirks {
 
   void rumble(const Rumble& rumble, OutPacket& packet) noexcept final {
     packet = {};
-    const std::size_t at = is_bluetooth_ ? 3 : 1;  // of the part common to USB and Bluetooth
+    // Place of the part that USB and Bluetooth have in common.
+    const std::size_t at = is_bluetooth_ ? 3 : 1;
     packet.bytes[0] = is_bluetooth_ ? 0x11 : 0x05;
-    // A HID report with checksum. The lower bits are the pad's report interval in milliseconds: 4
-    // is what the kernel and SDL set, 0 would make it as fast as the link.
+    // Bluetooth: a HID report with checksum. The lower bits are the pad's report interval in
+    // milliseconds: the kernel and SDL set 4; 0 would make it as short as the link allows.
     if (is_bluetooth_) packet.bytes[1] = 0xc0 | kReportInterval_ms;
-    packet.bytes[at] = 0x01;  // sets the motors and leaves the light alone
+    packet.bytes[at] = 0x01;  // sets the motors and leaves the light unchanged
     packet.bytes[at + 3] = motor(rumble.weak);
     packet.bytes[at + 4] = motor(rumble.strong);
     packet.size = 32;
@@ -197,9 +202,9 @@ class DualShock4 final : public SonyQuirks {
   }
 };
 
-// A pad of another maker for the PlayStation 4: by USB alone, and not every one has motors. It
-// tells whether it has in a feature which its descriptor must state: pads of the same makers that
-// do not know it hang when they are asked.
+// A pad of another maker for the PlayStation 4: on USB only, and only some have motors. The pad
+// tells whether it has in a feature that its descriptor must state: pads of the same makers without
+// that feature hang when they are asked for it.
 class DualShock4OfOthers final : public PadQuirks {
  public:
   static constexpr std::uint8_t kAbilities = 0x03, kEffects = 0x05;
@@ -214,7 +219,7 @@ class DualShock4OfOthers final : public PadQuirks {
     packet = {};
     if (!has_motors_) return;
     packet.bytes[0] = kEffects;
-    packet.bytes[1] = 0x01;  // sets the motors and leaves the light alone
+    packet.bytes[1] = 0x01;  // sets the motors and leaves the light unchanged
     packet.bytes[4] = motor(rumble.weak);
     packet.bytes[5] = motor(rumble.strong);
     packet.size = kEffectBytes;
@@ -225,7 +230,8 @@ class DualShock4OfOthers final : public PadQuirks {
   bool has_motors_ = false;
 };
 
-// Told by its descriptor: the reports for abilities and effects, of exactly these sizes.
+// Recognises such a pad by its descriptor: the reports for abilities and effects, of exactly these
+// sizes.
 bool is_dualshock4_of_others(const DeviceInfo& device) {
   if (device.bus != BusType::usb) return false;
   const auto d = parse_descriptor(device.descriptor);
@@ -247,24 +253,25 @@ class DualSense final : public SonyQuirks {
 
   void rumble(const Rumble& rumble, OutPacket& packet) noexcept final {
     packet = {};
-    const std::size_t at = is_bluetooth_ ? 3 : 1;  // of the part common to USB and Bluetooth
+    // Place of the part that USB and Bluetooth have in common.
+    const std::size_t at = is_bluetooth_ ? 3 : 1;
     packet.bytes[0] = is_bluetooth_ ? 0x31 : 0x02;
     if (is_bluetooth_) {
       packet.bytes[1] = static_cast<std::uint8_t>(sequence_ << 4);
       packet.bytes[2] = 0x10;
       sequence_ = (sequence_ + 1) & 0x0f;
     }
-    // Selects the motors; how they are driven depends on the firmware.
+    // Selects the motors; which bits do so depends on the firmware.
     packet.bytes[at] = has_new_motors_ ? 0x02 : 0x03;
     packet.bytes[at + 2] = motor(rumble.weak);
     packet.bytes[at + 3] = motor(rumble.strong);
     if (has_new_motors_) packet.bytes[at + 38] = 0x04;
-    packet.size = 48;  // as in the descriptor; the kernel sends 63
+    packet.size = 48;  // the size in the descriptor; the kernel sends 63 bytes
     if (is_bluetooth_) seal(packet, kBluetoothBytes);
   }
 
  private:
-  static constexpr std::uint16_t kFirstWithNewMotors = 0x0215;  // 2.21
+  static constexpr std::uint16_t kFirstWithNewMotors = 0x0215;  // version 2.21
 
   // The version of the pad's firmware (2.36 is 0x0224); 0: unknown.
   std::uint16_t firmware(PadPort& port) const {
@@ -286,9 +293,9 @@ std::unique_ptr<PadQuirks> make_sony_quirks(const DeviceInfo& device) {
   switch (device.product) {
     case 0x0268:
       return std::make_unique<DualShock3>(device);
-    case 0x05c4:  // first DualShock 4
+    case 0x05c4:  // the first DualShock 4
     case 0x09cc:
-    case kAdapter:  // its wireless adapter: USB
+    case kAdapter:  // the wireless adapter of the DualShock 4, on USB
       return std::make_unique<DualShock4>(device);
     case 0x0ce6:
     case kDualSenseEdge:

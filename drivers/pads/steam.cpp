@@ -1,7 +1,7 @@
-// Steam Controller and Steam Deck: vendor reports, and "lizard mode", in which they are a mouse and
-// a keyboard. It is left at the start and restored at the end. Commands, settings and messages are
-// from Linux's hid-steam.c and SDL's steam/controller_constants.h, those of Bluetooth from SDL's
-// SDL_hidapi_steam.c and steam/controller_structs.h.
+// Steam Controller and Steam Deck: vendor reports, and "lizard mode", in which they act as a mouse
+// and a keyboard. The mode is left at the start and restored at the end. Commands, settings and
+// messages are from Linux's hid-steam.c and SDL's steam/controller_constants.h, those of Bluetooth
+// from SDL's SDL_hidapi_steam.c and steam/controller_structs.h.
 #include <algorithm>
 #include <initializer_list>
 #include <utility>
@@ -14,16 +14,16 @@ namespace gaitpad {
 namespace {
 
 constexpr std::uint16_t kValve = 0x28de;
-enum : std::uint16_t {  // products
+enum : std::uint16_t {  // product ids
   kWired = 0x1102,
-  kBluetooth = 0x1105,  // also 0x1106
+  kBluetooth = 0x1105,  // the product id 0x1106 means the same
   kWireless = 0x1142,
   kDeck = 0x1205,
 };
 
 // A message to the pad is a feature report without id: command, length, data.
 constexpr std::size_t kMessageBytes = 64;
-enum : std::uint8_t {  // commands
+enum : std::uint8_t {  // numbers of commands
   kClearMappings = 0x81,
   kDefaultMappings = 0x85,
   kWriteSettings = 0x87,
@@ -34,10 +34,10 @@ struct Setting {
   std::uint8_t number = 0;
   std::uint16_t value = 0;
 };
-enum : std::uint8_t {  // settings
+enum : std::uint8_t {  // numbers of settings
   kLeftPadMode = 7,
   kRightPadMode = 8,
-  kRightPadMargin = 24,  // over Bluetooth: how smoothly it is a mouse
+  kRightPadMargin = 24,  // over Bluetooth: how smoothly the pad moves the mouse
   kPacketVersion = 49,
   kLeftPadClick = 52,
   kRightPadClick = 53,
@@ -45,17 +45,17 @@ enum : std::uint8_t {  // settings
 };
 constexpr std::uint16_t kMouse = 0, kNoMouse = 7, kNeverClicks = 0xffff;
 
-// A message from the pad: version 1, 0, its type, its length.
+// Places in a message from the pad: version 1, 0, the message's type, its length.
 constexpr std::size_t kTypeAt = 2, kPresenceAt = 4;
 enum : std::uint8_t { kControllerState = 1, kPresence = 3, kDeckState = 9 };
-enum : std::uint8_t { kIsOff = 1, kIsOn = 2 };  // of kPresence
+enum : std::uint8_t { kIsOff = 1, kIsOn = 2 };  // states in a message kPresence
 
 constexpr const char* kStaysMouse = ": stays a mouse and keyboard as well";
 std::string name_of(const DeviceInfo& device) {
   return device.name.empty() ? "this pad" : device.name;
 }
 
-// A command with its settings.
+// A command with the settings that it writes.
 struct Message {
   explicit Message(std::uint8_t command, std::initializer_list<Setting> settings = {}) {
     bytes[0] = command;
@@ -97,7 +97,8 @@ class SteamQuirks final : public PadQuirks {
     if (!is_deck_) send(port, Message(kWriteSettings, {{kRightPadMargin, 1}}));
   }
 
-  // Other messages tell the battery, and that a pad behind the receiver was switched on or off.
+  // Accepts states; other messages tell the battery, and that a pad behind the receiver was
+  // switched on or off.
   bool accept(std::span<const std::uint8_t> packet, OutPacket& reply) noexcept override {
     reply.size = 0;
     if (packet.size() <= kTypeAt) return false;
@@ -117,16 +118,19 @@ class SteamQuirks final : public PadQuirks {
   }
 
  private:
-  // Packets from one message to the next: each is a request that the pad has to answer first.
+  // Number of packets from one message to the next: each message is a request that the pad has to
+  // answer first.
   static constexpr int kBetweenMessages = 30;
 
   static bool send(PadPort& port, const Message& message) {
-    std::array<std::uint8_t, 1 + kMessageBytes> report{};  // begins with the id 0
+    // A feature report, which begins with the id 0.
+    std::array<std::uint8_t, 1 + kMessageBytes> report{};
     std::copy(message.bytes.begin(), message.bytes.end(), report.begin() + 1);
     return port.send_feature(report);
   }
 
-  // A pad that is switched on is a mouse and keyboard again.
+  // A pad that was switched on acts as a mouse and keyboard again, so the start-up messages are
+  // sent again.
   void take_presence(std::uint8_t state) noexcept {
     if (state == kIsOff) is_plugged_ = false;
     if (state != kIsOn) return;
@@ -151,30 +155,34 @@ class SteamQuirks final : public PadQuirks {
   std::string name_;
   bool is_deck_, is_receiver_;
   bool is_plugged_ = true;
-  int packets_since_on_ = -1;  // -1: nothing is to be sent
+  // Number of packets since the pad was switched on; -1: no message is to be sent.
+  int packets_since_on_ = -1;
   std::string remark_;
 };
 
 // The Steam Controller over Bluetooth LE. Messages in both directions are cut into reports of 20
-// bytes: the id 3, a header, 18 bytes. A state tells only what changed, so it is put together here
-// and handed on as one report (config/pads/valve.toml).
+// bytes: the id 3, a header, 18 bytes. A message of the pad contains only what changed, so the
+// whole state is put together here and handed on as one report (config/pads/valve.toml).
 constexpr std::uint8_t kSegmentId = 3;
 constexpr std::size_t kHeaderBytes = 2, kSegmentBytes = 18, kMaxSegments = 8;
-enum : std::uint8_t { kIsSegment = 0x80, kIsLast = 0x40, kSegmentNumber = 0x07 };  // header
-constexpr std::uint8_t kBluetoothState = 4;  // low half of a message's first byte
+// Bits of the header.
+enum : std::uint8_t { kIsSegment = 0x80, kIsLast = 0x40, kSegmentNumber = 0x07 };
+// Lower half of the first byte of a message with a state.
+constexpr std::uint8_t kBluetoothState = 4;
 
-// The parts that a state has, by the other bits of its first two bytes, in the order of the parts.
+// The parts that such a message may have, in the order of the parts, with the bit of its first two
+// bytes that marks each.
 struct StatePart {
   unsigned bit = 0;
   std::size_t bytes = 0;
-  std::size_t place = 0;  // in the report that is handed on; 0: nowhere
+  std::size_t place = 0;  // place in the report that is handed on; 0: the part is left out
 };
 constexpr StatePart kStateParts[] = {{0x10, 3, 1},     // buttons
                                      {0x20, 2, 4},     // triggers
-                                     {0x40, 3, 0},     // more buttons, of no pad
+                                     {0x40, 3, 0},     // buttons that no pad has
                                      {0x80, 4, 6},     // stick
                                      {0x100, 4, 14},   // left pad
-                                     {0x200, 4, 10}};  // right pad; motion follows
+                                     {0x200, 4, 10}};  // right pad; the motion sensors follow
 
 class SteamBluetooth final : public PadQuirks {
  public:
@@ -199,7 +207,7 @@ class SteamBluetooth final : public PadQuirks {
 
   bool accept(std::span<const std::uint8_t> packet, OutPacket& reply) noexcept override {
     reply.size = 0;
-    // A state that was put together already: recordings were made of those once.
+    // A complete state: earlier versions recorded those.
     if (packet.size() == state_.size() && packet[0] == kSegmentId) {
       std::copy(packet.begin(), packet.end(), state_.begin());
       return true;
@@ -210,7 +218,7 @@ class SteamBluetooth final : public PadQuirks {
     const std::size_t number = packet[1] & kSegmentNumber;
     const bool is_next = number == next_ || number == 0;
     next_ = 0;
-    if (!is_next) return false;  // one was lost: wait for the next message
+    if (!is_next) return false;  // a segment was lost: wait for the next message
     std::copy(packet.begin() + kHeaderBytes, packet.end(),
               message_.begin() + static_cast<std::ptrdiff_t>(number * kSegmentBytes));
     const std::size_t size = (number + 1) * kSegmentBytes;
@@ -260,14 +268,14 @@ class SteamBluetooth final : public PadQuirks {
 
   std::string name_;
   std::array<std::uint8_t, kSegmentBytes * kMaxSegments> message_{};
-  std::size_t next_ = 0;  // number of the segment that is expected
+  std::size_t next_ = 0;  // number of the next segment
   std::array<std::uint8_t, 18> state_{};
   std::string remark_;
 };
 
 }  // namespace
 
-// The interfaces of the mouse and the keyboard have the same ids.
+// Null for the interfaces of the mouse and the keyboard, which have the same ids.
 std::unique_ptr<PadQuirks> make_steam_quirks(const DeviceInfo& device) {
   constexpr std::uint32_t kPads[] = {usage_of(0xff00, 1), usage_of(0xffff, 1)};
   const std::uint16_t product = device.product;

@@ -11,7 +11,7 @@
 namespace gaitpad {
 namespace {
 
-// Characters of a block: as many as the widest registers have lanes.
+// Most characters of a block: as many as the widest registers have lanes.
 constexpr std::size_t kTogether = 8;
 
 template <int kWidth>

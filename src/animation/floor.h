@@ -1,4 +1,4 @@
-// The ground in a walk's own coordinates. Sections lie in these coordinates; a game's ground is
+// The ground in a walk's own coordinates. Sections are in these coordinates; a game's ground is
 // asked for by its place in the world.
 #pragma once
 #include <array>

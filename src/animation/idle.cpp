@@ -11,9 +11,10 @@ namespace gaitpad {
 namespace {
 
 constexpr double kBeginsAfter_s = 1.0, kBegins_s = 2.0, kEnds_s = 0.8;
-// 14 breaths a minute (people at rest: 12 to 18), each of which raises the trunk by kBreath_rad.
+// Rate of the breath, 14 a minute (people at rest: 12 to 18), and the angle by which each breath
+// raises the trunk.
 constexpr double kBreath_Hz = 0.235, kBreath_rad = 0.6 * kDegree;
-// Quiet stance sways by 3 to 5 mm (standard deviation of the centre of pressure, Winter 1995),
+// Sways of quiet stance: 3 to 5 mm (standard deviation of the centre of pressure, Winter 1995),
 // below 0.5 Hz.
 struct Sway {
   double size_m, rate_Hz, begin_rad;

@@ -13,25 +13,26 @@ namespace {
 
 // --- The chain in one pose -----------------------------------------------------------------------
 
-// Every DOF as an axis in space. A Jacobian column is then one cross product per point.
+// A pose of the chain, with every DOF as an axis in space. A column of the Jacobian is then one
+// cross product per point.
 struct IkPose {
-  std::array<vec3, kMaxIkDofs> axis;     // of each DOF, base frame
-  std::array<vec3, kMaxIkDofs> pivot_m;  // a point on that axis
-  vec3 x, y, z;                          // images of the last frame's axes
-  vec3 end_m;                            // its origin
+  std::array<vec3, kMaxIkDofs> axis;     // axis of each DOF, base frame
+  std::array<vec3, kMaxIkDofs> pivot_m;  // a point on the axis of each DOF
+  vec3 x, y, z;                          // axes of the last frame in the base frame
+  vec3 end_m;                            // origin of the last frame
 };
 
 vec3 point_in_base(const IkPose& pose, const vec3& p) noexcept {
   return pose.end_m + p.x * pose.x + p.y * pose.y + p.z * pose.z;
 }
 
-// Images of the axes of the frame that the chain has led to so far.
+// Axes of the frame that the chain has reached so far, in the base frame.
 struct Axes {
   vec3 x{1.0, 0.0, 0.0}, y{0.0, 1.0, 0.0}, z{0.0, 0.0, 1.0};
 };
 
-// Turns about a unit axis that is given in the frame itself, by Rodrigues' formula; returns the
-// axis in the base frame. The usual axes cost a third of it.
+// Turns the frame about a unit axis that is given in the frame itself, by Rodrigues' formula;
+// returns the axis in the base frame. For an axis along x, y or z this takes a third of the time.
 vec3 turn_about(const vec3& a, const SinCos& s, Axes& f) noexcept {
   vec3 axis;
   if (a.x == 1.0) return axis = f.x, turn(f.y, f.z, s.sin, s.cos), axis;
@@ -47,7 +48,7 @@ vec3 turn_about(const vec3& a, const SinCos& s, Axes& f) noexcept {
 
 void pose_chain(const IkChain& chain, const IkAngles& angles_rad, IkPose& pose) noexcept {
   assert(chain.dofs >= 0 && chain.dofs <= kMaxIkDofs);
-  // All calls first: the axes then stay in registers.
+  // Compute all sines and cosines first: the axes then stay in registers.
   std::array<SinCos, kMaxIkDofs> angle;
   for (int j = 0; j < chain.dofs; ++j) angle[j] = sin_cos(angles_rad[j]);
   Axes f;
@@ -63,10 +64,10 @@ void pose_chain(const IkChain& chain, const IkAngles& angles_rad, IkPose& pose) 
   pose.end_m = end;
 }
 
-// Step 1 of section 3.3.2: dX, how far each row is from its goal.
+// Step 1 of section 3.3.2: dX, the distance of each row from its goal.
 struct IkErrors {
   std::array<double, kMaxIkRows> dx;
-  std::array<vec3, kMaxIkRows> point_m;  // the rows' points, base frame
+  std::array<vec3, kMaxIkRows> point_m;  // points of the rows, base frame
   double squares = 0.0;                  // |dX|^2
 };
 
@@ -81,12 +82,12 @@ void measure_errors(const IkPose& pose, std::span<const IkRow> rows, IkErrors& e
   }
 }
 
-// Whether the arrays have room for the chain and the rows.
+// True if the arrays have room for the chain and the rows.
 bool do_fit(const IkChain& chain, std::span<const IkRow> rows) noexcept {
   return chain.dofs >= 0 && chain.dofs <= kMaxIkDofs && rows.size() <= kMaxIkRows;
 }
 
-// What check() of the options accepts, without a sentence.
+// True for a count that check() of the options accepts; makes no sentence.
 bool is_count(int count, int least) noexcept {
   return count >= least && count <= kMostIkIterations;
 }
@@ -100,10 +101,10 @@ bool are_sound(const RobustOptions& o) noexcept {
          o.max_step_rad <= kPi && is_count(o.max_iterations, 0) && is_count(o.max_tries, 1);
 }
 
-// Angles and weights are finite, limits in order (they may be infinite). A bad link, axis, point or
-// goal shows in the error.
+// Checks that angles and weights are finite, and limits in order (they may be infinite). A bad
+// link, axis, point or goal shows in the error.
 bool are_inputs_finite(const IkChain& chain, const IkAngles& angles_rad) noexcept {
-  double zero = 0.0;  // x - x is NaN for a NaN or an infinity
+  double zero = 0.0;  // stays 0 unless a number is NaN or infinite, because x - x is NaN then
   bool ordered = true;
   for (int j = 0; j < chain.dofs; ++j) {
     const IkDof& dof = chain.dof[j];
@@ -123,7 +124,7 @@ void add_trace_row(IkTrace* trace, const IkAngles& angles_rad, double error_m) n
   ++trace->rows;
 }
 
-// Makes the answer the trace's last row, unless it is already.
+// Adds the answer as the trace's last row, unless it is there already.
 void end_trace(IkTrace* trace, const IkAngles& angles_rad, double error_m) noexcept {
   if (trace == nullptr || trace->rows == 0) return;
   if (trace->angles_rad[static_cast<std::size_t>(trace->rows - 1)] == angles_rad) return;
@@ -185,7 +186,7 @@ bool invert(Square& a, int n) noexcept {
     for (int k = i + 1; k < n; ++k) {
       if (std::abs(a[k][i]) > std::abs(a[pivot][i])) pivot = k;
     }
-    if (!(std::abs(a[pivot][i]) > 0.0)) return false;  // also for NaN
+    if (!(std::abs(a[pivot][i]) > 0.0)) return false;  // written so that NaN counts as no pivot
     std::swap(a[i], a[pivot]);
     std::swap(inverse[i], inverse[pivot]);
     const double reciprocal = 1.0 / a[i][i];
@@ -255,7 +256,7 @@ double inverse_error(const Equations& e) noexcept {
 }
 
 struct Pass {
-  bool done = false;  // false: no inverse or no finite step; the angles are as before
+  bool done = false;  // false: there is no inverse or no finite step, and the angles are unchanged
   double error_m = 0.0;
   int halvings = 0;
 };
@@ -312,7 +313,7 @@ IkResult solve_paper(const IkChain& chain, std::span<const IkRow> rows, const Pa
     return refused();
   }
   add_trace_row(trace, angles_rad, result.error_m);
-  while (result.error_m > options.tolerance_m) {  // step 7
+  while (result.error_m > options.tolerance_m) {  // step 7: repeat until the error is small enough
     if (result.iterations >= options.max_iterations) {
       result.status = IkStatus::unreachable;
       break;
@@ -334,8 +335,9 @@ namespace {
 
 // --- The robust solver ---------------------------------------------------------------------------
 
-constexpr int kCandidates = 16;       // starts compared before each further try
-constexpr double kWorthAJump = 0.99;  // a later try replaces an earlier one only below this share
+constexpr int kCandidates = 16;  // number of starts that are compared before each further try
+// A later try replaces an earlier one only if its error is below this share of the earlier error.
+constexpr double kWorthAJump = 0.99;
 
 using IkDofValues = std::array<double, kMaxIkDofs>;
 
@@ -345,7 +347,7 @@ struct Problem {
   std::span<const IkRow> rows;
   const RobustOptions& options;
   IkTrace* trace;
-  IkDofValues weight;  // divided by the greatest
+  IkDofValues weight;  // weights divided by the largest one
   IkDofValues min_rad, max_rad;
 };
 
@@ -395,7 +397,7 @@ struct ChainSystem {
 };
 
 struct Try {
-  IkAngles angles_rad;  // the best met
+  IkAngles angles_rad;  // the best angles so far
   double squares;
   int iterations;
 };
@@ -430,7 +432,7 @@ IkAngles spread_start(const Problem& p, const IkAngles& given, int k) noexcept {
   return start;
 }
 
-// Of kCandidates starts, from number `first` on, the one that is nearest to the goal.
+// The start that is nearest to the goal, of kCandidates starts from number `first` on.
 IkAngles nearest_start(const Problem& p, const IkAngles& given, int first) noexcept {
   IkAngles nearest = given;
   double least = std::numeric_limits<double>::infinity();
@@ -446,7 +448,7 @@ IkAngles nearest_start(const Problem& p, const IkAngles& given, int first) noexc
 }
 
 // True for a goal farther from the base than the stretched chain, where no other start can help.
-// Only leading rows of one point, along directions at right angles, are looked at.
+// Only the leading rows of one point, along directions at right angles, are checked.
 bool beyond_reach(const Problem& p) noexcept {
   if (p.rows.empty()) return false;
   double reach = glm::length(p.rows[0].point_m), squares = 0.0;
@@ -474,7 +476,7 @@ IkResult best_of_tries(const Problem& p, const IkAngles& start, IkAngles& angles
     const int left = p.options.max_iterations - result.iterations - 1;
     const Try next = one_try<kRows>(p, other, left);
     ++result.tries;
-    result.iterations += 1 + next.iterations;  // the jump counts
+    result.iterations += 1 + next.iterations;  // the further start counts as one iteration
     if (next.squares <= enough || next.squares < kWorthAJump * best.squares) best = next;
   }
   angles_rad = best.angles_rad;

@@ -17,16 +17,17 @@ template <class V>
 struct LegGoals {
   V thigh_m, shank_m;
   std::array<V, kLegDofs> weight, min_rad, max_rad;
-  // The foot's end-effector, its other end and a point beside the end-effector, in the foot.
+  // Three points in the foot's frame: the foot's end-effector, its other end and a point beside the
+  // end-effector.
   std::array<Vec3Of<V>, 3> point_m;
-  // The foot's axes in the pelvis' frame: sideways, across, along. Rows: side, across and along of
-  // the first point, side and across of the second, across of the third.
+  // Axes of the foot in the pelvis' frame: sideways, across, along. The rows are side, across and
+  // along of the first point, side and across of the second, across of the third.
   Vec3Of<V> side, across, along;
   std::array<V, 6> goal_m;
 };
 
-// A leg whose foot is planned as a whole: the goal of its ankle, in the pelvis' frame from the hip
-// joint, and the foot's axes.
+// A leg whose foot is planned as a whole: the goal of its ankle, counted from the hip joint in the
+// pelvis' frame, and the foot's axes.
 template <class V>
 struct PlannedLeg {
   V thigh_m, shank_m;
@@ -36,35 +37,35 @@ struct PlannedLeg {
 
 template <class V>
 struct LegSolution {
-  V squares;                // of the error, square metres, summed over the rows
-  V iterations;             // a whole number
-  Vec3Of<V> heel_m, toe_m;  // the first two points, in the pelvis' frame from the hip joint
+  V squares;                // squared error, summed over the rows, square metres
+  V iterations;             // number of iterations, a whole number
+  Vec3Of<V> heel_m, toe_m;  // the first two points, from the hip joint in the pelvis' frame
 };
 
-// The weights of equation (5): they decide how a leg uses the freedom that the planted point of its
-// sole leaves. In LegGoals, the weights are then W; the first point is met exactly; the second and
+// The weights of equation (5) decide how a leg uses the freedom that the planted point of its sole
+// leaves. With them, the weights in LegGoals are W; the first point is met exactly; the second and
 // third, `lever_m` from it along the foot and across it, give way.
 template <class V>
 struct LegShares {
-  V uneven;                               // 1, or 0: this leg is left as it is
-  std::array<V, kLegDofs> reference_rad;  // the pose that it pulls to
-  V on_heel;                              // where the first point is: 0 toe .. 1 heel
+  V uneven;                               // 1: the weights differ; 0: this leg is not changed
+  std::array<V, kLegDofs> reference_rad;  // pose towards which the joints are pulled
+  V on_heel;                              // place of the first point on the sole: 0 toe .. 1 heel
   V lever_m;
   std::array<V, 3> give_m2;      // how far yaw, pitch and roll of the foot give way
-  V room_down_rad, room_up_rad;  // how far the foot may pitch away from its goal
-  V knee_rad, knee_soft_rad;     // a knee that is straighter than this is bent
+  V room_down_rad, room_up_rad;  // angles by which the foot may pitch away from its goal
+  V knee_rad, knee_soft_rad;     // a knee that is straighter than this angle is bent
 };
 
 // One leg: its goals and the solver's start, then the best pose and its error. Angles and weights
 // have to be finite.
 struct LegToSolve {
   LegGoals<double> goals;
-  LegShares<double> shares;  // where weights differ
+  LegShares<double> shares;  // shares for legs whose weights differ
   LegAngles angles_rad;
   LegSolution<double> solution;
 };
 
-// One leg, and whether its goal was reached: 1 or 0. If not, the angles are unchanged.
+// One leg, and whether its goal was reached: 1 or 0. If it was not, the angles are unchanged.
 struct LegToClose {
   PlannedLeg<double> planned;
   LegAngles angles_rad;
@@ -73,13 +74,13 @@ struct LegToClose {
 template <int kRegister>
 void close_legs(std::array<LegToClose, 2>& legs) noexcept;
 
-// kWidth: 2, 4 or 8. kWeighted: the legs' `shares` are looked at. kRegister: the width of the
-// registers that it is compiled for; wider ones bring instructions with three operands, by which
-// two legs take a seventh less time.
+// Solves legs side by side. kWidth: 2, 4 or 8. kWeighted: the legs' `shares` are used. kRegister:
+// the width of the registers for which it is compiled; wider ones bring instructions with three
+// operands, with which two legs take a seventh less time.
 template <int kWidth, bool kWeighted, int kRegister = kWidth>
 void solve_legs(const std::array<LegToSolve*, kWidth>& legs) noexcept;
 
-// The two of one character, for the widest registers in use.
+// Closes the two legs of one character, for the widest registers in use.
 inline void close_two_legs(std::array<LegToClose, 2>& legs) noexcept {
   const int lanes = lanes_in_use();
   const auto close = lanes >= 8 ? close_legs<8> : lanes >= 4 ? close_legs<4> : close_legs<2>;

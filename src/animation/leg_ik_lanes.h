@@ -5,7 +5,7 @@
 
 namespace gaitpad {
 
-// The goal's point that each row belongs to.
+// For each row the index of its point in the goal.
 inline constexpr std::array<int, 6> kPointOf = {0, 0, 0, 1, 1, 2};
 
 namespace {
@@ -15,11 +15,12 @@ using LegValues = std::array<V, kLegDofs>;
 template <class V>
 using LegRows = std::array<V, 6>;
 
-// The legs in one pose, and how far their rows are from their goals.
+// The legs in one pose, and the distances of their rows from their goals.
 template <class V>
 struct LegPlace {
-  std::array<Vec3Of<V>, kLegDofs> axis;  // in the pelvis' frame; the first is its x axis
-  Vec3Of<V> knee_m, ankle_m;             // the rotations of the hip turn about the origin
+  std::array<Vec3Of<V>, kLegDofs> axis;  // axes in the pelvis' frame; the first is its x axis
+  // Places of knee and ankle, from the hip joint, about which its rotations turn.
+  Vec3Of<V> knee_m, ankle_m;
   std::array<Vec3Of<V>, 3> point_m;
   LegRows<V> dx;
   V squares;
@@ -34,7 +35,7 @@ inline void place_legs(const LegGoals<V>& goals, const LegValues<V>& angles_rad,
   Vec3Of<V> x{one, zero, zero}, y{zero, c[0], s[0]}, z{zero, -s[0], c[0]};
   place.axis[0] = x;
   place.axis[1] = z;
-  // x is still the pelvis' own: half of the products with it are 0.
+  // x is still the pelvis' own axis, so half of the products with it are 0.
   x = {c[1], s[1] * y.y, s[1] * y.z};
   y = {-s[1], c[1] * y.y, c[1] * y.z};
   place.axis[2] = y;
@@ -85,7 +86,7 @@ inline void set_columns(const LegGoals<V>& goals, const LegPlace<V>& place,
   }
 }
 
-// The error of the first point alone, squared.
+// The squared error of the first point.
 template <class V>
 inline V first_rows(const LegRows<V>& dx) noexcept {
   return dx[0] * dx[0] + dx[1] * dx[1] + dx[2] * dx[2];
@@ -93,12 +94,13 @@ inline V first_rows(const LegRows<V>& dx) noexcept {
 
 // --- The closed form -----------------------------------------------------------------------------
 
-// The angle with this sine and cosine, up to a common factor, near another angle. Clears `is_near`
-// where it is not.
+// The angle with this sine and cosine, which may have a common factor, near another angle. Clears
+// `is_near` in lanes in which it is not near.
 template <class V>
 inline V angle_near(const V& sine, const V& cosine, const V& old_rad, const V& old_sine,
                     const V& old_cosine, MaskOf<V>& is_near) noexcept {
-  constexpr double kNear = 0.035;  // tangent: farther away the swivel would not be the nearest
+  // Tangent of an angle; a solution farther from the start would not have the nearest swivel.
+  constexpr double kNear = 0.035;
   const V across = sine * old_cosine - cosine * old_sine,
           along = cosine * old_cosine + sine * old_sine;
   is_near = is_near & (abs_of(across) < kNear * along);
@@ -114,17 +116,18 @@ inline std::array<V, 3> turns_xzy(const Vec3Of<V>& vector, const Vec3Of<V>& x, c
   return {first, dot_of(vector, z), dot_of(vector, y) + sine_z * first};
 }
 
-// Brings a leg's foot to where it is planned. The knee's bend follows from the distance to the
-// ankle. Of the poses that are left, which differ by the knee's swivel about the line from hip to
-// ankle, it takes the one nearest to the start: the least sum of squares of the angles' changes, as
-// the pseudoinverse has it, to first order. Where it is true the angles are exact; elsewhere, where
-// a leg is too short, at a limit or far from its start, they are as they were.
+// Brings a leg's foot to its planned place. The knee's bend follows from the distance to the ankle.
+// The remaining poses differ by the knee's swivel about the line from hip to ankle; the one nearest
+// to the start is taken: the least sum of squares of the angles' changes, as with the
+// pseudoinverse, to first order. In the returned mask the angles are exact; in other lanes, where a
+// leg is too short, at a limit or far from its start, they are unchanged.
 template <class V>
 inline MaskOf<V> close_lanes(const PlannedLeg<V>& planned, LegValues<V>& angles_rad) noexcept {
   LegValues<V> s, c;
   for (int j = 0; j < kLegDofs; ++j) sin_cos_of(angles_rad[j], s[j], c[j]);
   const V zero{}, one = all_of<V>(1.0), a = planned.thigh_m, b = planned.shank_m;
-  // The hip's axes at the start: of its second turn, then all of them after it, then the thigh's.
+  // The hip's axes at the start: of its second turn, then all of them after that turn, then the
+  // thigh's.
   const Vec3Of<V> hip_z{zero, -s[0], c[0]}, hip_x{c[1], s[1] * c[0], s[1] * s[0]},
       hip_y{-s[1], c[1] * c[0], c[1] * s[0]};
   Vec3Of<V> x = hip_x, z = hip_z;
@@ -139,7 +142,7 @@ inline MaskOf<V> close_lanes(const PlannedLeg<V>& planned, LegValues<V>& angles_
   Vec3Of<V> foot_z = ankle_z;
   turn(foot_z, foot_x, s[6], c[6]);
 
-  // The knee, then the least turn of the hip that brings the ankle to its place.
+  // The knee, then the smallest turn of the hip that brings the ankle to its place.
   const Vec3Of<V>& ankle = planned.ankle_m;
   const V square = dot_of(ankle, ankle), bends = (square - a * a - b * b) / (2.0 * a * b),
           bent = sqrt_of(max_of(V(1.0 - bends * bends), zero));
@@ -149,7 +152,8 @@ inline MaskOf<V> close_lanes(const PlannedLeg<V>& planned, LegValues<V>& angles_
   const Vec3Of<V> from = -(a + b * bends) * y - (b * bent) * z;
   Vec3Of<V> axis = cross_of(from, ankle);
   V w = square + dot_of(from, ankle);
-  // Rotation vectors of hip and foot, and the part of the foot's that the ankle has to turn.
+  // Rotation vectors of hip and foot, and the part of the foot's rotation that the ankle has to
+  // make.
   const Vec3Of<V> of_hip = axis * (2.0 / w),
                   of_foot =
                       0.5 * (cross_of(foot_x, planned.foot_x) + cross_of(foot_y, planned.foot_y) +
@@ -171,7 +175,7 @@ inline MaskOf<V> close_lanes(const PlannedLeg<V>& planned, LegValues<V>& angles_
   const V norm = 1.0 / sqrt_of(V(w * w + dot_of(vector, vector)));
   const QuatOf<V> hip_turn{w * norm, vector.x * norm, vector.y * norm, vector.z * norm};
 
-  // The angles of that pose.
+  // The angles of the pose that was found.
   const Vec3Of<V> thigh_x = hip_turn * x, thigh_y = hip_turn * y,
                   thigh_z = cross_of(thigh_x, thigh_y);
   next[kHipX] = angle_near(thigh_y.z, thigh_y.y, angles_rad[kHipX], s[0], c[0], good);
@@ -203,11 +207,12 @@ inline constexpr double kSharedNear_rad = 0.05 * kDegree, kSharedNear_m = 0.001;
 inline constexpr int kMostShareSteps = 8;
 inline constexpr double kExactRow_m2 = 1e-13;
 inline constexpr double kKneeSpring = 100.0;
-// Share of the room of a foot's pitch beyond which it gives way no further.
+// Share of the room of a foot's pitch up to which it gives way.
 inline constexpr double kRoomUsed = 0.8;
 
-// Makes a step of legs whose weights differ one towards the least sum of (angle - reference)^2 / W
-// and of the squares of the rows that give way over what they give, under the exact rows.
+// A step of legs whose weights differ. It reduces the sum of (angle - reference)^2 / W and of the
+// squared errors of the rows that give way, each divided by its allowance, while the exact rows
+// stay met.
 template <class V, class Step>
 inline void share_step(const LegShares<V>& shares, const MaskOf<V>& shared, const LegPlace<V>& at,
                        const LegValues<V>& angles_rad, LegColumns<V>& column, Step& step) noexcept {
@@ -217,7 +222,7 @@ inline void share_step(const LegShares<V>& shares, const MaskOf<V>& shared, cons
     for (auto& c : column) c[r] = shared ? c[r] - c[of] : c[r];
     b[r] -= at.dx[of];
   }
-  // Down positive. Near the floor, and near a toe's, a turn counts more and more.
+  // The pitch, down positive. Near the floor, and near a toe's limit, a turn has a growing cost.
   const V lever = shares.lever_m, down = b[4] / lever;
   const V room = down > V{} ? shares.room_down_rad : shares.room_up_rad, size = abs_of(down),
           t = min_of(V(size / room), all_of<V>(kRoomUsed)), left = 1.0 / (1.0 - t),
@@ -245,7 +250,7 @@ inline void share_step(const LegShares<V>& shares, const MaskOf<V>& shared, cons
   }
 }
 
-// Several legs, as the robust solver takes them.
+// Several legs in the form of the robust solver.
 template <class Lane, bool kShares>
 struct LegSystem {
   using V = Lane;
@@ -282,7 +287,7 @@ struct LegSystem {
                   StepIn<LegSystem>& step) const noexcept {
     gaitpad::share_step(shares, shared, at, angles_rad, column, step);
   }
-  // The exact point was near enough before a step this small.
+  // True if the exact point was near enough before a step this small.
   MaskOf<V> settles(const Place& at, const V& greatest_rad, int steps) const noexcept {
     return shared & (((greatest_rad < all_of<V>(kSharedNear_rad)) &
                       (first_rows(at.dx) < all_of<V>(kSharedNear_m * kSharedNear_m))) |
@@ -305,8 +310,8 @@ inline LegSolution<V> solve_lanes(const LegGoals<V>& goals, const LegShares<V>& 
   return {squares, iterations, best.point_m[0], best.point_m[1]};
 }
 
-// Numbers of several legs side by side, and back: the structs are the same numbers in the same
-// order.
+// Copies the numbers of several legs into lanes, and back: the structs have the same numbers in the
+// same order.
 template <std::size_t kWidth, class Leg, class One, class Several>
 inline void gather(const std::array<Leg*, kWidth>& legs, One Leg::*part, Several& to) noexcept {
   static_assert(sizeof to == kWidth * sizeof(One));

@@ -45,7 +45,7 @@ void report_root(const RootBefore& before, WalkState& state) noexcept {
 
 namespace {
 
-// Whether each number is finite and at most kFarthest_m; counts those that are not.
+// True if each number is finite and at most kFarthest_m; counts those that are not.
 bool is_sound_move(const vec3& place_m, double heading_rad, WalkState& state) noexcept {
   int bad = 0;
   for (const double number : {place_m.x, place_m.y, place_m.z, heading_rad})
@@ -81,7 +81,8 @@ void put_walk(const vec3& place_m, double heading_rad, WalkState& state, Pose& p
 GaitParams following(const CapsuleMotion& capsule, const WalkState& state, const StyleValues& style,
                      const GaitLimits& limits) noexcept {
   constexpr double kCatchUp_s = 0.6, kTurns_s = 0.35;
-  constexpr double kStill_m_s = 0.1, kBeside_m = 0.8;  // slower and nearer: it has arrived
+  // A body that is slower and nearer has arrived.
+  constexpr double kStill_m_s = 0.1, kBeside_m = 0.8;
   constexpr double kNear_m = 0.12, kFaces = 3.0 * kDegree;
   const WalkFrame& frame = state.frame;
   Stick stick;

@@ -4,7 +4,7 @@
 
 namespace gaitpad {
 
-// Brings the results of a tick from the walk's own coordinates to the world.
+// Converts the results of a tick from the walk's own coordinates to the world.
 void place_in_world(const Placement& placed, WalkFrame& frame, vec3& root_m, quat& root) noexcept;
 
 struct RootBefore {

@@ -16,9 +16,9 @@ namespace {
 inline constexpr double kLeastDampingSquared = 1e-20;
 inline constexpr double kGrowth = 0.1;
 inline constexpr double kGrowthUp = 8.0, kGrowthDown = 0.25;
-inline constexpr double kFarthest = 0.5;  // metres: the greatest |dX| that one step asks for
-// The error stands still if kPatience iterations together lower it by less than the share
-// kLeastGain of itself, or of kGainFrom metres if it is greater.
+inline constexpr double kFarthest = 0.5;  // the largest |dX| that one step uses, metres
+// The error counts as constant if kPatience iterations together reduce it by less than the share
+// kLeastGain of itself, or of kGainFrom metres if that is larger.
 inline constexpr int kPatience = 6;
 inline constexpr double kLeastGain = 0.001;
 inline constexpr double kGainFrom = 0.1;
@@ -38,9 +38,10 @@ inline auto jacobian_entry(const Axis& a, const Axis& n, const Axis& d, const Ax
   return (a.x * m.x + a.y * m.y) + (a.z * m.z + n.x * d.x) + (n.y * d.y + n.z * d.z);
 }
 
-// A System has kRows, kDofs (at most) and `dofs`; weight, min_rad and max_rad of each DOF; a Place
-// with dx, how far each row is from its goal, and the sum of their squares; place(), set_columns(),
-// keep() and trace(). kWeighted: lanes that are `shared` make steps of their own, by share_step().
+// What a System provides: kRows, kDofs (at most) and `dofs`; weight, min_rad and max_rad of each
+// DOF; a Place with dx, the distance of each row from its goal, and the sum of their squares;
+// place(), set_columns(), keep() and trace(). kWeighted: lanes that are `shared` take their steps
+// from share_step().
 template <class System>
 using RowsIn = std::array<typename System::V, System::kRows>;
 template <class System>
@@ -51,11 +52,12 @@ using ColumnsIn = std::array<RowsIn<System>, System::kDofs>;
 // The linear system of one step.
 template <class System>
 struct StepIn {
-  AnglesIn<System> weight, first_rad;  // first_rad: a turn before the rows are closed
-  RowsIn<System> give, error;          // how far the rows give way, and what is left to close
+  AnglesIn<System> weight, first_rad;  // first_rad: a turn that is made before the rows are closed
+  RowsIn<System> give, error;          // allowance of each row, and the error that is left to close
 };
 
-// (J W J^T + a diagonal) y = b, by L D L^T. No pivot is less than the diagonal, so none is checked.
+// Solves (J W J^T + a diagonal) y = b by L D L^T. No pivot is less than the diagonal, so none is
+// checked.
 template <class System>
 inline void solve_rows(const ColumnsIn<System>& column, int dofs, const StepIn<System>& step,
                        RowsIn<System>& y) noexcept {
@@ -136,11 +138,11 @@ inline void limited_step(const System& system, const ColumnsIn<System>& column,
 
 template <class V>
 struct RobustSolution {
-  V squares, iterations;  // of the best pose; a whole number
+  V squares, iterations;  // squared error of the best pose; number of iterations, a whole number
 };
 
-// Iterates from `angles_rad` until the tolerance is met, the error stands still or the iterations
-// are used up, and leaves the best pose there. `lanes`: those that are to be solved.
+// Iterates from `angles_rad` until the tolerance is met, the error no longer falls or the
+// iterations are used up, and leaves the best pose there. `lanes`: the lanes to be solved.
 template <class System>
 inline RobustSolution<typename System::V> iterate(System& system, const RobustOptions& options,
                                                   int max_iterations,
@@ -186,8 +188,8 @@ inline RobustSolution<typename System::V> iterate(System& system, const RobustOp
     step.weight = system.weight;
     const V damping = std::max(options.damping * options.damping, kLeastDampingSquared) +
                       growth * min_of(best.squares, all_of<V>(most));
-    // Written by hand: for std::array's fill() the linker might take the copy compiled for wider
-    // registers.
+    // A loop instead of std::array's fill(), for which the linker might take the copy compiled for
+    // wider registers.
     for (int r = 0; r < System::kRows; ++r) {
       step.give[r] = damping;
       step.error[r] = share * best.dx[r];

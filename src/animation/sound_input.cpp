@@ -23,13 +23,15 @@ bool is_sound(const GaitParams& params, const WalkState& state) noexcept {
     std::memcpy(&two, numbers_of(of).data() + k, sizeof two);
     return two;
   };
-  // The body's numbers, which stand last, are many and seldom change.
+  // The body's numbers come last; they are many and seldom change, so they are checked only after a
+  // change.
   constexpr std::size_t kBody = sizeof(UpperBodyParams) / sizeof(double);
   const bool same = is_same(params.body, state.body.goal);
   const std::size_t count = same ? kParamsNumbers - kBody : kParamsNumbers;
   MaskOf<Pair> outside{};
   for (std::size_t k = 0; k < count; k += 2) {
-    const std::size_t at = std::min(k, count - 2);  // the last pair of an odd count overlaps
+    // Pairs of numbers; the last pair of an odd count overlaps the one before.
+    const std::size_t at = std::min(k, count - 2);
     const Pair x = pair(params, at);
     outside |= ~((x >= pair(range.least, at)) & (x <= pair(range.most, at)));
   }
@@ -51,7 +53,7 @@ GaitParams mended_params(const GaitParams& params, WalkState& state) noexcept {
   GaitParams mended = params;
   if (std::isnan(params.stride[0].length_m + params.stride[1].length_m) &&
       std::isnan(params.turn_rate_rad_s)) {
-    // A stick that is no number: it says nothing of whether to walk either.
+    // A stick that is not a number does not tell whether to walk, so the walk goes on as before.
     mended.walking = state.clock.started && !state.clock.stopping;
     mended.backward = state.clock.backward;
   }

@@ -9,9 +9,9 @@ namespace gaitpad {
 namespace {
 
 // A terrain is a row of sections. Each kind of section answers the same four questions: how long it
-// is, whether one can walk on it, how it grows with a scale, and what its surface is at a place.
-// Such a place has two coordinates: x as in the world, and u, the metres behind the section's
-// begin. Heights count from the height at which the section begins.
+// is, whether one can walk on it, how it grows with a scale, and its surface at a place. Such a
+// place has two coordinates: x as in the world, and u, the metres from the section's begin. Heights
+// are relative to the height at which the section begins.
 
 constexpr double kMinLength_m = 0.1, kMaxLength_m = 1000.0;
 constexpr double kMinTread_m = 0.15, kMaxTread_m = 2.0, kMaxRise_m = 0.4;
@@ -25,7 +25,7 @@ std::optional<Error> length_problem(double length_m) {
                short_number(kMinLength_m) + " and " + short_number(kMaxLength_m) + " m"};
 }
 
-// The reason why a sole would not lie on a surface of at most this bend and grade.
+// The reason why a sole would not lie on a surface with this bend and grade; none if it would.
 std::optional<Error> shape_problem(double bend_1_m, double grade) {
   if (!(grade <= kMaxGrade))
     return Error{"a grade of " + fixed(grade, 2) + " is too steep: at most " +
@@ -45,7 +45,8 @@ struct ShapePoint {
 };
 
 // Waves and height fields are multiplied by a share that is 0 at both ends of the section and 1 in
-// between, so that they join their neighbours level. This is the share at u, and its slope.
+// the middle, so that the section is level where it joins its neighbours. This is the share at u,
+// and its slope.
 struct Share {
   double value = 1.0, slope = 0.0;
 };
@@ -64,7 +65,7 @@ struct Most {
 struct MostOfShare {
   double slope_1_m = 0.0, bend_1_m2 = 0.0;
 };
-// Bounds the slope and the bend of surface times share by the product rule.
+// Checks the slope and the bend of surface times share, by the product rule.
 std::optional<Error> faded_problem(double length_m, double fade_m, const MostOfShare& share,
                                    const Most& surface) {
   if (auto problem = length_problem(length_m)) return problem;
@@ -119,7 +120,7 @@ void scale(SlopeSection& slope, double factor) noexcept {
 // --- Stairs --------------------------------------------------------------------------------------
 
 double length_of(const StairsSection& stairs) noexcept { return stairs.tread_m * stairs.count; }
-// The line of a riser belongs to the upper tread: upstairs to the one behind it, downstairs to the
+// The line of a riser belongs to the upper tread: upstairs to the tread after it, downstairs to the
 // one before it.
 ShapePoint point_at(const StairsSection& stairs, double, double u) noexcept {
   int passed = 0;
@@ -172,7 +173,7 @@ std::optional<Error> problem_of(const RoughSection& rough) {
     const double height_m = std::abs(w.height_m);
     most.height_m += height_m, most.grade += height_m * k, most.bend_1_m += height_m * k * k;
   }
-  // The greatest slope and bend of smoothstep.
+  // Greatest slope and bend of the share, which is a smoothstep.
   const MostOfShare share{1.5 / rough.fade_m, 6.0 / (rough.fade_m * rough.fade_m)};
   return faded_problem(rough.length_m, rough.fade_m, share, most);
 }
@@ -274,10 +275,10 @@ std::optional<Error> problem_of(const FieldSection& section) {
   }
   const Differences most = differences(f);
   if (!(most.height * n < 100.0)) return Error{"a height is beyond 100 m"};
-  // The share is a product of two, across and along; these bound it in any direction.
+  // The share is a product of two, across and along; these numbers bound it in any direction.
   const double slope = std::sqrt(2.0) * 1.5 / section.fade_m;
   const double bend = (6.0 + 1.5 * 1.5) / (section.fade_m * section.fade_m);
-  // Within a sample of the border the surface is cut off. The share leaves little of it there.
+  // Within one sample of the border the surface is cut off, where the share is small.
   const double cut = 3.0 * most.step * n / (section.fade_m * section.fade_m);
   return faded_problem(section.length_m, section.fade_m, {slope, bend},
                        {most.height * n, std::sqrt(2.0) * most.step * n / m,
@@ -291,7 +292,8 @@ void scale(FieldSection& section, double factor) noexcept {
 
 // --- The row of sections -------------------------------------------------------------------------
 
-// Farther places count as this far: sin_cos() is exact up to 1e5 rad only. NaN becomes -kFar_m.
+// Places farther away count as this far, because sin_cos() is exact up to 1e5 rad only. NaN becomes
+// -kFar_m.
 constexpr double kFar_m = 1e4;
 
 double bounded_place(double x_m) noexcept {
@@ -331,7 +333,7 @@ void for_each_riser(const Terrain& terrain, const Visit& visit) noexcept {
   }
 }
 
-// A number in [0, 1) of a seed, by the mixer of splitmix32.
+// A pseudo-random number in [0, 1) for a seed, by the mixer of splitmix32.
 double random_share(std::uint32_t seed) noexcept {
   std::uint32_t x = seed + 0x9e3779b9u;
   x = (x ^ (x >> 16)) * 0x21f0aaadu;
@@ -353,7 +355,7 @@ double grid_sample(const GroundGrid& grid, int column, int row) noexcept {
                        static_cast<std::size_t>(column)];
 }
 
-// A coordinate in samples: the sample before it, and the share of the way to the next one.
+// A coordinate as the index of the sample before it, and the share of the way to the next sample.
 struct GridPlace {
   int cell = 0;
   double share = 0.0;
@@ -494,10 +496,11 @@ double length_m(const Terrain& terrain) noexcept {
 
 RoughSection rough_section(double length_m, double amplitude_m, double wavelength_m, double fade_m,
                            std::uint32_t seed) {
-  // Each wave's length over the shortest one, squared. The roots have no common measure, so the sum
-  // never repeats.
+  // The squares of the waves' lengths relative to the shortest one. The lengths have no common
+  // measure, so the sum never repeats.
   constexpr std::array<double, 5> kSquares{1.0, 1.7, 2.6, 3.7, 5.3};
-  constexpr double kGoldenAngle = 2.399963229728653;  // between directions: no two line up
+  // Angle between the directions of two waves, so that no two have the same direction.
+  constexpr double kGoldenAngle = 2.399963229728653;
   RoughSection rough;
   rough.length_m = length_m, rough.fade_m = fade_m;
   double sum = 0.0;
@@ -506,7 +509,8 @@ RoughSection rough_section(double length_m, double amplitude_m, double wavelengt
   for (std::size_t i = 0; i < kSquares.size(); ++i) {
     const double k = 2.0 * kPi / (wavelength_m * std::sqrt(kSquares[i]));
     const SinCos direction = sin_cos(turn + kGoldenAngle * static_cast<double>(i));
-    // A wave's height grows with the square of its length, so that each bends the ground alike.
+    // A wave's height grows with the square of its length, so that all waves bend the ground
+    // equally.
     rough.wave[i] = {
         .x_rad_m = k * direction.sin,
         .z_rad_m = k * direction.cos,

@@ -20,13 +20,15 @@ namespace {
 // --- Smoothing, once a tick ----------------------------------------------------------------------
 
 constexpr RobustOptions kRobustBody = {.tolerance_m = 1e-6, .max_iterations = 40, .max_tries = 1};
-constexpr double kSmoothing = 0.22;     // s at the reference leg
-constexpr double kSettled = 24.0;       // time constants until all but 1e-9 of a change is over
-constexpr double kRailProbe_m = 0.035;  // between two probes of the ground under a rail
-constexpr int kRailProbes = 15;  // to either side, 0.56 m: a mean over two treads rises evenly
+constexpr double kSmoothing = 0.22;  // time constant in seconds at the reference leg
+// After this number of time constants all but 1e-9 of a change is over.
+constexpr double kSettled = 24.0;
+constexpr double kRailProbe_m = 0.035;  // distance of the probes of the ground under a rail
+// Probes on either side, 0.56 m in all: a mean over two treads rises evenly.
+constexpr int kRailProbes = 15;
 constexpr double kRailSmoothing = 0.06;
 
-// The parameters are numbers alone, so all of them are smoothed as one row.
+// The parameters are numbers only, so all of them are smoothed as one row.
 using BodyValues = std::array<double, sizeof(UpperBodyParams) / sizeof(double)>;
 
 // Brings the values in force nearer to their goals. At the goals this costs one comparison.
@@ -50,7 +52,8 @@ void settle_values(const Tick& tick, UpperBodyState& body) noexcept {
   BodyValues now = before;
   const Damping damping(tau, tick.dt_s);
   for (std::size_t i = 0; i < to.size(); i += 2) {
-    const std::size_t at = std::min(i, to.size() - 2);  // the last pair of an odd count overlaps
+    // Pairs of numbers; the last pair of an odd count overlaps the one before.
+    const std::size_t at = std::min(i, to.size() - 2);
     Damped<Pair> value;
     Pair aim;
     std::memcpy(&value.x, &before[at], sizeof(Pair));
@@ -63,8 +66,8 @@ void settle_values(const Tick& tick, UpperBodyState& body) noexcept {
   body.now = bits_as<UpperBodyParams>(now);
 }
 
-// A rail rises evenly over stairs, so it stands on the mean of the ground along the way under the
-// hand. The mean is taken as far ahead as the filter after it lags.
+// Moves a rail's height. The rail rises evenly over stairs, so its height is that of the mean
+// ground along the way under the hand. The mean is taken as far ahead as the filter after it lags.
 void follow_rail(const Tick& tick, Side side, WalkState& state) noexcept {
   UpperBodyState& body = state.body;
   const HandParams& hand = body.now.hand[side];
@@ -84,14 +87,15 @@ void follow_rail(const Tick& tick, Side side, WalkState& state) noexcept {
   const double mean_m = tick.flat ? 0.0 : sum / weights;
   Damped<double> ground{body.rail_ground_m[side], body.rail_ground_m_s[side]};
   ground.advance(mean_m, smoothing_s, tick.dt_s);
-  if (hand.rail <= 0.0) ground = {mean_m, 0.0};  // not held yet: nothing to smooth
+  // The rail was not held yet, so there is nothing to smooth.
+  if (hand.rail <= 0.0) ground = {mean_m, 0.0};
   body.rail_ground_m[side] = ground.x;
   body.rail_ground_m_s[side] = ground.v;
 }
 
 // --- Posture: a trunk that leans, arms that are spread -------------------------------------------
 
-// 1 in the middle of the time that a leg stands alone, 0 in that of the other.
+// 1 in the middle of the time in which a leg stands alone, 0 in that of the other leg.
 double stands_alone(const WalkModel& model, const WalkState& state, Side side) noexcept {
   const std::array<double, 4>& share = model.share;
   const double middle = side == kRightSide ? share[0] + 0.5 * share[1]
@@ -141,7 +145,7 @@ void turn_joint(const Skeleton& skeleton, double heading_rad, const quat& turn, 
   turn_joints(skeleton, heading_rad, turn, {&joint, 1}, pose);
 }
 
-// The spine's joints share the lean; arms keep hanging as they did.
+// Leans the trunk by shares of the spine's joints; the arms keep their hanging direction.
 void lean_trunk(const WalkModel& model, const WalkState& state, const PosePart& pose) noexcept {
   const UpperBodyState& body = state.body;
   const std::vector<int>& spine = model.body.joints.spine;
@@ -169,7 +173,7 @@ vec3 turn_of(const quat& world, const quat& standing, double heading_rad) noexce
   return rotation_vector(rotation_y(-heading_rad) * world * glm::conjugate(standing));
 }
 
-// The segment's turn with its second difference bounded.
+// The segment's turn after its second difference was bounded.
 vec3 eased_turn(const Tick& tick, const WalkState& state, const vec3& goal, double most_s2,
                 EasedOf<vec3, double>& eased) noexcept {
   const double changes = state.body.push_rad.x != 0.0 ? 1.0 : state.path.unsteady;
@@ -207,24 +211,24 @@ void spread_arms(const WalkModel& model, const WalkState& state, const PosePart&
 
 // --- Spine ---------------------------------------------------------------------------------------
 
-// The spine is solved by weighted half-Jacobian IK: its joints share the way to where the data
-// carry the neck and turn the shoulders. Three rows, all of positions: the neck's sideways and
-// fore-aft place, and how far ahead a point beside it is.
+// The spine is solved by weighted half-Jacobian IK: its joints share the movement that brings the
+// neck and the shoulders to their place in the data. Three rows, all of positions: the neck's
+// sideways and fore-aft place, and the fore-aft place of a point beside it.
 
-constexpr double kNeckLever_m = 0.2;          // of the point beside the neck
-constexpr double kMostBend = 60.0 * kDegree;  // of one joint
-constexpr int kAxes = 3;                      // a joint
+constexpr double kNeckLever_m = 0.2;          // distance of that point from the neck
+constexpr double kMostBend = 60.0 * kDegree;  // largest bend of one joint
+constexpr int kAxes = 3;                      // number of axes of a joint
 static_assert(kAxes * kMaxSpineIk <= kMaxIkDofs);
 constexpr std::array<vec3, kAxes> kAxis = {vec3(1, 0, 0), vec3(0, 0, 1), vec3(0, 1, 0)};
 
-// The spine in one pose. Angles and places are in the walker's standing axes, turned with what the
-// spine stands on.
+// The spine in one pose. Angles and places are in the walker's standing axes, turned with the joint
+// below the spine.
 struct Spine {
   quat base = kIdentity;
   IkChain chain;
-  IkAngles angles{};      // how far each joint is turned from its standing pose
-  quat last = kIdentity;  // the uppermost joint's turn
-  vec3 last_m{0.0};       // its place, from the lowest
+  IkAngles angles{};      // angles of each joint from its standing pose
+  quat last = kIdentity;  // turn of the uppermost joint
+  vec3 last_m{0.0};       // place of the uppermost joint, from the lowest
 };
 
 Spine spine_of(const UpperBodyModel& body, const Skeleton& skeleton,
@@ -255,7 +259,7 @@ Spine spine_of(const UpperBodyModel& body, const Skeleton& skeleton,
   return spine;
 }
 
-// Joints of small weight keep to the standing pose.
+// Pulls joints of small weight towards the standing pose.
 void stiffen_spine(const UpperBodyModel& body, const SpineWeights& weight, Spine& spine) noexcept {
   const double largest = std::max({1e-6, weight[kLowerSpine], weight[kUpperSpine]});
   for (std::size_t i = 0; i < body.spine.size(); ++i) {
@@ -306,31 +310,35 @@ void pose_spine(const UpperBodyModel& body, const Skeleton& skeleton, const Spin
 
 // --- Arms ----------------------------------------------------------------------------------------
 
-// One arm by weighted half-Jacobian IK: shoulder 3, elbow 1, wrist 2; the end-effector is the
-// middle of the hand. With the wrist as end-effector weights would change next to nothing, as with
-// the ankle: the distance from shoulder to wrist is the elbow's angle.
+// One arm by weighted half-Jacobian IK: shoulder 3, elbow 1, wrist 2 angles; the end-effector is
+// the middle of the hand. With the wrist as end-effector weights would have nearly no effect, as
+// with the ankle: the distance from shoulder to wrist determines the elbow's angle.
 
-constexpr double kFarthest = 0.985, kSoftFar = 0.03;  // of the stretched arm: a hand's place
+// Greatest distance of a hand, as a share of the stretched arm's length, and the width in which it
+// is approached.
+constexpr double kFarthest = 0.985, kSoftFar = 0.03;
 constexpr double kNearest = 0.3, kSoftNear = 0.1;
-constexpr double kRailAhead_m = 0.15;  // of the shoulder, where a hand takes hold of a rail
-// Shoulder of a held hand's arm: what the solver starts from, of a left arm (a right one's z and y
-// are mirrored). Elbows point down and a little out where a tray is carried, back beside a rail.
+constexpr double kRailAhead_m = 0.15;  // how far ahead of the shoulder a hand holds a rail
+// Angles of a left shoulder at which the solver starts for a held hand (a right one's z and y are
+// mirrored). Elbows point down and a little outwards when a tray is carried, and back beside a
+// rail.
 using ShoulderAngles = std::array<double, 3>;
 constexpr ShoulderAngles kCarrying = {-15.0 * kDegree, 12.0 * kDegree, -15.0 * kDegree};
 constexpr ShoulderAngles kAtRail = {25.0 * kDegree, 4.0 * kDegree, 5.0 * kDegree};
-// Factors on the style's weights: shoulder and elbow bring a held hand to its place, not the wrist.
+// Factors on the style's weights: shoulder and elbow bring a held hand to its place; the wrist
+// hardly takes part.
 constexpr ArmWeights kHeldWeights = {1.0, 1.0, 0.7, 1.0, 0.25, 0.25};
 
-// One arm as it stands in a pose.
+// One arm in a pose.
 struct Arm {
   const ArmBuild& build;
   quat base = kIdentity;                              // the walker's axes at the shoulder
-  quat upper = kIdentity, fore = kIdentity;           // hanging axes of both bones
-  quat fore_rest = kIdentity, hand_rest = kIdentity;  // joint frames in those of the forearm
+  quat upper = kIdentity, fore = kIdentity;           // rotations of the hanging axes of both bones
+  quat fore_rest = kIdentity, hand_rest = kIdentity;  // joint frames relative to the forearm's axes
   vec3 shoulder_m{0.0};
   IkChain chain;
   IkAngles angles{};
-  vec3 grip_m{0.0};  // in the forearm's hanging axes
+  vec3 grip_m{0.0};  // middle of the hand, in the forearm's hanging axes
 
   explicit Arm(const ArmBuild& b) noexcept : build(b) {}
 };
@@ -374,7 +382,7 @@ bool is_arm_free(const UpperBodyParams& now, Side side) noexcept {
          now.hand[side].rail <= 0.0;
 }
 
-// The hands' places in the data, of arms that exist.
+// The places of the hands in the data, for arms that exist.
 using HandPlaces = std::array<vec3, 2>;
 
 vec3 hand_place(const ArmBuild& arm, const JointFrames& world) noexcept {
@@ -382,8 +390,8 @@ vec3 hand_place(const ArmBuild& arm, const JointFrames& world) noexcept {
 }
 
 struct Shoulders {
-  vec3 middle_m{0.0};        // between them
-  quat upright = kIdentity;  // turned with them about the vertical
+  vec3 middle_m{0.0};        // middle between the shoulders
+  quat upright = kIdentity;  // the shoulders' turn about the vertical
 };
 Shoulders shoulders_of(const WalkModel& model, const JointFrames& world) noexcept {
   const std::array<ArmBuild, 2>& arm = model.body.arm;
@@ -415,7 +423,7 @@ double lower_m(const Arm& arm) noexcept {
   return glm::length(arm.chain.dof[kElbowX].link_m + arm.grip_m);
 }
 
-// The place, moved to where the arm can reach it: neither too far from the shoulder nor too near.
+// Moves a place to where the arm can reach it: neither too far from the shoulder nor too near.
 vec3 within_reach(const Arm& arm, const vec3& place_m) noexcept {
   const double full = upper_m(arm) + lower_m(arm);
   const vec3 way = place_m - arm.shoulder_m;
@@ -425,8 +433,8 @@ vec3 within_reach(const Arm& arm, const vec3& place_m) noexcept {
   return arm.shoulder_m + way * (soft_min(near, kFarthest * full, kSoftFar * full) / far);
 }
 
-// A place before the chest, in the upright frame that turns with the shoulders: what both hands
-// hold stays level.
+// A place in front of the chest, in the upright frame that turns with the shoulders, so that what
+// both hands hold stays level.
 vec3 carried_place(const HandParams& hand, const UpperBodyModel& body, Side side,
                    const Shoulders& shoulders) noexcept {
   const double scale = body.arm_m / kReferenceArm_m;
@@ -434,7 +442,7 @@ vec3 carried_place(const HandParams& hand, const UpperBodyModel& body, Side side
          shoulders.upright * (scale * vec3(sign_of(side) * hand.x_m, hand.y_m, hand.z_m));
 }
 
-// A place on a rail that runs along with the hips' path.
+// A place on a rail that runs parallel to the hips' path.
 vec3 rail_place(const WalkModel& model, const WalkState& state, const HandParams& hand,
                 Side side) noexcept {
   const double scale = model.body.shoulder_height_m / kReferenceShoulder_m;
@@ -445,8 +453,8 @@ vec3 rail_place(const WalkModel& model, const WalkState& state, const HandParams
   return place;
 }
 
-// The solver's start for a held hand: the elbow points out and is bent as the distance of the place
-// asks, the wrist is as in the data.
+// The solver's start for a held hand: the elbow points outwards and has the bend for the distance
+// of the place; the wrist is as in the data.
 IkAngles held_start(const Arm& arm, Side side, double rail, const vec3& place_m) noexcept {
   const double a = upper_m(arm), b = lower_m(arm);
   const double far = glm::distance(place_m, arm.shoulder_m);
@@ -459,8 +467,8 @@ IkAngles held_start(const Arm& arm, Side side, double rail, const vec3& place_m)
   return start;
 }
 
-// Joints of small weight stay near the middle of their swing; the others make up for it, so that
-// the hand still goes as far forward and aside. Its height is left free: with three rows the path
+// Keeps joints of small weight near the middle of their swing. The other joints compensate, so that
+// the hand goes equally far forward and sideways. Its height is left free: with three rows the path
 // alone would determine the shoulder's angle.
 void stiffen_arm(const ArmBuild& build, const ArmWeights& weights, Arm& arm) noexcept {
   const double largest = std::max(1e-6, *std::max_element(weights.begin(), weights.end()));
@@ -485,7 +493,7 @@ void aim_arm(const vec3& goal_m, Arm& arm) noexcept {
   arm.angles[kShoulderY] += wrapped(to.y - arm.angles[kShoulderY]);
 }
 
-// Brings the hand from where it swings to what it carries or to the rail, by the shares of both.
+// Moves the hand from its swing to the carried object or to the rail, by the shares of both.
 void hold_hand(const WalkModel& model, const WalkState& state, Side side,
                const Shoulders& shoulders, Arm& arm) noexcept {
   const HandParams& hand = state.body.now.hand[side];
@@ -533,7 +541,7 @@ void write_arm(const Skeleton& skeleton, const Arm& arm, const PosePart& pose,
   }
 }
 
-// `own_m`: where the hand is in the data.
+// `own_m`: the place of the hand in the data.
 void pose_arm(const WalkModel& model, const WalkState& state, Side side, const Shoulders& shoulders,
               const vec3& own_m, const PosePart& pose, JointFrames& world) noexcept {
   const ArmBuild& build = model.body.arm[side];
@@ -552,20 +560,21 @@ void pose_arm(const WalkModel& model, const WalkState& state, Side side, const S
 
 // --- Head: it turns to where it is to look, and the neck takes its share -------------------------
 
-constexpr double kMostYaw = 70.0 * kDegree, kMostPitch = 40.0 * kDegree;  // from the trunk
+// Largest angles of the head from the trunk.
+constexpr double kMostYaw = 70.0 * kDegree, kMostPitch = 40.0 * kDegree;
 constexpr double kSoftYaw = 6.0 * kDegree, kSoftHeadPitch = 4.0 * kDegree;
 // The head does not follow a goal behind it, because turning left and right would be equally far,
 // nor one straight above or below it (kLevelFrom, kLevelTo: horizontal part of its direction).
 constexpr double kBesideYaw = 105.0 * kDegree, kBehindYaw = 150.0 * kDegree;
 constexpr double kLevelFrom = 0.15, kLevelTo = 0.4;
 constexpr double kNeckShare = 0.45;
-constexpr double kLead_s = 0.6;  // how far ahead of the walk a leading head looks
+constexpr double kLead_s = 0.6;  // time by which a leading head looks ahead of the walk
 
 double soft_limited(double x, double most, double soft) noexcept {
   return soft_max(soft_min(x, most, soft), -most, soft);
 }
 
-// The head's rotation when it looks along `direction` (world, unit): upright, and within the limits
+// The head's rotation if it looks along `direction` (world, unit): upright, and within the limits
 // of the neck. `share` fades to 0 for goals that the head does not follow.
 struct Gaze {
   quat head = kIdentity;
@@ -586,7 +595,7 @@ Gaze gaze(const UpperBodyModel& body, const quat& trunk, const vec3& direction) 
   return to;
 }
 
-// Turns neck and head by `turn` (world): the neck by its share, the head by all of it.
+// Turns neck and head by `turn` (world): the neck by its share, the head by the whole turn.
 void turn_head(const UpperBodyModel& body, const Skeleton& skeleton, const quat& turn,
                const PosePart& pose, JointFrames& world) noexcept {
   const int last = static_cast<int>(body.head_path.size()) - 1;
@@ -604,7 +613,8 @@ void turn_head(const UpperBodyModel& body, const Skeleton& skeleton, const quat&
   }
 }
 
-constexpr double kHeadStays = 0.8;  // share of the lean into a change that the head does not follow
+// Share of the lean into a change of speed that the head does not follow.
+constexpr double kHeadStays = 0.8;
 
 bool is_head_free(const HeadParams& head) noexcept {
   return head.look <= 0.0 && head.look_at <= 0.0 && head.lead <= 0.0;
@@ -620,7 +630,7 @@ void pose_head(const Tick& tick, WalkState& state, const PosePart& pose,
   const int head = body.head_path.back();
   const int chest = skeleton.joints[body.head_path[body.neck_at]].parent;
   const quat trunk = world.rotation[chest] * glm::conjugate(body.chest_standing);
-  // `from`: the head's rotation without this look.
+  // `from`: the head's rotation without this goal.
   const auto look = [&](const quat& from, const vec3& direction, double share) {
     const Gaze to = gaze(body, trunk, direction);
     const quat wanted = nlerp(from, to.head, std::clamp(share, 0.0, 1.0) * to.share);
@@ -656,7 +666,7 @@ void pose_head(const Tick& tick, WalkState& state, const PosePart& pose,
          rotation_y(state.path.heading_rad + now.yaw_deg * kDegree) * vec3(0.0, p.sin, p.cos),
          now.look);
   }
-  // The head moves as it turns, so a near place is aimed at twice.
+  // The head moves when it turns, so a near place is aimed at twice.
   const quat own = world.rotation[head];
   vec3 place_m(now.x_m, now.y_m, now.z_m);
   if (state.placed != Placement{}) place_m = from_world(state.placed, place_m);
@@ -674,8 +684,8 @@ namespace {
 // The trunk leans into a change of speed: forward while the walk is slower than asked, back while
 // it is faster. kFirstPush is added, in part while more than kFirstFrom of the asked speed is
 // missing and fully from kFirstAll on, so that a slow walk leans as well. Head and chest turn
-// before the pelvis does (people: by 0.3 s and less). Times in seconds at the reference leg.
-constexpr double kPush = 3.0 * kDegree;  // for 1 m/s
+// before the pelvis (in people by up to 0.3 s). Times in seconds at the reference leg.
+constexpr double kPush = 3.0 * kDegree;  // lean for a missing speed of 1 m/s
 constexpr double kFirstPush = 2.0 * kDegree, kFirstFrom = 0.4, kFirstAll = 0.8;
 constexpr double kCalm = 0.25, kSoftCalm_m_s = 0.1;
 constexpr double kPushSmoothing = 0.04, kSpeedSmoothing = 0.15;

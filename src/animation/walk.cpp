@@ -41,7 +41,8 @@ double step_length(const WalkState& state, Side side) noexcept {
 }
 
 double stage_share(const WalkModel& model, Stage stage, Side swing) noexcept {
-  // Walking order: roll right, flight left, roll left, flight right.
+  // The share of the cycle's time that a stage takes. Walking order: roll right, flight left, roll
+  // left, flight right.
   if (stage == Stage::roll) return model.share[swing == kRightSide ? 0 : 2];
   return model.share[swing == kLeftSide ? 1 : 3];
 }
@@ -109,23 +110,24 @@ namespace {
 constexpr double kSlowerOnStairs = 1.2, kSlowestRise = 0.34, kSteepRise = 0.15;
 constexpr double kStairStep_s = 0.84, kStairRise = 0.2;
 constexpr double kSlowerBack = 2.05;
-// The first step: from the stick to the lift-off (kFirstRollOn_s if the hips still move), then the
-// flight, kFirstFlight of a steady one within the two bounds.
+// Times of the first step: from the stick's push to the lift-off (kFirstRollOn_s if the hips still
+// move), then the flight, kFirstFlight of a steady one within the two bounds.
 constexpr double kFirstRoll_s = 0.25, kFirstRollOn_s = 0.13, kLeastFirstFlight_s = 0.38,
                  kMostFirstFlight_s = 0.62, kFirstFlight = 0.9;
 // A closing foot lands kLandsBefore_s before the hips rest; its flight lasts at most kMostClosing
 // times as long as a steady one.
 constexpr double kLandsBefore_s = 0.04, kLeastClosing_s = 0.30, kMostClosing = 1.25;
 constexpr double kLongestClosingRoll = 1.6, kLeastClosingRoll_s = 0.11, kLeastRollLeft_s = 0.05;
-constexpr double kOtherPace = 0.02;    // a greater change of the ratio takes a step of transition
-constexpr double kLastRoll_s = 0.17;   // until both feet are flat
-constexpr double kShownAtRest = 0.08;  // share of the tables below which another step may begin
-// A stand waits kHesitation before a tiny command starts a walk, less before a greater one, and not
-// from this stride ratio or turn (rad/s) on.
+constexpr double kOtherPace = 0.02;   // a larger change of the ratio needs a step of transition
+constexpr double kLastRoll_s = 0.17;  // duration of the last roll, until both feet are flat
+// Share of the tables that shows, below which another step may begin.
+constexpr double kShownAtRest = 0.08;
+// Longest wait of a stand before a tiny command starts a walk. It waits less before a larger
+// command, and not at all from this stride ratio or turn (rad/s) on.
 constexpr double kHesitation = 0.2;
 constexpr double kSureRatio = 0.3, kSureTurn = 0.15;
 
-// Share of the cycle's time.
+// The share of the cycle's time that a stage takes.
 double time_share(const WalkModel& model, const WalkState& state, Stage stage,
                   Side swing) noexcept {
   const Side rolling = stage == Stage::roll ? swing : other(swing);
@@ -135,11 +137,11 @@ double time_share(const WalkModel& model, const WalkState& state, Stage stage,
   return stage == Stage::roll ? rolls : roll + flight - rolls;
 }
 
-// Stages last whole beats: a steady gait is then exactly periodic, and has the same rhythm at every
-// rate. At 240 Hz a beat is a tick. At another rate a stage ends at the tick that is nearest to its
-// end in beats, so what is rounded does not add up.
+// The unit of a stage's duration. Stages last whole beats, so a steady gait is exactly periodic,
+// and has the same rhythm at every rate. At 240 Hz a beat is a tick. At another rate a stage ends
+// at the tick that is nearest to its end in beats, so rounding errors do not add up.
 constexpr double kBeat_s = 1.0 / 240.0;
-constexpr int kLeastRoll = 6, kLeastFlight = 12;  // beats
+constexpr int kLeastRoll = 6, kLeastFlight = 12;  // least durations of both stages, in beats
 constexpr int kLeastTicks = 2;
 
 int ticks_of(double time_s, double dt_s) noexcept { return static_cast<int>(time_s / dt_s + 0.5); }
@@ -165,8 +167,8 @@ void begin_stage(Stage stage, Side swing, int ticks, WalkState& state) noexcept 
   state.clock.stage_ticks = ticks;
 }
 
-// At the end of the stage that has begun the phase will run at the mean of both stages' rates, so
-// the time-warp of the upper body has no kink.
+// Plans the phase's rate: at the end of the stage that has begun it will be the mean of both
+// stages' rates, so the time-warp of the upper body has no kink.
 void aim_phase(const Tick& tick, WalkState& state) noexcept {
   const bool rolls = state.clock.stage == Stage::roll;
   const Stage next = rolls ? Stage::flight : Stage::roll;
@@ -198,7 +200,8 @@ double slowness_of_step(const WalkModel& model, const WalkState& state, Side swi
   return std::max(level * (1.0 + kSlowerOnStairs * rise), slower * stair) / own;
 }
 
-// Both stages of the running step. It makes up for what the steps before it were too short or long.
+// Sets the duration of both stages of the running step. It compensates for the rounding of the
+// steps before it.
 void time_step(const Tick& tick, double roll_s, double flight_s, StepClock& clock) noexcept {
   clock.roll_s = roll_s;
   clock.step_s = roll_s + flight_s;
@@ -210,7 +213,7 @@ void time_step(const Tick& tick, double roll_s, double flight_s, StepClock& cloc
 
 // Begins a step: `rolling` has just landed, the other foot flies next.
 void begin_step(const Tick& tick, Side rolling, WalkState& state) noexcept {
-  // A step that was changed on its way passes no rounding on to the next one.
+  // A step that was changed while it ran passes no rounding on to the next one.
   if (state.clock.step_ticks == state.clock.roll_ticks + state.clock.flight_ticks)
     state.clock.late_s =
         std::clamp(state.clock.late_s + state.clock.step_s - state.clock.step_ticks * tick.dt_s,
@@ -220,13 +223,14 @@ void begin_step(const Tick& tick, Side rolling, WalkState& state) noexcept {
   time_step(tick, stage_time(tick.model, state, Stage::roll, rolling),
             stage_time(tick.model, state, Stage::flight, other(rolling)), state.clock);
   state.clock.stage_phase = rolling == kRightSide ? 0.0 : tick.model.share[0] + tick.model.share[1];
-  // The phase may be off by whole turns.
+  // The phase may differ from the clock's by whole turns.
   state.clock.phase = state.clock.stage_phase;
   begin_stage(Stage::roll, rolling, state.clock.roll_ticks, state);
   aim_phase(tick, state);
 }
 
-// The first flight follows the stick until the foot lifts off: a thumb takes some time.
+// Times the first flight. It follows the stick until the foot lifts off, because a thumb takes some
+// time.
 void time_first_flight(const Tick& tick, WalkState& state) noexcept {
   const double scale = tick.model.time_scale;
   const Side first = other(state.clock.swing);
@@ -242,8 +246,8 @@ void time_first_flight(const Tick& tick, WalkState& state) noexcept {
 }
 
 void begin_walk(const Tick& tick, WalkState& state) noexcept {
-  // The first foot follows the turn, so that a mirrored stick gives a mirrored walk.
-  // While the last foot to land still rolls down the other one goes.
+  // The first foot follows the turn, so that a mirrored stick gives a mirrored walk. While the foot
+  // that landed last still rolls down, the other one goes.
   const Side turns_to = tick.params.turn_rate_rad_s < 0.0 ? kRightSide : kLeftSide,
              first = state.clock.stage == Stage::roll ? other(state.clock.swing) : turns_to;
   const bool moves = state.clock.stage == Stage::roll;
@@ -260,7 +264,7 @@ void begin_walk(const Tick& tick, WalkState& state) noexcept {
   state.clock.phase_rate = 0.0;
   state.clock.led = true;
   replan(0.5 * kFirstRoll_s, tick, state);
-  // The tables' hips are over the foot that stands in the middle of its support.
+  // The tables' hips are over the standing foot in the middle of its support.
   state.gait.phase_rate = 0.0;
   state.gait.phase = state.clock.stage_phase +
                      0.5 * stage_share(tick.model, Stage::roll, other(first)) +
@@ -276,7 +280,7 @@ void begin_idle(WalkState& state) noexcept {
   state.path.foothold.next_rise = 0.0;
 }
 
-// Feet together: the toe comes down, then rest.
+// Begins the last roll, with the feet together: the toe comes down, then the character rests.
 void begin_settling(const Tick& tick, Side landed, WalkState& state) noexcept {
   const int flat = ticks_of(kLastRoll_s * tick.model.time_scale, tick.dt_s);
   begin_stage(Stage::roll, landed, std::max(flat, state.clock.rest_ticks + 1), state);
@@ -291,7 +295,7 @@ void begin_settling(const Tick& tick, Side landed, WalkState& state) noexcept {
 void land_foot(const Tick& tick, WalkState& state) noexcept {
   StepClock& clock = state.clock;
   const Side landed = clock.swing;
-  // After a stop that was taken back the tables may not have reached the step's own stride.
+  // After a stop that was withdrawn the tables may not have reached the step's own stride.
   const double change = std::clamp(state.gait.change, 0.0, 1.0);
   if (!clock.closing)
     state.gait.ratio_behind =
@@ -309,7 +313,7 @@ void land_foot(const Tick& tick, WalkState& state) noexcept {
   if (clock.stopping && clock.further_steps-- <= 0) clock.closing = true;
   begin_step(tick, landed, state);
   if (clock.closing) {
-    // The hips rest between the feet as they then are, and no sooner than the foot can be there.
+    // The hips rest between the feet as these then stand, and not before the foot can be there.
     clock.rest_ticks =
         std::max(clock.rest_ticks,
                  ticks_of((kLeastClosing_s + kLeastRollLeft_s) * tick.model.time_scale, tick.dt_s));
@@ -328,7 +332,8 @@ void land_foot(const Tick& tick, WalkState& state) noexcept {
   begin_roll(tick, state, landed);
 }
 
-// Step times, and how long double support takes, follow the parameters at the next step.
+// Takes new parameters. Step times, and the duration of double support, follow them at the next
+// step.
 void ask_for(const GaitParams& params, const WalkModel& model, WalkState& state) noexcept {
   for (int side : {0, 1}) state.gait.time_s[side] = params.stride[side].time_s;
   // Use the larger of both feet's ratios: a limp, which shortens one step, does not change the
@@ -340,9 +345,9 @@ void ask_for(const GaitParams& params, const WalkModel& model, WalkState& state)
   }
 }
 
-// A stand waits up to kHesitation before it follows a very small command: a stick that is touched
-// in passing would otherwise cost two slow steps before a full push in another direction is
-// followed.
+// True if a command is large enough, or has lasted long enough. A stand waits up to kHesitation
+// before it follows a very small command: a stick that is touched in passing would otherwise cause
+// two slow steps before a full push in another direction is followed.
 bool is_meant(const Tick& tick, WalkState& state) noexcept {
   const double sure = std::max(state.gait.asked_ratio / kSureRatio,
                                std::abs(tick.params.turn_rate_rad_s) / kSureTurn);
@@ -355,7 +360,7 @@ void advance_clock(const Tick& tick, WalkState& state) noexcept {
   for (FootState& foot : state.foot) ++foot.mode_ticks;
   if (state.clock.rest_ticks > 0) --state.clock.rest_ticks;
   if (state.clock.stage == Stage::idle) return;
-  const bool resting = !state.clock.started;  // in the last roll the data's clock stands still
+  const bool resting = !state.clock.started;  // in the last roll the data's clock does not run
   const double remaining = state.clock.stage_ticks - state.clock.tick;
   ++state.clock.tick;
   if (resting) return;
@@ -396,7 +401,8 @@ void time_step_again(const Tick& tick, WalkState& state) noexcept {
   aim_phase(tick, state);
 }
 
-// The closing foot lifts off when the hips are as far ahead of the standing foot as in a walk.
+// Times the closing step. The closing foot lifts off when the hips are as far ahead of the standing
+// foot as in a walk.
 void time_closing_step(const Tick& tick, WalkState& state) noexcept {
   StepClock& clock = state.clock;
   const double scale = tick.model.time_scale;
@@ -502,7 +508,7 @@ WalkState standing(const WalkModel& model, const vec3& place_m, double heading_r
   state.path.base.height_m = state.path.base.level_m =
       std::min(state.foot[kLeftSide].plane.place_m.y, state.foot[kRightSide].plane.place_m.y);
   advance(model, GaitParams{}, IkMode::robust, 1.0 / 240.0, state, pose);
-  // Values that may not jump reach their goals in that tick; then they rest.
+  // Values that may not jump reach their goals in this tick and then stay.
   state.path.eased_height.rate = state.path.eased_height.bend = 0.0;
   for (auto* turn : {&state.body.eased_chest, &state.body.eased_head})
     turn->rate = turn->bend = vec3(0.0);
@@ -555,7 +561,7 @@ void plan_tick(const Tick& tick, WalkState& state, PlannedTick& planned) noexcep
                      planned.plan, planned.pelvis);
 }
 
-// Both legs side by side: with even weights first.
+// Solves both legs side by side, first with even weights.
 void pose_robust(const PlannedTick& planned, std::array<PosedLeg, 2>& posed) noexcept {
   const Tick& tick = *planned.tick;
   WalkState& state = *planned.state;
@@ -642,7 +648,8 @@ void advance(const WalkModel& model, const GaitParams& params, IkMode mode, doub
   const int parts = tick_parts(dt_s);
   const Tick tick = {model, params, mode, dt_s / parts, is_flat(*model.terrain), state.placed};
   const RootBefore before = root_of(state);
-  static thread_local PlannedTick planned;  // kept: clearing costs more than a leg's solve
+  // Static, because clearing it takes longer than a leg's solve.
+  static thread_local PlannedTick planned;
   for (int part = 0; part < parts; ++part) {
     plan_tick(tick, state, planned);
     pose_legs(planned);

@@ -1,4 +1,4 @@
-// Compiled for processors with AVX-512 alone (base/lanes.h asks for them).
+// Compiled for processors with AVX-512 only (base/lanes.h asks for them).
 #include "animation/walk_lanes.h"
 
 namespace gaitpad {

@@ -1,49 +1,59 @@
-// Lets a walk come to rest at any moment of a step, and go on if the stick comes back.
+// Lets a walk come to rest at any moment of a step, and go on if the stick is pushed again.
 //
 // A stop takes the first of three ends that brakes softly: the flying foot closes beside the
-// standing one; it lands ahead and the other foot closes; one more step comes in between. The hips
-// go to their place between the feet along a quintic, whose time is chosen for the least braking.
+// standing one; it lands ahead and the other foot closes; one more step comes before that. The hips
+// go to their place between the feet along a quintic, whose duration is chosen for the least
+// braking.
 #include "animation/sound_input.h"
 #include "animation/walk_flow.h"
 
 namespace gaitpad {
 namespace {
 
-// A quintic to rest brakes with about kNeed v^2 / way. Times are in seconds at the reference leg.
+// A quintic from speed v to rest brakes with about kNeed v^2 / way. Times are in seconds at the
+// reference leg.
 constexpr double kNeed = 0.72, kBrake_m_s2 = 3.0, kCloseBrake_m_s2 = 3.3, kMostBrake_m_s2 = 3.9;
 constexpr double kLeastRest_s = 0.25, kMostRest_s = 1.6;
-constexpr double kShortestStep = 0.25, kFurtherStep = 0.3;  // shares of the foot's own step
+// Limits of a step, in shares of the foot's own step.
+constexpr double kShortestStep = 0.25, kFurtherStep = 0.3;
 constexpr double kToClose_s = 0.40, kWayWhileClosing = 0.44;
 constexpr double kMoves_m_s = 1.1,
-                 kMovesFrom = 0.5;  // from this share of the flight on a landing moves no faster
+                 kMovesFrom = 0.5;  // share of the flight from which on a landing moves no faster
+                                    // than kMoves_m_s
 constexpr double kBehind_m = 0.02;
-constexpr double kLandsAhead = 0.42;  // of a step: so far are hips behind the foot that lands
-constexpr double kInPlace = 0.1;      // steps below this ratio turn on the spot
-constexpr double kNewFlight = 0.1;    // a flight that has come no further may become quicker
-constexpr double kTurnsBack = 0.45;   // of a closing flight: until then the walk goes on
-constexpr double kGoesOn = 0.7;       // of the asked step
+// Distance of the hips behind the foot that lands, as a share of a step.
+constexpr double kLandsAhead = 0.42;
+constexpr double kInPlace = 0.1;  // steps with a smaller ratio turn on the spot
+// A flight that has covered at most this share may become quicker.
+constexpr double kNewFlight = 0.1;
+// Share of a closing flight until which the walk may still go on.
+constexpr double kTurnsBack = 0.45;
+constexpr double kGoesOn = 0.7;  // share of the asked step that a walk goes on with
 constexpr double kNearStrike_s = 0.15, kLands_s = 0.08, kRollsOn_s = 0.05;
 constexpr double kLow_m = 0.001;
-constexpr double kHighFlight = 1.5;  // of the data's height
+// Factor on the data's height from which on a flight counts as high.
+constexpr double kHighFlight = 1.5;
 constexpr double kStandAgain_s = 0.45;
 
 vec3 left_of(double heading_rad) noexcept {
   return glm::cross(kUp, heading_direction(heading_rad));
 }
 
-// A bound: in `time_s` from now the hips must still have `way_m` to go, so that the foot that lands
+// A bound: `time_s` from now the hips must still have `way_m` to go, so that the foot that lands
 // then is ahead of them.
 struct Behind {
   double time_s = 0.0, way_m = 0.0;
 };
 
-// The time in which the hips come to rest most softly: without passing their place or moving back,
-// and not before the feet. Hips that move away from it turn round soon.
+// The duration in which the hips come to rest most softly, without passing their place or moving
+// back, and not before the feet. Hips that move away from the place turn round soon.
 double best_rest_s(double way_m, double speed_m_s, double bend_m_s2, double scale,
                    std::span<const Behind> landings) noexcept {
   constexpr int kTimes = 20, kPoints = 40;
-  constexpr double kLeastShare = 0.30, kShare = 0.02;  // of speed and time: the way
-  constexpr double kOver = 200.0, kBack = 50.0, kLate = 0.8, kAhead = 40.0;  // costs, in m/s2
+  // Smallest factor on speed times duration that gives the way.
+  constexpr double kLeastShare = 0.30, kShare = 0.02;
+  // Costs of each violation, in m/s2.
+  constexpr double kOver = 200.0, kBack = 50.0, kLate = 0.8, kAhead = 40.0;
   double best_s = kLeastRest_s * scale, least = std::numeric_limits<double>::infinity();
   for (int k = 0; k < kTimes; ++k) {
     const double share = kLeastShare + kShare * k;
@@ -74,7 +84,7 @@ double best_rest_s(double way_m, double speed_m_s, double bend_m_s2, double scal
   return best_s;
 }
 
-// Heel and pitch of the flying foot by the plan in force, now and a tick later.
+// Heel and pitch of the flying foot by the present plan, now and a tick later.
 struct Flown {
   std::array<vec3, 2> heel_m;
   std::array<double, 2> pitch_rad{};
@@ -97,7 +107,8 @@ Flown flown(const Tick& tick, const WalkState& state) noexcept {
   return flown;
 }
 
-// Changes the end of the running step. A foot in flight goes over to its new path until it lands.
+// Changes the end of the running step by `change`. A foot in flight changes over to its new path
+// until it lands.
 template <class Change>
 void change_step(const Tick& tick, WalkState& state, const Change& change) noexcept {
   const bool flies = state.clock.stage == Stage::flight;
@@ -108,7 +119,7 @@ void change_step(const Tick& tick, WalkState& state, const Change& change) noexc
   if (!state.clock.led) state.clock.led_from = state.clock.tick;
   change();
   state.clock.led = true;
-  // A foot that rolls down needs some time for it.
+  // A foot that rolls down needs a least time for that.
   const int least =
       state.clock.tick + static_cast<int>(kRollsOn_s * tick.model.time_scale / tick.dt_s + 0.5);
   if (!flies && state.clock.stage_ticks < least)
@@ -202,18 +213,18 @@ void plan_rest(const Tick& tick, WalkState& state) noexcept {
     clock.stopping = clock.led = true;
   };
   // The remaining steps take as long as the last one, and so does the running one if it has just
-  // begun: a thumb that lets go asks for slow ones on its way.
+  // begun: a thumb that releases the stick asks for slow ones in passing.
   const int running = clock.roll_ticks + clock.flight_ticks,
             usual = clock.last_step_ticks > 0 ? std::min(running, clock.last_step_ticks) : running;
   for (double& time_s : state.gait.time_s) time_s = usual * tick.dt_s / clock.slowness;
   state.gait.asked_ratio = ratio_ahead<double>(model, moment_of(model, state), state);
   const bool flies = clock.stage == Stage::flight;
-  // A foot that is about to land, or that is high up, lands where it is. Over uneven ground every
+  // A foot that will land soon, or that is high, keeps its landing place. Over uneven ground every
   // flying foot does, because the way to its foothold is planned.
   const double lands_s = (clock.stage_ticks - clock.tick) * tick.dt_s;
   const bool is_high = state.gait.flight_height[swing].x > kHighFlight;
   if (flies && (!tick.flat || is_high || lands_s < kLands_s * scale)) return;
-  if (clock.starting && !flies) {  // the foot has not left the floor
+  if (clock.starting && !flies) {  // true before the foot has left the floor
     path.rest_m = 0.5 * (standing + state.foot[swing].heel_anchor_m) + forward * model.rest_lead_m -
                   left * (0.5 * (model.leg[0].track_m + model.leg[1].track_m));
     path.rest_m.y = 0.0;
@@ -287,8 +298,8 @@ void walk_on(const Tick& tick, WalkState& state) noexcept {
   const bool flies = clock.stage == Stage::flight;
   if (clock.closing && flies && (!tick.flat || clock.tick > kTurnsBack * clock.stage_ticks)) return;
   // Hips that have braked cannot reach the tables' place at a near strike, so the walk goes on
-  // after that strike; over uneven ground it does not wait, because a foothold further on is
-  // planned with the step.
+  // after that strike. Over uneven ground it does not wait, because the step plans a foothold
+  // further on.
   const double left_s = (clock.stage_ticks - clock.tick) * tick.dt_s;
   if (tick.flat && flies && left_s < kNearStrike_s * tick.model.time_scale) return;
   change_step(tick, state, [&] {

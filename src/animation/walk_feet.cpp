@@ -21,7 +21,7 @@ void pitch_foot(const LegBuild& leg, double pitch_rad, FootPose& pose, FootMode 
   set_pitch<double>(leg, pitch_rad, mode == FootMode::support, pose);
 }
 
-// The foot's pose before it rose as its leg asked.
+// The planned pose of the foot, before it rises for its leg.
 FootPose planned_pose(const WalkModel& model, const WalkState& state, Side side) noexcept {
   FootPose pose = state.foot[side].pose;
   const double asked_rad = state.legs.asked_rad[side];
@@ -62,12 +62,12 @@ void begin_flight(const Tick& tick, WalkState& state, Side side) noexcept {
   foot.lift_m = lifts.heel_m;
   foot.crosses_riser =
       !tick.flat && crosses_riser(*model.terrain, foot.plane, state.path.landing_plane);
-  // In a turn the foot pivots on its planted toe as its heel rises.
+  // In a turn the foot pivots on its planted toe while its heel rises.
   foot.lift_turn_rad =
       state.gait.turn_rate.x * heel_rise<double>(model, at, side) * tick.dt_s * ticks;
   foot.eased_heel = {.value = lifts.heel_m, .rate = slope_m / ticks, .bend = {}, .off = {}};
   foot.eased_pitch = {.value = lifts.pitch_rad, .rate = pitch_rate, .bend = {}, .off = {}};
-  // This foot's difference from the tables fades.
+  // The foot's difference from the tables fades by its eased values, so no gap is left.
   foot.gap_m = foot.gap_slope_m = vec3(0.0);
   foot.gap_begin = 0.0;
   foot.gap_lasts = kLiftFade;

@@ -14,21 +14,23 @@ namespace {
 // --- Legs ----------------------------------------------------------------------------------------
 
 inline constexpr double kLeastKnee =
-    1.0 * kDegree;  // where the solver starts: a knee that bends forward
+    1.0 * kDegree;  // knee at which the solver starts, so that it bends forward
 inline constexpr double kMostDorsiflexion = -38.0 * kDegree, kSoftAnkle = 6.0 * kDegree,
                         kSoftFlying = 12.0 * kDegree;
-// Near its limit an ankle is held more and more, and the leg turns outwards instead: with one step
-// it would do so in a jerk.
+// Angles of the ankle near its limit at which it is held increasingly, while the leg turns outwards
+// instead; with one step it would do so in a jerk.
 inline constexpr double kHeldDorsiflexion = -57.0 * kDegree, kSoftHeld = 4.0 * kDegree;
 inline constexpr double kSoftToe = 15.0 * kDegree;
-inline constexpr double kLeak_per_s = 4.0;  // of the correction on the data's angles
+// Rate at which the correction of the data's angles decays.
+inline constexpr double kLeak_per_s = 4.0;
 inline constexpr double kSoftElbow = 0.1;
-inline constexpr double kSideLever_m = 0.1;  // third point of the foot, beside the end-effector
+// Distance of the foot's third point from the end-effector.
+inline constexpr double kSideLever_m = 0.1;
 
-// The angle at which a leg's solver starts: the data's, and what had to be added to it a tick ago
-// (`off`), less what leaks away, and most of what that had changed by in the tick before. The share
-// of the change is the most with which the swivel, which no row holds, still returns to the data's
-// without swinging: the double root of z^2 - (keep + ahead) z + ahead.
+// The angle at which a leg's solver starts: the data's, plus the correction of a tick ago (`off`),
+// which decays, plus most of its change in the tick before. The share of the change is the largest
+// with which the swivel, which no row holds, still returns to the data's without oscillation: the
+// double root of z^2 - (keep + ahead) z + ahead.
 class StartAngle {
  public:
   explicit StartAngle(double dt_s) noexcept : keep_(1.0 - std::min(1.0, kLeak_per_s * dt_s)) {
@@ -61,7 +63,7 @@ void set_leg(const LegBuild& leg, const PoseOf<V>& foot, const PelvisOf<V>& pelv
 }
 
 // The goals of the rows: the first point, a point `ahead_m` in front of it in the foot, and a point
-// beside it. In the foot's own axes the differences between these points are constant.
+// beside it. In the foot's own axes the differences of these points are constant.
 template <class V>
 void set_rows(const LegBuild& leg, const Vec<V>& first_m, const vec3& ahead_m,
               LegGoals<V>& goals) noexcept {
@@ -76,7 +78,7 @@ void set_rows(const LegBuild& leg, const Vec<V>& first_m, const vec3& ahead_m,
                   up};
 }
 
-// The start of one leg's solve, close to its end.
+// The start of one leg's solve, which is close to its result.
 template <class V>
 void set_start(const Tick& tick, const PlanOf<V>& plan, Side side, StateOf<V>& state,
                std::array<V, kLegDofs>& angles_rad) noexcept {
@@ -86,7 +88,7 @@ void set_start(const Tick& tick, const PlanOf<V>& plan, Side side, StateOf<V>& s
     if (j == kKneeX) data = max_of(data, all_of<V>(kLeastKnee));
     auto& legs = state.legs;
     const V off = legs.even_rad[side][j] - legs.data_rad[side][j];
-    // Extrapolates the change that the weights made.
+    // Extrapolates the change that the weights made in the last tick.
     const V shift = legs.angles_rad[side][j] - legs.even_rad[side][j];
     legs.angles_rad[side][j] = shift + (shift - legs.last_shift_rad[side][j]);
     legs.last_shift_rad[side][j] = shift;
@@ -138,7 +140,7 @@ void set_even_goals(const LegBuild& leg, const StateOf<V>& state, const PelvisOf
   set_rows<V>(leg, heel, leg.model.toe_m - leg.model.heel_m, goals);
 }
 
-// True where the ankle bends up too far, or the foot was not reached: such a leg is looked at again
+// True for a leg whose ankle bends up too far, or whose foot was not reached: it is solved again,
 // for one walk at a time (mended_leg).
 template <class V>
 MaskOf<V> needs_mending(const WalkModel& model, const MomentOf<V>& at, Side side,
@@ -160,23 +162,25 @@ MaskOf<V> needs_mending(const WalkModel& model, const MomentOf<V>& at, Side side
 // and in flight, its yaw and roll in flight. The walk itself sees even legs alone: weights change
 // no footprint, and cannot drift.
 
-inline constexpr double kMeanTime_s = 0.5;  // of each of two filters in a row
-inline constexpr double kLeastW = 0.09;     // of a locked joint
+inline constexpr double kMeanTime_s = 0.5;  // time constant of each of two filters in a row
+inline constexpr double kLeastW = 0.09;     // least weight, for a locked joint
 inline constexpr double kMostPull_rad = 18.0 * kDegree;
 inline constexpr double kHeldPull = 0.3;  // share of the pull that acts while the foot may not turn
 inline constexpr double kFootLever_m = 0.2;
 // Shares of the flight. The planted point is the toe until kToeUntil and the heel from kOnHeel on;
-// the foot turns back to its plan from kToLand to kLanded.
+// the foot turns back to its plan between kToLand and kLanded.
 inline constexpr double kToeUntil = 0.15, kOnHeel = 0.6, kToLand = 0.4, kLanded = 0.95;
-// Squared radians that a foot gives way by at the cost of one squared radian of a joint.
+// Squared radians by which a foot gives way for each squared radian of a joint: sideways, in
+// flight, in the roll.
 inline constexpr double kGiveAside = 0.15, kGiveFlying = 0.5, kGiveRolling = 0.05;
 // When a walk begins, a foot that stood flat becomes free with this time constant.
 inline constexpr double kLoosening_s = 0.04;
-inline constexpr double kTight_rad = 3.0 * kDegree;  // a foot with less room hardly gives way
+// Room for the foot's pitch below which it hardly gives way.
+inline constexpr double kTight_rad = 3.0 * kDegree;
 inline constexpr double kFloorRoom_m = 0.0003;
 inline constexpr double kStraightest = 1.0 * kDegree, kBentKnee = 0.65, kLeastSoft = 0.1 * kDegree;
 
-// The leg's weights over its largest. True where they differ.
+// The leg's weights divided by the largest. True for legs whose weights differ.
 template <class V>
 MaskOf<V> set_relative_weights(const GaitFlow<V>& gait, Side side,
                                std::array<V, kLegDofs>& weight) noexcept {
@@ -189,7 +193,7 @@ MaskOf<V> set_relative_weights(const GaitFlow<V>& gait, Side side,
   return least < all_of<V>(1.0 - kEvenSpread);
 }
 
-// The angles by which the foot may turn about the planted point, until toe or heel is on its floor.
+// The angles by which the foot may turn about the planted point before toe or heel is on its floor.
 template <class V>
 void set_room(const Tick& tick, const StateOf<V>& state, Side side, const V& flown,
               LegShares<V>& shares) noexcept {
@@ -228,8 +232,8 @@ void advance_weighted_leg(const Tick& tick, const MomentOf<V>& at, Side side,
                                  Damping(kLoosening_s * tick.model.time_scale, tick.dt_s));
 }
 
-// The goals of one leg with uneven weights. `goals` has the leg and the axes of the planned foot,
-// and receives the weighted leg's. `angles_rad`: the start.
+// The goals of one leg with uneven weights. `goals` contains the leg and the axes of the planned
+// foot, and receives the weighted leg's goals. `angles_rad`: the start.
 template <class V>
 void set_shares(const Tick& tick, const MomentOf<V>& at, const PlanOf<V>& plan,
                 const PelvisOf<V>& pelvis, Side side, const StateOf<V>& state, LegGoals<V>& goals,
@@ -286,7 +290,7 @@ void set_shares(const Tick& tick, const MomentOf<V>& at, const PlanOf<V>& plan,
               lever_m * leg.line, goals);
 }
 
-// The result of the weighted step; for even legs the even pose.
+// Takes over the result of the weighted step; for legs with even weights the even pose.
 template <class V>
 void keep_shared(const LegBuild& leg, Side side, const LegGoals<V>& goals,
                  const LegShares<V>& shares, const std::array<V, kLegDofs>& angles_rad,
@@ -305,13 +309,13 @@ void keep_shared(const LegBuild& leg, Side side, const LegGoals<V>& goals,
   posed.squares = uneven ? solution.squares : posed.squares;
   posed.heel_m = chosen(uneven, along(V(-leg.foot_m * (1.0 - shares.on_heel))), posed.heel_m);
   posed.toe_m = chosen(uneven, along(V(leg.foot_m * shares.on_heel)), posed.toe_m);
-  // The series of the arc sine: a foot turns by less than 20 degrees.
+  // The arc sine as a series: a foot turns by less than 20 degrees.
   const V sine = -dot_of(goals.across, line), cube = sine * sine * sine;
   posed.pitch_rad += uneven ? sine + cube / 6.0 + 0.075 * cube * sine * sine : V{};
 }
 
-// Toes stay level while the heel is the higher end, on the floor and in the air, so they never dig
-// in. In the air the change is rounded, on the floor it is exact.
+// The pitch of the toes. They stay level while the heel is the higher end, on the floor and in the
+// air, so they never enter the ground. In the air the change is rounded, on the floor it is exact.
 template <class V>
 V level_toe(const V& pitch_rad, const V& flight_progress) noexcept {
   const V air =
@@ -319,12 +323,12 @@ V level_toe(const V& pitch_rad, const V& flight_progress) noexcept {
   return -soft_positive(pitch_rad, max_of(all_of<V>(1e-9), V(kSoftToe * air)));
 }
 
-// The leg of a foot that is where it is planned.
+// The posed leg of a foot that is at its planned place.
 template <class V>
 PosedLegOf<V> closed_leg(const PoseOf<V>& foot) noexcept {
   return {all_of<V>(1.0), V{}, V{}, foot.heel_m, foot.toe_m, foot.pitch_rad};
 }
-// The solver's result, for a leg that the closed form did not reach.
+// The solver's result for a leg that the closed form did not reach.
 template <class V>
 void keep_solved(const LegBuild& leg, const MaskOf<V>& where, const LegSolution<V>& solution,
                  const PelvisOf<V>& pelvis, PosedLegOf<V>& posed) noexcept {
@@ -339,7 +343,7 @@ void keep_solved(const LegBuild& leg, const MaskOf<V>& where, const LegSolution<
   posed.toe_m = chosen(where, pelvis.place(leg, Vec<V>{toe.x, toe.y, toe.z}), posed.toe_m);
 }
 
-// The results of the legs in one tick: the toes, and the values that the tick reports.
+// Stores the results of the legs in one tick: the toes, and the values that the tick reports.
 template <class V>
 void report_leg(const MomentOf<V>& at, Side side, const PosedLegOf<V>& posed, StateOf<V>& state,
                 std::span<WalkFrame* const> frames) noexcept {
@@ -369,7 +373,7 @@ template <class V>
 std::array<HalfTurns<V>, 2> half_turns(const typename LegFlow<V>::Angles& angles_rad) noexcept {
   std::array<HalfTurns<V>, 2> half;
   for (int j = 0; j < kLegDofs; ++j) {
-    if constexpr (kAlone<V>) {  // both legs side by side
+    if constexpr (kAlone<V>) {  // both legs are computed side by side
       Lanes<2> sine, cosine;
       sin_cos_of(0.5 * Lanes<2>{angles_rad[0][j], angles_rad[1][j]}, sine, cosine);
       for (int side : {0, 1}) half[side].sine[j] = sine[side], half[side].cosine[j] = cosine[side];
@@ -381,7 +385,7 @@ std::array<HalfTurns<V>, 2> half_turns(const typename LegFlow<V>::Angles& angles
   return half;
 }
 
-// Rx(x) Rz(z) Ry(y) of three angles, from the x one on.
+// The rotation Rx(x) Rz(z) Ry(y) of three angles, beginning with x.
 template <class V>
 Quat<V> turn_xzy(const HalfTurns<V>& half, int x) noexcept {
   const V xs = half.sine[x], xc = half.cosine[x], zs = half.sine[x + 1], zc = half.cosine[x + 1],
@@ -445,7 +449,7 @@ V data_phase(const WalkModel& model, const MomentOf<V>& at) noexcept {
   return at.backward ? model.share[0] + model.share[1] + model.share[2] - at.phase : at.phase;
 }
 
-// Rows of w, x, y and z to the rotations of the table's joints.
+// Converts rows of w, x, y and z to the rotations of the table's joints.
 template <class V>
 void write_quats(const double* blend, const PoseRows& rows, quat* to) noexcept {
   constexpr std::size_t kTogether = kAlone<V> ? 2 : kWidthOf<V>;
@@ -477,7 +481,7 @@ void write_data(const WalkModel& model, const MomentOf<V>& at, const GaitFlow<V>
   const PoseRows& rows = model.above;
   const std::size_t stride = rows.stride;
   const V phase = data_phase<V>(model, at), shown = presence_of<V>(gait);
-  // Shoulder and elbow of both arms, from the data.
+  // Rotations of shoulder and elbow of both arms, from the data.
   std::array<Quat<V>, 4> arms;
   std::array<int, 4> column;
   for (int k = 0; k < 4; ++k) {
@@ -538,7 +542,7 @@ void write_data(const WalkModel& model, const MomentOf<V>& at, const GaitFlow<V>
   }
 }
 
-// Writes all joints; a style's changes of the upper body come later.
+// Writes all joints; a style's changes of the upper body follow later.
 template <class V>
 void write_pose(const WalkModel& model, const MomentOf<V>& at, const StateOf<V>& state,
                 const PelvisOf<V>& pelvis, const Locals<kWidthOf<V>>& local) noexcept {

@@ -1,11 +1,11 @@
 // The part of a tick that every walk computes, for one walk or for several side by side (V: a
-// double, or a register of as many): the parameters smoothed, the landing place, the strides'
-// tables, hips and feet. Beginnings of stages, and the effects of terrain, are computed for one
-// walk at a time (walk.cpp, walk_feet.cpp, walk_terrain.cpp).
+// double, or a register of several): smoothed parameters, landing place, tables of strides, hips
+// and feet. Beginnings of stages, and the effects of terrain, are computed for one walk at a time
+// (walk.cpp, walk_feet.cpp, walk_terrain.cpp).
 //
-// Walks side by side share a model and walk on flat ground. Where their stages differ, the parts of
-// a tick are computed for all of them and chosen by masks; a part that none of them is in is left
-// out. Every lane gets the bits that its walk gets alone.
+// Walks side by side share a model and walk on flat ground. If their stages differ, the parts of a
+// tick are computed for all of them and chosen by masks; a part that none of them is in is left
+// out. Every lane gets the same bits as its walk alone.
 #pragma once
 #include "animation/walk_parts.h"
 
@@ -18,7 +18,7 @@ template <class V>
 inline V value(const MaskOf<V>& mask, const V& a, const V& b) noexcept {
   return mask ? a : b;
 }
-// Chooses between two doubles that are equal in all lanes.
+// Chooses one of two doubles, each the same for all lanes.
 template <class V>
 inline V value(const MaskOf<V>& mask, double a, double b) noexcept {
   return mask ? all_of<V>(a) : all_of<V>(b);
@@ -36,7 +36,8 @@ inline FootPose chosen_pose(bool mask, const FootPose& a, const FootPose& b) noe
   return mask ? a : b;
 }
 
-// Numbers of one walk into a lane, and back: both structs are the same numbers in the same order.
+// Copies the numbers of one walk into a lane, and back: both structs have the same numbers in the
+// same order.
 template <class One, class Several>
 inline void set_lanes(const One& one, int lane, Several& several) noexcept {
   constexpr int kNumbers = sizeof(One) / sizeof(double), kLanes = sizeof(Several) / sizeof(One);
@@ -73,17 +74,18 @@ inline ParamsOf<double> params_of(const GaitParams& params,
 
 // Time constants in seconds at the reference leg; they scale with pendulum time.
 inline constexpr double kStepSmoothing = 0.12, kFirstStepSmoothing = 0.05;
-inline constexpr double kFirstStep = 0.9;  // of the length asked for
+inline constexpr double kFirstStep = 0.9;  // share of the asked length that a first step has
 inline constexpr double kTurnGoalSmoothing = 0.02;
 inline constexpr double kTurnSmoothing = 0.10;
 inline constexpr double kBounceSmoothing = 0.30;
 inline constexpr double kWeightSmoothing = 0.15;
 inline constexpr double kLeanSmoothing = 0.12, kPostureSmoothing = 0.06;
 inline constexpr double kGravity_m_s2 = 9.81, kLeastCycle_s = 0.2;
-inline constexpr double kStillTurn = 1e-5;      // rad/s: slower than this is straight ahead
-inline constexpr double kMostExtraSwing = 0.4;  // swing beyond the data's that pace alone can give
+inline constexpr double kStillTurn = 1e-5;  // rad/s; a slower turn counts as straight ahead
+// Largest swing beyond the data's that pace alone can give.
+inline constexpr double kMostExtraSwing = 0.4;
 inline constexpr double kLeastPace =
-    0.5;  // below it the data's posture fades, and the swing with it
+    0.5;  // pace below which the data's posture fades, and the swing with it
 
 // Factor on the data's arm swing: proportional to speed (Boulic et al. 1990), bounded, and 1 at the
 // data's own pace.
@@ -112,13 +114,13 @@ void smooth_parameters(const Tick& tick, const MomentOf<V>& at, const ParamsOf<V
                        StateOf<V>& state) noexcept {
   GaitFlow<V>& gait = state.gait;
   const double scale = tick.model.time_scale, dt = tick.dt_s;
-  // A walk that is to end keeps its running step's length, also for the step that closes it.
+  // A walk that is about to end keeps its running step's length, also for the step that closes it.
   const Damping step(kStepSmoothing * scale, dt), first_step(kFirstStepSmoothing * scale, dt),
       weights(kWeightSmoothing * scale, dt), hips(kBounceSmoothing * scale, dt);
   for (int side : {0, 1}) {
     const V kept_m = value<V>(at.finishes, gait.length_m[side].x, V{});
     const V goal_m = value<V>(at.walking, params.length_m[side], kept_m);
-    // The first step follows a push that still grows, faster than later steps do.
+    // In the first step the push still grows, so it is followed faster than in later steps.
     Damped<V> first = gait.length_m[side];
     first.advance(at.steps(static_cast<Side>(side)) ? kFirstStep * goal_m : goal_m, first_step);
     gait.length_m[side].advance(goal_m, step);
@@ -139,25 +141,25 @@ void smooth_parameters(const Tick& tick, const MomentOf<V>& at, const ParamsOf<V
   gait.pace.advance(mean * gait.ground_share.x / tick.model.source_step_m, step);
   gait.posture.advance(within(V(2.0 * gait.pace.x), 0.0, 1.0),
                        Damping(kPostureSmoothing * scale, dt));
-  // A lean of v w / g puts the weight on the standing foot's edge, as on a bicycle.
+  // A lean of v w / g brings the weight over the edge of the standing foot, as on a bicycle.
   const V speed_m_s = (gait.length_m[0].x + gait.length_m[1].x) /
                       max_of(gait.time_s[0] + gait.time_s[1], all_of<V>(kLeastCycle_s));
   const V lean = speed_m_s * gait.turn_rate.x / kGravity_m_s2;
   const bool is_paper = tick.mode == IkMode::paper;
   state.path.lean_rad.advance(is_paper ? V{} : lean, Damping(kLeanSmoothing * scale, dt));
-  // In paper mode the data's upper body is left as it is.
+  // In paper mode the data's upper body is unchanged.
   const V pace = is_paper ? all_of<V>(1.0) : pace_swing(tick.model, gait);
   for (int side : {0, 1}) gait.arm_swing[side] = pace * params.arm_swing[side];
 }
 
-// The share of the data's oscillations and postures that shows: 0 at rest, 1 from half the data's
-// pace on.
+// The share of the data's oscillations and postures that shows: 0 at rest, 1 from half of the
+// data's pace on.
 template <class V>
 V presence_of(const GaitFlow<V>& gait) noexcept {
   return within(gait.shown, 0.0, 1.0) * within(gait.posture.x, 0.0, 1.0);
 }
 
-// True where a leg's weights are not all 1.
+// True for legs whose weights are not all 1.
 template <class V>
 MaskOf<V> has_weights(const GaitFlow<V>& gait, int side) noexcept {
   const V one = all_of<V>(1.0);
@@ -195,7 +197,7 @@ FootprintsOf<V> track_of(const WalkModel& model, const MaskOf<V>& backward,
             value<V>(backward, numbers(back.per_ratio)[k], numbers(forward.per_ratio)[k]) * at;
   return track;
 }
-// The running step's length over the data's.
+// Length of the running step, relative to the step of the data that it follows.
 template <class V>
 V ratio_of_step(const WalkModel& model, const MomentOf<V>& at, const StateOf<V>& state) noexcept {
   // In a cycle that is run back, a foot makes the step that the other one makes forwards.
@@ -207,20 +209,20 @@ V ratio_of_step(const WalkModel& model, const MomentOf<V>& at, const StateOf<V>&
 }
 template <class V>
 V ratio_ahead(const WalkModel& model, const MomentOf<V>& at, const StateOf<V>& state) noexcept {
-  // A step that closes keeps what is left of the last one, and one that is taken back its own.
+  // A closing step keeps the rest of the last ratio, and a step whose stop was withdrawn its own.
   return (at.closing | not_of(at.started))
              ? state.path.last_ratio
              : max_of(V{}, V(ratio_of_step<V>(model, at, state) + state.gait.off_ratio.x +
                              state.gait.off_ahead.x));
 }
 
-// A walk counts as limping from a difference of kEvenSteps between both feet's strides on, fully
-// from kUnevenSteps.
+// A walk begins to count as limping at a difference of kEvenSteps between both feet's strides, and
+// counts fully at kUnevenSteps.
 inline constexpr double kEvenSteps = 0.03, kUnevenSteps = 0.2, kLeastAsked = 0.1;
 
-// If one foot's steps are shorter than the other's, the tables of short strides would keep both
-// feet low. So a heel then flies as high as in strides in which both feet go as far as the longer
-// one, and comes down as the tables have it.
+// The additional height of a limp's heel. If one foot's steps are shorter than the other's, the
+// tables of short strides would keep both feet low. So a heel flies as high as in strides in which
+// both feet go as far as the longer one, and comes down as in the tables.
 template <class V>
 void raise_limping_heel(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& state,
                         const TablesOf<V>& tables, const KnotsOf<V>& knots, const V& ahead,
@@ -254,8 +256,8 @@ void raise_limping_heel(const Tick& tick, const MomentOf<V>& at, const StateOf<V
   plan.heel_up_m = is_limping ? mix(plan.heel_up_m, high_m, limps) : plan.heel_up_m;
 }
 
-// With more bounce the pelvis sinks deeper; with less it keeps its lowest height: in neither case
-// does a leg have to be longer.
+// The pelvis' height with a style's bounce. With more bounce the pelvis sinks deeper; with less it
+// keeps its lowest height: in neither case a leg has to be longer.
 template <class V>
 V bounced(const StrideScale& scale, const GaitFlow<V>& gait, const PlanOf<V>& plan) noexcept {
   const V y = plan.cell.pelvis_m.y, more = gait.bounce.x - 1.0;
@@ -300,14 +302,14 @@ template <class V>
 Vec<V> turned(const Vec<V>& forward, const Vec<V>& p) noexcept {
   return {forward.z * p.x + forward.x * p.z, p.y, forward.z * p.z - forward.x * p.x};
 }
-// The same on the ground.
+// Turns a place on the ground so that its z axis points along `forward`.
 template <class V>
 Vec<V> over_ground(const Vec<V>& forward, const Vec<V>& p) noexcept {
   return {forward.z * p.x + forward.x * p.z, V{}, forward.z * p.z - forward.x * p.x};
 }
 
-// The hips' path in the strides of a track, without their oscillation: in the stride before from
-// the footprint of the foot that stands; in this one to the next landing.
+// The hips' path in the strides of a track, without their oscillation: in the stride before, from
+// the footprint of the standing foot; in this one, to the next landing.
 template <class V>
 LineOf<V> path_past(const Vec<V>& heel_m, const Vec<V>& forward, const Vec<V>& footprint_m,
                     const V& stride_m, const V& turns) noexcept {
@@ -332,18 +334,19 @@ LineOf<V> path_to_landing(const MomentOf<V>& at, const FootprintsOf<V>& track,
       track.stride_m, value<V>(at.right_steps, 1.0, 0.0));
 }
 
-inline constexpr double kShownAfter = 0.55;  // of a first step: all of the tables shows
+// Share of a first step after which all of the tables shows.
+inline constexpr double kShownAfter = 0.55;
 
-// The planned share of the tables: in the first step it grows, and when stopping it is the share of
-// the way that is left to rest.
+// The planned share of the tables: in the first step it grows, and in a stop it is the share of the
+// way that is left to rest.
 template <class V>
 V planned_share(const MomentOf<V>& at, const V& step_share, const V& rest_ticks) noexcept {
   const V begins = at.starting ? smootherstep(V(step_share / kShownAfter)) : all_of<V>(1.0);
   const V ends = smootherstep(V(rest_ticks / at.closing_ticks));
   return (at.stopping & (at.closing | not_of(at.started))) ? ends : at.started ? begins : V{};
 }
-// The change from the stride behind (0) to the one ahead (1): a first step has none behind, a
-// closing one none ahead.
+// The change from the stride behind (0) to the stride ahead (1): a first step has none behind, a
+// closing step none ahead.
 template <class V>
 V planned_change(const MomentOf<V>& at, const V& step_share) noexcept {
   const V walks = at.starting ? all_of<V>(1.0) : smootherstep(step_share);
@@ -425,7 +428,7 @@ void plan_stride(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& stat
   }
   stride_between<V>(ratios[0], ratios[1], plan.change, knots, plan.cell);
   scale_stride<V>(scale, plan.cell);
-  // A flying foot always shows fully, whatever share of the tables shows.
+  // A flying foot always shows fully, even if only a share of the tables shows.
   const auto& feet = plan.cell.foot;
   plan.flying = chosen_foot<V>(at.right_steps, feet[kRightSide], feet[kLeftSide]);
   constexpr int kNumbers = sizeof(StrideCell) / sizeof(double);
@@ -436,7 +439,7 @@ void plan_stride(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& stat
     plan_short_flight<V>(tick, at, state, tables, ahead, phase, plan);
   plan.cell.pelvis_m.y = bounced<V>(scale, state.gait, plan);
 }
-// The plan of this moment.
+// The plan of the present moment.
 template <class V>
 void plan_stride(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& state,
                  PlanOf<V>& plan) noexcept {
@@ -446,16 +449,19 @@ void plan_stride(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& stat
 // --- Hips and landing place ----------------------------------------------------------------------
 
 // Lengths in metres at the reference leg.
-inline constexpr double kReach = 0.9994;  // of the leg: a knee bent by 4 degrees,
-inline constexpr double kUnsteadyReach = 0.997, kUnsteadySoft_m = 0.016;  // and by 11
+// Share of the leg's length: the reach with a knee bent by 4 degrees.
+inline constexpr double kReach = 0.9994;
+// The reach in an unsteady walk, with a knee bent by 11 degrees.
+inline constexpr double kUnsteadyReach = 0.997, kUnsteadySoft_m = 0.016;
 inline constexpr double kSoftReach_m = 0.006, kKnown_m = 0.0015, kWiderReach = 0.6,
                         kWidest_m = 0.06;
-// The most that hips sink: a leg that would need more, as in a step that jumps while it turns, does
-// not reach its foot.
+// The most by which hips sink. A leg that would need more, as in a step that jumps while it turns,
+// does not reach its foot.
 inline constexpr double kMostSunk_m = 0.34, kSoftSunk_m = 0.12;
-inline constexpr double kFreeze = 0.55;  // of the flight: after it the landing place is settled
+// Share of the flight after which the landing place is settled.
+inline constexpr double kFreeze = 0.55;
 
-// A power to a whole number, at least 0.
+// A power with a whole exponent of at least 0.
 template <class V>
 V power(double base, V exponent) noexcept {
   V result = all_of<V>(1.0);
@@ -467,8 +473,9 @@ V power(double base, V exponent) noexcept {
   return result;
 }
 
-// The heading n ticks ahead if the turn rate's goal stays. The filter is a linear recurrence with
-// the double eigenvalue q, so its error is e_k = (e_0 + c k) q^k, and the sum has a closed form.
+// The heading n ticks ahead if the turn rate's goal does not change. The filter is a linear
+// recurrence with the double eigenvalue q, so its error is e_k = (e_0 + c k) q^k, and the sum has a
+// closed form.
 template <class V>
 V heading_ahead(const Tick& tick, const StateOf<V>& state, const V& n) noexcept {
   const V goal = state.gait.turn_goal.x, rate = state.gait.turn_rate.v;
@@ -492,15 +499,15 @@ V step_length(const MomentOf<V>& at, const V& length_m) noexcept {
   return at.closing ? V{} : signed_m;
 }
 
-// The turn of the walk in the time of the running step.
+// The angle by which the walk turns in the time of the running step.
 template <class V>
 V turn_ahead(const Tick& tick, const StateOf<V>& state, const MomentOf<V>& at) noexcept {
   return state.gait.turn_goal.x * (at.roll_ticks + at.flight_ticks) * tick.dt_s;
 }
 
-// Feet land on both sides of the path: in a turn that is an arc. Turning on the spot they stand
-// wider apart, and point where the body will face. The way from one footprint to the next turns by
-// kWayTurns of the turn between them.
+// Feet land on both sides of the path, which is an arc in a turn. In a turn on the spot they stand
+// wider apart, and point to where the body will face. The way from one footprint to the next turns
+// by kWayTurns of the turn between them.
 inline constexpr double kWayTurns = 0.82;
 inline constexpr double kInPlaceLength_m = 0.2, kFootAhead = 0.45;
 inline constexpr double kWiderInTurns_s = 0.045, kWidestInTurns_m = 0.045, kStance_m = 0.105,
@@ -553,7 +560,7 @@ void plan_landing(const Tick& tick, const MomentOf<V>& at, StateOf<V>& state) no
       if (!tick.flat) choose_foothold(tick, state, along, across);
     }
   }
-  // Along the heading, which may still turn after the place is settled.
+  // The landing goes along the heading, which may still turn after the place is settled.
   const V step_m = dot_of(path.landing_m - standing, to);
   for (const Side side : {kLeftSide, kRightSide})
     path.stride_m[side] = (on_way & at.steps(side)) ? step_m : path.stride_m[side];
@@ -580,8 +587,8 @@ Vec<V> pelvis_to_landing(const StrideScale& scale, const PlanOf<V>& plan, const 
                         pelvis_between<V>(scale, plan.ratios[1], plan.ratios[1], V{}, phase));
 }
 
-// A step takes the hips from the path of the stride before it over to its own. After a step in
-// which they led they go on from where they are.
+// The hips' place. A step moves the hips from the path of the stride before it to its own. After a
+// step in which they led they go on from where they are.
 template <class V>
 SmoothFade<Vec<V>> path_at_strike(const WalkModel& model, const MomentOf<V>& at,
                                   const StateOf<V>& state, const PlanOf<V>& plan) noexcept {
@@ -599,7 +606,7 @@ SmoothFade<Vec<V>> path_at_strike(const WalkModel& model, const MomentOf<V>& at,
       from = chosen(at.was_led, goes - over_ground<V>(heading, pelvis), from);
     }
     off[k] = from - plan.hips_m[1].at(phase);
-    // A lane whose walk stands has no ticks left.
+    // A walk that stands has no ticks left in its stage.
     const V left = max_of(V(at.stage_ticks - double(k)), all_of<V>(1.0));
     approach(phase, rate, at.stage_end, at.end_rate, left, 1.0);
   }
@@ -612,8 +619,8 @@ SmoothFade<Vec<V>> chosen_fade(const MaskOf<V>& mask, const SmoothFade<Vec<V>>& 
   return {chosen(mask, a.x, b.x), chosen(mask, a.v, b.v), chosen(mask, a.a, b.a)};
 }
 
-// The hips follow the tables' path to the next landing. Their offset from it, from the step before
-// or because the landing has moved, fades until the strike.
+// Moves the hips along the tables' path to the next landing. Their offset from the path, which
+// comes from the step before or from a landing that has moved, fades until the strike.
 template <class V>
 void advance_hips(const Tick& tick, const MomentOf<V>& at, StateOf<V>& state,
                   const PlanOf<V>& plan) noexcept {
@@ -636,7 +643,7 @@ void advance_hips(const Tick& tick, const MomentOf<V>& at, StateOf<V>& state,
       (differs(path.landing_m, path.last_landing_m) | (ratio != path.last_ratio) |
        (path.landing_heading_rad != path.last_heading_rad));
   if (any(moved)) {
-    // The path has moved, and the hips have not.
+    // The path has moved, but the hips have not.
     const FootprintsOf<V> last = track_of<V>(tick.model, at.backward, path.last_ratio);
     const Vec<V> was =
         path_to_landing<V>(at, last, path.last_landing_m, direction_of<V>(path.last_heading_rad))
@@ -659,21 +666,22 @@ void advance_hips(const Tick& tick, const MomentOf<V>& at, StateOf<V>& state,
 
 // --- The hips lead, the phase follows ------------------------------------------------------------
 
-// While a walk begins, ends, or changes its pace, the pelvis goes along a quintic from where it is,
-// with its rate and acceleration, to where the tables have it at the coming strike, or to rest. The
-// tables are read at the phase at which they have the pelvis there, so that at every tick the
-// posture is that of a steady walk with its hips at that place: a start is the second half of a
-// step, a stop the first half.
+// While a walk begins, ends, or changes its pace, the pelvis moves along a quintic: from its place,
+// rate and acceleration to its place in the tables at the coming strike, or to rest. The tables are
+// read at the phase at which the pelvis is there in the tables, so that at every tick the posture
+// is that of a steady walk with its hips at that place: a start is the second half of a step, a
+// stop the first half.
 
 inline constexpr double kPhaseStep = 1e-3, kAimTicks = 4.0, kMostBend_m_s2 = 15.0;
-// The cost of a phase that is a cycle off the clock, as metres (at the reference leg) that the hips
-// are off their place. It keeps heights in time with the landing.
+// The cost of a phase that is a cycle off the clock, as the distance of the hips from their place
+// (metres at the reference leg) that costs the same. It keeps heights in time with the landing.
 inline constexpr double kGoesSomewhere =
-    0.2;  // of the data's stride: a shorter one keeps to the clock
+    0.2;  // share of the data's stride; the phase of a shorter one follows the clock
 inline constexpr double kInTime_m = 1.2, kLeastWay_m2 = 0.02;
-inline constexpr double kBeforeStep = 0.1, kAfterStep = 0.14;  // phases around the step's own
+// Phases before and after the step's own that are searched.
+inline constexpr double kBeforeStep = 0.1, kAfterStep = 0.14;
 inline constexpr int kPhaseTries = 6, kFewTries = 2;
-inline constexpr double kFastestPhase = 2.5;  // of the clock's
+inline constexpr double kFastestPhase = 2.5;  // greatest rate of the phase relative to the clock's
 
 // Moves the pelvis by one tick.
 template <class V>
@@ -709,7 +717,7 @@ void move_pelvis(const WalkModel& model, const MomentOf<V>& at, StateOf<V>& stat
   path.pelvis_m = chosen_fade<V>(at.led, {is.x + off.x, is.v + off.v, is.a + off.a}, pelvis);
 }
 
-// The phase at which the tables have the pelvis where it is.
+// The phase at which the pelvis in the tables is where the pelvis is now.
 template <class V>
 V phase_of_pelvis(const WalkModel& model, const MomentOf<V>& at, const StateOf<V>& state,
                   const PlanOf<V>& plan, V& rate) noexcept {
@@ -730,7 +738,7 @@ V phase_of_pelvis(const WalkModel& model, const MomentOf<V>& at, const StateOf<V
   const V goes = smoothstep(0.0, kGoesSomewhere, plan.ratio_ahead);
   const V in_time = (at.starting | at.closing) ? V(time * (1.0 - goes)) : all_of<V>(time);
   const V low = at.step_phase - kBeforeStep, high = at.strike_phase + kAfterStep;
-  // The phase counts from the running step's own strike; it may fall far behind the clock.
+  // Counts the phase from the running step's own strike; it may be far behind the clock.
   V phase = state.gait.phase - state.gait.off_phase.x;
   phase = phase - floor_of(V(phase - 0.5 * (low + high) + 0.5));
   phase = min_of(max_of(phase, low), high);
@@ -747,12 +755,12 @@ V phase_of_pelvis(const WalkModel& model, const MomentOf<V>& at, const StateOf<V
     phase = tries ? next : phase;
     rate = tries ? moves : rate;
   }
-  // Hips that hardly move do not tell a phase.
+  // The phase cannot be found from hips that hardly move, so its rate is bounded.
   const V most = kFastestPhase * at.strike_rate;
   return all_tries ? phase : min_of(max_of(phase, V(last - most)), V(last + most));
 }
 
-// Reads the tables again at another phase; the foot that flies keeps to the clock.
+// Reads the tables again at another phase; the flying foot follows the clock.
 template <class V>
 void read_at(const WalkModel& model, const StateOf<V>& state, const MaskOf<V>& where,
              const V& phase, PlanOf<V>& plan) noexcept {
@@ -776,7 +784,7 @@ void carry_over(const MaskOf<V>& changed, const V& value, const V& rate, const V
   off.a = changed ? V{} : off.a;
 }
 
-// The pelvis' place in this tick, and the phase that goes with it.
+// The pelvis' place in this tick, and the phase for it.
 template <class V>
 void lead_hips(const Tick& tick, MomentOf<V>& at, StateOf<V>& state, PlanOf<V>& plan) noexcept {
   PathFlow<V>& path = state.path;
@@ -792,14 +800,15 @@ void lead_hips(const Tick& tick, MomentOf<V>& at, StateOf<V>& state, PlanOf<V>& 
     const V found = phase_of_pelvis<V>(tick.model, at, state, plan, moves);
     phase = (at.led & at.started) ? found : phase;
     rate = (at.led & at.started) ? moves : rate;
-    // While the hips come to rest over both feet the data stand still.
+    // While the hips come to rest over both feet, the data's phase stays the same.
     const auto settles = at.led & not_of(at.started);
     phase = settles ? gait.phase - gait.off_phase.x : phase;
     rate = settles ? V{} : rate;
   }
-  // If the hips do not lead: the tables' place, with its rate and acceleration by differences.
+  // If the hips do not lead, the pelvis takes the tables' place; its velocity and acceleration are
+  // differences of the last places.
   const Vec<V> moved = by_tables - last, before = last - path.last_pelvis_m;
-  // Bounded, because a landing that jumps to another tread moves the path.
+  // Bounded, because the path moves if a landing jumps to another tread.
   const double most = kMostBend_m_s2 * tick.dt_s * tick.dt_s;
   Vec<V> bend = moved - before;
   bend = bend * min_of(V(most / max_of(length_of(bend), all_of<V>(most))), all_of<V>(1.0));
@@ -848,7 +857,7 @@ void fade_changes(const MomentOf<V>& at, const V& step_share, const V& share_a_t
   if (any(at.replanned)) {
     carry_over<V>(at.replanned, gait.shown, gait.shown_rate, share, V(next_share - share),
                   gait.off_shown);
-    // At a strike what is reached becomes the stride behind; a first step has none.
+    // At a strike the stride that was reached becomes the stride behind; a first step has none.
     const auto first = at.starting & at.strikes();
     const V last = at.strikes() ? V{} : gait.change;
     carry_over<V>(at.replanned, first ? change : last, at.strikes() ? V{} : gait.change_rate,
@@ -865,15 +874,15 @@ void fade_changes(const MomentOf<V>& at, const V& step_share, const V& share_a_t
 
 // --- What is not steady does not jump ------------------------------------------------------------
 
-// Times at the reference leg: a walk becomes unsteady in kUnsteady_s and steady again in kSteady_s;
-// planned values that may not jump return to their plan in the others.
+// Time constants at the reference leg: a walk becomes unsteady in kUnsteady_s and steady again in
+// kSteady_s; planned values that may not jump return to their plan in the other times.
 inline constexpr double kUnsteady_s = 0.10, kSteady_s = 0.3, kEases_s = 0.12, kHeaveEases_s = 0.07,
                         kRises_s = 0.05;
 // Bounds of second differences over time, and for the heel of their growth: a flying foot brakes
-// harder in every step than a pelvis may.
+// harder in every step than a pelvis is allowed to.
 inline constexpr double kMostHeave_m_s2 = 45.0, kMostHeel_m_s3 = 7000.0, kMostPitch_s2 = 300.0,
                         kMostEdge_s2 = 150.0;
-inline constexpr double kLeastFade = 6.0;  // ticks: over fewer a fade is a jump
+inline constexpr double kLeastFade = 6.0;  // ticks; a shorter fade would be a jump
 
 inline double size_of(double x) noexcept { return abs_of(x); }
 template <class V>
@@ -886,9 +895,9 @@ V size_of(const Vec3Of<V>& x) noexcept {
 }
 inline double size_of(const vec3& x) noexcept { return length_of(x); }
 
-// Follows a goal. While the walk is not steady the second difference is at most `most` or, where
-// `grows` is not 0, by that greater than in the last tick. The offset from the goal that this
-// leaves is gone after `lasts` ticks. In a steady walk the goal comes back as it is.
+// Follows a goal. While the walk is not steady the second difference is at most `most` or, if
+// `grows` is not 0, exceeds that of the last tick by at most `grows`. The remaining offset from the
+// goal is gone after `lasts` ticks. In a steady walk the result is the goal itself.
 template <class V, class T>
 T ease(const T& goal, double most, double grows, const V& lasts, const V& unsteady,
        EasedOf<T, V>& eased) noexcept {
@@ -920,7 +929,7 @@ void keep(const T& value, EasedOf<T, V>& eased) noexcept {
   eased.value = value;
 }
 
-// The share of the walk that is not steady: it rises where hips lead and in the step after that.
+// The share of the walk that is not steady: it rises while hips lead and in the step after that.
 template <class V>
 void advance_unsteady(const Tick& tick, const MomentOf<V>& at, PathFlow<V>& path) noexcept {
   const double scale = tick.model.time_scale;
@@ -931,46 +940,50 @@ void advance_unsteady(const Tick& tick, const MomentOf<V>& at, PathFlow<V>& path
 
 // --- Feet: their place, direction and pitch ------------------------------------------------------
 
-// A flying toe may be kMostSink_m lower than when it stands: so the tables' own toes, which only
-// just leave the floor, are let through.
+// A flying toe may be lower by kMostSink_m than when it stands, so the tables' own toes, which
+// hardly leave the floor, are not changed.
 inline constexpr double kMostSink_m = 0.0015, kSoftPitch = 0.4 * kDegree, kWiderPitch = 0.25;
-inline constexpr double kRiseBegin = 0.20, kHeelRiseLasts = 0.18;  // own phase: the heel may rise
+// Share of the foot's own phase at which the heel may rise, and how long the rise lasts.
+inline constexpr double kRiseBegin = 0.20, kHeelRiseLasts = 0.18;
 inline constexpr double kReachOnToe =
-    0.99995;  // of the leg: if the hip is farther away, the heel rises
-// A foot whose heel stays low rises when its leg would be longer than kLowReach of its length with
-// hips that are kLowHips_m lower.
+    0.99995;  // share of the leg's length; if the hip is farther away, the heel rises
+// A foot whose heel stays low rises when its leg would be longer than kLowReach of its length
+// although the hips are lower by kLowHips_m.
 inline constexpr double kLowHips_m = 0.045, kLowSmoothing = 0.03, kLowUntil = 0.25,
                         kLowRisen = 45.0 * kDegree, kLowReach = 0.985, kSoftRise = 12.0 * kDegree;
 inline constexpr double kMostUpright = 0.99, kSoftUpright = 0.12;
 inline constexpr double kMaxPitch = 85.0 * kDegree, kWidePitch = 25.0 * kDegree;
-// A foot that goes far up is lifted less: its way over the riser is lift enough, and the knee folds
-// only so far.
+// A foot that goes far up is lifted less: the way over the riser lifts it enough, and the knee can
+// only fold to its limit.
 inline constexpr double kLiftUp = 0.5, kHighUp = 0.2, kHighestUp = 0.345;
-inline constexpr double kLiftFade = 0.5;  // of the flight: the lift-off's own motion has faded
-inline constexpr double kRollEnd = 0.9;   // of the roll: the toe is down
+// Share of the flight after which the lift-off's own motion has faded.
+inline constexpr double kLiftFade = 0.5;
+inline constexpr double kRollEnd = 0.9;  // share of the roll at which the toe is down
 inline constexpr double kInPlaceStride_m = 0.02, kLikeAStep = 0.4, kWalksFrom = 0.3;
 inline constexpr double kSoftFloor_m = 0.02, kFirstLift_m = 0.03, kLastLift_m = 0.025,
                         kEdgeGoes = 0.4;
-inline constexpr double kSoftFrom = 0.3;  // of a changed flight: from it on the floor is soft
-// kHeelStays: of the first roll, in which the heel stays down. kFirstPitch: of the tables' pitch at
-// the lift-off.
+// Share of a changed flight from which on the floor is soft.
+inline constexpr double kSoftFrom = 0.3;
+// kHeelStays: share of the first roll in which the heel stays down. kFirstPitch: share of the
+// tables' pitch at the lift-off.
 inline constexpr double kHeelStays = 0.25, kFirstPitch = 0.8;
 inline constexpr double kEdgeUp = 0.25,
-                        kEdgeDown = 0.9;  // of the flight: soles clear the floor between these
-inline constexpr double kLiftGround =
-    0.5;                                  // of the flight: until then the old plane bounds the toe
-inline constexpr double kLowPitch = 0.5;  // of the flight: a low foot pitches less until then
-// Shares of the flight. A style's factor on its height acts fully between kLiftGrown and
+                        kEdgeDown = 0.9;    // shares of the flight between which soles clear the
+                                            // floor
+inline constexpr double kLiftGround = 0.5;  // share of the flight until which the plane of the
+                                            // lift-off bounds the toe
+inline constexpr double kLowPitch = 0.5;  // share of the flight until which a low foot pitches less
+// Shares of the flight. A style's factor on the height acts fully between kLiftGrown and
 // kLiftFalls.
 inline constexpr double kLiftGrown = 0.4, kLiftFalls = 0.5, kLiftEnds = 0.85;
 
-// The freedom of a standing foot to lift its heel off the floor: 0 none .. 1 all.
+// The freedom of a standing foot to lift its heel off the floor: 0 none .. 1 full.
 template <class V>
 V heel_rise(const WalkModel& model, const MomentOf<V>& at, Side side) noexcept {
   const double strike = side == kRightSide ? 0.0 : model.share[0] + model.share[1];
   const V p = at.phase - strike, own = p - floor_of(p);
   const double begin = std::max(kRiseBegin, model.share[side == kRightSide ? 0 : 2]);
-  // The heel rises after the roll, and less and less where a walk comes to rest.
+  // The heel rises after the roll, and less while a walk comes to rest.
   const V rises = smoothstep(begin, begin + kHeelRiseLasts, own),
           left = smootherstep(V(at.rest_ticks / at.closing_ticks));
   const auto rests = at.stopping & (not_of(at.started) | (at.closing & not_of(at.steps(side))));
@@ -982,7 +995,7 @@ Quat<V> edge_of(const LegBuild& leg, const V& twist_rad, const V& roll_rad) noex
   return rotation_by_vector<V>(all_of<V>(kUp) * twist_rad + all_of<V>(leg.forward) * roll_rad);
 }
 
-// Segment rotation, world.
+// The foot's segment rotation, world.
 template <class V>
 Quat<V> foot_rotation(const LegBuild& leg, const PoseOf<V>& pose) noexcept {
   const Quat<V> level =
@@ -994,7 +1007,7 @@ Quat<V> foot_rotation(const LegBuild& leg, const PoseOf<V>& pose) noexcept {
   }
 }
 
-// The toes' rotation from their foot: bent by `toe_rad`, and level across however the foot rolls.
+// The toes' rotation from their foot: bent by `toe_rad`, and level across even if the foot rolls.
 template <class V>
 Quat<V> toes_turn(const LegBuild& leg, const PoseOf<V>& pose, const V& toe_rad) noexcept {
   return conjugate_of(pose.edge) * rotation_about_axis<V>(all_of<V>(leg.side), toe_rad);
@@ -1012,31 +1025,32 @@ void set_pitch(const LegBuild& leg, const V& pitch_rad, const MaskOf<V>& on_toe,
   pose.toe_m = chosen(on_toe, pose.toe_m, toe);
 }
 
-// The factor by which the line from heel to toe is steeper in a foot that twists and rolls.
+// The factor by which twist and roll make the line from heel to toe steeper.
 template <class V>
 V rolled_elevation(const LegBuild& leg, const PoseOf<V>& pose) noexcept {
   const Vec<V> line = pose.edge * all_of<V>(leg.model.toe_m - leg.model.heel_m);
   return atan2_of(line.y, dot_of(line, all_of<V>(leg.forward))) - leg.elevation_rad;
 }
 
-// The greatest pitch at which the toe of a heel at this height is `clearance_m` above its rest.
+// The largest pitch at which the toe, with the heel at this height, is `clearance_m` above its
+// height at rest.
 template <class V>
 V highest_pitch(const LegBuild& leg, const V& heel_m, const V& clearance_m) noexcept {
   const V low = (leg.model.toe_rest_m + clearance_m - heel_m) / leg.foot_m;
   return leg.elevation_rad - asin_of(within(low, -1.0, 1.0));
 }
 
-// The factor on a rising heel's height, at most 1: a lame foot stays low.
+// The factor on a rising heel's height, at most 1: a limping style keeps its foot low.
 template <class V>
 V low_lift(const StateOf<V>& state, Side side) noexcept {
   return min_of(state.gait.flight_height[side].x, all_of<V>(1.0));
 }
 
-// The foot's pitch in the tables, less where its heel is to rise less.
+// The foot's pitch in the tables, reduced if its heel is to rise less.
 template <class V>
 V table_pitch(const MomentOf<V>& at, const StateOf<V>& state, const PlanOf<V>& plan,
               Side side) noexcept {
-  // The foot that stands when a walk begins has not landed: its toe is down.
+  // The standing foot has not landed when a walk begins, so its toe is down.
   const auto stands = at.in_roll[side] & (at.last_step_ticks == V{});
   const V own = at.in_flight[side] ? plan.flying.pitch_rad : plan.cell.foot[side].pitch_rad;
   V pitch = (at.started & not_of(stands)) ? own : V{};
@@ -1049,7 +1063,7 @@ V table_pitch(const MomentOf<V>& at, const StateOf<V>& state, const PlanOf<V>& p
   const auto flat =
       at.closing & not_of(at.in_flight[side]) & not_of(at.in_roll[side]) & not_of(at.steps(side));
   pitch = flat ? V{} : pitch;
-  // If the hips lead, the toe of a foot that has landed is down when the other one lifts off.
+  // If the hips lead, the toe of the foot that has landed is down when the other foot lifts off.
   const auto stops = at.in_roll[side] & at.led;
   if (any(stops)) {
     const V down = (at.tick - at.led_from) / (kRollEnd * (at.stage_ticks - at.led_from));
@@ -1062,7 +1076,7 @@ V table_pitch(const MomentOf<V>& at, const StateOf<V>& state, const PlanOf<V>& p
   return is_low ? pitch * mix(low, 1.0, smootherstep(V(u / kLowPitch))) : pitch;
 }
 
-// The share of the tables' twist and roll that a foot on the ground shows: a standing foot is flat,
+// The share of the tables' twist and roll that a foot on the ground has: a standing foot is flat,
 // and a closing one lands flat.
 template <class V>
 V on_its_edges(const MomentOf<V>& at, Side side) noexcept {
@@ -1071,8 +1085,8 @@ V on_its_edges(const MomentOf<V>& at, Side side) noexcept {
   return at.started ? all_of<V>(1.0) : fading;
 }
 
-// The place of a foot that starts from rest or comes to rest: between its footprint and the next
-// one, as far as in strides of that length.
+// The place of a foot that starts from rest or comes to rest, between its footprint and the next
+// one: at the same share of the way as in strides of that length.
 template <class V>
 Vec<V> short_flight(const MomentOf<V>& at, const StateOf<V>& state, const PlanOf<V>& plan,
                     Side side, const V& u) noexcept {
@@ -1096,8 +1110,9 @@ V short_lift(const WalkModel& model, const MomentOf<V>& at, const V& u) noexcept
   return model.size * high_m * 16.0 * (u * u) * (x * x);
 }
 
-// The heel's place, and the height of the ground line below it: the tables' path from the footprint
-// that the foot left to the one where it lands. Where both steps are equal, both say the same.
+// The place of the heel, and the height of the ground line below it: on the tables' path from the
+// footprint that the foot left to that where it lands. If both strides have equal steps, both give
+// the same place.
 template <class V>
 Vec<V> flight_heel(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& state,
                    const PlanOf<V>& plan, Side side, const V& u, V& base_m) noexcept {
@@ -1112,15 +1127,15 @@ Vec<V> flight_heel(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& st
              (path.landing_m + turned<V>(plan.lands, from_next)) * gone;
   const auto is_short = at.starting | at.closing;
   if (any(is_short)) {
-    // Before it lands, the foot of a first step flies as in a walk.
+    // Before it lands, the foot of a first step flies as in a steady walk.
     const V lands =
         at.starting ? kLikeAStep * smootherstep(V((u - kWalksFrom) / (1.0 - kWalksFrom))) : V{};
     const Vec<V> short_m = short_flight<V>(at, state, plan, side, u),
                  walks = path.landing_m + turned<V>(plan.lands, from_next);
     p = chosen(is_short, short_m * (1.0 - lands) + walks * lands, p);
   }
-  // The heel goes along an arc: the chord leads through the standing leg, and both directions mixed
-  // lead far out.
+  // The heel goes along an arc: the chord would lead through the standing leg, and a mix of both
+  // directions would lead far outwards.
   const V turns = path.landing_heading_rad - foot.lift_yaw_rad;
   if (any(turns != V{})) {
     const Vec<V> way = path.landing_m - foot.heel_anchor_m;
@@ -1134,7 +1149,7 @@ Vec<V> flight_heel(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& st
     const V out = is_short ? arc : arc - mixed;
     p -= left * (turns * sqrt_of(square) * 0.5 * out);
   }
-  // A greater factor acts while the foot is high, a smaller one from the lift-off on.
+  // A factor above 1 acts while the foot is high, one below 1 from the lift-off on.
   const V one = all_of<V>(1.0), factor = state.gait.flight_height[side].x;
   const V more = mix(1.0, max_of(factor, one), V(1.0 - smoothstep(kLiftFalls, kLiftEnds, u)));
   V lifted = more;
@@ -1153,7 +1168,7 @@ Vec<V> flight_heel(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& st
   p.y = is_short ? p.y + short_lift<V>(tick.model, at, u) : p.y;
   p.y = changed ? p.y + short_lift<V>(tick.model, at, s) * foot.gap_lasts : p.y;
   const auto fading = s < all_of<V>(1.0);
-  // A changed flight may come down fast: a quintic then stays higher.
+  // A changed flight may come down fast; a quintic keeps it higher until then.
   const V w = 1.0 - s, w3 = w * w * w;
   const V value_of = changed ? w3 * (1.0 + s * (3.0 + 6.0 * s)) : h00(s),
           slope_of = changed ? w3 * s * (1.0 + 3.0 * s) : h10(s);
@@ -1175,18 +1190,19 @@ Vec<V> flight_heel(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& st
 template <class V>
 Vec<V> flying_edges(const MomentOf<V>& at, const StateOf<V>& state, const PlanOf<V>& plan,
                     Side side, const V& u) noexcept {
-  // If the hips lead, the foot stood, and will stand, at another phase than it flies at.
+  // If the hips lead, the phase of the flight differs from the phases at which the foot stood and
+  // will stand.
   const V lands = at.closing ? V{} : smootherstep(V((u - 1.0 + kEdgeGoes) / kEdgeGoes));
   const V goes = at.led ? smootherstep(V(u / kEdgeGoes)) * (1.0 - lands) : all_of<V>(1.0);
   const StrideFootOf<V>& stands = plan.cell.foot[side];
-  // A lame foot that hardly leaves the floor does not roll onto an edge.
+  // A foot with little lift does not roll onto an edge.
   const V low = mix(1.0, low_lift<V>(state, side),
                     V(smootherstep(V(u / 0.5)) * (1.0 - smootherstep(V((u - 0.6) / 0.4)))));
   return {low * mix(stands.twist_rad, plan.flying.twist_rad, goes),
           low * mix(stands.roll_rad, plan.flying.roll_rad, goes), V{}};
 }
 
-// The flying foot, still without its pitch.
+// The flying foot, before its pitch is applied.
 template <class V>
 FlightOf<V> flight_point(const Tick& tick, const MomentOf<V>& at, const StateOf<V>& state,
                          const PlanOf<V>& plan, Side side, const V& u) noexcept {
@@ -1196,7 +1212,7 @@ FlightOf<V> flight_point(const Tick& tick, const MomentOf<V>& at, const StateOf<
   pose.heel_m = flight_heel<V>(tick, at, state, plan, side, u, point.base_m);
   const V gone = 1.0 - h00(u);
   const V turn = state.path.landing_heading_rad - foot.lift_yaw_rad;
-  // A landing that has changed its direction in mid-flight.
+  // The landing's direction has changed in mid-flight.
   const V s = (u - foot.gap_begin) / foot.gap_lasts;
   const V off = ((foot.gap_begin > V{}) & (s < all_of<V>(1.0)))
                     ? foot.gap_yaw_rad * (1.0 - smootherstep(s))
@@ -1212,18 +1228,18 @@ FlightOf<V> flight_point(const Tick& tick, const MomentOf<V>& at, const StateOf<
   return point;
 }
 
-// The pitch of the flying foot: as planned, as far as the toe stays off that ground. `off_rad`: its
-// difference from the tables'.
+// The pitch of the flying foot: as planned, limited so that the toe stays off that ground.
+// `off_rad`: its difference from the tables'.
 template <class V>
 void pitch_in_flight(const WalkModel& model, const StateOf<V>& state, Side side, const V& u,
                      const V& pitch, const V& off_rad, FlightOf<V>& point) noexcept {
   const LegBuild& leg = model.leg[side];
   const auto& foot = state.foot[side];
-  // The toe leaves the plane that it stood on, which may be another one than the line over ground.
+  // The toe leaves the plane on which it stood, which may differ from the ground line.
   const V ground_m = point.base_m + point.lifted_m * (1.0 - smootherstep(V(u / kLiftGround)));
   V height = point.pose.heel_m.y - ground_m;
   if constexpr (kAlone<V>) height *= foot.plane.normal.y;
-  // A low foot that rolls onto its edge keeps this edge off the floor.
+  // A low foot that rolls onto its edge keeps the edge off the floor.
   point.pose.pitch_rad = pitch;
   const Vec<V> across = foot_rotation<V>(leg, point.pose) * all_of<V>(leg.side);
   V steep = across.y;
@@ -1232,14 +1248,15 @@ void pitch_in_flight(const WalkModel& model, const StateOf<V>& state, Side side,
                    (1.0 - smoothstep(kEdgeDown, 1.0, u));
   const V limit =
       highest_pitch<V>(leg, height, edge_m - kMostSink_m) + rolled_elevation<V>(leg, point.pose);
-  // The tables keep the toe off the floor. What differs from them must do so itself.
+  // The tables keep the toe off the floor, so the limit gets softer as the pitch differs more
+  // from theirs.
   const V soft =
       kSoftPitch + kWiderPitch * abs_of(off_rad) * smoothstep(0.0, 0.1, u) + edge_m / leg.foot_m;
-  const MaskOf<V> on_toe{};  // none
+  const MaskOf<V> on_toe{};  // no foot of these walks stands on its toe
   set_pitch<V>(leg, soft_min(pitch, limit, soft), on_toe, point.pose);
 }
 
-// The foot's pose of this tick, before the reach and the weights act on it.
+// The foot's pose of this tick, before the reach of the leg and the weights change it.
 template <class V>
 void plan_foot(const Tick& tick, const MomentOf<V>& at, StateOf<V>& state, const PlanOf<V>& plan,
                Side side) noexcept {
@@ -1323,7 +1340,7 @@ V pitch_in_reach(const LegBuild& leg, const PoseOf<V>& pose, const Vec<V>& hip_m
   return m < all_of<V>(1e-9) ? V{} : pitch;
 }
 
-// Lets a standing foot rise on its toe where its leg would be too short.
+// Lets a standing foot rise on its toe if its leg would otherwise be too short.
 template <class V>
 void reach_with_toe(const WalkModel& model, const MomentOf<V>& at, StateOf<V>& state, Side side,
                     const Vec<V>& hip_m) noexcept {
@@ -1340,13 +1357,13 @@ void reach_with_toe(const WalkModel& model, const MomentOf<V>& at, StateOf<V>& s
   foot.pose = chosen_pose(short_of, pose, foot.pose);
 }
 
-// The reach of a leg: less in a walk that is not steady, since a straight knee would turn fast.
+// The reach of a leg, which is less in an unsteady walk, because a straight knee would turn fast.
 template <class V>
 V reach_of(const LegBuild& leg, const PathFlow<V>& path) noexcept {
   return leg.model.length_m() * mix(kReach, kUnsteadyReach, V(smootherstep(path.unsteady)));
 }
 
-// A foot in flight keeps within the reach of its leg.
+// Keeps a foot in flight within the reach of its leg.
 template <class V>
 void keep_in_reach(const WalkModel& model, const MomentOf<V>& at, StateOf<V>& state, Side side,
                    const Vec<V>& hip_m) noexcept {
@@ -1367,8 +1384,8 @@ void keep_in_reach(const WalkModel& model, const MomentOf<V>& at, StateOf<V>& st
   foot.pose = chosen_pose(pulls, pose, foot.pose);
 }
 
-// The share to which a foot whose heel stays low lowers the hips and pitches itself: from the rise
-// of its heel on, until the heel swings forward.
+// The share to which a foot whose heel stays low lowers the hips and pitches: from the rise of its
+// heel on, until the heel swings forward.
 template <class V>
 void advance_low_foot(const Tick& tick, const MomentOf<V>& at, StateOf<V>& state,
                       Side side) noexcept {
@@ -1380,7 +1397,7 @@ void advance_low_foot(const Tick& tick, const MomentOf<V>& at, StateOf<V>& state
   state.legs.low[side].advance(goal, Damping(kLowSmoothing * tick.model.time_scale, tick.dt_s));
 }
 
-// Pitches such a foot as far as its leg asks.
+// Pitches such a foot as far as its leg needs.
 template <class V>
 void rise_as_asked(const WalkModel& model, const MomentOf<V>& at, StateOf<V>& state, Side side,
                    const Vec<V>& hip_m) noexcept {
@@ -1401,7 +1418,7 @@ void rise_as_asked(const WalkModel& model, const MomentOf<V>& at, StateOf<V>& st
 
 // --- The pelvis ----------------------------------------------------------------------------------
 
-// The pelvis of this tick, still without the height that the legs ask for.
+// The pelvis of this tick, before the legs change its height.
 template <class V>
 PelvisOf<V> pelvis_over_ground(const WalkModel& model, const StateOf<V>& state,
                                const PlanOf<V>& plan) noexcept {
@@ -1411,7 +1428,7 @@ PelvisOf<V> pelvis_over_ground(const WalkModel& model, const StateOf<V>& state,
   const Vec<V> left{heading.w * heading.w - heading.y * heading.y, V{},
                     -2.0 * heading.w * heading.y};
   pelvis.position_m = state.path.pelvis_m.x + state.path.sway_m;
-  // In a turn the body leans as a whole, about the ground below the hips.
+  // In a turn the whole body leans, about the ground below the hips.
   const V height_m = model.stand_m + cell.pelvis_m.y;
   V sine, cosine;
   sin_cos_of(state.path.lean_rad.x, sine, cosine);
@@ -1426,7 +1443,7 @@ PelvisOf<V> pelvis_over_ground(const WalkModel& model, const StateOf<V>& state,
   if constexpr (kAlone<V>) {
     pelvis.position_m.y += state.path.base.height_m;
     if (state.path.slope_lean_rad.x == 0.0) return pelvis;
-    // Into a slope the trunk leans about the hip joints.
+    // On a slope the trunk leans about the hip joints.
     const vec3 hips = 0.5 * (model.leg[kLeftSide].model.hip_m + model.leg[kRightSide].model.hip_m);
     pelvis.position_m += pelvis.rotation * hips;
     pelvis.rotation = upright * rotation_x(state.path.slope_lean_rad.x) * turned;
@@ -1444,7 +1461,7 @@ V span_of(const LegModel& leg, const V& knee_rad) noexcept {
   return sqrt_of(V(a * a + b * b + 2.0 * a * b * cosine));
 }
 
-// The pelvis' height: the tables', lowered where ground or turn ask more of a leg than they know.
+// The pelvis' height: the tables', lowered if ground or turn need more of a leg than in the tables.
 template <class V>
 V pelvis_height(const WalkModel& model, double tick_s, StateOf<V>& state, const PlanOf<V>& plan,
                 const PelvisOf<V>& pelvis) noexcept {
@@ -1453,7 +1470,7 @@ V pelvis_height(const WalkModel& model, double tick_s, StateOf<V>& state, const 
   for (const Side side : {kLeftSide, kRightSide}) {
     const LegBuild& leg = model.leg[side];
     const V knee = model.stand_rad[side][kKneeX] + plan.cell.leg_rad[side][kKneeX];
-    // Between the tables of two strides a knee may be straighter than in both.
+    // Between the tables of two strides a knee may be straighter than in either of them.
     const V table = span_of<V>(leg.model, knee);
     const V low = kLowReach * leg.model.length_m() + V{},
             known = mix(low, table,
@@ -1462,7 +1479,7 @@ V pelvis_height(const WalkModel& model, double tick_s, StateOf<V>& state, const 
     const Vec<V> ankle = pose.heel_m - pose.rotation * all_of<V>(leg.model.heel_m),
                  hip = pelvis.hip(leg);
     const V span = length_of(ankle - hip);
-    // A reach that the tables ask for is let through.
+    // A reach that already occurs in the tables is allowed.
     const V beyond = (span - known) / model.size;
     const auto asked = beyond > V{};
     if (!any(asked)) continue;
@@ -1475,7 +1492,7 @@ V pelvis_height(const WalkModel& model, double tick_s, StateOf<V>& state, const 
     const V upright = max_of(V(0.3 * span), V(hip.y - ankle.y)) / span;
     squares += asked ? excess * excess / (upright * upright) : V{};
   }
-  // The lowering that a foot asked for fades once it has left the ground.
+  // The lowering for a foot fades after the foot has left the ground.
   PathFlow<V>& path = state.path;
   const V drop = soft_min(sqrt_of(squares), kMostSunk_m * model.size, kSoftSunk_m * model.size);
   path.sunk_m.advance(drop, Damping(kRises_s * model.time_scale, tick_s));

@@ -34,7 +34,8 @@ void set_lanes(const Moment& one, int lane, MomentOf<V>& at) noexcept {
   set_lanes(static_cast<const CountsOf<double>&>(one), lane, static_cast<CountsOf<V>&>(at));
 }
 
-// The numbers of all walks into their lanes, and back. `of` says which of a walk's numbers.
+// Copies the numbers of all walks into their lanes, and back. `of` selects which of a walk's
+// numbers.
 template <class V>
 using Walks = std::array<WalkState*, kWidthOf<V>>;
 template <class V, class Of, class Numbers>
@@ -81,7 +82,7 @@ Pelvis pelvis_of(const PelvisOf<V>& pelvis, int lane) noexcept {
   return one;
 }
 
-// Solves the legs of one side, with even weights first. Those that need mending are mended one by
+// Solves the legs of one side, first with even weights. Legs that need another solve get it one by
 // one.
 template <class V>
 PosedLegOf<V> pose_side(const Tick& tick, std::span<const Walking> walks, const MomentOf<V>& at,
@@ -109,7 +110,8 @@ PosedLegOf<V> pose_side(const Tick& tick, std::span<const Walking> walks, const 
   for (int lane = 0; any(mends) && lane < kWidthOf<V>; ++lane) {
     if (!is_set(mends, lane)) continue;
     WalkState& walk = *walks[std::min(lane, count - 1)].state;
-    if (lane < count) {  // those left over are the last walk again, and write its pose again
+    // Lanes beyond `count` repeat the last walk and get its leg, which is mended already.
+    if (lane < count) {
       get_lane(even, lane, walk.legs.even_rad[side]);
       get_lane(posed, lane, one);
       one = mended_leg(tick, walk, pelvis_of(pelvis, lane), side, one);
@@ -138,7 +140,7 @@ PosedLegOf<V> pose_side(const Tick& tick, std::span<const Walking> walks, const 
 template <int kWidth>
 void advance_lanes(const WalkModel& model, double dt_s, std::span<const Walking> walks) noexcept {
   using V = Lanes<kWidth>;
-  // The tick's parameters are the first walk's; those of all walks are in `params`.
+  // The tick's own parameters are the first walk's; those of all walks are in `params`.
   const Tick tick = {model, *walks[0].params, IkMode::robust, dt_s, true};
   const int count = static_cast<int>(walks.size());
   MomentOf<V> at;
@@ -149,7 +151,7 @@ void advance_lanes(const WalkModel& model, double dt_s, std::span<const Walking>
   Walks<V> states;
   Moment one;
   for (int lane = 0; lane < kWidth; ++lane) {
-    // Lanes that are left over compute the last walk again.
+    // Lanes beyond `count` compute the last walk again.
     const Walking& walk = walks[std::min(lane, count - 1)];
     if (lane < count)
       begin_tick({model, *walk.params, IkMode::robust, dt_s, true}, *walk.state, one);

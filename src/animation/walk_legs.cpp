@@ -31,7 +31,7 @@ struct FootGoal {
 };
 
 enum class FootEnd { heel, toe };
-FootEnd end_effector(const FootState& foot) noexcept {  // Table I
+FootEnd end_effector(const FootState& foot) noexcept {  // the stage decides, as in Table I
   return foot.mode == FootMode::support ? FootEnd::toe : FootEnd::heel;
 }
 
@@ -57,8 +57,8 @@ FootGoal foot_goal(const LegBuild& leg, const FootState& foot, const Pelvis& pel
            IkRow{beside_point, across, glm::dot(across, beside)}}};
 }
 
-// Always counted from the heel, so that the swivel that the rows leave free does not jump when the
-// end-effector changes.
+// The foot's goals, always counted from the heel, so that the swivel that the rows leave free does
+// not jump when the end-effector changes.
 FootGoal whole_foot(const LegBuild& leg, const FootState& foot, const Pelvis& pelvis) noexcept {
   return foot_goal(leg, foot, pelvis, FootEnd::heel);
 }
@@ -106,8 +106,9 @@ void point_foot_down(const LegBuild& leg, double more_rad, double flight_progres
   pose.toe_m.y += lift_m;
 }
 
-// A start begins in the middle of a step, where the heels of a walk have risen already. An ankle
-// that stairs bend up far while standing would jump to that, so its easing grows with the roll.
+// The share to which the first step's ankle is eased. A start begins in the middle of a step, at
+// which the heels of a walk have risen already. An ankle that stairs bend up far while standing
+// would jump to that, so its easing grows with the roll.
 double share_of_start(const StepClock& clock) noexcept {
   if (!clock.starting || clock.stage != Stage::roll) return 1.0;
   return smoothstep(0.0, 1.0, double(clock.tick) / clock.stage_ticks);
@@ -115,7 +116,7 @@ double share_of_start(const StepClock& clock) noexcept {
 
 // Eases an ankle that bends up too far: in flight the foot points down, in late support the heel
 // rises. A foot that has to stand still does neither. Near its limit the ankle is held. False if
-// nothing was to be done.
+// nothing had to be done.
 bool ease_ankle(const Tick& tick, WalkState& state, Side side, const Pelvis& pelvis,
                 IkAngles& angles, PosedLeg& solve) noexcept {
   const LegBuild& leg = tick.model.leg[side];
@@ -150,8 +151,8 @@ bool ease_ankle(const Tick& tick, WalkState& state, Side side, const Pelvis& pel
 
 }  // namespace
 
-// Steps 1-7 to the letter for the stage's end-effector alone. While heel and toe both stand or
-// land, the other end is a second position goal.
+// Steps 1-7, followed literally, for the stage's end-effector alone. While heel and toe both stand
+// or land, the other end is a second position goal.
 PosedLeg pose_paper(const Tick& tick, WalkState& state, const Pelvis& pelvis, Side side) noexcept {
   const LegBuild& leg = tick.model.leg[side];
   const FootState& foot = state.foot[side];

@@ -13,13 +13,17 @@ namespace {
 // Limits in radians (degrees here) of a left arm, after AAOS; a right one's z and y are mirrored.
 constexpr ArmAngles kMin = {-170, -35, -90, -150, -60, -25};
 constexpr ArmAngles kMax = {60, 150, 80, -2, 60, 35};
-constexpr double kLeastFlexion = 4.0 * kDegree;  // of an elbow whose swing is magnified
-constexpr double kGrip = 0.075;                  // wrist to the middle of an adult's hand, metres
-constexpr double kHandPart = 0.5;                // the same as a share of a hand shorter than that
-constexpr double kClearHinge = 0.05;  // mean sine of the elbow's bend that shows where its hinge is
-constexpr double kWidestTurn = 1.45;  // radians of shoulder z: near a right angle x and y are one
+constexpr double kLeastFlexion = 4.0 * kDegree;  // least bend of an elbow whose swing is magnified
+constexpr double kGrip = 0.075;                  // distance from the wrist to the middle of an
+                                                 // adult's hand, metres
+constexpr double kHandPart = 0.5;                // that distance as a share of the length of a
+                                                 // shorter hand
+// Mean sine of the elbow's bend from which on the data show its hinge.
+constexpr double kClearHinge = 0.05;
+// Radians of shoulder z: nearer to a right angle the turns about x and y are the same.
+constexpr double kWidestTurn = 1.45;
 
-// The world frames of the data's sample i, with the root at the origin.
+// World frames of the joints in the data's sample i, with the root at the origin.
 JointFrames frames_of_sample(const GaitCycle& cycle, int i) {
   const std::size_t joints = cycle.skeleton.joints.size();
   JointFrames frames;
@@ -48,7 +52,7 @@ quat mean_local(const GaitCycle& cycle, int joint) {
 vec3 perpendicular(const vec3& v, const vec3& to) { return v - to * glm::dot(v, to); }
 
 // The hanging axes in the shoulder joint's frame: y along the bone, x along the elbow's hinge. The
-// hinge shows where the data bend the elbow; where they hardly do, it is the walker's left.
+// data show the hinge if they bend the elbow; if they hardly do, the hinge is the walker's left.
 quat hanging_axes(const GaitCycle& cycle, const ArmChain& joints, const JointFrames& standing) {
   vec3 bone(0.0), hinge(0.0);
   for (int i = 0; i < kCycleSamples; ++i) {
@@ -70,7 +74,7 @@ quat hanging_axes(const GaitCycle& cycle, const ArmChain& joints, const JointFra
   return from_axes(x, y, glm::cross(x, y));
 }
 
-// Middle of the hand: beyond the wrist on the way to what hangs on it, else along the forearm.
+// Middle of the hand: from the wrist towards the joint that it carries, else along the forearm.
 vec3 grip_of(const GaitCycle& cycle, const ArmBuild& arm, const JointFrames& standing) {
   vec3 sum(0.0);
   double longest_m = 0.0;
@@ -87,7 +91,7 @@ vec3 grip_of(const GaitCycle& cycle, const ArmBuild& arm, const JointFrames& sta
   return glm::normalize(sum) * std::min(usual_m, std::max(kHandPart * longest_m, 0.3 * usual_m));
 }
 
-// The angles that the data's arm has in one sample; the wrist's count from there.
+// The angles of the data's arm in one sample; those of the wrist count from its pose in the data.
 ArmAngles angles_of(const JointFrames& at, const Skeleton& skeleton, const ArmBuild& arm) {
   const ArmChain& j = arm.joints;
   const quat base = at.rotation[skeleton.joints[j.shoulder].parent] * arm.chest;
@@ -149,7 +153,7 @@ ArmBuild arm_build(const GaitCycle& cycle, const ArmChain& joints, Side side,
   return arm;
 }
 
-// At most kMaxSpineIk of the spine's joints, spread over it.
+// Chooses at most kMaxSpineIk of the spine's joints, evenly distributed.
 void fill_spine(const GaitCycle& cycle, const std::vector<int>& spine, const JointFrames& standing,
                 UpperBodyModel& body) {
   if (spine.size() < 2) return;
@@ -234,7 +238,7 @@ IkChain leg_chain(const LegModel& leg) {
 
 double elevation(const vec3& v) { return atan2(v.y, horizontal_length(v)); }
 
-// Bones below the hips grow by scale * leg_ratio, all others by scale.
+// Scales bones below the hips by scale * leg_ratio, all others by scale.
 void scale_build(GaitCycle& cycle, double scale, double leg_ratio) {
   for (std::size_t j = 0; j < cycle.skeleton.joints.size(); ++j) {
     Joint& joint = cycle.skeleton.joints[j];
@@ -274,7 +278,7 @@ LegBuild leg_build(const LegModel& model) {
   return leg;
 }
 
-// A heel or toe of the source in its travel frame.
+// The place of a heel or toe of the source in its travel frame.
 vec3 foot_point(const CycleSample& sample, Side side, const vec3& point_m) {
   const LegSample& leg = sample.leg[side];
   return leg.ankle_m + leg.foot * point_m;
@@ -311,7 +315,8 @@ void collect_kept_joints(WalkModel& model) {
   }
 }
 
-// The pose is written without a heap: what stands between two joints of a leg is bounded here.
+// True if a leg has too many joints. The pose is written without heap, so the number of joints
+// between two joints of a leg is bounded.
 bool has_overlong_leg(const GaitCycle& cycle) {
   for (const LegModel& leg : cycle.leg) {
     const std::array<int, 5> chain = {cycle.pelvis, leg.joints.hip, leg.joints.knee,
@@ -357,7 +362,8 @@ FootprintLine footprint_line(const std::vector<StrideTable>& tables,
   return line;
 }
 
-// Joints between two of a leg, and between the pelvis and the hip, keep their standing rotation.
+// Lays out the legs. Joints between two joints of a leg, and between the pelvis and the hip, keep
+// their standing rotation.
 void lay_out_legs(WalkModel& model) {
   const Skeleton& skeleton = model.cycle.skeleton;
   for (LegBuild& leg : model.leg) {
@@ -377,8 +383,8 @@ void lay_out_legs(WalkModel& model) {
   }
 }
 
-// The rows that a tick samples: without the legs' joints, which the inverse kinematics sets, and
-// without kept ones.
+// Lays out the rows that a tick samples, without the legs' joints, which the inverse kinematics
+// sets, and without the joints that keep their rotation.
 void lay_out_rows(WalkModel& model) {
   std::array<bool, kMaxJoints> is_set{};
   for (const int j : model.kept) is_set[j] = true;
@@ -390,7 +396,7 @@ void lay_out_rows(WalkModel& model) {
   model.above = pose_rows(model.cycle, {is_set.data(), model.cycle.skeleton.joints.size()});
 }
 
-// Keeps the joints on the pelvis, but for the legs, as upright as if the pelvis did not roll.
+// Keeps the joints above the pelvis, except the legs, as upright as if the pelvis did not roll.
 void keep_trunk_upright(double roll_rad, GaitCycle& cycle) {
   const quat& pelvis = cycle.pelvis_standing;
   const quat back = glm::conjugate(pelvis) * rotation_z(-roll_rad) * pelvis;
@@ -437,7 +443,8 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
   model.source_leg_length_m = 0.5 * (cycle.leg[0].length_m() + cycle.leg[1].length_m());
   model.leg_length_m = model.source_leg_length_m * ratio;
   model.size = model.leg_length_m / kReferenceLeg_m;
-  model.time_scale = std::sqrt(std::sqrt(model.size));  // as gait_limits() scales times
+  // The fourth root, as gait_limits() scales times.
+  model.time_scale = std::sqrt(std::sqrt(model.size));
   for (Side side : {kLeftSide, kRightSide}) {
     model.leg[side] = leg_build(model.cycle.leg[side]);
     const double lift = cycle.toe_off[side] - cycle.strike[side];
@@ -500,7 +507,7 @@ std::optional<double> own_stick(const GaitCycle& cycle) noexcept {
 }
 
 double terrain_scale(const Terrain& terrain, const WalkModel& model) noexcept {
-  constexpr double kSpare_m = 0.02;  // at the reference leg
+  constexpr double kSpare_m = 0.02;  // room beside the sole, at the reference leg
   const double tread_m = least_tread_m(terrain);
   double scale = 1.0;
   for (const LegBuild& leg : model.leg) {

@@ -29,26 +29,30 @@ namespace {
 
 // --- Footholds -----------------------------------------------------------------------------------
 
-constexpr double kSlopeShortens = 1.0;  // a grade g leaves 1 / (1 + g) of a step
+// On a grade g a step keeps 1 / (1 + kSlopeShortens g) of its length.
+constexpr double kSlopeShortens = 1.0;
 // The sole keeps kEdgeRoom legs away from an edge, but gives up at most kMostEdgeShare of its room.
 constexpr double kEdgeRoom = 0.05, kMostEdgeShare = 0.3;
-constexpr int kMostPieces = 8;  // compared, from the wanted one to the standing foot's
+// Most pieces that are compared, from the wanted one to the standing foot's.
+constexpr int kMostPieces = 8;
 // Weight of moving a step across its heading, relative to moving it along.
 constexpr double kSkew = 0.25;
 // The cost of a piece: about the logarithm of the factor by which it makes the step longer or
 // shorter (steps shorter than kLeastStep legs count as that long), and further costs if the step
-// gets stuck, goes sideways, high, over an edge, or long. Rises are in legs.
+// gets stuck, goes sideways, high, over an edge, or becomes long. Rises are in legs.
 constexpr double kLeastStep = 0.05, kStuck = 0.3, kStuckCosts = 2.0, kAside = 3.0;
 constexpr double kEasyRise = 0.22, kRiseCosts = 10.0, kMostRise = 0.345, kTooHigh = 100.0;
 constexpr double kOverhang = 30.0, kLongStep = 0.6, kLongCosts = 10.0;
 constexpr double kCrossStep = 0.5, kCrossWay = 0.85, kLeastCross = 0.25;  // lengths in legs
 constexpr double kCrossWayBackward = 0.6;
-constexpr double kPieceSettles = 0.6;  // of the roll: until then a step may still go elsewhere
-constexpr double kStay = 0.1;          // another piece than before has to be cheaper by this
-constexpr double kBeside_m = 1e-6;     // from a riser: on one side of it
+// Share of the roll until which a step may still choose another piece.
+constexpr double kPieceSettles = 0.6;
+constexpr double kStay = 0.1;  // another piece than before has to be cheaper by this much
+// Distance from a riser at which a place is clearly on one side of it.
+constexpr double kBeside_m = 1e-6;
 constexpr double kMoved_m = 1e-6, kTurned_rad = 1e-6;
 
-// The sole's extent along z, from its heel point.
+// The extent of a sole along z, from its heel point.
 struct Extent {
   double back_m = 0.0, front_m = 0.0;
 };
@@ -70,20 +74,19 @@ Room room_on(const Stretch& piece, const Extent& sole, double leg_m) noexcept {
   return {low + edge, high - edge, 0.0};
 }
 
-// A step whose foothold is looked for.
+// A step for which a foothold is searched.
 struct Step {
-  vec3 from_m{0.0}, lift_m{0.0};  // heels of the foot that stands and of the one that flies
-  Stretch stands, lifts;          // their pieces
+  vec3 from_m{0.0}, lift_m{0.0};  // heels of the standing foot and of the flying one
+  Stretch stands, lifts;          // pieces on which these heels stand
   vec3 forward{0.0, 0.0, 1.0}, wanted_m{0.0};
   double leg_m = 0.0;
   Extent sole;
-  vec3 middle_m{
-      0.0};  // from the heel: of the sole, along z, or along the step where nothing lies so
+  vec3 middle_m{0.0};  // from the heel to the middle of the sole
   double wanted_length_m() const noexcept { return glm::dot(wanted_m - from_m, forward); }
 };
 
-// The longest step over a riser, counted from the foot that stands and over the whole way of the
-// foot that flies: that foot has to rise before it may go forward.
+// The longest step over a riser, counted from the standing foot, and also over the whole way of the
+// flying foot: that foot has to rise before it may go forward.
 double longest_to(const Step& step, const Stretch& piece) noexcept {
   double longest = std::numeric_limits<double>::infinity();
   const double sign = step.wanted_length_m() < 0.0 ? -1.0 : 1.0;
@@ -100,14 +103,14 @@ vec3 wanted_on(const Step& step, const Stretch& piece) noexcept {
   return step.wanted_m + step.forward * (std::clamp(wanted, -longest, longest) - wanted);
 }
 
-// A move that shifts a place by `dz_m` along z while it leaves the heading as little as it can.
+// Shifts a place by `dz_m` along z, with the least change of the heading.
 vec3 shifted(const Step& step, double dz_m) noexcept {
   const vec3& f = step.forward;
   const vec3 left = glm::cross(kUp, f);
   return (f * f.z + left * (left.z * kSkew)) * (dz_m / (f.z * f.z + left.z * left.z * kSkew));
 }
 
-// A step of this length would hardly leave the place.
+// True if a step of this length would hardly leave the place.
 bool is_stuck(const Step& step, double length_m) noexcept {
   const double wanted = step.wanted_length_m(), sign = wanted < 0.0 ? -1.0 : 1.0;
   return sign * wanted > kLeastStep * step.leg_m && sign * length_m < kStuck * sign * wanted;
@@ -137,8 +140,8 @@ double cost_of(const Floor& terrain, const Step& step, const Stretch& piece) noe
          kOverhang * room.lacks_m / step.leg_m;
 }
 
-// Tries the pieces from the one that the wanted place is on back to the standing foot's. If both
-// are the same piece, and its edge is in the way, the piece behind this edge is tried as well.
+// Tries the pieces from the wanted place's back to the standing foot's. If both are the same piece,
+// and its edge is in the way, the piece beyond this edge is tried as well.
 Stretch best_piece(const Floor& terrain, const Step& step, const Stretch* settled) noexcept {
   const double middle = 0.5 * (step.sole.back_m + step.sole.front_m);
   const double stands = step.from_m.z + middle;
@@ -175,7 +178,7 @@ vec3 place_on(const Step& step, const Stretch& piece, bool& fits) noexcept {
   return near + shifted(step, std::clamp(near.z, room.low_m, room.high_m) - near.z);
 }
 
-// Looks at the step after the landing: on stairs it takes longer.
+// Looks ahead at the step after the landing, which takes longer on stairs.
 void look_ahead(const Tick& tick, const Step& landing, const vec3& across_m,
                 WalkState& state) noexcept {
   const Side next = other(step_foot(state));
@@ -195,7 +198,7 @@ void look_ahead(const Tick& tick, const Step& landing, const vec3& across_m,
   const vec3 place = place_on(step, best_piece(terrain, step, nullptr), fits);
   const vec3 middle = place + step.middle_m;
   const double next_m = ground_at(terrain, middle.x, middle.z).height_m;
-  // The greater one of the rise to the next landing and the rest of the flying foot's rise.
+  // The larger of the rise to the next landing and the rest of the flying foot's rise.
   const double step_m = std::abs(next_m - state.path.landing_m.y),
                way_m = std::abs(next_m - landing.from_m.y);
   state.path.foothold.next_rise = std::max(step_m, way_m - step_m) / tick.model.leg_length_m;
@@ -211,12 +214,12 @@ double slope_share(const Floor& terrain, const Step& step, const Stretch& stands
   return 1.0 / (1.0 + kSlopeShortens * std::abs(rise) / length);
 }
 
-// The plane on which heel and ball of a sole lie on the ground of a game exactly: a game draws its
-// ground, and a foot is seen beside it. Across, the plane is the best fit under heel and tip.
+// The plane on which heel and ball of a sole are exactly on the ground of a game: a game draws its
+// ground, so a gap under a foot is visible. Across, the plane is the best fit under heel and tip.
 FootPlane plane_through(const Floor& floor, const LegBuild& leg, const vec3& heel_m,
                         double yaw_rad) noexcept {
-  constexpr int kRounds =
-      3;  // the ball moves as the plane tilts; each leaves a tenth of it or less
+  constexpr int kRounds = 3;  // iterations: the ball moves when the plane tilts; each iteration
+                              // leaves a tenth of the error or less
   const quat yaw = rotation_y(yaw_rad);
   const vec3 ball = yaw * (leg.ball_m - leg.model.heel_m),
              tip = yaw * (leg.tip_m - leg.model.heel_m), across = yaw * leg.side;
@@ -240,7 +243,7 @@ FootPlane plane_through(const Floor& floor, const LegBuild& leg, const vec3& hee
 }
 
 // The best fit to the ground under a sole: the ground is as far above the plane as below it. Ground
-// beyond the risers around `piece` does not count.
+// beyond the risers around `piece` is ignored.
 FootPlane plane_under(const Floor& terrain, const LegBuild& leg, const vec3& heel_m, double yaw_rad,
                       const Stretch& piece) noexcept {
   if (terrain.terrain.asked.ask != nullptr) return plane_through(terrain, leg, heel_m, yaw_rad);
@@ -248,7 +251,8 @@ FootPlane plane_under(const Floor& terrain, const LegBuild& leg, const vec3& hee
   const vec3 sole = yaw * (leg.tip_m - leg.model.heel_m), across = yaw * leg.side;
   const double length = horizontal_length(sole), half = leg.half_width_m;
   const vec3 along = vec3(sole.x, 0.0, sole.z) / length;
-  const auto height = [&](double a, double c) {  // of the ground; a, c: along and across the sole
+  // Height of the ground at shares of the sole's length and half width.
+  const auto height = [&](double a, double c) {
     const vec3 p = heel_m + along * (a * length) + across * (c * half);
     return ground_at(terrain, p.x,
                      std::clamp(p.z, piece.from_m + kBeside_m, piece.to_m - kBeside_m))
@@ -258,7 +262,8 @@ FootPlane plane_under(const Floor& terrain, const LegBuild& leg, const vec3& hee
   const double grade = (corner[2] + corner[3] - corner[0] - corner[1]) / (2.0 * length);
   const double bank = (corner[0] - corner[1] + corner[2] - corner[3]) / (4.0 * half);
   const double middle = 0.25 * (corner[0] + corner[1] + corner[2] + corner[3]);
-  double low = 0.0, high = 0.0;  // of the ground over the plane through the corners
+  // Lowest and highest ground relative to the plane through the corners.
+  double low = 0.0, high = 0.0;
   const auto compare = [&](double a, double c, double y) {
     const double over = y - (middle + grade * (a - 0.5) * length + bank * c * half);
     low = std::min(low, over);
@@ -354,19 +359,22 @@ namespace {
 
 // --- Slopes --------------------------------------------------------------------------------------
 
-// Trunks lean by 5 to 6 degrees up a grade of 15 %, by 7 to 8 up stairs, and back by 2 downhill
-// (Leroux, Fung and Barbeau 2002; Nadeau, McFadyen and Malouin 2003).
+// Angles by which trunks lean: 5 to 6 degrees up a grade of 15 %, 7 to 8 up stairs, and back by 2
+// downhill (Leroux, Fung and Barbeau 2002; Nadeau, McFadyen and Malouin 2003).
 constexpr double kUphillLean = 8.5 * kDegree, kDownhillLean = 3.0 * kDegree, kHalfLeanGrade = 0.09;
-constexpr double kShortestRun = 0.2;  // in legs: a step over less ground has no grade of its own
+// In legs; a step that is shorter than this is too short for a grade.
+constexpr double kShortestRun = 0.2;
 constexpr double kSlopeLeanSmoothing = 0.3;
-constexpr double kShortStep = 0.1;  // of the data's step: shorter ones say nothing about the ground
-constexpr double kLeastShare = 0.3;  // the ground leaves at least this much of a step's length
+// Share of the data's step; shorter ones tell nothing about the ground.
+constexpr double kShortStep = 0.1;
+constexpr double kLeastShare = 0.3;  // least share of a step's length that the ground leaves
 constexpr double kGroundSmoothing_s = 0.3;
-constexpr double kRatioJump_1_s = 2.4;        // sticks change the ratio slower,
-constexpr double kFirstRatioJump_1_s = 14.4;  // but for a first step
+constexpr double kRatioJump_1_s = 2.4;        // greatest rate of the ratio; sticks change it more
+                                              // slowly
+constexpr double kFirstRatioJump_1_s = 14.4;  // greatest rate of the ratio in a first step
 
-// A step that is to end on another tread than it was has another ratio at once. The tables are read
-// for one that goes there until the flight begins.
+// Lets the ratio change smoothly. If a step changes the tread on which it will end, its ratio
+// changes at once; until the flight begins the tables are read for the new length.
 void keep_ratio_smooth(const Tick& tick, WalkState& state) noexcept {
   const double ratio = ratio_of_step<double>(tick.model, moment_of(tick.model, state), state);
   const double change = ratio - state.gait.step_ratio;
@@ -396,7 +404,7 @@ void lean_into_slope(const Tick& tick, WalkState& state) noexcept {
   state.path.slope_lean_rad.advance(lean, kSlopeLeanSmoothing * tick.model.time_scale, tick.dt_s);
 }
 
-// Steps that the ground shortens roll and rise like short ones.
+// Shortens steps on the ground. Shortened steps roll and rise as short ones do.
 void follow_ground(const Tick& tick, WalkState& state) noexcept {
   const Side swing = step_foot(state);
   const double wanted =
@@ -413,27 +421,28 @@ namespace {
 
 // --- The ground that the hips go over ------------------------------------------------------------
 
-// Up, the knee that lands bent straightens until late single support; down, the standing knee
-// holds, and yields from the middle of single support until the landed foot has taken the weight
-// (McFadyen & Winter 1988).
-constexpr double kRiseLasts = 0.9;                         // of the step
-constexpr double kSinkBegin = 0.5, kSinkBeginBack = 0.35;  // of the flight
-constexpr double kSinkEnd = 0.25;                          // of the roll
+// When the hips rise and sink. Up, the knee that lands bent straightens until late single support;
+// down, the standing knee holds, and yields from the middle of single support until the landed foot
+// has taken the weight (McFadyen & Winter 1988).
+constexpr double kRiseLasts = 0.9;                         // share of the step for a rise
+constexpr double kSinkBegin = 0.5, kSinkBeginBack = 0.35;  // shares of the flight
+constexpr double kSinkEnd = 0.25;                          // share of the roll: end of the sinking
 constexpr double kSinkBeginClosing =
-    0.15;  // both feet then stand, with straight knees, at the landing
+    0.15;  // share for a closing step, at whose landing both knees are straight
 // The yield of the knee of a foot that lands from a height: kYield legs from great heights, half of
 // kYield at a fall of kHalfYield legs, so that the knee bends by 20 to 35 degrees on house stairs.
 // The other leg's knee is bent by kBentBefore of it, because a straight knee cannot yield smoothly.
 constexpr double kBentBefore = 0.65;
 constexpr double kYield = 0.0255, kHalfYield = 0.01;
-// A leg is stretched to this share of its length before its foot has to rise with the hips.
+// A leg is stretched to this share of its length before its foot rises with the hips.
 constexpr double kStretch = 0.998, kSoftStretch_m = 0.02;
 constexpr double kMostOnToe = 0.5, kSoftOnToe = 0.3;
-constexpr double kFirstRise = 0.4;  // of the first flight: a standing foot has risen with the hips
+// Share of the first flight after which a standing foot has risen with the hips.
+constexpr double kFirstRise = 0.4;
 
 struct Sinking {
   double ticks = 1.0;
-  double share = 0.0;  // of the ticks
+  double share = 0.0;  // share of the ticks that are over
 };
 Sinking sinking(const WalkState& state, double flight_ticks) noexcept {
   const StepClock& clock = state.clock;
@@ -446,13 +455,13 @@ Sinking sinking(const WalkState& state, double flight_ticks) noexcept {
   return s;
 }
 
-// The depth of the hips below their own height over a foot that lands from a height of `fall_m`.
+// The depth by which the hips yield over a foot that lands from a height of `fall_m`.
 double early_yield(const WalkModel& model, double fall_m) noexcept {
   if (fall_m <= 0.0) return 0.0;
   return kYield * model.leg_length_m * fall_m / (fall_m + kHalfYield * model.leg_length_m);
 }
-// The height by which the next foot lands below the standing one, its heel or its toe: a foot that
-// points down reaches less far.
+// The height by which the next foot lands below the standing one; of its heel or its toe: a foot
+// that points down reaches less far.
 double fall_ahead(const WalkModel& model, const WalkState& state) noexcept {
   const Side lands = step_foot(state), stands = other(lands);
   const FootPlane &from = state.foot[stands].plane, &to = state.path.landing_plane;
@@ -464,7 +473,7 @@ double fall_ahead(const WalkModel& model, const WalkState& state) noexcept {
                       toe_m(to, lands, state.path.landing_heading_rad));
 }
 
-// At a strike: from where they are the hips go to where the landed foot carries them.
+// At a strike: begins the way of the hips from their place to the height over the landed foot.
 void begin_base(const WalkModel& model, WalkState& state) noexcept {
   HipsGround& base = state.path.base;
   const FootPlane &landed = state.foot[state.clock.swing].plane,
@@ -485,7 +494,7 @@ void begin_base(const WalkModel& model, WalkState& state) noexcept {
   base.drop_m = base.yield_m = base.early_m = 0.0;
 }
 
-// Plans how far the hips sink until the next landing, and after it.
+// Plans the depth by which the hips sink until the next landing, and after it.
 void plan_drop(const WalkModel& model, WalkState& state) noexcept {
   HipsGround& base = state.path.base;
   base.early_m = early_yield(model, fall_ahead(model, state));
@@ -496,8 +505,8 @@ void plan_drop(const WalkModel& model, WalkState& state) noexcept {
   base.yield_m = base.early_m + (1.0 - share) * base.drop_m;
 }
 
-// Upwards, a rear leg that does not roll far over its toe would be too short (walking backwards, or
-// when closing a walk): hips that rest wait for its lift-off.
+// True if the hips wait for the lift-off of the other foot. Upwards, a rear leg that does not roll
+// far over its toe would be too short (walking backwards, or when closing a walk).
 bool waits_for_flight(const WalkState& state) noexcept {
   const SmoothFade<double>& off = state.path.base.off_m;
   return (state.clock.backward || state.clock.closing) && state.clock.started && off.x < 0.0 &&
@@ -525,13 +534,13 @@ void advance_base(const Tick& tick, WalkState& state) noexcept {
 
 namespace {
 
-// The rise of a foot over ground of height `base_m` because the hips are over higher ground.
+// The rise of a foot over ground of height `base_m`, if the hips are over higher ground.
 double rise_with_hips(const WalkModel& model, const WalkState& state, const StridePlan& plan,
                       Side side, double base_m) noexcept {
   const LegBuild& leg = model.leg[side];
   const double higher = state.path.base.height_m - base_m;
-  // A foot that lands from a height comes down with the hips, and softly: they are lower by all of
-  // `early` then.
+  // A foot that lands from a height comes down softly with the hips, which are lower by `early` at
+  // its landing.
   double hover = 0.0;
   if (state.foot[side].mode == FootMode::flight)
     hover = 0.5 * state.path.base.early_m *
@@ -543,12 +552,12 @@ double rise_with_hips(const WalkModel& model, const WalkState& state, const Stri
                soft = kSoftStretch_m * model.size;
   const double up = std::max(0.0, higher);
   const double rise = soft_positive(higher + hover - room, hover + up * soft / (up + soft));
-  // No further than a foot on its toe lifts its ankle.
+  // The limit is the height to which a foot on its toe lifts its ankle.
   const double most = glm::length(leg.model.toe_m) + leg.model.toe_m.y;
   return soft_min(rise, kMostOnToe * most, kSoftOnToe * most);
 }
 
-// Pitches a foot on its toe so that its ankle is higher by `rise_m`.
+// Pitches a foot on its toe so that its ankle rises by `rise_m`.
 void pitch_to_rise(const LegBuild& leg, double rise_m, FootState& foot) noexcept {
   if (rise_m == 0.0) return;
   const double length = glm::length(leg.model.toe_m);
@@ -564,7 +573,7 @@ void pitch_to_rise(const LegBuild& leg, double rise_m, FootState& foot) noexcept
 void rise_on_toe(const Tick& tick, WalkState& state, const StridePlan& plan, Side side) noexcept {
   FootState& foot = state.foot[side];
   foot.rise_m = rise_with_hips(tick.model, state, plan, side, foot.base_m);
-  // The foot that stands when a walk begins has not risen yet when the other one lifts off.
+  // When a walk begins, the standing foot has not risen yet at the lift-off of the other one.
   if (state.clock.starting)
     foot.rise_m *= smootherstep(moment_of(tick.model, state).flight_progress() / kFirstRise);
   pitch_to_rise(tick.model.leg[side], foot.rise_m, foot);
@@ -574,26 +583,28 @@ namespace {
 
 // --- Flights over the ground between two footholds -----------------------------------------------
 
-constexpr int kProbes = 48;             // along a flight
-constexpr double kRoomAbove_m = 0.025;  // over the ground; metres at the reference leg, as below
+constexpr int kProbes = 48;  // number of places along a flight at which the ground is
+                             // probed
+// Room above the ground; metres at the reference leg, as below.
+constexpr double kRoomAbove_m = 0.025;
 constexpr double kRoomBeside_m = 0.005, kRoomAhead_m = 0.016, kMostShift_m = 0.25, kRiser_m = 0.01;
 constexpr double kLack_m = 0.006, kEasyShift_m = 0.2, kSharper = 1.5;
-// A lift-off stays gentler: there the leg is stretched.
+// Sharpness of the ends. A lift-off stays gentler, because the leg is stretched then.
 constexpr double kMostSharp = 0.38;
 constexpr int kTries = 4;
-// The share of the flight from which on a foot on its way down is over its landing's piece.
+// Share of the flight from which on a foot that goes down is over the piece where it lands.
 constexpr double kOver = 0.685;
 constexpr int kMostRisers = 4, kTautRounds = 24;
-constexpr double kTautRoom = 0.5;  // of kRoomAbove_m
+constexpr double kTautRoom = 0.5;  // share of kRoomAbove_m that a taut flight keeps
 constexpr double kLeastWeight = 1e-6, kLeastLeft_m = 1e-6;
 constexpr double kLeastWanted_m = 0.004, kMostGain = 6.0;
 constexpr double kRoomSmoothing_s = 0.04;
-constexpr double kInPlace_m = 0.1;   // a flight shorter than this climbs by time, not by place
-constexpr double kReplan_m = 0.005;  // a landing moved by more is planned for anew
+constexpr double kInPlace_m = 0.1;   // the climb of a shorter flight follows time instead of place
+constexpr double kReplan_m = 0.005;  // the flight is planned again if its landing moves farther
 
-// The share of the climb, from one plane's height to the other's, that a flying foot has behind it:
-// the same as the share of its way over the ground, or of its time where it flies in place. It is 0
-// where a riser is crossed: then FlightRoom raises the foot.
+// The share of the climb from one plane's height to the other's that a flying foot has completed:
+// the share of its way over the ground, or of its time if it flies in place. It is 0 if a riser is
+// crossed: then FlightRoom raises the foot.
 struct ClimbShare {
   vec3 along_1_m{0.0};
   double by_time = 0.0;
@@ -632,7 +643,7 @@ constexpr double spline_at(const FlightSpline& knots, double end, double u) noex
   return spline_at(knots, end, u, [](double k) { return k; });
 }
 
-// 1 in mid-flight, 0 at its ends.
+// A share that is 1 in mid-flight and 0 at its ends.
 double in_flight(double u) noexcept {
   return smoothstep(0.0, 0.2, u) * (1.0 - smoothstep(0.8, 1.0, u));
 }
@@ -640,7 +651,7 @@ double in_flight(double u) noexcept {
 // A value wanted at each probe of the flight.
 using Wanted = std::array<double, kProbes + 1>;
 
-// The outer knots as shares of their neighbours: the smaller, the gentler the spline's ends.
+// The outer knots as shares of their neighbours: smaller shares make the spline's ends gentler.
 struct Ends {
   double first = 0.2, last = 0.2;
 };
@@ -665,8 +676,8 @@ FlightSpline envelope(const Wanted& wanted, const Ends& ends) noexcept {
   return knots;
 }
 
-// The same for values of both signs. Where the spline falls short of them, all of it is multiplied
-// by a gain; no knot exceeds `most`.
+// The envelope of values of both signs. If the spline is below them, all of it is multiplied by a
+// gain; no knot exceeds `most`.
 FlightSpline wide_envelope(const Wanted& wanted, double most) noexcept {
   Wanted positive, negative;
   for (int i = 0; i <= kProbes; ++i) {
@@ -705,7 +716,7 @@ bool sharpen(const Wanted& beside, const FlightSpline& shift, double size, Ends&
   return any;
 }
 
-using Sole = std::array<vec3, 5>;  // heel and tip on both sides, ball
+using Sole = std::array<vec3, 5>;  // heel and tip on both sides, and the ball
 Sole sole_of(const LegBuild& leg, const FootPose& pose) noexcept {
   const quat foot = foot_rotation<double>(leg, pose);
   const quat toes = foot * toes_turn<double>(leg, pose, -std::max(0.0, pose.pitch_rad));
@@ -741,20 +752,20 @@ double way_back(const Floor& terrain, const Sole& sole, const Stretch& piece, do
   return std::clamp(shift, -kMostShift_m * size, kMostShift_m * size);
 }
 
-// The climb from lift-off to landing that the spline has to make: 0 where no riser is crossed.
+// The climb from lift-off to landing that the spline has to make; 0 if no riser is crossed.
 double climb(const WalkState& state, const FootState& foot) noexcept {
   return foot.crosses_riser ? state.path.landing_m.y - height_on(foot.plane, foot.lift_m) : 0.0;
 }
 
-// A flight as planned over its ground line.
+// A flight over its ground line, and the values from which its splines are planned.
 struct Flight {
   std::array<FlightPoint, kProbes + 1> point;
   std::array<Sole, kProbes + 1> sole;
-  Wanted left{};  // the way that is left along z
+  Wanted left{};  // share of the way along z that is left, at each probe
   Stretch begin, end;
   double begin_room = 0.0;
   double climb = 0.0;
-  // A flight that ends on its own piece goes beside a riser, not over it.
+  // True for a flight that ends on its own piece: it goes beside a riser, not over it.
   bool stays() const noexcept { return begin.from_m == end.from_m; }
 };
 Flight planned_flight(const Tick& tick, const WalkState& state, Side side) noexcept {
@@ -779,7 +790,7 @@ Flight planned_flight(const Tick& tick, const WalkState& state, Side side) noexc
   }
   flight.begin = piece_at(*model.terrain, foot.plane.place_m.z);
   flight.end = piece_at(*model.terrain, state.path.landing_m.z);
-  flight.begin_room = kRoomAhead_m * model.size;  // generous: the pitch may still change
+  flight.begin_room = kRoomAhead_m * model.size;  // generous, because the pitch may still change
   for (const vec3& p : flight.sole.front())
     flight.begin_room = std::min(
         {flight.begin_room, 0.7 * (flight.begin.to_m - p.z), 0.7 * (p.z - flight.begin.from_m)});
@@ -860,7 +871,7 @@ void plan_over(const Tick& tick, const WalkState& state, const FootState& foot,
   }
 }
 
-// Smallest advance that puts the sole past all ground that is higher than the ground line with
+// Smallest advance that moves the sole beyond all ground that is higher than the ground line with
 // `raise` and lies before the landing's piece.
 double way_on(const Tick& tick, const Flight& flight, int i, double raise) noexcept {
   const Floor terrain{*tick.model.terrain, tick.placed};
@@ -892,9 +903,9 @@ constexpr auto kKnotWeights = [] {
   return weights;
 }();
 
-// Lowers the inner knots until the spline is a taut line over what is wanted, less some of its
-// room: the envelope alone holds each height for two knots longer than needed. Where the spline is
-// too low already, it sinks no further.
+// Lowers the inner knots until the spline is a taut line over the wanted heights, minus some room:
+// the envelope alone holds each height for two knots longer than needed. If the spline is too low
+// already, it stays there.
 void draw_taut(const Wanted& wanted, double room_m, FlightSpline& knots) noexcept {
   Wanted slack;
   for (int i = 0; i <= kProbes; ++i) {
@@ -922,8 +933,8 @@ bool leads_down(const Tick& tick, const Flight& flight) noexcept {
   return *std::max_element(above.begin(), above.end()) < kRoomAbove_m * tick.model.size + kRiser_m;
 }
 
-// The lead over its own path that brings the foot over its landing's piece in time: a growing share
-// of the way that is left, as in lead_in().
+// The advance of a foot over its planned path that brings it over its landing's piece in time: a
+// growing share of the way that is left, as in lead_in().
 FlightSpline early_lead(const Tick& tick, const Flight& flight) noexcept {
   constexpr int over = static_cast<int>(kOver * kProbes);
   const double left = flight.left[over];
@@ -938,7 +949,8 @@ FlightSpline early_lead(const Tick& tick, const Flight& flight) noexcept {
   return knots;
 }
 
-// Ahead of its own path, the foot sinks as soon as it has passed an edge.
+// Plans a flight that goes down. Ahead of its own path, the foot sinks as soon as it has passed an
+// edge.
 void plan_down(const Tick& tick, const Flight& flight, FlightRoom& room) noexcept {
   room.shift_m = early_lead(tick, flight);
   const Wanted above = wanted_raise(tick, flight, true, room.shift_m);

@@ -26,7 +26,7 @@ namespace gaitpad {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr int kMaxLinks = 40;  // the kernel's limit
+constexpr int kMaxLinks = 40;  // most links that the kernel follows
 
 // The file that a write to `path` replaces: the target of its symbolic links, which dotfile
 // managers use.
@@ -140,7 +140,7 @@ Result<std::string> file_text(const std::string& path, std::size_t max_bytes) {
     text.append(block.data(), static_cast<std::size_t>(stream.gcount()));
   }
   if (stream.bad()) return failure(": reading failed");
-  if (text.size() > max_bytes) return failure(too_large);  // grew while it was read
+  if (text.size() > max_bytes) return failure(too_large);  // the file grew while it was read
   return text;
 }
 

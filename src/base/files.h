@@ -45,7 +45,7 @@ class InputFiles {
   static const InputFiles* holder_of(const std::string& path);
   const InputFile* find(const std::string& path) const;
 
-  std::string folder_;  // ends in `/`
+  std::string folder_;  // path of the folder; ends in `/`
   std::vector<InputFile> held_, read_;
   InputFiles* outer_;
 };
@@ -82,8 +82,8 @@ class NewFile {
   // A path for streams that always means the open file, even if the folder has changed.
   std::string name_for_streams() const { return "/proc/self/fd/" + std::to_string(fd_); }
   std::optional<Error> write(std::string_view bytes);
-  std::optional<Error> write_to_disk();  // written bytes survive a power cut
-  std::optional<Error> publish();        // renames it; once
+  std::optional<Error> write_to_disk();  // Makes sure that the written bytes survive a power cut.
+  std::optional<Error> publish();        // Renames the file to its path. Call it once.
 
  private:
   NewFile(std::string path, std::string temporary, int fd)

@@ -6,7 +6,7 @@
 namespace gaitpad {
 namespace {
 
-std::atomic<int> g_lanes = 0;  // 0: not determined yet
+std::atomic<int> g_lanes = 0;  // lanes in use; 0: not determined yet
 
 }  // namespace
 

@@ -79,7 +79,7 @@ template <class M>
 inline bool is_set(const M& mask, int lane) noexcept {
   return mask[lane] != 0;
 }
-// For bool masks: the operators & and | return int.
+// The inverse of a mask. Masks of bools are combined by & and |, which return int.
 inline bool not_of(bool mask) noexcept { return !mask; }
 inline bool not_of(int mask) noexcept { return mask == 0; }
 template <class M>
@@ -90,7 +90,7 @@ inline bool any(bool mask) noexcept { return mask; }
 inline bool any(int mask) noexcept { return mask != 0; }
 template <class M>
 inline bool any(const M& mask) noexcept {
-  if constexpr (kWidthOf < M >> 2) {  // combine both halves
+  if constexpr (kWidthOf < M >> 2) {  // combines both halves of the register
     typename LanesOf<kWidthOf<M> / 2>::Mask low, high;
     std::memcpy(&low, &mask, sizeof low);
     std::memcpy(&high, reinterpret_cast<const char*>(&mask) + sizeof low, sizeof high);
@@ -210,7 +210,7 @@ inline void sin_cos_of(const V& angle_rad, V& sine, V& cosine) noexcept {
 inline double floor_of(double x) noexcept { return std::floor(x); }
 template <class V>
 inline V floor_of(const V& x) noexcept {
-  constexpr double kRound = 6755399441055744.0;  // as in sin_cos_of()
+  constexpr double kRound = 6755399441055744.0;  // rounds as in sin_cos_of()
   const V near = (x + kRound) - kRound;
   return near > x ? near - 1.0 : near;
 }
@@ -296,7 +296,7 @@ template <class V, class M>
 inline Vec3Of<V> chosen(const M& mask, const Vec3Of<V>& a, const Vec3Of<V>& b) noexcept {
   return {mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
 }
-// The same vector or rotation in each lane.
+// Puts one vector or rotation into each lane.
 template <class V>
 inline Vec<V> all_of(const vec3& a) noexcept {
   if constexpr (kWidthOf<V> == 1) {

@@ -35,7 +35,7 @@ double acos(double x) noexcept {
 }
 
 double wrapped(double angle_rad) noexcept {
-  if (std::abs(angle_rad) < 3.0) return angle_rad;  // shortcut with the same bits
+  if (std::abs(angle_rad) < 3.0) return angle_rad;  // a shortcut that gives the same bits
   const double turns = std::floor((angle_rad + kPi) / (2.0 * kPi));
   return angle_rad - turns * 2.0 * kPi;
 }

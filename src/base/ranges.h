@@ -20,7 +20,7 @@ inline std::optional<Error> range_problem(const std::string& what, double value,
                short_number(most) + "]"};
 }
 
-// The same for each coordinate of a vector, `what.x` first, within -most .. most.
+// Checks each coordinate of a vector, `what.x` first: within -most .. most.
 inline std::optional<Error> vector_problem(const std::string& what, const vec3& v, double most) {
   for (int axis = 0; axis < 3; ++axis) {
     if (auto problem = range_problem(what + "." + "xyz"[axis], v[axis], -most, most))

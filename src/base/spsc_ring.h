@@ -41,7 +41,7 @@ class SpscRing {
     }
     return &items_[at & mask_];
   }
-  void pop() noexcept {  // only after front() returned an item
+  void pop() noexcept {  // Call it only after front() has returned an item.
     read_.store(read_.load(std::memory_order_relaxed) + 1, std::memory_order_release);
   }
   bool pop(T& item) noexcept {
@@ -56,9 +56,9 @@ class SpscRing {
   const std::size_t mask_;
   const std::unique_ptr<T[]> items_;
   alignas(kCacheLineBytes) std::atomic<std::size_t> written_{0};
-  std::size_t read_seen_ = 0;  // the writer's last look at read_
+  std::size_t read_seen_ = 0;  // read_ when the writer looked at it last
   alignas(kCacheLineBytes) std::atomic<std::size_t> read_{0};
-  std::size_t written_seen_ = 0;  // the reader's last look at written_
+  std::size_t written_seen_ = 0;  // written_ when the reader looked at it last
 };
 
 }  // namespace gaitpad

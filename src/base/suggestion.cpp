@@ -27,7 +27,8 @@ std::size_t edit_distance(std::string_view a, std::string_view b) {
 }  // namespace
 
 std::string suggestion(std::string_view unknown, std::span<const std::string> known) {
-  std::size_t nearest = std::min<std::size_t>(3, unknown.size());  // at most two letters differ
+  // A similar name differs by at most two letters.
+  std::size_t nearest = std::min<std::size_t>(3, unknown.size());
   const std::string* best = nullptr;
   if (unknown.size() > kMaxQuotedBytes) return {};
   for (const std::string& key : known) {

@@ -72,7 +72,7 @@ bool is_decimal(std::string_view text) noexcept {
 }
 #endif
 
-// As a stream writes it in the C locale, whatever the program's own is.
+// The number as a stream writes it in the C locale, whatever locale the program has.
 std::string streamed(double value, std::ios_base::fmtflags format, int precision) {
   std::ostringstream out;
   out.imbue(std::locale::classic());
@@ -225,8 +225,9 @@ std::uint64_t scaled_exactly(double value, int decimals) noexcept {
   const std::uint64_t fraction = bits & ((std::uint64_t{1} << kSignificand) - 1);
   const std::uint64_t significand =
       biased == 0 ? fraction : fraction | std::uint64_t{1} << kSignificand;
-  const int shift = kBias - std::max(biased, 1);  // at least 23, since the value is below 1e9
-  if (shift > 84) return 0;                       // less than half
+  // A shift of at least 23, since the value is below 1e9.
+  const int shift = kBias - std::max(biased, 1);
+  if (shift > 84) return 0;  // less than half a unit: rounds to 0
   const std::uint64_t power = kPowersOfTen[decimals], lower = (significand & kLower) * power;
   const std::uint64_t upper = (significand >> 32) * power + (lower >> 32);
   const std::uint64_t halves =
@@ -237,8 +238,8 @@ std::uint64_t scaled_exactly(double value, int decimals) noexcept {
   return whole + ((halves & 1) == 1 && (is_beyond_half || whole % 2 == 1));
 }
 
-// The same by doubles where that is exact: a product below 2^40 is off by at most 2^-14, which
-// matters only near a tie.
+// Scales by doubles, if that is exact: a product below 2^40 is off by at most 2^-14, which matters
+// only near a tie.
 std::uint64_t scaled(double value, int decimals) noexcept {
   constexpr double kMostProduct = 1099511627776.0, kNearTie = 1.0 / 4096.0;
   const double product = std::abs(value) * static_cast<double>(kPowersOfTen[decimals]);

@@ -67,14 +67,15 @@ inline bool is_utf8(std::string_view text) noexcept { return utf8_bytes(text) ==
 // user input) passes through this before a terminal: control characters including C1, characters
 // that change the direction of text, and invalid UTF-8 are escaped as \x1b or \u202e.
 std::string printable(std::string_view text);
-// The same for several lines: keeps '\n'.
+// Makes several lines printable; keeps their '\n'.
 std::string printable_lines(std::string_view text);
 // The text in double quotes for an error sentence: printable, of at most 60 bytes, then "...".
 inline constexpr std::size_t kMaxQuotedBytes = 60;
 std::string in_quotes(std::string_view text);
 // The value with `decimals` digits after the point, as printf's %.*f writes it in the C locale.
 std::string fixed(double value, int decimals);
-// Appends the same bytes; takes a few nanoseconds for at most 9 decimals and values below 1e9.
+// Appends what fixed() returns; takes a few nanoseconds for at most 9 decimals and values below
+// 1e9.
 void append_fixed(std::string& out, double value, int decimals);
 
 }  // namespace gaitpad

@@ -9,7 +9,7 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr int kMostStateBytes = 1024;  // bound of a character's state
+constexpr int kMostStateBytes = 1024;  // upper bound for the memory of a character's state
 
 std::string time_text(double ns) {
   if (ns < 1e4) return fmt::format("{:.0f} ns", ns);

@@ -8,7 +8,7 @@
 
 namespace gaitpad {
 
-std::string lanes_text(int lanes);  // `8 lanes (AVX-512)`
+std::string lanes_text(int lanes);  // The width of a pass in words: `8 lanes (AVX-512)`.
 
 // A row for each measurement, below headings; the last line gives a character's memory. `list` is
 // list_of(rows). `core`: as Cores::core().

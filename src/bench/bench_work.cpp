@@ -26,8 +26,10 @@ namespace {
 
 // --- The walk that is measured -------------------------------------------------------------------
 
-constexpr int kFirstTick = 480, kLastTick = 2880;  // of the bundled trace: walking, turning
-constexpr int kStickTicks = 8;                     // ticks between two new sticks of a character
+// The part of the bundled trace in which the character walks and turns.
+constexpr int kFirstTick = 480, kLastTick = 2880;
+constexpr int kStickTicks = 8;  // a character gets a new stick after this number
+                                // of ticks
 
 std::string bundled_trace(const std::vector<std::string>& config_folders) {
   const std::string name = "traces/round.hid";
@@ -167,7 +169,7 @@ void add_legs(const Walker& before, const Walker& now, double, std::vector<Paper
   }
 }
 
-// The solves of these walkers, of one tick in kSnapshotTicks.
+// Solves the legs of these walkers, in one tick of each kSnapshotTicks.
 template <class Legs>
 std::vector<Legs> solves_of(const Session& session, Simulation simulation,
                             const std::vector<int>& walkers) {
@@ -271,7 +273,7 @@ struct LiveWalkers {
     std::shared_ptr<const WalkModel> model;
     StyleValues style;
     GaitLimits limits;
-    std::size_t begin = 0;  // index of the first stick
+    std::size_t begin = 0;  // index of the character's first stick
     GaitParams params;
     WalkState state;
     Pose pose;
@@ -444,16 +446,19 @@ Work step_work(const Session& session, const Simulation& simulation, const char*
 // --- Crowds --------------------------------------------------------------------------------------
 
 constexpr double kCrowdDt_s = 1.0 / 60.0;
-constexpr int kWarmTicks = 60, kFewWarmTicks = 24;  // before measuring a crowd
-constexpr int kLastStart = 20;                      // ticks within which standing members start
-constexpr int kLarge = 10000;                       // from this size: shorter warm-up, fewer rounds
+// Ticks before a crowd is measured; fewer for a large one.
+constexpr int kWarmTicks = 60, kFewWarmTicks = 24;
+constexpr int kLastStart = 20;  // standing members start at one of the first
+                                // kLastStart ticks
+constexpr int kLarge = 10000;   // a crowd of this size has a shorter warm-up
+                                // and fewer rounds
 constexpr int kBuilds = 16;
 constexpr unsigned kSeed = 14;
 const std::vector<std::string> kCrowdStyles = {"even",      "stiff_hip",     "stiff_knee",
                                                "limp_left", "limp_left_hip", "limp_left_knee",
                                                "muscular",  "heavy_slack"};
 
-// Bytes that are allocated on the heap.
+// Number of bytes that are allocated on the heap.
 double heap_bytes() {
   const auto info = ::mallinfo2();
   return static_cast<double>(info.uordblks + info.hblkhd);
@@ -465,7 +470,7 @@ struct CrowdCast {
   std::vector<GaitLimits> limits;
   std::vector<StyleValues> styles;
   std::vector<Stick> sticks;
-  int stick_step = 1;  // sticks per tick of a crowd
+  int stick_step = 1;  // number of the trace's sticks that a crowd's tick advances by
   double model_bytes = 0.0;
 };
 

@@ -16,18 +16,20 @@ inline constexpr std::array<const char*, 4> kStages = {"clock and plan", "sampli
 using StageTimes = std::array<double, kStages.size()>;
 
 struct Work {
-  std::string name, label;  // in the list, and in the table
+  std::string name, label;  // the name in the list, and the words in the table
   int characters = 1;
-  int width = 0;                 // of a crowd: number of walks side by side
-  double units = 1.0;            // characters or legs per pass
-  std::string over;              // name of its peer; empty: none
-  double most_ns = 0.0;          // limit of a unit's time; 0: none
-  double most_ratio = 0.0;       // limit of that time / the peer's; 0: none
-  bool is_on_all_cores = false;  // measures elapsed time instead of the thread's
+  int width = 0;                 // number of walks that a crowd computes side by side
+  double units = 1.0;            // number of characters or legs that one pass computes
+  std::string over;              // name of the work that it is compared with; empty: none
+  double most_ns = 0.0;          // most time that a unit may take; 0: no limit
+  double most_ratio = 0.0;       // most time of a unit relative to the peer's; 0: no limit
+  bool is_on_all_cores = false;  // the elapsed time is measured instead of the thread's
   int every = 1;                 // runs in every n-th round
   std::function<void()> pass;
-  std::shared_ptr<StageTimes> stages;                               // if the work splits its time
-  nlohmann::ordered_json notes = nlohmann::ordered_json::object();  // further keys of its row
+  std::shared_ptr<StageTimes> stages;  // seconds of each stage, if the
+                                       // work splits its time
+  // Further keys of the work's row.
+  nlohmann::ordered_json notes = nlohmann::ordered_json::object();
 };
 
 // A leg's inverse kinematics, one character and four, bare playback, crowds of 1 to

@@ -13,8 +13,9 @@ namespace {
 
 using nlohmann::ordered_json;
 
-constexpr double kBlock_s = 0.02;    // per work and round; at least one pass
-constexpr double kMostGrowth = 1.8;  // of a character's time, relative to crowds of 1,000
+constexpr double kBlock_s = 0.02;  // length of a work's block in each round, of at least one pass
+// Most time of a character in a larger crowd, relative to crowds of 1,000.
+constexpr double kMostGrowth = 1.8;
 constexpr int kGrowsFrom = 1000;
 constexpr double kFrame_ns = 1e9 / 60.0;
 

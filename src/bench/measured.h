@@ -21,7 +21,7 @@ class Cores {
     CPU_ZERO(&one_);
     if (::sched_getaffinity(0, sizeof all_, &all_) != 0) return;
     for (int core = 0; core < CPU_SETSIZE; ++core)
-      if (CPU_ISSET(core, &all_)) core_ = core;  // the last: the first one serves most interrupts
+      if (CPU_ISSET(core, &all_)) core_ = core;  // the last core: the first serves most interrupts
     if (core_ >= 0) CPU_SET(core_, &one_);
   }
   ~Cores() { use_all(); }
@@ -29,7 +29,8 @@ class Cores {
   Cores& operator=(const Cores&) = delete;
   void use_one() const { use(one_); }
   void use_all() const { use(all_); }
-  int core() const { return core_; }  // -1: unknown; nothing is pinned
+  // The core that threads are pinned to; -1: it is unknown, and nothing is pinned.
+  int core() const { return core_; }
 
  private:
   void use(const cpu_set_t& cores) const {
@@ -42,9 +43,10 @@ class Cores {
 // Times of a unit of a work or of one of its stages.
 struct BenchRow {
   const Work* work = nullptr;
-  int stage = -1;                       // in kStages; -1: the whole
-  std::vector<double> ns;               // one for each round
-  double quantile(double share) const;  // smallest value >= this share of the rounds'
+  int stage = -1;          // number of the stage in kStages; -1: the whole work
+  std::vector<double> ns;  // a unit's time in each round
+  // The smallest value that at least this share of the rounds do not exceed.
+  double quantile(double share) const;
   double median() const { return quantile(0.5); }
 };
 

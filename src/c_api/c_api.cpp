@@ -36,10 +36,10 @@ struct gaitpad_walk {
   std::shared_ptr<const SharedModel> shared;
   GaitLimits limits;
   StyleValues style;
-  vec2 stick{0.0};      // that was taken last
+  vec2 stick{0.0};      // the stick that was taken last
   int bad_numbers = 0;  // sticks and null pointers that were not taken
   WalkState state;
-  WalkEvents events;  // of the last tick
+  WalkEvents events;  // events of the last tick
   Pose pose;
 };
 

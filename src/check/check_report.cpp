@@ -20,7 +20,7 @@ std::string tap_description(const std::string& path) {
   return text;
 }
 
-// A JSON text is a YAML text in double quotes.
+// A JSON string is also a YAML string in double quotes.
 std::string yaml_string(const std::string& text) {
   return nlohmann::json(text).dump(-1, ' ', true, nlohmann::json::error_handler_t::replace);
 }

@@ -15,12 +15,12 @@ namespace gaitpad {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr double kMostValue = 1e9;  // largest permitted number
+constexpr double kMostValue = 1e9;  // largest number that an expectation may hold
 constexpr const char* kHashKey = "pose_hash";
 
 // The value with six significant digits, as in a file.
 std::string number_text(double value) {
-  return fmt::format("{:.6g}", value == 0.0 ? 0.0 : value);  // no -0
+  return fmt::format("{:.6g}", value == 0.0 ? 0.0 : value);  // avoids -0
 }
 double rounded(double value) { return parse_number<double>(number_text(value)).value_or(value); }
 

@@ -28,14 +28,14 @@ enum CharacterMeasure {
   kStepsLeft,
   kStepsRight,
   kIkFailures,
-  kDistance,  // on the ground, along the path of the hips
-  kSpeed,     // distance over the time when not idle
-  kHeading,   // at the end, positive to the left
-  kEndX,      // of the pelvis at the end
+  kDistance,  // distance on the ground, along the path of the hips
+  kSpeed,     // kDistance over the time in which the character was not idle
+  kHeading,   // heading at the end, positive to the left
+  kEndX,      // x of the pelvis at the end
   kEndZ,
-  kStepLeft,  // mean of its steps' lengths
+  kStepLeft,  // mean length of the left foot's steps
   kStepRight,
-  kHipLeft,  // range of flexion
+  kHipLeft,  // range of the left hip's flexion
   kHipRight,
   kKneeLeft,
   kKneeRight,
@@ -72,16 +72,17 @@ struct Measured {
 // Watches a run tick by tick.
 class RunMeter {
  public:
-  void look(const Simulation& simulation);  // call it after each tick
+  void look(const Simulation& simulation);  // Call it after each tick.
   Measured finish(const Simulation& simulation, const RunSummary& summary) const;
 
  private:
   struct Foot {
-    std::array<bool, 2> is_planted{};  // heel, toe
+    std::array<bool, 2> is_planted{};  // the foot's heel and toe
     std::array<vec3, 2> planted_m{};
     int steps = 0;
     double sum_m = 0.0;
-    std::array<double, 3> least_rad{}, most_rad{};  // hip, knee, ankle
+    // Smallest and largest angle of hip, knee and ankle.
+    std::array<double, 3> least_rad{}, most_rad{};
   };
   struct Character {
     std::array<Foot, 2> feet;
@@ -96,28 +97,30 @@ class RunMeter {
 };
 
 struct Expected {
-  int measure = 0;  // index in kOfRun or kOfCharacter
+  int measure = 0;  // number of the measure in kOfRun or kOfCharacter
   double value = 0.0, within = 0.0;
 };
 // A file that the replay depends on.
 struct ExpectedFile {
-  std::string name;  // `config/` and its path in a folder of configuration, else relative
+  // `config/` and the path in a folder of configuration, or a path relative to the expectation.
+  std::string name;
   std::uint64_t hash = 0;
   bool operator==(const ExpectedFile&) const = default;
 };
 struct Expectation {
-  std::string heading;  // comment at the file's beginning; kept on renewal
-  // As in the file: paths are relative to it.
+  std::string heading;  // the comment at the file's beginning, which a renewal keeps
+  // The options of the walk, with the paths in the file, which are relative to the file.
   SessionSpec::Walk walk;
   SessionSpec::Pad pad;
   std::optional<int> rate_hz;
   bool is_lenient = false;
-  bool keeps_poses = true;  // pose file beside it, to locate a difference
+  bool keeps_poses = true;  // a pose file is kept beside it, to locate a difference
 
   std::optional<std::uint64_t> pose_hash;
   std::vector<Expected> run;
-  std::vector<std::vector<Expected>> characters;  // indexed like the characters
-  std::vector<ExpectedFile> files;                // as of writing
+  std::vector<std::vector<Expected>> characters;  // the expected measures of each character
+  std::vector<ExpectedFile> files;                // the files of the replay when the expectation
+                                                  // was written
   bool is_empty() const { return !pose_hash && run.empty() && characters.empty(); }
 };
 
@@ -129,8 +132,8 @@ std::string expectation_text(const Expectation& expectation);
 SessionSpec session_of(const Expectation& expectation, const std::string& folder,
                        const std::string& trace);
 
-// The same options and tolerances with the values of a run: of the measures that it had, or of all
-// if it had none.
+// An expectation with the same options and tolerances and the values of a run. It has the measures
+// that `expectation` had, or all of them if it had none.
 Expectation renewed(const Expectation& expectation, const Measured& measured);
 
 // A sentence for each file that has changed since the expectation was written. Empty if it lists no

@@ -17,7 +17,8 @@ namespace {
 constexpr std::string_view kMagic = "gaitpad poses 1\n";
 constexpr std::size_t kMaxNameBytes = 512;
 constexpr std::size_t kMaxChannels = (kMaxJoints + 1) * kMaxWalkers + 1;
-constexpr std::size_t kMaxBytes = std::size_t{256} << 20;  // before compression
+// Most bytes of a pose file after decompression.
+constexpr std::size_t kMaxBytes = std::size_t{256} << 20;
 
 std::uint16_t print_of(std::uint64_t hash) {
   return static_cast<std::uint16_t>(hash ^ (hash >> 16) ^ (hash >> 32) ^ (hash >> 48));
@@ -162,7 +163,8 @@ class Reader {
 };
 
 std::optional<std::string> unpacked(std::string_view bytes) {
-  constexpr std::size_t kMostPacking = 1100;  // zlib compresses at most 1032 : 1
+  // A larger ratio shows a damaged file: zlib compresses at most 1032 : 1.
+  constexpr std::size_t kMostPacking = 1100;
   if (!bytes.starts_with(kMagic)) return std::nullopt;
   bytes.remove_prefix(kMagic.size());
   Reader head(bytes.substr(0, 8));
@@ -275,7 +277,7 @@ Result<std::optional<PoseDifference>> difference(const PoseTrack& before, const 
   };
   PoseDifference found;
   const std::size_t ticks = std::min(before.kept(), after.kept());
-  int differing = 0;  // number of channels in the first tick
+  int differing = 0;  // number of channels that differ in the first differing tick
   for (std::size_t tick = 0; tick < ticks; ++tick) {
     const bool is_first = differing == 0;
     for (std::size_t c = 0; c < a.size(); ++c) {

@@ -25,8 +25,8 @@ inline constexpr double kDegrees = 57.29577951308232;  // 180 / pi
 
 // One joint of one character, or its root's place.
 struct PoseChannel {
-  int character = 1;  // from 1; 0: the whole crowd, without values
-  std::string joint;  // empty: the root's place
+  int character = 1;  // counted from 1; 0: the whole crowd, as a fingerprint without values
+  std::string joint;  // name of the joint; empty: the root's place
   std::vector<std::uint16_t> prints;
   // The root's place in kLengthStep_m, or x, y, z of the rotation with w >= 0 in kAngleStep.
   std::array<std::vector<std::int32_t>, 3> values;
@@ -35,23 +35,25 @@ struct PoseChannel {
 class PoseTrack {
  public:
   static constexpr double kLengthStep_m = 1e-4;
-  static constexpr double kAngleStep = 1.0 / 16384.0;  // 0.007 degrees
+  // Step of the stored rotations: 0.007 degrees.
+  static constexpr double kAngleStep = 1.0 / 16384.0;
 
-  // `ticks`: of the run. Keeps the first ticks, as many as fit into kMaxCells.
+  // `ticks`: the length of the run. Keeps the first ticks, as many as fit into kMaxCells.
   PoseTrack(const Simulation& simulation, int rate_hz, std::int64_t ticks);
-  void add(const Simulation& simulation);  // call it after each tick
+  void add(const Simulation& simulation);  // Call it after each tick.
 
   std::string bytes() const;
   static Result<PoseTrack> parse(std::string_view bytes, const std::string& name);
 
   int rate_hz() const { return rate_hz_; }
-  std::int64_t ticks() const { return ticks_; }      // of the run
-  std::size_t kept() const { return kept_; }         // ticks
-  std::uint64_t pose_hash() const { return hash_; }  // of the run
+  std::int64_t ticks() const { return ticks_; }      // The run's number of ticks.
+  std::size_t kept() const { return kept_; }         // The number of ticks that are kept.
+  std::uint64_t pose_hash() const { return hash_; }  // The hash of the run's poses.
   const std::vector<PoseChannel>& channels() const { return channels_; }
 
  private:
-  static constexpr std::size_t kMaxCells = std::size_t{1} << 22;  // a channel in a tick, 14 bytes
+  // Most pairs of a channel and a tick, at 14 bytes each.
+  static constexpr std::size_t kMaxCells = std::size_t{1} << 22;
   PoseTrack() = default;
 
   int rate_hz_ = 0;
@@ -70,12 +72,12 @@ double distance_of(const PoseChannel& a, const PoseChannel& b, std::size_t tick)
 struct PoseDifference {
   struct Place {
     std::size_t tick = 0, channel = 0;
-    double distance = 0.0;  // distance_of()
+    double distance = 0.0;  // distance of the two channels, by distance_of()
   };
   // The first tick with a differing bit, and its channel with the largest distance.
   Place first;
-  int others = 0;  // other channels that differ in that tick
-  Place largest;   // of the whole run; only angles if one differs
+  int others = 0;  // number of other channels that differ in that tick
+  Place largest;   // the largest difference of the whole run; of angles only, if an angle differs
 };
 // Returns nothing if the ticks that both keep are equal. Error: the channels differ.
 Result<std::optional<PoseDifference>> difference(const PoseTrack& before, const PoseTrack& after);

@@ -105,7 +105,7 @@ Measured measured_run(const PreparedTrace& prepared) {
 
 struct KeptRun {
   PoseTrack poses;
-  std::vector<vec2> sticks;  // one for each tick
+  std::vector<vec2> sticks;  // the stick of each kept tick
 };
 KeptRun kept_run(const PreparedTrace& prepared) {
   KeptRun kept{PoseTrack(prepared.start, prepared.config.rate_hz, prepared.ticks), {}};
@@ -325,7 +325,7 @@ std::optional<Error> check(const CheckedTrace& trace, const CheckOptions& option
   if (!files) return files.error();
   const Measured measured = measured_run(*prepared);
   judge(expectation, measured, result);
-  CheckResult parting;  // found before an update replaces the stored poses
+  CheckResult parting;  // the first difference, found before an update replaces the stored poses
   if (expectation.pose_hash && *expectation.pose_hash != measured.pose_hash)
     find_difference(trace, expectation, *prepared, options.with_curves, parting);
   if (options.updates) {
@@ -360,7 +360,7 @@ void check_all(const std::vector<CheckedTrace>& traces, const CheckOptions& opti
   std::mutex mutex;
   std::vector<std::optional<CheckResult>> waiting(traces.size());
   std::size_t taken = 0;
-  std::exception_ptr thrown;  // from `take`, for the caller: a full disk
+  std::exception_ptr thrown;  // an exception of `take` (a full disk), which the caller gets
   const auto work = [&] {
     for (std::size_t i; (i = next.fetch_add(1)) < traces.size();) {
       CheckResult result = checked(traces[i], options);

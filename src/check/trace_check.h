@@ -15,21 +15,21 @@ namespace gaitpad {
 struct CheckOptions {
   std::vector<std::string> config_folders;
   bool updates = false;             // writes expectations that failed or are missing
-  bool with_curves = false;         // of the first joint that differs
-  std::optional<double> max_hours;  // as SessionSpec::Replay's
-  bool user_styles = false;         // as SessionSpec::Replay's
+  bool with_curves = false;         // finds the curves of the first joint that differs
+  std::optional<double> max_hours;  // limit on a recording's length, as in SessionSpec::Replay
+  bool user_styles = false;         // the user's own styles may be named, as in SessionSpec::Replay
 };
 
 // A recording and the files beside it.
 struct CheckedTrace {
-  std::string path;  // without extension, as given or found
+  std::string path;  // the recording's path without its extension, as given or found
   std::string recording() const { return path + ".hid"; }
   std::string expectation() const { return path + ".expect.toml"; }
   std::string poses() const { return path + ".expect.poses"; }
 };
 
 struct FoundTraces {
-  std::vector<CheckedTrace> traces;  // ordered by path, each once
+  std::vector<CheckedTrace> traces;  // recordings with an expectation, ordered by path, each once
   std::vector<std::string> without;  // other recordings of the folders, without an expectation
 };
 // A file is a recording or its expectation. Folders are searched, without hidden folders and links;
@@ -54,13 +54,13 @@ struct JointCurves {
   std::string joint;
   bool is_angle = true;
   int rate_hz = 0;
-  std::size_t first_tick = 0;  // first tick that differs
+  std::size_t first_tick = 0;  // number of the first tick that differs
   std::array<std::vector<double>, 3> before, after;
-  std::vector<double> distance;  // degrees or metres between them
+  std::vector<double> distance;  // distance of both curves at each tick, degrees or metres
 };
 struct CheckResult {
-  bool is_met = false;  // with CheckOptions::updates: after the update
-  std::string verdict;  // one sentence
+  bool is_met = false;  // the recording meets its expectation, or the renewed one after an update
+  std::string verdict;  // one sentence: what was met, or what was not
   std::vector<std::string> details;
   double seconds = 0.0;
   std::optional<JointCurves> curves;

@@ -31,7 +31,8 @@ double greatest_turn_rad_s(double forward, const GaitLimits& limits) noexcept {
 
 // Longest step time of a turn at this share of the greatest rate.
 double turning_step_time_s(double share, const GaitLimits& limits) noexcept {
-  constexpr double kStraight = 1e-3;  // below it any step is short enough
+  // At a smaller share of the greatest turn rate any step is short enough.
+  constexpr double kStraight = 1e-3;
   return limits.max_turning_step_time_s / std::max(share, kStraight);
 }
 
@@ -121,7 +122,8 @@ GaitLimits gait_limits(double leg_length_m) noexcept {
 GaitLimits gait_limits(double leg_length_m, const OwnGait& own) noexcept {
   GaitLimits limits = gait_limits(leg_length_m);
   const double step_m = 0.5 * (own.step_m[0] + own.step_m[1]), root = std::sqrt(own.stick);
-  const double adult_s = limits.max_step_m / (limits.max_speed_m_s * root);  // at that stick
+  // An adult's step time at that stick.
+  const double adult_s = limits.max_step_m / (limits.max_speed_m_s * root);
   limits.max_speed_m_s = step_m / own.step_time_s / own.stick;
   limits.max_step_m = step_m / root;
   limits.max_step_time_s *= own.step_time_s / adult_s;
@@ -201,7 +203,7 @@ GaitParams gait_params(const Stick& stick, const StyleValues& style, const GaitO
                        const GaitLimits& limits) noexcept {
   const auto speed_m_s = given(overrides, GaitKey::speed_m_s, limits);
   const auto turn_rate_rad_s = given(overrides, GaitKey::turn_rate_rad_s, limits);
-  Stick in_force = stick;  // the stick that would give the overrides
+  Stick in_force = stick;  // the stick that would have the effect of the overrides
   if (turn_rate_rad_s) {
     const double forward = speed_m_s ? deflection_of(*speed_m_s, 0.0, style.fatigue, limits)
                                      : finite_or_zero(stick.left.y);

@@ -11,8 +11,10 @@
 namespace gaitpad {
 namespace {
 
-constexpr double kMostFactor = 3.0;  // on hip sway, hip bounce and the flight's height
-constexpr double kMostStride_m = 20.0, kMostSpeed_m_s = 20.0;  // a giant's; its limits bound them
+// Largest factor on hip sway, hip bounce and the flight's height.
+constexpr double kMostFactor = 3.0;
+// A giant's values; its limits bound them.
+constexpr double kMostStride_m = 20.0, kMostSpeed_m_s = 20.0;
 
 // Accessors to the numbers of a style.
 template <double StyleValues::*number>

@@ -9,11 +9,11 @@ namespace gaitpad {
 
 // One key of a section: one number, or the weights of all DOFs of a joint.
 struct StyleField {
-  std::string_view name;  // within its section: `stride_length`, `weight.knee`
+  std::string_view name;  // the key within its section: `stride_length`, `weight.knee`
   std::string_view unit;  // "m", "s", "deg"; "x": a factor; "": a share or a weight
-  double min, max;        // range in files and commands
+  double min, max;        // range of the value in files and commands
   std::span<double> (*values)(StyleValues& style, int side);
-  std::string_view words{};   // for a label, if the name does not read well
+  std::string_view words{};   // words for a label, if the name does not read well
   std::string_view effect{};  // a sentence for a tip, if the label does not say it
   bool is_weight() const noexcept { return name.starts_with("weight."); }
 };
@@ -26,7 +26,7 @@ struct StyleSection {
   // All weights of one side; null if the section has none. At least one must be above 0, because a
   // limb with all joints locked could not move.
   std::span<double> (*weights)(StyleValues& style, int side);
-  std::string_view limb;  // owner of the weights, for messages
+  std::string_view limb;  // name of the limb that has the weights, for messages
   bool is_rare = false;   // few users change its keys: a window may hide them
   bool is_of_both() const noexcept { return first_side != last_side; }
 };

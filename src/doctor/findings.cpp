@@ -46,7 +46,8 @@ bool is_beside_a_keyboard(const PadHardware& pad) {
   return std::ranges::any_of(usb_interfaces(device.string()),
                              [](const UsbInterface& i) { return !boot_device(i).empty(); });
 }
-// True if the event node has the pad's sticks: one pad makes several nodes.
+// True if the event node has the pad's sticks. One pad makes several nodes; the others are motion
+// sensors and touchpads.
 bool is_pad_event(const SystemNode& node) { return !node.is_motion_sensor && !node.is_touchpad; }
 
 // In the checks below `state` is the state of their findings: problem, or note if another driver

@@ -11,7 +11,7 @@ namespace gaitpad {
 struct Finding {
   enum class State { usable, problem, note };
   State state = State::note;
-  std::string node;    // or another name: a sysfs device, udev
+  std::string node;    // what the finding is about: a node, a sysfs device, or udev
   std::string device;  // the name of the pad; empty: none
   std::string cause;
   std::string fix;  // a command or advice; empty: none

@@ -145,7 +145,7 @@ std::string users_of(const std::string& node) {
     const std::string id = process.path().filename().string();
     if (id.find_first_not_of("0123456789") != std::string::npos) continue;
     if (id == std::to_string(::getpid())) continue;
-    std::error_code closed;  // another user's process, or it has ended
+    std::error_code closed;  // another user's process, or one that has ended
     fs::directory_iterator file(process.path() / "fd", closed);
     for (; !closed && file != fs::directory_iterator(); file.increment(closed)) {
       std::error_code gone;

@@ -15,20 +15,20 @@ namespace gaitpad {
 
 // One pad with all its nodes.
 struct PadHardware {
-  std::string path;  // DeviceListing::pad_path
+  std::string path;  // equal for all nodes of one pad (DeviceListing::pad_path)
   std::string name;
   BusType bus = BusType::unknown;
   std::uint16_t vendor = 0, product = 0;
   std::vector<SystemNode> hidraw, events;
-  std::optional<UsbInterface> interface;  // only for a pad on USB
-  std::string usb_node;                   // node of its USB device
+  std::optional<UsbInterface> interface;  // the pad's USB interface; none if it is not on USB
+  std::string usb_node;                   // device node of the whole USB device
 };
 
 struct Machine {
   std::vector<PadHardware> pads;
-  std::vector<SystemNode> usb_devices;  // without hubs
-  std::vector<PadSighting> sightings;   // of the drivers
-  bool has_udev = false;                // udevd is running
+  std::vector<SystemNode> usb_devices;  // USB devices without hubs
+  std::vector<PadSighting> sightings;   // the pads that the drivers see
+  bool has_udev = false;                // udevd is running on this machine
   bool is_container = false;
 };
 

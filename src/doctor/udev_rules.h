@@ -28,7 +28,7 @@ inline constexpr RulesTarget kUinputRules = {
 // A device as a rule sees it.
 struct RuleSubject {
   std::uint16_t bus = 0, vendor = 0, product = 0;
-  std::optional<int> interface;  // number of a USB interface
+  std::optional<int> interface;  // number of the USB interface; none: not on USB
   bool operator==(const RuleSubject&) const = default;
 };
 
@@ -50,7 +50,7 @@ std::string usb_rule(const RuleSubject& subject);
 // Command that starts this program: its name if the shell finds it, else its path.
 std::string program();
 // Commands with the effect of `doctor --install-rules`.
-std::string install_command();                               // by this program
-std::string manual_install_command(const RulesFile& rules);  // without this program
+std::string install_command();                               // Runs this program.
+std::string manual_install_command(const RulesFile& rules);  // Works without this program.
 
 }  // namespace gaitpad

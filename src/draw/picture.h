@@ -46,13 +46,13 @@ struct CairoDeleter {
 using Surface = std::unique_ptr<cairo_surface_t, SurfaceDeleter>;
 using Cairo = std::unique_ptr<cairo_t, CairoDeleter>;
 
-struct Box {  // pixels, y downwards
+struct Box {  // a rectangle in pixels, y downwards
   double x = 0.0, y = 0.0, width = 0.0, height = 0.0;
 };
 
 enum class Align { left, centre, right };
 struct TextStyle {
-  double size = 13.0;  // pixels
+  double size = 13.0;  // height of the type in pixels
   unsigned colour = colour::kInk;
   Align align = Align::left;
   bool is_bold = false;
@@ -63,7 +63,8 @@ void fill_box(cairo_t* cr, const Box& box, const Colour& c);
 void stroke_box(cairo_t* cr, const Box& box, const Colour& c, double width);
 void set_dashes(cairo_t* cr, bool is_dashed);
 void draw_dot(cairo_t* cr, const vec2& at, double radius, const Colour& c);
-void line(cairo_t* cr, const vec2& from, const vec2& to);  // adds to the path; does not draw
+// Adds a line to the path without drawing it.
+void line(cairo_t* cr, const vec2& from, const vec2& to);
 
 // While an object of this class exists, drawing is clipped to the box.
 class Clipped {
@@ -93,14 +94,15 @@ void draw_text(cairo_t* cr, const TextStyle& style, const vec2& baseline, std::s
 std::vector<std::string> wrapped(cairo_t* cr, const TextStyle& style, std::string_view text,
                                  double max_width, std::size_t max_lines);
 
-// Empty if cairo has no memory.
+// The bytes of a PNG file; empty if cairo has no memory.
 std::string png_of(cairo_surface_t* surface);
 
 struct Pixels {
   int width = 0, height = 0;
-  std::vector<std::uint8_t> rgba;  // rows from the top, opaque
+  std::vector<std::uint8_t> rgba;  // four bytes for each pixel, rows from the top, opaque
 };
-// Both write beside `path` first and rename: on error the old file is unchanged.
+// Both functions write beside `path` first and rename, so that an error leaves the old file
+// unchanged.
 std::optional<Error> write_png(const std::string& path, Pixels pixels);
 std::optional<Error> write_png(const std::string& path, cairo_surface_t* surface);
 

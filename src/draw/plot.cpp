@@ -10,7 +10,8 @@ namespace gaitpad {
 namespace {
 
 constexpr int kMostTicks = 64;
-constexpr double kRounding = 1e-9;  // of a step; a range's end this near to a tick equals it
+// Share of a step; a range's end this near to a tick counts as the tick.
+constexpr double kRounding = 1e-9;
 
 // Indices of the points of one pixel column that are kept.
 struct Column {
@@ -31,7 +32,8 @@ void add_gap(std::vector<PlotPoint>& out) {
   if (!out.empty() && is_drawable(out.back())) out.emplace_back(kNone, kNone);
 }
 
-constexpr int kMostXSteps = 8, kMostYSteps = 7;  // of a plot on cairo
+// Greatest numbers of steps between the ticks of a plot on cairo.
+constexpr int kMostXSteps = 8, kMostYSteps = 7;
 // Powers of ten within the range of logarithms, and 2 and 5 times those unless they are too many.
 std::vector<PlotTick> log_ticks(const PlotRange& range, int max_steps) {
   std::vector<PlotTick> ticks;
@@ -155,7 +157,7 @@ std::vector<double> nice_ticks(double min, double max, int max_steps) {
   for (int i = 0; i <= kMostTicks; ++i) {
     const double tick = (first + i) * step;
     if (!(tick <= max + kRounding * step)) break;
-    ticks.push_back(tick == 0.0 ? 0.0 : tick);  // no -0
+    ticks.push_back(tick == 0.0 ? 0.0 : tick);  // avoids -0
   }
   return ticks;
 }
@@ -198,7 +200,7 @@ void decimate(std::span<const PlotPoint> points, const PlotRange& x, int columns
   if (columns < 1 || !(width > 0.0)) return;
   const bool is_few = points.size() <= static_cast<std::size_t>(columns) * 2;
   Column column;
-  int at = -1;  // the column being filled; -1: none
+  int at = -1;  // number of the column that is being filled; -1: none yet
   const auto finish = [&] {
     if (at >= 0) add_column(points, column, out);
     at = -1;

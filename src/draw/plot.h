@@ -26,24 +26,24 @@ struct PlotTick {
   double value = 0.0;
   std::string text;
 };
-// For logarithms: the powers of ten, and 2 and 5 times those if they fit.
+// The ticks of a range. For logarithms: the powers of ten, and 2 and 5 times those if they fit.
 std::vector<PlotTick> plot_ticks(const PlotRange& range, int max_steps);
 // The range, widened to round numbers and to at least `least`.
 PlotRange nice_range(double min, double max, double least) noexcept;
 
-using PlotPoint = vec2;  // x, y in the plot's units
+using PlotPoint = vec2;  // x and y in the plot's units
 
 struct PlotSeries {
   std::string letter;  // drawn at the curve's end, to tell curves apart without colour
   Colour colour;
-  double width_px = 1.6;  // at scale 1; the window rounds it to whole pixels
+  double width_px = 1.6;  // width of the line at scale 1; the window rounds it to whole pixels
   std::vector<PlotPoint> points;
   bool is_dashed = false;
 };
-struct PlotBand {  // from x to x over the whole height
+struct PlotBand {  // a coloured band between two values of x, over the whole height
   double from = 0.0, to = 0.0;
   Colour colour;
-  std::string text;  // at its top
+  std::string text;  // words at the band's top
 };
 struct PlotMark {
   enum class Shape { up, dot, down } shape = Shape::dot;
@@ -73,7 +73,7 @@ struct SpanRow {
   struct Part {
     double from = 0.0, to = 0.0;
     Colour colour;
-    std::string letter;  // drawn if it fits
+    std::string letter;  // written into the span if it fits
   };
   std::string label;
   std::vector<Part> parts;
@@ -83,8 +83,8 @@ struct SpanPlot {
   std::vector<SpanRow> rows;
 };
 
-// The following functions draw with cairo. `box` holds the curves; numbers and labels are outside
-// it.
+// The following functions draw with cairo. `box` is the part that holds the curves; numbers and
+// labels are outside it.
 vec2 pixel_in(const Box& box, const Plot& plot, const vec2& value) noexcept;
 void draw_curve(cairo_t* cr, const Box& box, const Plot& plot, const PlotSeries& series);
 // Bands, grid, numbers, labels and curves.

@@ -42,10 +42,10 @@ Error problem(const std::string& path, const std::string& cause) {
 std::vector<std::string> arguments(const std::string& file, int width, int height,
                                    int frames_per_second) {
   return {"ffmpeg", "-hide_banner", "-loglevel", "error", "-nostdin", "-y",
-          // Input.
+          // The options of the input.
           "-f", "rawvideo", "-pix_fmt", "rgba", "-video_size", fmt::format("{}x{}", width, height),
           "-framerate", std::to_string(frames_per_second), "-i", "pipe:0",
-          // Output.
+          // The options of the output.
           "-vf", "pad=ceil(iw/2)*2:ceil(ih/2)*2,scale=out_color_matrix=bt709:out_range=tv", "-c:v",
           "libx264", "-preset", "veryfast", "-crf", "18", "-pix_fmt", "yuv420p", "-colorspace",
           "bt709", "-color_primaries", "bt709", "-color_trc", "bt709", "-movflags", "+faststart",
@@ -101,10 +101,10 @@ bool is_whole(const std::string& path) {
   bool has_index = false;
   for (std::uintmax_t at = 0; !error && file && at <= end;) {
     if (at == end) return has_index;
-    std::array<unsigned char, 16> head{};  // size, name, a 64-bit size if the first one is 1
+    std::array<unsigned char, 16> head{};  // size, name, and a 64-bit size if the first size is 1
     file.seekg(static_cast<std::streamoff>(at));
     file.read(reinterpret_cast<char*>(head.data()), head.size());
-    file.clear();  // the last box may be shorter than 16 bytes
+    file.clear();  // a read at the last box may end early: it may be shorter than 16 bytes
     const auto number = [&head](std::size_t first, std::size_t bytes) {
       std::uint64_t n = 0;
       for (std::size_t i = first; i < first + bytes; ++i) n = n << 8 | head[i];

@@ -19,9 +19,9 @@ class VideoWriter {
   static std::optional<Error> problem_of(const std::string& path);
   static Result<std::unique_ptr<VideoWriter>> open(const std::string& path, int width, int height,
                                                    int frames_per_second);
-  ~VideoWriter();                                  // removes the file unless finish() succeeded
-  std::optional<Error> add(const Pixels& pixels);  // waits while ffmpeg is behind
-  std::optional<Error> finish();                   // waits for ffmpeg's end
+  ~VideoWriter();                                  // Removes the file unless finish() succeeded.
+  std::optional<Error> add(const Pixels& pixels);  // Adds a frame; waits while ffmpeg is behind.
+  std::optional<Error> finish();                   // Ends the file; waits for ffmpeg's end.
 
  private:
   VideoWriter() = default;
@@ -30,9 +30,9 @@ class VideoWriter {
   bool has_ended_well();
 
   std::string path_, part_;
-  int link_ = -1;       // to ffmpeg's standard input
-  int log_ = -1;        // its standard error
-  pid_t process_ = -1;  // -1: not started, or already waited for
+  int link_ = -1;       // socket to ffmpeg's standard input; -1: closed
+  int log_ = -1;        // file that receives ffmpeg's standard error; -1: none
+  pid_t process_ = -1;  // ffmpeg; -1: not started, or already waited for
   int exit_status_ = -1;
   int width_ = 0, height_ = 0;
 };

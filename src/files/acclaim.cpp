@@ -28,7 +28,7 @@ class LineReader {
     }
     return {};
   }
-  int line() const { return line_; }  // of the last line returned
+  int line() const { return line_; }  // Number of the last line that was returned.
 
  private:
   // A comment begins at the line's beginning or after a blank.
@@ -47,7 +47,7 @@ class LineReader {
 struct RawBone {
   AsfBone bone;
   EulerOrder order = {0, 1, 2};
-  vec3 angles{0.0};  // file units
+  vec3 angles{0.0};  // turn of the bone's axes, in the file's angle unit
   bool has_direction = false, has_length = false;
   int line = 0;
 };
@@ -123,7 +123,7 @@ class AsfParser {
     if (keyword == ":bonedata") return bone_data();
     if (keyword == ":hierarchy") return hierarchy();
     return each_line(
-        [](auto, auto) { return true; });  // :version, :name, :documentation, :skin ...
+        [](auto, auto) { return true; });  // :version, :name, :documentation, :skin ... are ignored
   }
 
   template <class Take>
@@ -177,7 +177,7 @@ class AsfParser {
 
   bool order_of(std::string_view rest, RawBone& raw) {
     const std::string_view word = take_word(rest);
-    if (word.empty()) return true;  // no order given: XYZ
+    if (word.empty()) return true;  // no order is given: XYZ
     const auto order = axis_order(word);
     if (!order) return fail(fmt::format("axis: {} is not an order of X, Y and Z", in_quotes(word)));
     raw.order = *order;
@@ -298,7 +298,8 @@ class AsfParser {
   bool in_depth_first_order() {
     if (bones_.size() < 2) return fail("no bones: not a skeleton (.asf)");
     if (children_.size() != bones_.size()) return fail("no :hierarchy after :bonedata");
-    std::vector<std::pair<int, int>> open = {{0, -1}};  // bone, its parent's new index
+    // Pairs of a bone and its parent's new index.
+    std::vector<std::pair<int, int>> open = {{0, -1}};
     std::size_t leaves = 0;
     while (!open.empty()) {
       const auto [index, parent] = open.back();
@@ -309,7 +310,7 @@ class AsfParser {
       bone.axes = in_order(raw.order, raw.angles * asf_.angle_unit);
       bone.first_value = asf_.channels;
       asf_.channels += bone.channels;
-      raw.line = -raw.line;  // reached
+      raw.line = -raw.line;  // marks the bone as reached
       leaves += children_[index].empty();
       const int here = static_cast<int>(asf_.bones.size());
       asf_.bones.push_back(std::move(bone));

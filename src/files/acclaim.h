@@ -21,22 +21,23 @@ inline constexpr bool is_rotation(AsfChannel c) noexcept { return c <= AsfChanne
 struct AsfBone {
   std::string name;
   int parent = -1;
-  vec3 direction{0.0};    // unit length, towards the bone's end; 0 for the root
-  double length = 0.0;    // file units
-  quat axes = kIdentity;  // turns the bone's axes to the world's
+  vec3 direction{0.0};    // unit vector to the bone's end; 0 for the root
+  double length = 0.0;    // length of the bone in the file's unit
+  quat axes = kIdentity;  // rotation of the bone's axes to the world's
   std::array<AsfChannel, 6> channel{};
   int channels = 0;
-  int first_value = 0;  // index in a frame of its first channel
+  int first_value = 0;  // index of its first channel's value in a frame
   vec3 end() const { return length * direction; }
 };
 
 // Bones are in depth-first order, parents before children; bones[0] is the root.
 struct Asf {
   std::vector<AsfBone> bones;
-  vec3 root_position{0.0};      // file units; the root's translation is added to it
-  double length_unit = 0.0;     // `:units length` as written; 0: absent
-  double angle_unit = kDegree;  // rad; `deg` unless the file says `rad`
-  int channels = 0;             // numbers in a frame
+  vec3 root_position{0.0};   // file units; the root's translation is added to it
+  double length_unit = 0.0;  // `:units length` as written; 0: it is absent
+  // Size of the file's angle unit in radians; `deg` unless the file says `rad`.
+  double angle_unit = kDegree;
+  int channels = 0;  // number of values in a frame
 };
 
 // Parses a skeleton: any order of sections and channels, any case of keywords, CRLF, comments.
@@ -46,9 +47,10 @@ Result<Asf> parse_asf(std::string_view text, const std::string& name);
 
 struct Amc {
   int frames = 0;
-  double angle_unit = kDegree;  // rad; :DEGREES or :RADIANS, otherwise the skeleton's
-  double frame_rate_hz = 0.0;   // 0: not stated, which is usual
-  std::vector<double> values;   // frames x asf.channels; file units
+  // The file's angle unit in radians; without :DEGREES or :RADIANS the skeleton's.
+  double angle_unit = kDegree;
+  double frame_rate_hz = 0.0;  // frames a second; 0: not stated, which is usual
+  std::vector<double> values;  // values, frame by frame; in the file's units
 };
 
 // Parses a motion of the skeleton `asf`. Frame numbers start anywhere and grow by one. A bone

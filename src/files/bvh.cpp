@@ -21,7 +21,8 @@ namespace gaitpad {
 
 namespace {
 
-constexpr double kLeastUnit_m = 1e-9, kMostUnit_m = 1e6;  // of a file that is written
+// Limits of the unit of a file that is written.
+constexpr double kLeastUnit_m = 1e-9, kMostUnit_m = 1e6;
 
 // Words and lines of a text, with the line number of the last word.
 class Reader {
@@ -137,7 +138,7 @@ class Parser {
   }
 
   bool open_end_site(int parent) {
-    in_.name();  // "Site", sometimes a name
+    in_.name();  // skips "Site", which some files replace by a name
     int siblings = 0;
     for (const BvhJoint& joint : bvh_.joints)
       siblings += joint.is_end_site && joint.parent == parent;
@@ -284,10 +285,11 @@ class Parser {
   std::string name_;
   std::string message_;
   Bvh bvh_;
-  std::vector<bool> has_offset_;  // of each joint
+  std::vector<bool> has_offset_;  // the joint has an OFFSET, one for each joint
 };
 
-constexpr double kPoleLimit = 0.5;  // sine of 30 degrees
+// Sine of 30 degrees, nearest distance of rotations from the pole.
+constexpr double kPoleLimit = 0.5;
 constexpr int kCountWidth = 10;
 
 double worst_closeness(const EulerOrder& order, std::span<const quat> local, std::size_t joint,

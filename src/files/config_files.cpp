@@ -18,7 +18,8 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::size_t kMaxNameBytes = 48;
-constexpr std::size_t kMaxSummaryFileBytes = 64 << 20;  // a motion's file may contain poses
+// Most bytes of a file whose summary is read; a motion's file may contain poses.
+constexpr std::size_t kMaxSummaryFileBytes = 64 << 20;
 
 bool is_plain(char c) {
   return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '_' ||
@@ -103,7 +104,7 @@ std::string config_summary(const std::string& path) {
   if (!text) return {};
   std::string comment;
   std::string_view rest = *text;
-  if (rest.starts_with("V:")) take_line(rest);  // a recording's first line
+  if (rest.starts_with("V:")) take_line(rest);  // the first line of a recording
   for (; rest.starts_with('#');) {
     const std::string_view line = trimmed(take_line(rest), "# \t\r");
     if (line.empty()) break;

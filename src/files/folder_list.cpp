@@ -15,7 +15,7 @@ namespace gaitpad {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr std::size_t kMostSeen = 100'000;  // entries of a folder that are read
+constexpr std::size_t kMostSeen = 100'000;  // most entries of a folder that are read
 constexpr std::size_t kMostRecentBytes = 64 * 1024;
 
 bool is_wanted(const std::string& name, FileFilter filter) {
@@ -53,7 +53,7 @@ FolderList list_folder(const std::string& folder, FileFilter filter) {
   for (; !error && it != end && seen < kMostSeen; it.increment(error), ++seen) {
     std::string name = it->path().filename().string();
     if (name.empty() || name.front() == '.') continue;
-    std::error_code ignored;  // a broken link is not a folder
+    std::error_code ignored;  // ignored: a broken link is not a folder
     const bool is_folder = it->is_directory(ignored);
     if (!is_folder && (!is_wanted(name, filter) || !it->is_regular_file(ignored))) continue;
     if (list.entries.size() == FolderList::kMostEntries) break;
@@ -72,7 +72,7 @@ FolderList list_folder(const std::string& folder, FileFilter filter) {
 RecentFiles::RecentFiles(std::string file) : file_(std::move(file)) {
   if (file_.empty()) return;
   const auto text = file_text(file_, kMostRecentBytes);
-  if (!text) return;  // no file was opened yet
+  if (!text) return;  // no file has been opened yet
   for (std::size_t begin = 0; begin < text->size() && paths_.size() < kMost;) {
     const std::size_t end = std::min(text->find('\n', begin), text->size());
     std::string path = text->substr(begin, end - begin);

@@ -13,7 +13,7 @@ enum class FileFilter : std::uint8_t { all, motions, recordings, settings };
 struct FolderEntry {
   std::string name;  // bytes of the file system, possibly not UTF-8
   bool is_folder = false;
-  std::string date;  // of a file's last change, "2024-02-29 23:59"; empty: unknown
+  std::string date;  // time of a file's last change, "2024-02-29 23:59"; empty: unknown
 };
 struct FolderList {
   static constexpr std::size_t kMostEntries = 4000;

@@ -22,8 +22,8 @@ namespace {
 // The visible body: a rod for each bone, thickest near its upper joint and skinned to that joint
 // only. Triangles share no vertices, for flat shading.
 struct GltfBody {
-  std::vector<vec3> place_m, normal;  // world, in the rest pose
-  std::vector<std::uint16_t> joint;   // index in the skeleton
+  std::vector<vec3> place_m, normal;  // places and normals in the world, in the rest pose
+  std::vector<std::uint16_t> joint;   // index of each vertex's joint in the skeleton
 };
 
 constexpr double kShortestBone_m = 1e-3;
@@ -178,7 +178,7 @@ std::string add_body(const Skeleton& skeleton, const GltfLayout& layout, Documen
   std::string bytes;
   ordered_json& json = doc.json;
   json["scenes"] = {{{"nodes", {0}}}};
-  if (n == 0) return bytes;  // no bone has a length
+  if (n == 0) return bytes;  // there is no body, because no bone has a length
   append_inverse_bind(rest->world, joints, bytes);
   const int bind = doc.add(64 * joints, kFloat, "MAT4", joints, 0);
   append_vectors(body.place_m, bytes);
@@ -290,7 +290,8 @@ void GltfWriter::write(const Pose& pose) {
   for (std::size_t t = 0; t < turning(); ++t) {
     const auto joint = static_cast<std::size_t>(turning_[t]);
     quat q = glm::normalize(pose.local[joint]);
-    if (glm::dot(q, before_[joint]) < 0.0) q = -q;  // keep neighbours in one hemisphere
+    // Keeps neighbouring rotations in one hemisphere.
+    if (glm::dot(q, before_[joint]) < 0.0) q = -q;
     before_[joint] = q;
     for (const double v : {q.x, q.y, q.z, q.w}) chunk_[t].push_back(static_cast<float>(v));
   }

@@ -14,7 +14,8 @@ namespace {
 
 constexpr std::size_t kMostPoses = 64;
 constexpr int kStrides = 4;
-constexpr double kLeastGap = 0.005;  // between two keys of one channel, share of the stride
+// Least distance of two keys of one channel, a share of the stride.
+constexpr double kLeastGap = 0.005;
 
 // The channels that a pose can key. Each side's phases count from its own strike: in a symmetric
 // walk the left leg has the right leg's values half a stride later. The trunk's values then repeat
@@ -57,7 +58,7 @@ struct Keys {
 };
 
 struct KeyedStride {
-  std::array<std::array<PeriodicKeys, kSideChannels>, 2> side;  // by Side
+  std::array<std::array<PeriodicKeys, kSideChannels>, 2> side;  // keys of both sides, by Side
   std::array<PeriodicKeys, kTrunkChannels> trunk;
   double duration_s = 1.1, track_m = 0.05, shoulder_out_rad = 0.0;
 };
@@ -128,7 +129,7 @@ class KeyframeReader {
 
 KeyedStride stride_of(TomlTable& root) {
   KeyedStride stride;
-  root.string("name");  // allowed, not used
+  root.string("name");  // the key is allowed, but not used
   stride.duration_s = root.number("duration_s", 0.5, 4.0).value_or(stride.duration_s);
   root.require("duration_s");
   stride.track_m = root.number("track_m", 0.0, 0.3).value_or(stride.track_m);

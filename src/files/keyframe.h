@@ -20,12 +20,13 @@ class PeriodicKeys {
     double phase, value;
   };
   PeriodicKeys() = default;
-  explicit PeriodicKeys(std::vector<Key> keys);  // any order, no phase twice
+  // Keys may be in any order; no two have the same phase.
+  explicit PeriodicKeys(std::vector<Key> keys);
   double at(double phase) const;
 
  private:
   std::vector<Key> keys_;
-  std::vector<double> slope_;  // at each key, per cycle
+  std::vector<double> slope_;  // slope at each key, per cycle
 };
 
 // True if a motion's .toml file contains poses instead of naming a motion file.

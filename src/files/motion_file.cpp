@@ -24,7 +24,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr double kMinLegUnits = 1e-3, kMaxLegUnits = 1e6;
-constexpr double kAcclaimRate_hz = 120.0;  // for files without a rate, such as CMU's
+constexpr double kAcclaimRate_hz = 120.0;  // frame rate of files that state none, such as CMU's
 constexpr double kInch_m = 0.0254;
 constexpr double kLeastFrameRate_hz = 1.0, kMostFrameRate_hz = 1e4;
 
@@ -100,8 +100,8 @@ Result<Motion> finish_motion(Motion motion, UpAxis up, double stated_unit_m,
 
 // An Acclaim skeleton as joints: depth first, an End Site after each bone without children.
 struct AcclaimJoints {
-  Skeleton skeleton;       // offsets in file units
-  std::vector<int> joint;  // of each bone
+  Skeleton skeleton;       // has offsets in the file's unit
+  std::vector<int> joint;  // index of the joint of each bone
 };
 
 AcclaimJoints joints_of(const Asf& asf) {
@@ -127,7 +127,7 @@ AcclaimJoints joints_of(const Asf& asf) {
 
 struct BonePose {
   quat rotation;
-  vec3 translation;  // from its rest position, in its parent's frame
+  vec3 translation;  // place relative to the rest position, in the parent's frame
 };
 
 BonePose pose_of(const AsfBone& bone, const double* values, double angle_unit) {
@@ -215,7 +215,7 @@ Result<std::string> skeleton_beside(const std::string& path) {
 struct JointValues {
   quat rotation = kIdentity;
   vec3 position{0.0};
-  std::array<bool, 3> has{};  // position channels present
+  std::array<bool, 3> has{};  // position channels that the joint has
 };
 
 JointValues values_of(const BvhJoint& joint, const double* frame) {
@@ -254,8 +254,8 @@ PositionMeans position_means(const Bvh& bvh, const BvhJoint& joint) {
   return near_offset ? PositionMeans::place : PositionMeans::shift;
 }
 
-// The same for BVH. The root's position comes from its channels; axes without a channel take the
-// OFFSET.
+// Converts BVH, in the file's unit. The root's position comes from its channels; axes without a
+// channel take the OFFSET.
 Motion in_file_units(const Bvh& bvh) {
   Motion motion;
   motion.frame_time_s = bvh.frame_time_s;

@@ -23,7 +23,8 @@ namespace fs = std::filesystem;
 #ifdef GAITPAD_STRIDES_VERSION
 constexpr std::uint64_t kVersion = GAITPAD_STRIDES_VERSION;
 #else
-constexpr std::uint64_t kVersion = 0;  // files are neither read nor written
+constexpr std::uint64_t kVersion = 0;  // version of a build without a cache: files are neither read
+                                       // nor written
 #endif
 constexpr std::size_t kMostFiles = 64;
 constexpr const char* kEnding = ".strides";
@@ -99,7 +100,7 @@ void delete_oldest(const std::string& folder) {
   fs::directory_iterator entry(folder, error);
   for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
     if (entry->path().extension() != kEnding) continue;
-    std::error_code gone;  // another process may have deleted it
+    std::error_code gone;  // ignored: another process may have deleted the file
     const auto time = entry->last_write_time(gone);
     if (!gone) files.emplace_back(time, entry->path());
   }

@@ -105,7 +105,7 @@ std::string style_text(const Style& style) {
   std::string text = "# A style: how a character walks. What is left out is plain.\n";
   if (!style.name.empty()) text += fmt::format("name = {}\n", toml_string(style.name));
   StyleValues values = style;
-  bool are_sides_even = false;  // of the current limb
+  bool are_sides_even = false;  // both sides of the present limb have equal values
   for (const StyleSection& section : style_sections()) {
     if (section.is_of_both()) are_sides_even = is_even(section, values);
     const bool is_one_of_two =

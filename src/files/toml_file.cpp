@@ -163,7 +163,7 @@ std::string toml_string(std::string_view text) {
     } else if (byte < 0x20 || byte == 0x7f) {
       quoted += fmt::format("\\u{:04x}", static_cast<unsigned>(byte));
     } else {
-      quoted += printable(character);  // its \u202e is also TOML's escape
+      quoted += printable(character);  // \u202e in a printable text is also TOML's escape
     }
     text.remove_prefix(character.size());
   }

@@ -26,7 +26,7 @@ inline constexpr std::size_t kMaxTomlBytes = 1 << 20;
 // The text as a TOML string, with its quotes. If it is not UTF-8, bytes beyond ASCII become '?'.
 std::string toml_string(std::string_view text);
 
-struct TomlDocument;  // hides toml++
+struct TomlDocument;  // keeps toml++ out of this header
 
 // One table of a file: a small handle, valid as long as its TomlFile. A getter returns nothing if
 // the key is absent or its value is wrong; the file keeps the first wrong value as its problem().
@@ -54,8 +54,9 @@ class TomlTable {
 
   // All keys in the order of the file, for tables whose keys are data. They do not become known.
   std::vector<std::string> keys() const;
-  int line() const;                      // first line of the table
-  int line(std::string_view key) const;  // of the key's value; the table's if it is absent
+  int line() const;  // Number of the table's first line.
+  // Number of the key's line; the table's if the key is absent.
+  int line(std::string_view key) const;
 
  private:
   friend class TomlFile;

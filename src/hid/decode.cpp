@@ -18,11 +18,11 @@ enum class ControlKind : std::uint8_t { axis, button, hat, dpad };
 // Binds one field of a descriptor to one control of the pad.
 struct Binding {
   ControlKind kind = ControlKind::axis;
-  int control = 0;        // PadAxis or PadButton; unused for a hat
+  int control = 0;        // a PadAxis or a PadButton; not used for a hat
   std::size_t field = 0;  // index in ReportDescriptor::fields
   std::uint32_t mask = 0;
   bool reversed = false;
-  AxisPart part = AxisPart::whole;  // this and below: as in ControlSource
+  AxisPart part = AxisPart::whole;  // this member and those below are as in ControlSource
   StickSide side = StickSide::both;
   std::uint8_t directions = 0;
 };
@@ -468,8 +468,10 @@ const Field* nth_field(const ReportDescriptor& d, std::uint8_t report_id, const 
 // Facts about the controls beside the descriptor: from a pad file, or from SDL.
 struct KnownControls {
   std::optional<ButtonOrder> order;
-  const ControlMap* controls = nullptr;      // of a pad file: the others keep their default
-  const ControlMap* all_controls = nullptr;  // of SDL's mapping: there are no others
+  // Controls of a pad file; those that it does not name keep their default.
+  const ControlMap* controls = nullptr;
+  // Controls of SDL's mapping for the pad, which then has no others.
+  const ControlMap* all_controls = nullptr;
 };
 
 bool is_for(const Binding& b, ControlKind kind, int control) {

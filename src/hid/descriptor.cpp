@@ -15,13 +15,13 @@ namespace {
 struct ShortItem {
   ItemType type = ItemType::reserved;
   std::uint8_t tag = 0;
-  std::uint8_t size = 0;    // of the data: 0, 1, 2 or 4
-  std::uint32_t value = 0;  // zero-extended
+  std::uint8_t size = 0;    // size of the item's data: 0, 1, 2 or 4
+  std::uint32_t value = 0;  // the data, zero-extended
 };
 
 struct ItemAt {
   ShortItem item;
-  bool is_long = false;   // long items have no defined meaning; skipped
+  bool is_long = false;   // a long item, which has no defined meaning and is skipped
   std::size_t bytes = 0;  // including the prefix; 0: the item runs over the end
 };
 
@@ -49,9 +49,9 @@ ItemAt item_at(std::span<const std::uint8_t> bytes, std::size_t at) noexcept {
   return result;
 }
 
-constexpr std::size_t kMaxPushed = 4;  // HID_GLOBAL_STACK_SIZE
+constexpr std::size_t kMaxPushed = 4;  // Linux's HID_GLOBAL_STACK_SIZE
 constexpr std::size_t kMaxCollections = 64;
-constexpr std::size_t kMaxUsages = 12288;  // HID_MAX_USAGES
+constexpr std::size_t kMaxUsages = 12288;  // Linux's HID_MAX_USAGES
 
 // An item's data and width: whether a maximum is signed depends on its minimum.
 struct ItemData {
@@ -83,13 +83,13 @@ struct Globals {
 
 struct LocalUsage {
   UsageRange range;
-  bool extended = false;  // 4 bytes: includes its page
+  bool extended = false;  // a usage of 4 bytes, which includes its page
 };
 
 struct Locals {
   std::vector<LocalUsage> usages;
   std::size_t usage_count = 0;
-  std::optional<ItemData> minimum, maximum;  // in either order
+  std::optional<ItemData> minimum, maximum;  // a range's ends, which may come in either order
   int delimiter_depth = 0;
   int delimiter_sets = 0;
 };
@@ -263,7 +263,7 @@ std::optional<std::string> Parser::add_local(const ShortItem& item) {
     case tag::kDelimiter:
       return delimit(item.value);
     default:
-      return std::nullopt;  // designators and strings
+      return std::nullopt;  // designators and strings are ignored
   }
 }
 
@@ -301,7 +301,7 @@ std::optional<std::string> Parser::add_usage_range() {
 std::optional<std::string> Parser::push_usage(UsageRange range, bool extended) {
   if (ignores_usages()) return std::nullopt;
   const std::size_t room = kMaxUsages - locals_.usage_count;
-  if (room == 0) return std::nullopt;  // as Linux: ignored
+  if (room == 0) return std::nullopt;  // the item is ignored, as in Linux
   const std::size_t count = std::min<std::size_t>(range.last - range.first + 1, room);
   range.last = range.first + static_cast<std::uint32_t>(count) - 1;
   locals_.usage_count += count;

@@ -9,16 +9,16 @@ enum class ItemType : std::uint8_t { main = 0, global = 1, local = 2, reserved =
 
 namespace tag {
 inline constexpr std::uint8_t kInput = 0x8, kOutput = 0x9, kCollection = 0xa, kFeature = 0xb,
-                              kEndCollection = 0xc;  // main
+                              kEndCollection = 0xc;  // tags of main items
 inline constexpr std::uint8_t kUsagePage = 0x0, kLogicalMinimum = 0x1, kLogicalMaximum = 0x2,
                               kPhysicalMinimum = 0x3, kPhysicalMaximum = 0x4, kReportSize = 0x7,
                               kReportId = 0x8, kReportCount = 0x9, kPush = 0xa,
-                              kPop = 0xb;  // global
+                              kPop = 0xb;  // tags of global items
 inline constexpr std::uint8_t kUsage = 0x0, kUsageMinimum = 0x1, kUsageMaximum = 0x2,
-                              kDelimiter = 0xa;  // local
+                              kDelimiter = 0xa;  // tags of local items
 }  // namespace tag
 
-inline constexpr std::uint8_t kApplicationCollection = 0x01;  // what a collection is
+inline constexpr std::uint8_t kApplicationCollection = 0x01;  // kinds of collections
 
 namespace main_flag {
 inline constexpr std::uint32_t kConstant = 0x01, kVariable = 0x02, kRelative = 0x04,

@@ -196,7 +196,7 @@ std::uint16_t button_number(std::uint16_t code, std::uint32_t application) noexc
 
 // Pages that hid-input ignores, or maps to something other than keys and axes.
 bool is_ignored(std::uint16_t page) noexcept {
-  constexpr std::uint16_t kIgnored[] = {0x00,    // undefined
+  constexpr std::uint16_t kIgnored[] = {0x00,    // undefined page
                                         0x07,    // keyboard
                                         0x08,    // LEDs
                                         0x0b,    // telephony
@@ -213,13 +213,13 @@ bool is_ignored(std::uint16_t page) noexcept {
 // The code that hid-input wants for a usage; it may be taken already.
 struct WantedCode {
   EvdevCode code;
-  bool is_shared = false;  // gets the code even if it is taken
+  bool is_shared = false;  // the usage gets the code even if another one has it
 };
 
 std::optional<WantedCode> code_of_unknown(const Field& f) noexcept {
   if (f.bit_size == 1) return WantedCode{key(evdev::kBtnMisc)};
   if (f.is_relative) return std::nullopt;
-  return WantedCode{axis(0x28)};  // ABS_MISC
+  return WantedCode{axis(0x28)};  // the code ABS_MISC
 }
 
 std::optional<WantedCode> wanted_code(const Field& f, std::uint32_t u,
@@ -417,7 +417,7 @@ std::uint32_t own_usage_of_code(EvdevCode code) noexcept {
 
 namespace {
 
-constexpr std::uint16_t kFirstMultiTouch = 0x2f;  // ABS_MT_SLOT
+constexpr std::uint16_t kFirstMultiTouch = 0x2f;  // the code ABS_MT_SLOT
 constexpr std::int64_t kHatReleased = 8;
 
 // Writes report-descriptor items, each as short as its value allows.

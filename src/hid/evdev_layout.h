@@ -30,8 +30,8 @@ inline constexpr std::uint16_t kBtnMisc = 0x100, kBtnMouse = 0x110, kBtnJoystick
                                kBtnTriggerHappy = 0x2c0, kKeyMax = 0x2ff;
 }  // namespace evdev
 
-// The author of the descriptor: the device, so that the kernel chose the codes, or the evdev driver
-// (or the sdl driver, with usages of the same codes). DeviceInfo::driver tells.
+// Who made the descriptor: the device itself, and the kernel chose the codes; or the evdev driver
+// (or the sdl driver), whose usages say the codes. DeviceInfo::driver tells which.
 enum class StatedBy { device, evdev_driver };
 constexpr StatedBy stated_by(std::string_view driver) noexcept {
   return driver == "evdev" || driver == "sdl" ? StatedBy::evdev_driver : StatedBy::device;
@@ -62,7 +62,7 @@ std::uint32_t own_usage_of_code(EvdevCode code) noexcept;
 struct EvdevAxis {
   std::uint16_t code = 0;
   std::int32_t min = 0,
-               max = 0;  // as the kernel states them; unknown unless min < max
+               max = 0;  // range as the kernel states it; unknown unless min < max
 };
 // The codes that a node can report, ascending.
 struct EvdevAbilities {
@@ -72,13 +72,13 @@ struct EvdevAbilities {
 
 struct EvdevState {
   std::array<std::int32_t, evdev::kAbsMax + 1> axis{};
-  std::bitset<evdev::kKeyMax + 1> keys;  // pressed
+  std::bitset<evdev::kKeyMax + 1> keys;  // pressed keys
 };
 
 // The place of a code's value in the report.
 struct EvdevField {
   EvdevCode code;
-  bool is_hat = false;  // a whole hat: this code and the next
+  bool is_hat = false;  // the code is a whole hat: this code and the next one
   std::uint16_t bit_offset = 0;
   std::uint8_t bit_size = 0;
   std::int32_t min = 0, max = 0;

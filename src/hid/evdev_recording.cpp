@@ -13,7 +13,7 @@
 namespace gaitpad {
 namespace {
 
-constexpr std::uint16_t kSyn = 0x00, kKey = 0x01, kAbs = 0x03;  // event types
+constexpr std::uint16_t kSyn = 0x00, kKey = 0x01, kAbs = 0x03;  // types of events
 constexpr std::uint16_t kSynReport = 0x00;
 
 }  // namespace
@@ -100,7 +100,8 @@ namespace {
 
 std::unique_ptr<EvdevReader> reader_of(std::string_view text) {
   text = without_byte_order_mark(text);
-  if (is_umockdev_record(text)) return make_umockdev_reader();  // before evemu: its events' head
+  // Tried before evemu, because the heads of both formats' events are alike.
+  if (is_umockdev_record(text)) return make_umockdev_reader();
   if (is_evemu(text)) return make_evemu_reader();
   if (is_libinput_record(text)) return make_libinput_reader();
   return nullptr;

@@ -23,14 +23,14 @@ struct EvdevEvent {
 };
 
 struct RecordedAxis : EvdevAxis {
-  std::int32_t flat = 0;  // around its middle, as the kernel has it
-  std::int64_t line = 0;  // that states it
+  std::int32_t flat = 0;  // the flat range around the middle, as the kernel has it
+  std::int64_t line = 0;  // number of the line that states the range
 };
 
 // One node. The add_ functions give why the line that they are called for is damaged.
 class EvdevRecording {
  public:
-  DeviceInfo info;  // without driver and descriptor
+  DeviceInfo info;  // the device, without driver and descriptor
 
   void add_key(std::uint16_t code);
   std::optional<std::string> add_axis(const RecordedAxis& axis);
@@ -38,7 +38,7 @@ class EvdevRecording {
   std::optional<std::string> add_event(const EvdevEvent& event, std::string_view time);
   bool has_abilities() const { return !axes_.empty() || !keys_.empty(); }
   std::span<const RecordedAxis> axes() const { return axes_; }
-  const RecordedAxis* axis(std::uint32_t code) const;  // null: its range is not known
+  const RecordedAxis* axis(std::uint32_t code) const;  // Null: the range of this axis is not known.
 
   // Appends the device and its reports. The tools keep no state from before the first event: an
   // axis has the value of its first event until then, or stands in its middle if it has none; no
@@ -58,7 +58,7 @@ class EvdevRecording {
 class EvdevReader {
  public:
   std::vector<EvdevRecording> nodes;
-  std::int64_t line_number = 0;  // of the line that is added, from 1
+  std::int64_t line_number = 0;  // number of the line that is added next, from 1
 
   virtual ~EvdevReader() = default;
   // Why the line is damaged, without its place; none: it is not.
@@ -70,7 +70,7 @@ class EvdevReader {
 bool is_evdev_recording(std::string_view text) noexcept;
 
 struct EvdevRecordings {
-  std::vector<EvdevRecording> nodes;  // at least one, each with an axis or a key
+  std::vector<EvdevRecording> nodes;  // at least one node, each with an axis or a key
   std::int64_t skipped_lines = 0;
   std::string first_damage;
 };

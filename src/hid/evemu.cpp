@@ -21,11 +21,11 @@
 namespace gaitpad {
 namespace {
 
-using Cause = std::optional<std::string>;  // why a line is damaged, without its place
+using Cause = std::optional<std::string>;  // why a line is damaged, without its line number
 
-constexpr std::uint16_t kSyn = 0x00, kKey = 0x01, kAbs = 0x03;  // event types
+constexpr std::uint16_t kSyn = 0x00, kKey = 0x01, kAbs = 0x03;  // types of events
 constexpr std::uint16_t kSynReport = 0x00;
-constexpr std::size_t kMaskBytes = 8;  // of a B: or P: line
+constexpr std::size_t kMaskBytes = 8;  // number of mask bytes in a B: or P: line
 
 class EvemuReader final : public EvdevReader {
  public:
@@ -38,7 +38,8 @@ class EvemuReader final : public EvdevReader {
   Cause axis(Words words);
   EvdevRecording& node() { return nodes.front(); }
 
-  std::map<std::uint16_t, std::size_t> mask_bytes_;  // read so far, by the type of event
+  // Number of mask bytes read so far, by the type of event.
+  std::map<std::uint16_t, std::size_t> mask_bytes_;
 };
 
 Cause EvemuReader::add(std::string_view line) {
@@ -62,7 +63,7 @@ Cause EvemuReader::add(std::string_view line) {
     case 'E':
       return add_evemu_event(words, node());
     default:
-      return std::nullopt;  // properties, LEDs and switches
+      return std::nullopt;  // properties, LEDs and switches are ignored
   }
 }
 
@@ -106,7 +107,7 @@ Cause EvemuReader::axis(Words words) {
   const auto min = parse_number<std::int32_t>(words.next());
   const auto max = parse_number<std::int32_t>(words.next());
   if (!code || !min || !max) return "an A: line holds a code, a minimum and a maximum";
-  words.next();  // noise
+  words.next();  // skips the noise
   const auto flat = parse_number<std::int32_t>(words.next());
   return node().add_axis(
       {{static_cast<std::uint16_t>(*code), *min, *max}, flat.value_or(0), line_number});
@@ -162,8 +163,8 @@ class EvemuWriter {
   ReportDescriptor descriptor_;
   StatedBy stated_by_;
   std::vector<std::optional<EvdevCode>> codes_;
-  using Key = std::pair<std::uint16_t, std::uint16_t>;  // type and code
-  std::map<Key, std::int32_t> values_, first_;          // now, and after the first report
+  using Key = std::pair<std::uint16_t, std::uint16_t>;  // an event's type and code
+  std::map<Key, std::int32_t> values_, first_;          // values now, and after the first report
   std::vector<Key> changed_;
 };
 
@@ -230,7 +231,7 @@ std::string EvemuWriter::header() const {
 
 void EvemuWriter::set(EvdevCode code, std::int64_t value) {
   const Key key(static_cast<std::uint16_t>(code.type), code.code);
-  std::int32_t& known = values_[key];  // 0 at first, as in the kernel
+  std::int32_t& known = values_[key];  // a value is 0 at first, as in the kernel
   if (known == static_cast<std::int32_t>(value)) return;
   known = static_cast<std::int32_t>(value);
   changed_.push_back(key);
@@ -240,7 +241,8 @@ void EvemuWriter::set(EvdevCode code, std::int64_t value) {
 void EvemuWriter::set_hat(const Field& field, std::int64_t value) {
   constexpr std::array<std::array<int, 2>, 9> kPlaces = {
       {{0, -1}, {1, -1}, {1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, 0}}};
-  const std::int64_t steps = field.logical_max - field.logical_min + 1;  // 4 or 8 directions
+  // Number of the hat's directions, 4 or 8.
+  const std::int64_t steps = field.logical_max - field.logical_min + 1;
   const bool is_released = value < field.logical_min || value > field.logical_max || steps < 2;
   const std::int64_t place =
       is_released ? 8 : std::min<std::int64_t>((value - field.logical_min) * 8 / steps, 7);
@@ -254,7 +256,7 @@ void EvemuWriter::add(std::int64_t time_us, std::span<const std::uint8_t> report
   if (report.empty()) return;
   const std::uint8_t id = descriptor_.numbered ? report[0] : 0;
   const auto data = descriptor_.numbered ? report.subspan(1) : report;
-  std::array<int, 4> dpad{};  // up, down, right, left
+  std::array<int, 4> dpad{};  // the buttons up, down, right, left
   bool has_dpad = false;
   for (std::size_t i = 0; i < codes_.size(); ++i) {
     const Field& field = descriptor_.fields[i];
@@ -307,7 +309,8 @@ Result<std::string> evemu_text(const Trace& trace) {
     for (const TraceEvent& event : trace.events) {
       if (event.device != d) continue;
       if (!start_us) start_us = event.time_us;
-      const std::int64_t time_us = event.time_us - *start_us + 1;  // evemu begins at 0.000001
+      // Times in evemu begin at 0.000001.
+      const std::int64_t time_us = event.time_us - *start_us + 1;
       if (event.kind == ReportKind::input) {
         writer.add(time_us, std::span(trace.bytes).subspan(event.first_byte, event.size), out);
       } else if (event.kind == ReportKind::removed) {

@@ -13,7 +13,7 @@
 namespace gaitpad {
 namespace {
 
-using Cause = std::optional<std::string>;  // why a line is damaged, without its place
+using Cause = std::optional<std::string>;  // why a line is damaged, without its line number
 
 constexpr std::int64_t kSecond_us = 1'000'000;
 constexpr std::uint16_t kKey = 0x01;
@@ -70,7 +70,7 @@ Cause LibinputReader::add(std::string_view line) {
   } else if (line.starts_with("- [")) {
     return part_ == Part::events ? event(line.substr(2)) : std::nullopt;
   } else if (line.starts_with("- ")) {
-    part_ = Part::none;  // of udev, or an event of libinput's
+    part_ = Part::none;  // a part about udev, or an event of libinput's, is ignored
   } else {
     std::string_view text = line;
     const std::string_view key = take_part(text, ':');

@@ -119,7 +119,7 @@ void read_identity(TomlTable& pad, PadOverride& result) {
   result.drivers = pad.strings("drivers", 16).value_or(std::vector<std::string>{});
   if (const auto bus = pad.integer("bus", 0, 0xffff)) result.bus = static_cast<BusType>(*bus);
   if (const auto text = pad.string("application")) {
-    result.application = device_id(*text);  // a usage is written like ids
+    result.application = device_id(*text);  // a usage is written in the form of two ids
     if (!result.application)
       pad.reject("application", in_quotes(*text) + " is no usage such as ff5d:0001");
   }

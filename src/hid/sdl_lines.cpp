@@ -29,11 +29,11 @@ namespace {
 constexpr std::size_t kHatDirections = 4;
 using SdlHat = std::array<std::optional<ControlSource>, kHatDirections>;
 
-constexpr std::size_t kMaxSdlSources = 8;  // of one control
+constexpr std::size_t kMaxSdlSources = 8;  // most sources of one control
 
 struct SdlNumbers {
-  std::vector<ControlSource> axes, buttons;  // a0, a1 ..., b0, b1 ...
-  std::vector<SdlHat> hats;                  // h0.1, h0.2, h0.4, h0.8 ...
+  std::vector<ControlSource> axes, buttons;  // the sources named a0, a1 ... and b0, b1 ...
+  std::vector<SdlHat> hats;                  // the directions named h0.1, h0.2, h0.4, h0.8 ...
 };
 enum Direction : std::size_t { kUp, kRight, kDown, kLeft };
 
@@ -118,7 +118,7 @@ SdlNumbers sdl_numbers(const ReportDescriptor& d, StatedBy who) {
   std::map<int, SdlHat> hats;
   for (const InputField& f : coded_fields(d, who)) {
     if (f.code.type == EvdevType::key) {
-      if (f.code.code >= evdev::kKeyMax) continue;  // SDL stops before it
+      if (f.code.code >= evdev::kKeyMax) continue;  // SDL stops before this code
       (f.code.code >= evdev::kBtnJoystick ? numbered.buttons : low_keys).push_back(f.source);
     } else if (makes_a_hat(f)) {
       add_to_hat(f, hats[(f.code.code - evdev::kAbsHat0X) / 2]);
@@ -269,7 +269,7 @@ Result<ControlMap> sdl_controls(std::string_view mapping, const ReportDescriptor
     return Error{
         fmt::format("SDL mapping: {} is no GUID of 32 hexadecimal digits", in_quotes(guid))};
   }
-  take_part(rest, ',');  // the name
+  take_part(rest, ',');  // skips the name
   const SdlNumbers numbered = sdl_numbers(descriptor, stated_by(driver));
   ControlMap map;
   while (!rest.empty()) {
@@ -569,7 +569,7 @@ std::string guid_text(const DeviceInfo& device, unsigned version) {
     put(8, device.product);
     put(12, version);
   } else {
-    constexpr std::size_t kNameBytes = 11;  // and a zero
+    constexpr std::size_t kNameBytes = 11;  // bytes of a name in a GUID, which a zero follows
     const std::size_t size = std::min(device.name.size(), kNameBytes);
     std::copy_n(device.name.begin(), size, guid.begin() + 4);
   }
@@ -586,7 +586,7 @@ std::string name_text(const std::string& name, std::size_t max_bytes) {
   }
   if (text.empty()) text = "Pad";
   if (text.size() <= max_bytes) return text;
-  std::size_t end = max_bytes;  // at the boundary of a UTF-8 character
+  std::size_t end = max_bytes;  // cuts at the boundary of a UTF-8 character
   while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xc0) == 0x80) --end;
   return text.substr(0, end);
 }

@@ -43,9 +43,9 @@ bool is_one_line(std::string_view mapping);
 // The axis of the layout that moves an axis of a stick, for sticks that are mounted turned.
 struct StickAxis {
   PadAxis axis = kLeftX;
-  bool reversed = false;  // against the direction of the layout
+  bool reversed = false;  // the axis grows against the direction of the layout
 };
-using StickAxes = std::array<StickAxis, 4>;  // by kLeftX .. kRightY
+using StickAxes = std::array<StickAxis, 4>;  // axes of both sticks, indexed by kLeftX .. kRightY
 inline constexpr StickAxes kAxesAsLaidOut = {{{kLeftX}, {kLeftY}, {kRightX}, {kRightY}}};
 
 // The layout as a line that sdl_controls() reads back, keys in alphabetical order. The GUID is the

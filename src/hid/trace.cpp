@@ -69,7 +69,8 @@ std::optional<std::uint32_t> hexadecimal(std::string_view text, std::uint32_t ma
 }
 
 std::optional<std::int64_t> microseconds(std::string_view text) {
-  constexpr std::int64_t kMaxSeconds = 9'000'000'000;  // nanoseconds still fit
+  // Most seconds of a time whose nanoseconds fit in 64 bits.
+  constexpr std::int64_t kMaxSeconds = 9'000'000'000;
   const std::size_t point = text.find('.');
   if (point == std::string_view::npos || text.size() - point != 7) return std::nullopt;
   const auto seconds = decimal(text.substr(0, point), kMaxSeconds);
@@ -106,7 +107,7 @@ std::optional<std::string> append_bytes(Words& words, std::size_t max_bytes,
 
 namespace {
 
-using Cause = std::optional<std::string>;  // why a line is damaged, without its place
+using Cause = std::optional<std::string>;  // why a line is damaged, without its line number
 
 // Builds a trace from its lines, in their order, and checks each.
 class TraceReader {
@@ -144,12 +145,12 @@ class TraceReader {
   std::int64_t rate() const { return trace_.rate_hz.value_or(kDefaultRateHz); }
 
   Trace trace_;
-  std::optional<std::size_t> current_;    // device of the last `D:`
-  bool has_file_ = false;                 // the last `F:` line is sound
-  std::int64_t tick_ = 0;                 // of the last `T:`
-  std::int64_t latest_us_ = 0;            // over all devices
-  std::vector<std::int64_t> device_us_ =  // last time on each device; commands last
-      std::vector<std::int64_t>(kMaxTraceDevices + 1, -1);
+  std::optional<std::size_t> current_;  // device of the last `D:` line
+  bool has_file_ = false;               // the last `F:` line is sound
+  std::int64_t tick_ = 0;               // tick of the last `T:` line
+  std::int64_t latest_us_ = 0;          // latest time of all devices
+  // Last time of each device; that of commands is the last element.
+  std::vector<std::int64_t> device_us_ = std::vector<std::int64_t>(kMaxTraceDevices + 1, -1);
 };
 
 constexpr std::size_t kMaxCalibrationBytes = 1 << 16;
@@ -215,7 +216,7 @@ Cause TraceReader::add_lettered(char letter, std::string_view text) {
     case 'Q':
       return end(words);
     default:
-      return std::nullopt;  // ignored, as by hid-replay
+      return std::nullopt;  // the line is ignored, as hid-replay does
   }
 }
 
@@ -269,7 +270,7 @@ Cause TraceReader::file(std::string_view name) {
 }
 
 Cause TraceReader::file_line(std::string_view text) {
-  if (!has_file_) return std::nullopt;  // another program's letter
+  if (!has_file_) return std::nullopt;  // a line of another program
   trace_.files.back().bytes.append(text).push_back('\n');
   return std::nullopt;
 }
@@ -620,7 +621,7 @@ Result<Trace> read_trace(const std::string& path, Damage damage) {
   std::ifstream in(path, std::ios::binary);
   if (!in) return Error{path + ": cannot be opened for reading"};
   LineFeed feed(path, damage);
-  std::string of_nodes;  // the whole of such a file
+  std::string of_nodes;  // the whole text of a recording of event nodes
   std::vector<char> buffer(1 << 16);
   std::size_t total = 0;
   while (in.good()) {

@@ -14,7 +14,7 @@ namespace gaitpad {
 class Words {
  public:
   explicit Words(std::string_view text) : rest_(text) {}
-  std::string_view next();  // empty at the end
+  std::string_view next();  // The next line; empty at the end.
   std::string_view rest() const { return rest_; }
   bool at_end();
 

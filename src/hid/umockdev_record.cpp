@@ -17,11 +17,11 @@
 namespace gaitpad {
 namespace {
 
-using Cause = std::optional<std::string>;  // why a line is damaged, without its place
+using Cause = std::optional<std::string>;  // why a line is damaged, without its line number
 using Bytes = std::vector<std::uint8_t>;
 
 constexpr std::size_t kMaxAnswerBytes = 4096;
-constexpr std::int64_t kKey = 0x01;  // the type of a key's events
+constexpr std::int64_t kKey = 0x01;  // type of the events of keys
 
 // `0BFF00`, as far as a request can answer.
 std::optional<Bytes> bytes_of(std::string_view digits) {
@@ -70,8 +70,8 @@ class UmockdevReader final : public EvdevReader {
     return nodes[used_];
   }
 
-  std::vector<std::string> paths_;  // of the nodes
-  std::size_t used_ = 0;            // the node that lines belong to
+  std::vector<std::string> paths_;  // paths of the nodes
+  std::size_t used_ = 0;            // number of the node that the lines belong to
   std::string block_, described_;   // sysfs paths: of the block, of the last event node
 };
 
@@ -128,7 +128,7 @@ Cause UmockdevReader::answer(std::string_view line) {
   if (!code || !returned || !bytes)
     return fmt::format("{} has a number, what it returned, and bytes in hexadecimal digits",
                        request);
-  if (*returned < 0) return std::nullopt;  // refused
+  if (*returned < 0) return std::nullopt;  // the call was refused
   if (is_range) return axis_range(static_cast<std::uint16_t>(*code), *bytes);
   if (is_id) return identity(*bytes);
   bytes->resize(std::min(bytes->size(), static_cast<std::size_t>(*returned)));
@@ -171,7 +171,7 @@ void UmockdevReader::property(std::string_view key, std::string_view value) {
   std::array<std::uint16_t, 4> ids{};
   for (std::uint16_t& id : ids) {
     const auto part = hexadecimal(take_part(value, '/'), 0xffff);
-    if (!part) return;  // a USB device has three
+    if (!part) return;  // a USB device has three parts
     id = static_cast<std::uint16_t>(*part);
   }
   info.bus = static_cast<BusType>(ids[0]);

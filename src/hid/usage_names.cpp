@@ -11,7 +11,7 @@ namespace gaitpad {
 namespace {
 
 struct UsageName {
-  std::uint32_t usage;  // page, then id
+  std::uint32_t usage;  // page << 16 | id
   const char* name;
 };
 

@@ -8,6 +8,6 @@ namespace gaitpad {
 // "X", "Hat switch", "Button 3"; "Vendor" of a vendor's page; empty if the tables of gamepads do
 // not name it.
 std::string usage_name(std::uint32_t usage);
-std::string usage_text(std::uint32_t usage);  // 0001:0030
+std::string usage_text(std::uint32_t usage);  // A usage in the form 0001:0030.
 
 }  // namespace gaitpad

@@ -308,7 +308,7 @@ std::optional<LegJoints> named_leg(const Figure& figure, NamedSide side) {
 // The two longest neighbouring bones between `ancestor` and a leaf. The foot follows them, so the
 // leaf itself is no ankle.
 std::optional<LegJoints> shaped_leg(const Figure& figure, int ancestor, int leaf) {
-  std::vector<int> chain;  // from the leaf upwards, joints in one place only once
+  std::vector<int> chain;  // joints from the leaf upwards; of joints in one place only one
   for (int j = leaf; j != ancestor; j = figure.parent(j)) {
     if (chain.empty() || figure.distance(j, chain.back()) > 0.0) chain.push_back(j);
   }
@@ -498,7 +498,7 @@ ArmChain named_arm(const Figure& figure, const Legs& legs, NamedSide side) {
 
 // The two longest neighbouring bones of similar length between `top` and a leaf.
 ArmChain shaped_arm(const Figure& figure, int top, int leaf) {
-  std::vector<int> chain;  // from the top, joints in one place only once
+  std::vector<int> chain;  // joints from the top; of joints in one place only one
   for (const int j : path_below(figure.skeleton, top, leaf)) {
     if (chain.empty() || figure.distance(j, chain.back()) > 0.0) chain.push_back(j);
   }

@@ -14,9 +14,9 @@ namespace {
 // --- One stride as a periodic function -----------------------------------------------------------
 
 constexpr int kPoints = 256;    // samples of the closed stride, before its harmonics are taken
-constexpr double kFade = 0.12;  // of the stride, at most, on either side of the seam
+constexpr double kFade = 0.12;  // longest fade on either side of the seam, a share of the stride
 constexpr double kLeastFade = 0.08;
-constexpr int kFullHarmonics = 10;  // the ones above fade out to kHarmonics
+constexpr int kFullHarmonics = 10;  // harmonics above this number fade out to kHarmonics
 
 // Natural cubic spline through values at 0, 1, 2 ...
 struct Spline {
@@ -46,8 +46,10 @@ Spline spline(std::vector<double> value) {
 // The frames that are read: the window and a margin for fading the seam.
 struct StrideFrames {
   int first = 0, count = 0;
-  double start = 0.0, period = 0.0;  // frames from `first`
-  double before = 0.0, after = 0.0;  // margins for fading, share of the period
+  // Begin and length of the cycle in frames, counted from `first`.
+  double start = 0.0, period = 0.0;
+  // Margins for fading before and after the period, as shares of it.
+  double before = 0.0, after = 0.0;
   double place(double phase) const { return start + phase * period; }
 };
 
@@ -268,7 +270,7 @@ Skeleton rooted_at_pelvis(const Motion& motion) {
   Skeleton skeleton = motion.skeleton;
   const std::vector<vec3> offset = mean_offsets(motion);
   for (std::size_t j = 0; j < offset.size(); ++j) skeleton.joints[j].offset_m = offset[j];
-  vec3 to_pelvis(0.0);  // in the frame of `joint`
+  vec3 to_pelvis(0.0);  // from the joint to the pelvis, in the joint's frame
   for (int joint = motion.pelvis; joint >= 0; joint = skeleton.joints[joint].parent) {
     const int parent = skeleton.joints[joint].parent;
     if (joint != motion.pelvis) to_pelvis = motion.frames.front().local[joint] * to_pelvis;
@@ -447,7 +449,7 @@ Hinge knee_hinge(const CapturedLeg& leg, const quat& pelvis_standing,
   for (int i = 0; i < kCycleSamples; ++i) {
     const vec3 thigh = glm::normalize(leg.knee_m[i] - leg.hip_m[i]);
     const vec3 shank = glm::normalize(leg.ankle_m[i] - leg.knee_m[i]);
-    across[i] = glm::cross(thigh, shank);  // its length is the sine of the flexion
+    across[i] = glm::cross(thigh, shank);  // a vector whose length is the sine of the flexion
     const vec3 left = pelvis[i] * glm::conjugate(pelvis_standing) * kLeft;
     if (glm::dot(across[i], left) > 0.0) most = std::max(most, glm::length(across[i]));
   }
@@ -471,7 +473,7 @@ quat upright(const vec3& bone, const vec3& hinge) {
 
 struct FlatPose {
   vec3 ankle_m;
-  quat foot, toe;  // joint frames
+  quat foot, toe;  // rotations of the joints' frames
 };
 FlatPose flat_pose(const CapturedCycle& c, int side) {
   const FlatFoot flat = flat_foot(c, side);
@@ -498,7 +500,7 @@ void build_toes(const FlatPose& flat, const std::vector<quat>& local, GaitCycle&
   if (is_short(from_ankle(j.toe))) {
     const vec3 wanted(0.0, -kOwnAnkle_legs * leg_m, kOwnToe_legs * leg_m);
     const vec3 missing = glm::conjugate(flat.foot) * (wanted - from_ankle(j.toe));
-    vec3 turned = missing;  // into the frame of the toe's parent
+    vec3 turned = missing;  // rotates into the frame of the toe's parent
     for (const int k : joints_between(out.skeleton, j.ankle, j.toe)) {
       turned = glm::conjugate(local[k]) * turned;
     }

@@ -21,9 +21,11 @@ struct Fourier {
 // Rotations are rotation vectors from each joint's mean, so that every channel is a plain number.
 struct PeriodicMotion {
   double duration_s = 0.0, stride_m = 0.0;
-  std::vector<quat> mean;                        // a joint; joint 0 in the travel frame
-  std::vector<std::array<Fourier, 3>> rotation;  // a joint
-  std::array<Fourier, 3> pelvis_m;               // travel frame, x and z without their means
+  std::vector<quat> mean;                        // mean rotation of each joint; joint 0 in the
+                                                 // travel frame
+  std::vector<std::array<Fourier, 3>> rotation;  // harmonics of each joint's rotation vector
+  // Harmonics of the pelvis' place in the travel frame, x and z without their means.
+  std::array<Fourier, 3> pelvis_m;
 };
 PeriodicMotion periodic_motion(const Motion& motion, const StrideWindow& window);
 
@@ -33,19 +35,19 @@ struct PeriodicPose {
 };
 PeriodicPose pose_at(const PeriodicMotion& motion, double phase);
 
-struct CapturedLeg {  // travel frame, joint frames
+struct CapturedLeg {  // one leg: rotations of joint frames in the travel frame
   std::vector<vec3> knee_m, ankle_m, toe_m, toe_end_m, hip_m;
   std::vector<quat> hip, above_knee, knee, ankle, toe;  // above_knee: the knee's parent
 };
 // The periodic stride as kCycleSamples poses.
 struct CapturedCycle {
-  Skeleton skeleton;  // as in GaitCycle: root at the pelvis
+  Skeleton skeleton;  // the skeleton with its root at the pelvis, as in GaitCycle
   int pelvis = 0;
   std::array<LegJoints, 2> legs;
   double duration_s = 0.0, stride_m = 0.0;
-  std::vector<quat> local;            // kCycleSamples x joints
-  std::vector<vec3> pelvis_m;         // height above the file's zero
-  std::vector<quat> pelvis_rotation;  // world rotation of the joint
+  std::vector<quat> local;            // kCycleSamples x joints local rotations
+  std::vector<vec3> pelvis_m;         // places of the pelvis; heights count from the file's zero
+  std::vector<quat> pelvis_rotation;  // world rotations of the pelvis joint
   std::array<CapturedLeg, 2> leg;
   std::size_t joints() const { return skeleton.joints.size(); }
 };

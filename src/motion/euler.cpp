@@ -19,7 +19,7 @@ double distance(const EulerAngles& a, const EulerAngles& b) noexcept {
 }
 
 struct PoleParts {
-  double sine, cosine;  // of the second angle
+  double sine, cosine;  // sine and cosine of the second angle
 };
 // With the rotation written in axes named first, second, third: sin(second) = h R[first][third].
 PoleParts second_angle(const EulerOrder& order, const mat3& r) noexcept {
@@ -58,7 +58,8 @@ EulerAngles nearest_euler(const EulerOrder& order, const quat& rotation,
     EulerAngles angles = {previous_rad[0], nearest_turn(pole * 0.5 * kPi, previous_rad[1]), 0.0};
     // Each outer angle takes half of the remaining turn: the closest solution.
     const double sign = h * pole;
-    const double sum = gaitpad::atan2(pole * r[j][k], r[j][j]);  // of third + sign * first
+    // The angle of third + sign * first.
+    const double sum = gaitpad::atan2(pole * r[j][k], r[j][j]);
     const double before = previous_rad[2] + sign * previous_rad[0];
     const double rest = wrapped(sum - before);
     angles[0] = previous_rad[0] + sign * 0.5 * rest;

@@ -10,8 +10,8 @@
 namespace gaitpad {
 namespace {
 
-constexpr double kBand = 0.10;      // of the range of heights, the paper's 10 %
-constexpr double kHeelOff_s = 0.6;  // how long before the lift the heel may rise
+constexpr double kBand = 0.10;      // share of the range of heights: the paper's 10 %
+constexpr double kHeelOff_s = 0.6;  // longest time before the lift at which the heel may rise
 
 int nearest(double frame) { return static_cast<int>(frame + 0.5); }
 
@@ -102,7 +102,8 @@ std::optional<Swing> robust_flight(const Motion& motion, Side side) {
     const Swing& s = found.swings[i];
     double off =
         std::abs(times[i] / median(times) - 1.0) + std::abs(lengths[i] / median(lengths) - 1.0);
-    const bool begins_before = s.heel_off < 1 || s.heel_off == s.lift;  // its stance is cut
+    // The stance before it is cut off.
+    const bool begins_before = s.heel_off < 1 || s.heel_off == s.lift;
     if (begins_before) off += 1.0;
     if (off >= least) continue;
     least = off;

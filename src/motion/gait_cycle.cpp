@@ -63,11 +63,14 @@ namespace {
 
 // --- Building a cycle from a motion --------------------------------------------------------------
 
-constexpr double kBackwards = 0.5;        // cosine between hips' front and travel
-constexpr double kLongestFlat = 0.35;     // of the stride after a strike: by then the toe is down
-constexpr double kMostFlight = 0.02;      // of the stride with both feet in the air; more is a run
-constexpr double kMostSlide_legs = 0.25;  // of a standing foot; dragging gaits reach half of it
-constexpr double kStill_legs_s = 0.6;     // 0.5 m/s of an adult's leg
+constexpr double kBackwards = 0.5;  // cosine between the hips' front and the travel
+// Share of the stride after a strike at which the toe is down.
+constexpr double kLongestFlat = 0.35;
+// Share of the stride with both feet in the air; more is a run.
+constexpr double kMostFlight = 0.02;
+// Greatest slide of a standing foot; dragging gaits reach half of it.
+constexpr double kMostSlide_legs = 0.25;
+constexpr double kStill_legs_s = 0.6;  // leg lengths a second: 0.5 m/s for an adult
 constexpr double kInAir_legs = 0.024;  // 20 mm of an adult's leg: captured floors are that uneven
 
 // A foot point's track over the samples, in the travel frame.
@@ -117,7 +120,7 @@ void measure_steps(const CapturedCycle& captured, GaitCycle& cycle) {
 // that the other toe still has to sink: both feet share the change.
 void wait_for_other_toe(GaitCycle& cycle) {
   constexpr double kLeavingCosts = 3.0, kLongestWait = 0.08,
-                   kStep = 1.0 / (2 * kCycleSamples);  // of the stride
+                   kStep = 1.0 / (2 * kCycleSamples);  // half a sample's share of the stride
   const std::array<double, 2> off = cycle.toe_off;
   for (const Side side : {kLeftSide, kRightSide}) {
     const Side lands = other(side);
@@ -200,7 +203,8 @@ std::string why_no_pace(const GaitCycle& cycle) {
 // In a step-to limp one foot only comes up to the other. The walk divides by step lengths, so the
 // shorter step becomes at least a tenth of the stride; both feet move equally for that. With less,
 // joints reach 2000 degrees/s in a backward turn; with a tenth, 500.
-constexpr double kLeastStep = 0.1, kMostBehind = 0.1;  // of the stride
+// Least step and farthest place behind the other foot, as shares of the stride.
+constexpr double kLeastStep = 0.1, kMostBehind = 0.1;
 void lengthen_short_step(GaitCycle& cycle) {
   for (const Side side : {kLeftSide, kRightSide}) {
     const double least_m = kLeastStep * cycle.stride_m;

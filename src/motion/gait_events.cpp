@@ -14,7 +14,7 @@ namespace {
 // --- Tracks of a motion's feet -------------------------------------------------------------------
 
 constexpr double kFastest_legs_s = 14.0;  // faster than any sprinter's foot: a jump in the data
-constexpr std::size_t kFlatPercent = 10;  // of all frames: in these a walker's foot is flat
+constexpr std::size_t kFlatPercent = 10;  // share of all frames in which a walker's foot is flat
 
 bool is_jump(const vec3& a, const vec3& b, double most_m) {
   return !(glm::distance(a, b) <= most_m);
@@ -49,7 +49,7 @@ double median_of(std::vector<vec3>& v, int axis) {
 struct FootJoints {
   std::vector<vec3> ankle_m, toe_m, toe_end_m;
   std::vector<quat> ankle;
-  std::vector<vec3> ahead;  // direction that the hips face
+  std::vector<vec3> ahead;  // direction that the hips face in each sample
 };
 
 // Heel and toe in the ankle's frame: the median over the frames in which ankle and toe are slowest
@@ -99,7 +99,8 @@ constexpr double kShortestRest_s = 0.06;
 constexpr double kShortestSwing_s = 0.15, kLongestSwing_s = 1.8;
 constexpr double kShortestSwing_legs = 0.15, kLongestSwing_legs = 2.6;
 
-constexpr double kMostSamples = 200.0;  // in a window: bounds the work for absurd frame times
+// Most samples in a window, which bounds the work for absurd frame times.
+constexpr double kMostSamples = 200.0;
 
 // Number of samples in a window of that time, at least 1.
 int count_of(double time_s, double sample_s) {
@@ -231,7 +232,7 @@ std::vector<Run> swing_runs(const FeetTracks& tracks, double moving_share, doubl
 
 // --- The two events of a swing, exactly ----------------------------------------------------------
 
-constexpr double kDown_m = 0.005, kStill_m_s = 0.3, kLeaving_m_s = 0.2;  // an adult's
+constexpr double kDown_m = 0.005, kStill_m_s = 0.3, kLeaving_m_s = 0.2;  // limits for an adult
 constexpr double kSpeed_s = 0.012;    // half the time over which a speed is averaged
 constexpr double kFlat_s = 0.025;     // half the time over which flatness is averaged
 constexpr double kRest_s = 0.05;      // a heel that has struck stays still for this time
@@ -241,7 +242,7 @@ constexpr double kPush_s = 0.15;      // time for which a toe stands while the h
 // move 0.36, 0.42, 0.44, 0.57 and 0.72 m/s at their strikes (median). People have 0.1 s in a free
 // walk and 0.04 s in the fastest.
 constexpr double kLeastRoll_s = 0.06;
-constexpr double kSlideStep = 0.05;  // relative growth of the limits per attempt
+constexpr double kSlideStep = 0.05;  // growth of the limits in each attempt, relative
 
 // Reads one foot's tracks within a range.
 struct Reader {
@@ -306,11 +307,12 @@ double share_above(double above, double next, double limit) {
 struct SwingSearch {
   Run run;
   double scale = 1.0;          // the leg's length over an adult's
-  int fastest_heel = 0;        // the search for the strike begins here
-  int flat = 0;                // and ends here
+  int fastest_heel = 0;        // sample at which the search for the strike begins
+  int flat = 0;                // sample at which it ends
   double standing_heel_m = 0;  // height at `flat`
   int fastest_toe = 0;         // the search for the toe-off begins here, backwards
-  int pushing = 0;             // and ends here: the toe is slowest while the heel rises
+  int pushing = 0;             // sample at which the search ends: the toe is slowest while the heel
+                               // rises
 };
 
 SwingSearch search_of(const FeetTracks& tracks, const Run& run, double limit_m_s) {
@@ -363,7 +365,7 @@ std::optional<double> toe_off_of(const FeetTracks& tracks, const SwingSearch& s,
   const double most_m_s = slide * s.scale * kLeaving_m_s;
   int i = s.fastest_toe - 1;
   while (i > s.pushing && r.speed(r.foot.toe_m, i) > most_m_s) --i;
-  if (i <= r.range.first) return std::nullopt;  // it left before the range begins
+  if (i <= r.range.first) return std::nullopt;  // the toe left before the range begins
   return i + 1 - share_above(r.speed(r.foot.toe_m, i + 1), r.speed(r.foot.toe_m, i), most_m_s);
 }
 
@@ -446,7 +448,7 @@ namespace {
 
 // --- A closed stride -----------------------------------------------------------------------------
 
-constexpr int kCopies = 3;  // in a row, so that the middle one is not cut
+constexpr int kCopies = 3;  // copies of the stride in a row, so that the middle one is not cut off
 // A run has both feet in the air at this speed; a shorter or slower flight is an error of events.
 constexpr double kLeastFlight_s = 0.03, kSlowestRun_legs_s = 2.1;
 
@@ -495,7 +497,7 @@ Result<StrideEvents> stride_events(const FeetTracks& stride, const vec3& travel_
       events.strike[side] = fraction(*swing->strike / samples);
     }
     if (!problem.empty()) continue;
-    std::array<double, 2> roll_s;  // from a strike to the other foot's toe-off
+    std::array<double, 2> roll_s;  // duration from a strike to the other foot's toe-off
     for (const Side side : {kLeftSide, kRightSide}) {
       const double roll = events.toe_off[other(side)] - events.strike[side];
       roll_s[side] = (fraction(roll + 0.5) - 0.5) * samples * stride.sample_s;

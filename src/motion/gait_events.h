@@ -20,14 +20,14 @@ namespace gaitpad {
 
 inline constexpr double kMostSlide = 4.0;  // a heel 20 mm up or at 1.2 m/s does not stand
 
-struct FootTrack {  // over the ground, y up
+struct FootTrack {  // places of a foot's points over the ground, y up
   std::vector<vec3> ankle_m, heel_m, toe_m;
 };
-struct SampleRange {  // [first, last], without a jump
+struct SampleRange {  // the samples [first, last], which contain no jump
   int first, last;
 };
 struct FeetTracks {
-  std::array<FootTrack, 2> foot;  // by Side
+  std::array<FootTrack, 2> foot;  // tracks by Side
   std::vector<SampleRange> ranges;
   double sample_s = 0.0, leg_m = 0.0;
 };
@@ -35,7 +35,7 @@ struct FeetTracks {
 // One swing of a foot from its toe-off to its strike.
 struct FootSwing {
   Side side = kLeftSide;
-  int range = 0;  // index into FeetTracks::ranges
+  int range = 0;  // index of the swing's range in FeetTracks::ranges
   // Events in samples, with fractions; none if the range cuts the swing there.
   std::optional<double> toe_off, strike;
   // The samples where the ankle's speed rises and falls through the limit of moving. These agree
@@ -58,7 +58,7 @@ std::vector<FootSwing> foot_swings(const FeetTracks& tracks, double moving_share
 
 // Events of one periodic stride as phases 0 .. 1 from its first sample on.
 struct StrideEvents {
-  std::array<double, 2> strike{}, toe_off{};  // by Side
+  std::array<double, 2> strike{}, toe_off{};  // phases by Side
 };
 // `stride` holds one periodic stride in which the feet travel by `travel_m`. Error (it does not
 // name the file) if a foot has no swing, or if the events are not in the order of a walk: right

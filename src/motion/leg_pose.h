@@ -26,18 +26,18 @@ AnglesXzy angles_xzy(const quat& q) noexcept;
 
 // Horizontal unit vector along a standing foot; kUp x it points across the foot.
 vec3 foot_forward(const LegModel& leg) noexcept;
-inline constexpr double kHalfFoot = 0.054;  // in legs: half a foot's breadth, 4.5 cm for an adult
+inline constexpr double kHalfFoot = 0.054;  // half a foot's breadth in legs, 4.5 cm for an adult
 
 // Distance from hip to ankle at that knee flexion.
 double span_m(const LegModel& leg, double knee_rad) noexcept;
 // The knee flexion, in radians, at that distance from hip to ankle; 0 if the leg is too short.
 double knee_at_span(const LegModel& leg, double span_m) noexcept;
 
-// Both legs standing upright with flat feet. If one is longer, the pelvis rolls, by 10 degrees at
-// most, as a person's does; the longer leg bends by the rest.
+// The pose of both legs standing upright with flat feet. If one is longer, the pelvis rolls, by 10
+// degrees at most, as a person's does; the longer leg bends by the rest.
 struct Stand {
-  double pelvis_m = 0.0;  // its height over the floor
-  double roll_rad = 0.0;  // of the pelvis about +z, left side up positive
+  double pelvis_m = 0.0;  // height of the pelvis over the floor
+  double roll_rad = 0.0;  // roll of the pelvis about +z, left side up positive
   std::array<LegAngles, 2> angles{};
 };
 // No knee is straighter than `knee_rad`.

@@ -9,11 +9,12 @@ namespace {
 
 // Segment lengths as fractions of the stature H (Drillis & Contini, in Winter's tables). The hip
 // joints stand closer than Winter's .0955 H, which is half the pelvis' outer breadth.
-constexpr double kStature = kReferenceLeg_m / 0.491;  // .245 + .246
+// Thigh and shank are 0.245 + 0.246 of the stature.
+constexpr double kStature = kReferenceLeg_m / 0.491;
 constexpr double kThigh = kReferenceLeg_m * 0.245 / 0.491;
 constexpr double kShank = kReferenceLeg_m - kThigh;
 constexpr double kHipHalf = 0.052 * kStature;
-constexpr double kHipDrop = 0.03 * kStature;  // hip joints under the pelvis joint
+constexpr double kHipDrop = 0.03 * kStature;  // height of the pelvis joint above the hip joints
 constexpr double kAnkleHeight = 0.039 * kStature;
 constexpr double kHeelBack = 0.05, kBallForward = 0.13, kToeLength = 0.06;
 constexpr double kBallRest = 0.02, kToeEndRest = 0.01;
@@ -21,7 +22,8 @@ constexpr double kToeOut = 7.0 * kDegree;
 constexpr double kShoulderHalf = 0.1295 * kStature;
 constexpr double kUpperArm = 0.186 * kStature, kForearm = 0.146 * kStature,
                  kHand = 0.108 * kStature;
-constexpr double kTrunk = 0.288 * kStature - kHipDrop;  // pelvis joint to shoulder height
+// Distance from the pelvis joint to the height of the shoulders.
+constexpr double kTrunk = 0.288 * kStature - kHipDrop;
 
 struct Builder {
   Skeleton skeleton;
@@ -325,9 +327,10 @@ GaitCycle procedural_gait() {
   fill_locals(cycle);
   cycle.stride_m = stride_length(cycle);
   cycle.duration_s = std::floor(cycle.stride_m / kSpeed * kFrameRate + 0.5) / kFrameRate;
-  cycle.frames = cycle.duration_s * kFrameRate;  // of procedural_motion(), from its frame 0
+  cycle.frames = cycle.duration_s * kFrameRate;  // all of procedural_motion(), from its frame 0 on
   cycle.step_m = {0.5 * cycle.stride_m, 0.5 * cycle.stride_m};
-  const double heel_m = cycle.leg[kLeftSide].heel_m.x;  // toes point out, so heels are closer
+  // The toes point outwards, so the heels are closer.
+  const double heel_m = cycle.leg[kLeftSide].heel_m.x;
   cycle.track_m = {kTrack + heel_m, -kTrack - heel_m};
   cycle.strike = {0.5, 0.0};
   cycle.toe_off = {kToeOff - 0.5, kToeOff};

@@ -23,8 +23,9 @@ struct SagittalLeg {
 LegSample right_leg_in_plane(const LegModel& model, const CycleSample& body,
                              const SagittalLeg& plane, double track_m);
 
-LegSample mirrored(const LegSample& leg);              // angles and toe
-CycleSample mirrored_pelvis(const CycleSample& body);  // pelvis alone, legs untouched
+LegSample mirrored(const LegSample& leg);  // Mirrors the angles and the toe.
+// Mirrors the pelvis only; the legs are unchanged.
+CycleSample mirrored_pelvis(const CycleSample& body);
 
 // Height of the foot's lowest point above its height at rest.
 double foot_clearance(const GaitCycle& cycle, int side, const CycleSample& at);

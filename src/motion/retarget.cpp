@@ -28,15 +28,15 @@ namespace {
 // - Fingers and all else above the legs: joints of equal names. The others rest.
 struct Counterpart {
   int lower = -1, upper = -1;  // joints of the source; -1: none, this joint rests
-  double share = 0.0;          // of the way from lower to upper
+  double share = 0.0;          // share of the way from the lower joint to the upper one
 };
 
 // The joint that a bone points to in the standing pose, or one of these.
 constexpr int kNoAim = -1;
-constexpr int kChildren = -2;   // to the mean of its children
+constexpr int kChildren = -2;   // means: to the mean place of the joint's children
 constexpr int kAsItStood = -3;  // unchanged: the joint keeps its standing rotation
 
-struct UpperBodyMatch {  // one of each a joint of the character
+struct UpperBodyMatch {  // the counterpart of each joint of the character
   std::vector<Counterpart> from;
   std::vector<int> aim;
   std::vector<vec3> direction;  // of the bone in the source's standing pose; unused without an aim
@@ -54,7 +54,7 @@ struct BodyPlan {
   const GaitCycle& cycle;
   std::vector<vec3> at;
   UpperBodyJoints joints;
-  std::vector<int> neck;  // the head is its last
+  std::vector<int> neck;  // joints of the neck; the last one is the head
   explicit BodyPlan(const GaitCycle& c)
       : cycle(c),
         at(standing_places(c)),
@@ -355,7 +355,7 @@ double mean_ankle_height_m(const GaitCycle& cycle) {
 void take_over_events(const GaitCycle& source, double ratio, GaitCycle& out) {
   out.name = source.name;
   out.metres_per_unit = source.metres_per_unit;
-  out.duration_s = source.duration_s * std::sqrt(std::sqrt(ratio));  // as all step times
+  out.duration_s = source.duration_s * std::sqrt(std::sqrt(ratio));  // scaled as all step times are
   out.pace = source.pace;
   out.stride_m = source.stride_m * ratio;
   out.first_frame = source.first_frame;

@@ -17,11 +17,11 @@ struct BlendedRows {
 };
 template <int kWidth>
 void blend_rows(const BlendedRows& rows) noexcept;
-void blend_rows(const BlendedRows& rows) noexcept;  // as wide as lanes_in_use()
+void blend_rows(const BlendedRows& rows) noexcept;  // Uses registers as wide as lanes_in_use().
 // Fades the blend to the standing pose: nlerp() of gaitpad/math.h.
 template <int kWidth>
 void fade_rows(const BlendedRows& rows) noexcept;
-void fade_rows(const BlendedRows& rows) noexcept;  // as wide as lanes_in_use()
+void fade_rows(const BlendedRows& rows) noexcept;  // Uses registers as wide as lanes_in_use().
 
 // Sum of weight[i] * row[i], added in the order of i. Rows have `numbers` numbers, at least kWidth.
 struct SummedRows {
@@ -32,6 +32,7 @@ struct SummedRows {
 };
 template <int kWidth>
 void sum_rows(const SummedRows& rows) noexcept;
-void sum_rows(const SummedRows& rows) noexcept;  // as wide as lanes_in_use(); at least 4 numbers
+// Uses registers as wide as lanes_in_use(), of at least 4 numbers.
+void sum_rows(const SummedRows& rows) noexcept;
 
 }  // namespace gaitpad

@@ -23,9 +23,9 @@ struct LegTrack {
 };
 struct WalkTrack {
   std::vector<vec3> pelvis_m;
-  std::vector<double> heading_rad;  // direction that the hips face, unwrapped
+  std::vector<double> heading_rad;  // direction that the hips face in each frame, unwrapped
   std::array<LegTrack, 2> leg;
-  double leg_m = 0.0;  // thigh + shank, mean of both sides
+  double leg_m = 0.0;  // length of thigh + shank, mean of both sides
 };
 
 // Heading of the hips: perpendicular to the line from the right to the left hip.
@@ -121,14 +121,14 @@ double seam(const WalkTrack& track, const SampleRange& range, double start, doub
 }
 
 constexpr double kLongestStride_s = 4.0;
-constexpr double kShortestStride_legs = 0.2;  // a shuffle's two steps
+constexpr double kShortestStride_legs = 0.2;  // length of a shuffle's two steps
 constexpr double kSlowest_legs_s = 0.12;
 constexpr double kSharpestTurn_rad = 60.0 * kDegree;
 
 struct Candidate {
   StrideWindow window;
   double speed_legs_s = 0.0, seam_legs = 0.0;
-  double score = 0.0;  // the smaller the better
+  double score = 0.0;  // the smaller the score, the better the stride
 };
 
 // True if each of the four events happens once among these.
@@ -140,7 +140,8 @@ bool is_stride(const std::vector<FootEvent>& events, std::size_t from, std::size
   return count == std::array{1, 1, 1, 1};
 }
 
-// The period within 4 % of the events' period that has the smallest seam.
+// The period within 4 % of the events' period at which the last pose fits the first one best (the
+// smallest seam).
 double best_period(const WalkTrack& track, const SampleRange& range, double start, double period) {
   double best = period, least = seam(track, range, start, period);
   for (int k = -16; k <= 16; ++k) {
@@ -233,7 +234,8 @@ std::vector<Candidate> candidates(const FeetTracks& feet, const WalkTrack& track
 
 // Number of times that the leading foot, or the higher foot, changes in the range.
 int steps_in_place(const WalkTrack& track, const SampleRange& range) {
-  constexpr double kAhead_legs = 0.1, kAbove_legs = 0.03;  // less is a shift of the weight
+  // A smaller movement is a shift of the weight.
+  constexpr double kAhead_legs = 0.1, kAbove_legs = 0.03;
   int ahead = 0, above = 0, steps_ahead = 0, steps_above = 0;
   const auto count = [](double difference, double least, int& side, int& steps) {
     if (std::abs(difference) < least) return;
@@ -252,8 +254,9 @@ int steps_in_place(const WalkTrack& track, const SampleRange& range) {
 
 // The error sentence. Its numbers show whether the motion is too short for a stride.
 std::string why_no_stride(const FeetTracks& feet, const WalkTrack& track) {
-  constexpr double kFastestWalk_legs_s = 3.6;  // 3 m/s
-  double moved_m = -1.0, time_s = 0.0;         // of the range in which the hips move farthest
+  constexpr double kFastestWalk_legs_s = 3.6;  // leg lengths a second: 3 m/s for an adult
+  // Way and duration of the range in which the hips move farthest.
+  double moved_m = -1.0, time_s = 0.0;
   int steps = 0;
   for (const SampleRange& range : feet.ranges) {
     double here_m = 0.0;
@@ -348,7 +351,8 @@ Motion looped_twice(const Motion& motion) {
   twice.frames = motion.frames;
   close_loop(twice, turn);
   const quat onward = rotation_y(turn);
-  const std::vector<vec3> pelvis = walk_track(twice).pelvis_m;  // the root may stand still
+  // The pelvis, because the root may stand still.
+  const std::vector<vec3> pelvis = walk_track(twice).pelvis_m;
   for (int f = 1; f < frames; ++f) {
     MotionFrame frame = twice.frames[f];
     frame.root_m = pelvis.back() + onward * (frame.root_m - pelvis.front());

@@ -8,9 +8,9 @@
 namespace gaitpad {
 
 struct StrideWindow {
-  double start = 0.0;       // frame, with fractions
-  double period = 0.0;      // frames
-  double turn_rad = 0.0;    // change of heading in it
+  double start = 0.0;       // first frame, with fractions
+  double period = 0.0;      // length in frames
+  double turn_rad = 0.0;    // change of heading during the stride
   int first = 0, last = 0;  // frames around it that belong to the same unbroken movement
 };
 

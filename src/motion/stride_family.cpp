@@ -9,7 +9,7 @@ namespace {
 // Double support takes about a quarter of an adult's cycle at an easy pace, a third at a stroll and
 // a fifth at a brisk one.
 constexpr double kLongerRoll = 0.9;   // relative growth of a roll's share at stride length 0
-constexpr double kShorterRoll = 2.4;  // steepness of its fall for longer strides
+constexpr double kShorterRoll = 2.4;  // steepness with which the share falls for longer strides
 constexpr double kLeastRoll = 0.04, kMostRoll = 0.22;
 
 static_assert(sizeof(StrideCell) == 33 * sizeof(double));
@@ -35,7 +35,8 @@ StrideCell mixed(const StrideCell& a, const StrideCell& b, double share_a,
 // (Unser 1993). Its response is cut off below the rounding of a double.
 std::array<StrideCell, kCycleSamples> knots_through(
     const std::array<StrideCell, kCycleSamples>& samples) noexcept {
-  constexpr double kPole = -0.26794919243112270;  // sqrt(3) - 2
+  // Pole of the cubic B-spline's filter: sqrt(3) - 2.
+  constexpr double kPole = -0.26794919243112270;
   constexpr int kReach = 28;
   const auto at = [](int i) { return (i + 2 * kCycleSamples) % kCycleSamples; };
   const auto filtered = [](const StrideCell& cell, double gain, const StrideCell& before) {

@@ -51,7 +51,7 @@ using TablesOf = std::array<const std::vector<StrideTable>*, kWidthOf<V>>;
 template <class V>
 struct RatiosOf {
   TablesOf<V> tables;
-  std::array<int, kWidthOf<V>> first;  // may be -1 with weight 0
+  std::array<int, kWidthOf<V>> first;  // index of the first table; may be -1 if its weight is 0
   std::array<V, 4> weight;
 };
 template <class V>
@@ -173,7 +173,7 @@ Vec<V> heel_at(const RatiosOf<V>& at, const KnotsOf<V>& knots, const MaskOf<V>& 
       if (weight == 0.0) continue;
       const StrideTable& table = (*at.tables[lane])[at.first[lane] + n];
       for (int m = 0; m < 4; ++m) {
-        // Also reads the numbers that follow the heel, to fill a register.
+        // Reads the numbers that follow the heel as well, to fill a register.
         const auto& heel = table.knot[knots.of(lane, m)].foot[side].heel_m;
         rows.add(lane, reinterpret_cast<const HeelOf<double>&>(heel),
                  weight * lane_of(knots.weight[m], lane));

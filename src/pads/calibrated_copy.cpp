@@ -6,7 +6,7 @@
 namespace gaitpad {
 namespace {
 
-// The control that a field of the node is by itself; null: it is none, or only a part of one.
+// The control whose value is this field of the node alone; null: it is none, or only a part of one.
 const AxisOp* whole_control(const EvdevField& field, const PadLayout& pad) {
   for (const ReportLayout& report : pad.reports) {
     for (const AxisOp& op : report.axes) {

@@ -30,8 +30,8 @@ class CalibratedCopy {
  private:
   struct Axis {
     VirtualPadAxis shown;
-    int control = -1;       // of PadAxis; -1: passed on unchanged
-    bool reversed = false;  // the control falls while the axis grows
+    int control = -1;       // a PadAxis; -1: the axis is passed on unchanged
+    bool reversed = false;  // the control's value falls while the axis grows
   };
   std::vector<VirtualPadEvent> change_to(const EvdevState& next);
 

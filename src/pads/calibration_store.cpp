@@ -15,8 +15,10 @@
 namespace gaitpad {
 namespace {
 
-constexpr std::size_t kMaxKeyBytes = 48;           // of a file's name, between ids and ending
-constexpr std::uint16_t kKernelArranged = 0x8000;  // of the version on evdev: config/README.md
+constexpr std::size_t kMaxKeyBytes = 48;  // longest part of a file's name between ids and
+                                          // ending
+// Bit of an event node's version that marks corrected sticks (config/README.md).
+constexpr std::uint16_t kKernelArranged = 0x8000;
 
 // Empty if it cannot identify a pad: cheap pads have serial numbers of zeros or blanks, or one that
 // is not UTF-8.
@@ -91,7 +93,8 @@ std::optional<Error> save_calibration(const std::string& path, const Calibration
                                       const std::vector<std::string>& comments) {
   const std::string text =
       commented(comments) + (comments.empty() ? "" : "\n") + calibration_text(file);
-  // Otherwise the user would learn only in the next session that the work is lost.
+  // Checks now that the file can be read: otherwise the user would learn only in the next session
+  // that the work is lost.
   if (auto again = parse_calibration(text, path); !again)
     return Error{"was not saved, since it could not be read back: " + again.error().message};
   return save_text(path, text);
@@ -101,18 +104,21 @@ std::optional<Error> save_calibration(const std::string& path, const Calibration
 
 namespace {
 
-// The thresholds are larger than the differences between two measurements of one stick
-// (tests/stick: range within 1 %, sigma within 15 %, circularity within 0.5 points).
+// A change that is larger than its threshold is reported. The thresholds are larger than the
+// differences between two measurements of one stick (tests/stick: range within 1 %, sigma within 15
+// %, circularity within 0.5 points).
 
-constexpr double kCentreShare = 0.5;         // of the inner zone
-constexpr double kReachChange = 0.03;        // raw
-constexpr double kNoiseFactor = 1.5;         // of sigma ...
-constexpr double kLeastNoiseChange = 0.001;  // ... and raw: half a step of 10 bits
-constexpr double kHysteresisChange = 0.01;   // raw
-constexpr double kCircularityChange = 2.0;   // percent
-constexpr double kDriftChange = 0.002;  // raw a second: it crosses the least inner zone in 25 s
+constexpr double kCentreShare = 0.5;   // movement of the centre, as a share of the inner zone
+constexpr double kReachChange = 0.03;  // change of the reach, raw
+constexpr double kNoiseFactor = 1.5;   // growth of the noise: factor on its sigma ...
+// ... and difference of sigma, raw: half a step of 10 bits.
+constexpr double kLeastNoiseChange = 0.001;
+constexpr double kHysteresisChange = 0.01;  // change of the hysteresis, raw
+constexpr double kCircularityChange = 2.0;  // change of the circularity error, percent
+// Change of the drift, raw a second; such a drift crosses the least inner zone in 25 s.
+constexpr double kDriftChange = 0.002;
 
-// One stick, then and now.
+// One stick as it was measured then and now.
 struct StickPair {
   std::string_view name;
   const StickCalibration &then, &now;
@@ -148,7 +154,8 @@ void compare_centre(StickPair& stick) {
 
 void compare_reach(StickPair& stick) {
   const auto& [name, then, now, before, today, told] = stick;
-  if (!today.circularity_error) return;  // it was not turned along the rim
+  // There is no value if the stick was not turned along its rim.
+  if (!today.circularity_error) return;
   const struct {
     std::string_view direction;
     double before, now, half_range;

@@ -11,15 +11,17 @@
 
 namespace gaitpad {
 
-// In user_config_folder(); empty if there is none. It need not exist.
+// Folder of the user's calibrations, in user_config_folder(); empty if there is none. It need not
+// exist.
 std::string user_calibration_folder();
 
-// A file for this device alone: by its unique id, else by vendor, product and port, else (if it has
-// neither) for its model. `drivers` is set if other drivers show other values: for a pad that has
-// factory sticks, and for a kernel driver that corrects the sticks (its version on evdev says so).
+// Makes an empty file for this device alone: named by its unique id, else by vendor, product and
+// port, else (if it has neither) for its model. `drivers` is set if other drivers show other
+// values: for a pad that has factory sticks, and for a kernel driver that corrects the sticks (its
+// version on evdev says so).
 CalibrationFile calibration_for(const DeviceInfo& device, bool has_factory_sticks);
-// `FOLDER/054c_0ce6-UNIQUE.toml`: always the same for a device, and different for different
-// devices.
+// The path of a device's file, `FOLDER/054c_0ce6-UNIQUE.toml`: always the same for a device, and
+// different for different devices.
 std::string calibration_path(const std::string& folder, const CalibrationFile& file);
 
 // Writes the file with save_text(), after checking that it can be read back. `comments` are the

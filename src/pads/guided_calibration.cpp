@@ -55,7 +55,8 @@ void GuidedCalibration::end_recording() {
 
 void GuidedCalibration::look(std::chrono::milliseconds timeout) {
   if (timeout.count() > 0) stream_->wait(timeout);
-  const bool has_ended = stream_->has_ended();  // asked first: its last reports are read below
+  // Asked before the reports are read, so that the last ones are not missed.
+  const bool has_ended = stream_->has_ended();
   for (; const Report* report = stream_->front(); stream_->pop()) take_report(*report);
   if (guide_) guide_->tick(now_ns() - kOnTheWayNs);
   if (has_ended && !has_ended_) end_recording();
@@ -119,7 +120,8 @@ void take_what_holds(const PadFiles& files, const DeviceInfo& info, const std::s
 }
 
 std::vector<std::string> axes_questions(const GuidedPad& pad) {
-  constexpr const char* kRaw[] = {"right", "left", "forward", "back"};  // of RawDirection
+  // Words for the directions, by RawDirection.
+  constexpr const char* kRaw[] = {"right", "left", "forward", "back"};
   std::vector<std::string> questions;
   for (std::size_t i = 0; i < 2 && !pad.layout.override_origin.empty(); ++i) {
     const StickFrame& frame = pad.frame[i];

@@ -16,17 +16,17 @@
 
 namespace gaitpad {
 
-// A pad, and what was seen of it.
+// A pad, and what was measured of it.
 struct GuidedPad {
   DeviceInfo info;
   PadLayout layout;
   bool has_factory_sticks = false;
-  std::optional<TurnRates> gyro_bias_rad_s;  // none: no gyroscope, or it never lay still
-  PadTracks tracks;                          // raw, as the layout has them
-  std::array<StickFrame, 2> frame;           // left, right
+  std::optional<TurnRates> gyro_bias_rad_s;  // none: the pad has no gyroscope, or never lay still
+  PadTracks tracks;                          // tracks of the sticks, raw, as the layout has them
+  std::array<StickFrame, 2> frame;           // frames of the left and right stick
 };
 
-// From one thread.
+// Call its functions from one thread.
 class GuidedCalibration {
  public:
   static Result<std::unique_ptr<GuidedCalibration>> start(const PadFiles& files,
@@ -35,11 +35,14 @@ class GuidedCalibration {
   // Takes in the reports that have come; if there are none, waits for one, at most `timeout`. At
   // the end of a recording the steps that it did not show are skipped.
   void look(std::chrono::milliseconds timeout);
-  CalibrationGuide* guide() noexcept { return guide_ ? &*guide_ : nullptr; }  // null: no pad yet
-  const DeviceInfo& pad() const noexcept { return info_; }                    // once there is one
+  // Null: no pad has come yet.
+  CalibrationGuide* guide() noexcept { return guide_ ? &*guide_ : nullptr; }
+  // The pad, once there is one.
+  const DeviceInfo& pad() const noexcept { return info_; }
   bool is_plugged() const noexcept { return is_plugged_; }
   std::int64_t plugged() const noexcept { return stream_->counts().plugged; }
-  bool has_ended() const noexcept { return has_ended_; }  // the recording, and all of it was read
+  // True if the source is a recording and all of it was read.
+  bool has_ended() const noexcept { return has_ended_; }
   std::vector<std::string> take_remarks();
   // Ends the calibration and returns what the guide has learned.
   GuidedPad finish();
@@ -67,14 +70,15 @@ std::vector<std::string> axes_questions(const GuidedPad& pad);
 // The file that a calibration is written to: `out`, else the device's own file. Error: neither
 // XDG_CONFIG_HOME nor HOME is set.
 Result<std::string> calibration_target(const std::string& out, const CalibrationFile& file);
-// Fills `file` with what holds so far: from the file that will be replaced, else what config/ says
-// about such pads. `remarks` receives a sentence if the old file is damaged.
+// Fills `file` with the values that were not measured but stay valid: from the file that will be
+// replaced, else what config/ says about such pads. `remarks` receives a sentence if the old file
+// is damaged.
 void take_what_holds(const PadFiles& files, const DeviceInfo& info, const std::string& target,
                      CalibrationFile& file, std::vector<std::string>& remarks);
-// The bias of the pad's gyroscope, if it was seen; else the old one stays.
+// Sets the bias of the pad's gyroscope, if it was measured; else the old one stays.
 void take_gyro_bias(const GuidedPad& pad, CalibrationFile& file);
 // The comments at the top of the file.
 std::vector<std::string> calibration_comments(const PadAnalysis& analysis);
-std::string today();  // 2024-02-29, local
+std::string today();  // The local date: 2024-02-29.
 
 }  // namespace gaitpad

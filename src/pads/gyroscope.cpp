@@ -12,13 +12,16 @@ namespace {
 constexpr std::uint16_t kSony = 0x054c, kNintendo = 0x057e, kValve = 0x28de;
 
 constexpr std::array<GyroLayout::Axis, 3> kAsCounted = {{{0}, {1}, {2}}};
-constexpr double kSonyScale = 2048.0 / 32767.0 * kDegree;   // hid-playstation.c's range
-constexpr double kSwitchScale = 936.0 / 13371.0 * kDegree;  // hid-nintendo.c's usual calibration
+// The range that hid-playstation.c assumes.
+constexpr double kSonyScale = 2048.0 / 32767.0 * kDegree;
+// The calibration that hid-nintendo.c assumes.
+constexpr double kSwitchScale = 936.0 / 13371.0 * kDegree;
 constexpr double kDeckScale = 2000.0 / 32768.0 * kDegree;
 
 constexpr std::size_t kBluetoothBytes = 78, kUsbBytes = 64;
 
-// `common`: byte of the part that USB and Bluetooth have in common; `at`: byte in it.
+// `common`: number of the byte at which the part begins that USB and Bluetooth have in common;
+// `at`: byte of the rates in this part.
 GyroLayout sony(bool is_bluetooth, std::uint8_t bluetooth_id, std::size_t bluetooth_common,
                 std::size_t at) {
   return {.report_id = is_bluetooth ? bluetooth_id : std::uint8_t{0x01},
@@ -92,7 +95,7 @@ void GyroMeter::Sums::add(const TurnRates& rates) noexcept {
   }
 }
 
-// Chan, Golub and LeVeque: variances of two samples as one.
+// Merges the variances of two samples (Chan, Golub and LeVeque).
 void GyroMeter::Sums::add(const Sums& other) noexcept {
   if (other.count == 0) return;
   const auto a = static_cast<double>(count), b = static_cast<double>(other.count);
@@ -108,8 +111,8 @@ double GyroMeter::Sums::deviation(std::size_t axis) const noexcept {
   return count < 2 ? 0.0 : std::sqrt(squares[axis] / static_cast<double>(count - 1));
 }
 
-// A pad in a hand turns by several degrees a second, to and fro; on a table the noise of these
-// chips is below 0.3 degrees a second. A bias beyond the limit is none: the pad turns evenly.
+// A pad in a hand turns to and fro by several degrees a second; on a table the noise of these chips
+// is below 0.3 degrees a second. A mean beyond the limit is no bias: the pad turns evenly.
 void GyroMeter::end_window(std::int64_t time_ns) noexcept {
   constexpr double kMostNoise_rad_s = 1.0 * kDegree, kMostBias_rad_s = 15.0 * kDegree;
   constexpr std::size_t kLeastSamples = 10;

@@ -15,8 +15,10 @@
 namespace gaitpad {
 namespace {
 
-constexpr std::int64_t kSettled_ns = 300'000'000;  // without a move, before a step begins
-// Distances from the field's place when the step began, in half logical ranges.
+// A step begins when no field has moved for this time.
+constexpr std::int64_t kSettled_ns = 300'000'000;
+// Distances of a field from its place when the step began, in half logical ranges, at which it
+// counts as pushed and as released.
 constexpr double kPushed = 0.6, kReleased = 0.25;
 
 enum class Kind { stick, trigger, button };
@@ -26,8 +28,8 @@ enum class Kind { stick, trigger, button };
 struct MappingDialog::Step {
   const char* prompt;
   Kind kind;
-  std::size_t control;   // PadAxis or PadButton
-  bool is_down = false;  // of a stick: HID counts down in this direction
+  std::size_t control;   // a PadAxis or a PadButton
+  bool is_down = false;  // direction of a stick in which HID's numbers fall
 };
 
 const std::vector<MappingDialog::Step>& MappingDialog::steps() noexcept {
@@ -82,8 +84,8 @@ void MappingDialog::take_values(const Report& report) {
   }
 }
 
-// The field that the person moves; null: none yet. Of a trigger the axis counts before a button
-// that is pressed with it.
+// The field that the user moves; null: none yet. The axis of a trigger counts before a button that
+// is pressed with it.
 MappingDialog::PadField* MappingDialog::moved_field(const Step& step) {
   PadField* moved = nullptr;
   for (PadField& f : fields_) {
@@ -151,7 +153,8 @@ void MappingDialog::prompt_when_still() {
 
 void MappingDialog::look(std::chrono::milliseconds timeout) {
   if (timeout.count() > 0) stream_->wait(timeout);
-  const bool has_ended = stream_->has_ended();  // asked first: its last reports are read below
+  // Asked before the reports are read, so that the last ones are not missed.
+  const bool has_ended = stream_->has_ended();
   for (; const Report* report = stream_->front(); stream_->pop()) take_report(*report);
   prompt_when_still();
   has_ended_ = has_ended;
@@ -173,7 +176,7 @@ bool MappingDialog::has_left_stick() const noexcept {
 
 Result<std::string> MappingDialog::keep(const std::string& file) const {
   DeviceInfo info = pad();
-  info.mapping.clear();  // what was known before
+  info.mapping.clear();  // the layout follows from the new mapping alone
   const auto layout = pad_layout(info, {found_});
   if (!layout) return layout.error();
   auto line = sdl_mapping_text(info, *layout);

@@ -1,5 +1,5 @@
 // Finds which field of a pad is which control, for the terminal and the window: asks for one
-// control after the other, and sees what the person moves.
+// control after the other, and watches what the user moves.
 #pragma once
 #include <chrono>
 #include <cstdint>
@@ -14,7 +14,7 @@
 
 namespace gaitpad {
 
-// From one thread.
+// Call its functions from one thread.
 class MappingDialog {
  public:
   static Result<std::unique_ptr<MappingDialog>> start(const PadFiles& files,
@@ -24,26 +24,28 @@ class MappingDialog {
   void look(std::chrono::milliseconds timeout);
 
   bool has_pad() const noexcept { return device_ != kNoDevice; }
-  const DeviceInfo& pad() const noexcept { return stream_->device(device_).info; }  // once it has
+  // The pad, once there is one.
+  const DeviceInfo& pad() const noexcept { return stream_->device(device_).info; }
   std::int64_t plugged() const noexcept { return stream_->counts().plugged; }
-  bool has_ended() const noexcept { return has_ended_; }  // the recording, and all of it was read
+  // True if the source is a recording and all of it was read.
+  bool has_ended() const noexcept { return has_ended_; }
   std::vector<std::string> take_remarks() { return stream_->take_remarks(); }
 
-  // From 0; step_count(): every control was asked for.
+  // The number of the present step, from 0; step_count(): every control was asked for.
   std::size_t step() const noexcept { return step_; }
   static std::size_t step_count() noexcept;
   bool is_done() const noexcept { return step_ == step_count(); }
-  // "push the left stick forward"; null while everything is to be let go first.
+  // The request: "push the left stick forward"; null while everything is to be released first.
   const char* prompt() const noexcept;
-  void skip() noexcept;  // of a control that the pad does not have
+  void skip() noexcept;  // Goes on without the present control, which the pad does not have.
 
   std::size_t found() const noexcept { return found_count_; }
   // The source that was found for the last control: "Rz (0001:0035), reversed"; empty: none was
   // found yet.
   const std::string& last_found() const noexcept { return last_found_; }
   bool has_left_stick() const noexcept;
-  // Keeps what was found as a line of SDL's in that file, in place of an older line of the pad, and
-  // gives the line. Empty: user_mapping_file().
+  // Stores the mapping as a line of SDL's in that file, in place of an older line of the pad, and
+  // returns the line. Empty: user_mapping_file().
   Result<std::string> keep(const std::string& file) const;
 
  private:
@@ -54,7 +56,7 @@ class MappingDialog {
   // range.
   struct PadField {
     const Field* field;
-    std::uint32_t occurrence;  // among the fields of its report with its usage
+    std::uint32_t occurrence;  // number of the field among those of its report with the same usage
     double value = 0.0, rest = 0.0;
     bool is_known = false, is_taken = false;
 

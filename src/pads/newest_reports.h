@@ -9,7 +9,7 @@
 
 namespace gaitpad {
 
-// 0 if the pad's reports have no ids.
+// The id of a report; 0 if the pad's reports have no ids.
 inline std::uint8_t report_id_of(const PadLayout& layout, const Report& report) noexcept {
   return layout.descriptor.numbered && report.size > 0 ? report.bytes[0] : 0;
 }
@@ -22,7 +22,7 @@ class NewestReports {
   void set(std::uint16_t device, std::uint8_t id, Report* report) noexcept {
     newest_[device][id] = report;
   }
-  // None of the device's waiting reports may be replaced any more.
+  // From now on none of the device's waiting reports may be replaced.
   void forget(std::uint16_t device) noexcept { newest_[device].fill(nullptr); }
 
  private:

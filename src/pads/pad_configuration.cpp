@@ -18,7 +18,7 @@
 namespace gaitpad {
 namespace {
 
-constexpr double kLeastFactoryRange = 0.25;  // raw, from the centre to either end
+constexpr double kLeastFactoryRange = 0.25;  // least distance from the centre to either end, raw
 
 Result<CalibrationFile> calibration_of(const PadFiles& files, const TraceDevice& device,
                                        const std::string& origin) {
@@ -62,7 +62,8 @@ void take_factory_sticks(const FactorySticks& own, Calibration& calibration) {
   take_factory_axis(own.right_y, calibration.right.y);
 }
 
-// Factory sticks are numbers for the pad's axes as they are, without a mapping or a turned frame.
+// True if the file is for the pad's axes as they are, without a mapping or a turned frame: factory
+// sticks are numbers for such axes.
 bool has_own_axes(const CalibrationFile& file) {
   const Calibration& c = file.calibration;
   return file.mapping.empty() && c.left.frame == StickFrame() && c.right.frame == StickFrame();
@@ -94,7 +95,8 @@ CalibrationFile calibration_in_force(const PadFiles& files, const DeviceInfo& in
   return std::move(found.file);
 }
 
-// SDL has already applied its lines and the user's to the controls that its driver reads.
+// True if the driver names the controls: SDL has already applied its lines and the user's to what
+// its driver reads.
 bool names_its_controls(const DeviceInfo& info) { return info.driver == "sdl"; }
 
 // The user's line or SDL's, if config/pads has no entry for the pad. Empty also if a recording
@@ -154,7 +156,7 @@ void add_mappings(const std::string& path, PadFiles& files) {
   std::move(lines.begin(), lines.end(), std::back_inserter(files.mappings));
 }
 
-// The names are SDL's, so that a line works in every program.
+// The files have SDL's names, so that a line works in every program.
 void load_mappings(PadFiles& files) {
   if (const char* lines = std::getenv("SDL_GAMECONTROLLERCONFIG"))
     files.mappings = mapping_lines(lines);

@@ -44,7 +44,8 @@ bool is_built(std::span<const DriverEntry> table, std::string_view name) {
       table, [name](const DriverEntry& e) { return name == e.name && e.find != nullptr; });
 }
 
-// SDL reads the kernel's devices, which the other drivers read themselves.
+// Whether this driver looks for pads. SDL reads the kernel's devices, which the other drivers read
+// themselves.
 bool is_asked(const DriverEntry& entry, Drivers which, std::span<const DriverEntry> table) {
   if (entry.find == nullptr) return false;
   if (which == Drivers::all || entry.name != kSdl) return true;
@@ -110,10 +111,10 @@ Result<std::vector<PadSighting>> recorded_pads(const PadFiles& files, const PadS
   return sightings;
 }
 
-// How exactly a text fits a pad. The pads that fit best are meant.
+// The ways in which a text fits a pad, the least exact first. The pads that fit best are meant.
 enum class Fit { none, part_of_name, name, unique_id, model, node };
 
-// `vvvv:pppp` in hexadecimal.
+// True if the text is `vvvv:pppp` in hexadecimal.
 bool is_model(std::string_view text, const DeviceInfo& info) {
   const std::size_t colon = text.find(':');
   if (colon == std::string_view::npos) return false;
@@ -125,7 +126,7 @@ bool is_model(std::string_view text, const DeviceInfo& info) {
 
 struct Wanted {
   std::string text, lower_text;
-  std::string node;  // links such as /dev/input/by-id/... resolved
+  std::string node;  // the node, with links such as /dev/input/by-id/... resolved
 };
 Wanted wanted_of(const std::string& pad) {
   std::error_code error;
@@ -136,7 +137,8 @@ Wanted wanted_of(const std::string& pad) {
 Fit fit_of(const PadSighting& sighting, const Wanted& wanted) {
   const DeviceListing& listing = sighting.listing;
   if (listing.node == wanted.text || listing.node == wanted.node) return Fit::node;
-  if (sighting.driver->name == kTrace) return Fit::node;  // it is listed only if it is asked for
+  // A recording is listed only if it is asked for.
+  if (sighting.driver->name == kTrace) return Fit::node;
   if (is_model(wanted.text, listing.info)) return Fit::model;
   if (lower_case(listing.info.unique_id) == wanted.lower_text) return Fit::unique_id;
   const std::string name = lower_case(listing.info.name);
@@ -163,7 +165,7 @@ std::string described(const PadSighting& s) {
                      in_quotes(has_id ? info.unique_id : info.physical_path));
 }
 
-// A part of a name must mean one pad. All of `fitting` fit it.
+// An error if part of a name fits several pads. All of `fitting` fit it.
 std::optional<Error> ambiguity(const std::vector<PadSighting>& fitting, const std::string& text) {
   std::vector<PadSighting> different;
   for (const PadSighting& s : fitting) {
@@ -213,7 +215,7 @@ Result<std::vector<PadSighting>> matching_pads(const std::vector<PadSighting>& s
                                                const PadSelector& selector) {
   std::vector<PadSighting> pads;
   std::ranges::copy_if(sightings, std::back_inserter(pads), &PadSighting::is_pad);
-  // By driver; a pair before its parts.
+  // Orders by driver, and a pair before its parts.
   std::ranges::stable_sort(pads, [](const PadSighting& one, const PadSighting& other) {
     if (one.driver != other.driver) return std::less<>()(one.driver, other.driver);
     return !one.listing.parts.empty() && other.listing.parts.empty();
@@ -272,22 +274,27 @@ namespace {
 
 using namespace std::chrono_literals;
 
-constexpr auto kQuiet = 30ms, kMaxUnrest = 200ms;  // plugging in once makes many events
-// Waits after a failed opening. After the last, the next driver that sees the pad has its turn.
+// One plug makes many events: wait for a pause of kQuiet, but at most kMaxUnrest.
+constexpr auto kQuiet = 30ms, kMaxUnrest = 200ms;
+// Waits after a failed opening. After the last one the next driver that sees the pad tries to open
+// it.
 constexpr std::chrono::milliseconds kRetries[] = {100ms, 300ms, 1000ms};
 constexpr auto kSlowRetry = 5000ms;
 constexpr auto kQuickOpening = 100ms;
-constexpr auto kShortLife = 1000ms, kMaxRest = 1000ms;  // for a device that keeps coming and going
-// How long a newly plugged pad may take until the preferred driver sees it, and until the kernel
-// has bound its own driver to it.
+// A device that is gone again within kShortLife waits up to kMaxRest before it is opened again.
+constexpr auto kShortLife = 1000ms, kMaxRest = 1000ms;
+// Waits for a newly plugged pad: until the preferred driver sees it, and until the kernel has bound
+// its own driver to it.
 constexpr auto kDriverPatience = 700ms, kKernelPatience = 2000ms;
-// The node appears before the kernel's driver has asked the pad for its unique id.
+// Longest wait for a pad's unique id: its node appears before the kernel's driver has asked for the
+// id.
 constexpr auto kIdPatience = 1000ms;
 constexpr auto kGonePatience = 3000ms;
-constexpr auto kProblemPatience = 1500ms;  // permissions come a moment after the node
+// A problem is told after this time, because permissions come a moment after the node.
+constexpr auto kProblemPatience = 1500ms;
 constexpr auto kIdleLook = 30'000ms, kLookWithoutPads = 5000ms, kLookWithoutUdev = 1000ms;
 
-// Equal for what one driver sees of one device while it is plugged in.
+// A key that stays the same while one driver sees one device.
 std::string key_of(const PadSighting& s) {
   const DeviceInfo& info = s.listing.info;
   return fmt::format("{} {} {} {} {:04x}:{:04x} {}", s.driver->name, s.listing.node, s.node_file,
@@ -299,7 +306,8 @@ std::string name_of(const PadSighting& s) {
   return fmt::format("{} ({}, {})", in_quotes(info.name), s.driver->name, s.listing.node);
 }
 
-// These kernel drivers ask the pad for its Bluetooth address, which then is its unique id.
+// True if the pad's Bluetooth address, which is its unique id, is still missing: these kernel
+// drivers ask the pad for it.
 bool lacks_its_id(const PadSighting& s) {
   const std::string& kernel = s.listing.kernel_driver;
   const bool asks = kernel == "playstation" || kernel == "sony" || kernel == "nintendo";
@@ -358,7 +366,7 @@ void PadFinder::tell_stickless(std::uint64_t id, const std::string& sentence) {
 }
 
 void PadFinder::run(std::promise<std::optional<Error>> first_look) {
-  // Listen first, then look: nothing that happens in between is missed.
+  // Listen first, then look, so that nothing that happens in between is missed.
   if (options_.changes_fd < 0 && !is_recording_) {
     auto monitor = HotplugMonitor::create();
     if (monitor)
@@ -404,7 +412,7 @@ void PadFinder::look_no_later_than(Clock::time_point time) {
   next_look_ = std::min(next_look_, time);
 }
 
-// Answers start() as soon as it is known whether the selector makes sense.
+// Tells start() whether the selector is valid as soon as that is known.
 std::optional<Error> PadFinder::look(std::promise<std::optional<Error>>* first_look) {
   now_ = Clock::now();
   const auto answer = [first_look](std::optional<Error> error) {
@@ -497,8 +505,8 @@ void PadFinder::forget(std::uint64_t id) {
   if (is_recording_) --awaited_ends_;
 }
 
-// Or is being opened. True also if its name or unique id came after its opening, and if another
-// driver has the pad open.
+// True also while the pad is being opened, if its name or unique id came after its opening, and if
+// another driver has the pad open.
 bool PadFinder::is_open(const PadSighting& sighting) const {
   const std::string pad = pad_key(sighting);
   const auto is_it = [&](const std::string& key, const DriverEntry* driver,
@@ -512,8 +520,8 @@ bool PadFinder::is_open(const PadSighting& sighting) const {
          });
 }
 
-// Whether nothing must be closed before this pad is opened. Asks for the end of a single Joy-Con
-// whose pair is there now, and of a driver's device that does not tell the stick. A pair ends by
+// True if nothing has to be closed before this pad is opened. Asks for the end of a single Joy-Con
+// whose pair is there now, and of a driver's device whose reports contain no stick. A pair ends by
 // itself when one of its parts is gone.
 bool PadFinder::clear_the_way(const PadSighting& sighting) {
   bool is_clear = std::ranges::none_of(openings_, [&](const auto& opening) {
@@ -572,7 +580,7 @@ void PadFinder::consider(const PadSighting& sighting) {
   open(sighting);
 }
 
-// The devices of a recording are opened in their order.
+// Opens a pad on a thread of its own; the devices of a recording are opened in their order.
 void PadFinder::open(const PadSighting& sighting) {
   const Detach detach = detach_asked(options_.selector);
   if (is_recording_) return settle(sighting, sighting.driver->open(sighting.listing, detach));
@@ -590,12 +598,12 @@ void PadFinder::open(const PadSighting& sighting) {
   try {
     opening.thread = std::thread(run);
   } catch (const std::system_error&) {
-    run();  // no more threads: the others wait
+    run();  // there can be no more threads: the other pads wait for this one
   }
 }
 
-// Pads that open at once keep their order: waits a moment for those that were begun after `before`
-// others.
+// Waits a moment for the openings that were begun after the first `before` ones, so that pads that
+// open at the same time keep their order.
 void PadFinder::await_openings(std::size_t before) {
   if (openings_.size() == before) return;
   {
@@ -626,7 +634,7 @@ void PadFinder::take_openings() {
 
 void PadFinder::settle(const PadSighting& sighting, Result<std::unique_ptr<Device>> device) {
   const auto entry = candidates_.find(key_of(sighting));
-  if (entry == candidates_.end()) return;  // unplugged meanwhile
+  if (entry == candidates_.end()) return;  // the pad was unplugged meanwhile
   Candidate& candidate = entry->second;
   const Clock::time_point now = Clock::now();
   if (!device) {
@@ -634,7 +642,8 @@ void PadFinder::settle(const PadSighting& sighting, Result<std::unique_ptr<Devic
     const bool is_exhausted = tries >= std::size(kRetries);
     candidate.problem = device.error().message;
     candidate.next_try = now + (is_exhausted ? kSlowRetry : kRetries[tries]);
-    look_no_later_than(is_exhausted ? now + kQuiet : candidate.next_try);  // for the next driver
+    // Look again soon, for the next driver.
+    look_no_later_than(is_exhausted ? now + kQuiet : candidate.next_try);
     if (!is_recording_) return;
     remarks_.add_once(candidate.problem);
     --awaited_ends_;
@@ -659,8 +668,8 @@ void PadFinder::settle(const PadSighting& sighting, Result<std::unique_ptr<Devic
 }
 
 // Fills in the device as the recording of this session will state it, and the configuration that a
-// replay will make of that. Returns why the pad cannot be used; empty if users need not know,
-// because they named no pad and this is none.
+// replay will derive from that. Returns why the pad cannot be used; empty if users need not know,
+// because they named no pad and this device is none.
 std::optional<std::string> PadFinder::set_up(const PadSighting& sighting, Device& device,
                                              KnownPad& pad) {
   const DeviceInfo& info = device.info();
@@ -668,7 +677,7 @@ std::optional<std::string> PadFinder::set_up(const PadSighting& sighting, Device
   std::vector<std::string> remarks;
   auto [recorded, calibration] = recorded_device(options_.files, info, factory, remarks);
   for (const std::string& remark : remarks) remarks_.add_once(remark);
-  bool has_own_calibration = false;  // a recording brings its calibration as text
+  bool has_own_calibration = false;  // true for a recording, which brings its calibration as text
   if (is_recording_) {
     recorded.info.mapping = info.mapping;
     const std::string own = trace_calibration(sighting.listing);
@@ -680,7 +689,7 @@ std::optional<std::string> PadFinder::set_up(const PadSighting& sighting, Device
                                     : pad_config(options_.files, recorded.info, calibration, name);
   if (!config) return config.error().message;
   if (!config->is_usable) return options_.selector.pad.empty() ? "" : name + ": no stick";
-  config->is_present = false;  // until the reader sees `added`
+  config->is_present = false;  // true as soon as the reader has taken `added`
   config->has_factory_sticks = factory.has_value();
   config->factory_gyro = device.factory_gyro();
   pad = {std::move(recorded), std::move(*config), {}};
@@ -688,7 +697,8 @@ std::optional<std::string> PadFinder::set_up(const PadSighting& sighting, Device
   return std::nullopt;
 }
 
-// The index that the device had before; among equal devices the one on the same port.
+// The index that the device had before it was unplugged. Of equal devices the one on the same port
+// is chosen.
 std::optional<std::uint16_t> PadFinder::index_of(const DeviceInfo& info) const {
   std::optional<std::uint16_t> on_other_port;
   for (std::uint16_t i = 0; i < indices_.size(); ++i) {
@@ -717,7 +727,8 @@ void PadFinder::hand_over(const PadSighting& sighting, std::unique_ptr<Device> d
     known->device.index = index;
     opened.known = std::move(known);
   } else {
-    indices_[index] = {device->info(), true};  // it may be on another port now
+    // Stores the port as well, which may be another one now.
+    indices_[index] = {device->info(), true};
   }
   opened.device = std::move(device);
   open_.push_back({opened.id, key_of(sighting), pad_key(sighting), sighting.listing.node,

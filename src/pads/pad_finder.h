@@ -55,24 +55,24 @@ class Remarks {
   std::set<std::string> said_;
 };
 
-// What is known of a pad. A message: the finder makes it, the reader of the stream owns it.
+// The facts about a pad. A message: the finder makes it, the reader of the stream owns it.
 struct KnownPad {
   TraceDevice device;
-  PadConfig config;                         // the reader moves it out
-  std::shared_ptr<const PadLayout> layout;  // the same as in `config`
+  PadConfig config;                         // the configuration, which the reader moves out
+  std::shared_ptr<const PadLayout> layout;  // the layout in `config`
 };
 
 // A device that has just been opened. A message from the finder to the I/O thread.
 struct OpenedPad {
   std::unique_ptr<Device> device;
-  std::uint16_t index = 0;          // of its reports, < kMaxPads
-  std::uint64_t id = 0;             // of this opening
-  std::unique_ptr<KnownPad> known;  // null: the index was used before, the reader knows the pad
+  std::uint16_t index = 0;          // index of the device in its reports, < kMaxPads
+  std::uint64_t id = 0;             // number of this opening
+  std::unique_ptr<KnownPad> known;  // null: the index was used before, so the reader knows the pad
   std::shared_ptr<const PadLayout> layout;
-  bool is_recording = false;  // its end is not an unplugging that users should be told of
-  bool is_raw = false;        // its packets need not be reports
-  bool is_keyboard = false;   // it does not count as a pad that was plugged in
-  std::string name;           // for sentences
+  bool is_recording = false;  // users are not told of its end as of an unplugging
+  bool is_raw = false;        // its packets are passed on even if they are no reports
+  bool is_keyboard = false;   // it is not counted as a pad that was plugged in
+  std::string name;           // the name for sentences to the user
 };
 
 class PadFinder {
@@ -82,35 +82,38 @@ class PadFinder {
     PadSelector selector;
     std::span<const DriverEntry> drivers;
     bool is_raw = false;
-    int changes_fd = -1;              // for tests, in place of udev; one read() makes it silent
-    std::optional<DeviceInfo> first;  // of a device that has index 0 and was opened elsewhere
+    // For tests: readable means a change, in place of udev; one read() resets it.
+    int changes_fd = -1;
+    std::optional<DeviceInfo> first;  // a device that has index 0 and was opened elsewhere
   };
-  using HandOver = std::function<void(OpenedPad)>;        // these are called on the finder thread
-  using Release = std::function<void(std::uint64_t id)>;  // asks for the end of an opening
+  using HandOver = std::function<void(OpenedPad)>;        // is called on the finder thread, as
+                                                          // Release is
+  using Release = std::function<void(std::uint64_t id)>;  // asks the I/O thread to end an opening
   PadFinder(Options options, HandOver hand_over, Release release, Remarks& remarks);
   ~PadFinder() { stop(); }
 
-  // Returns after the first look, before anything is opened. Error: the selector is wrong.
+  // Returns after the first look, before anything is opened. Error: the selector is invalid.
   std::optional<Error> start();
-  void stop();  // waits for openings that are on their way
-  // Any thread: this opening has come to its end. The finder thread closes the device.
+  void stop();  // Waits for openings that have begun.
+  // Any thread: this opening has ended. The finder thread closes the device.
   void take_back(std::uint64_t id, std::unique_ptr<Device> device);
-  // Any thread: the reports of this opening do not tell the stick. Another driver that sees the pad
-  // gets its turn.
+  // Any thread: the reports of this opening contain no stick. Another driver that sees the pad is
+  // tried.
   void tell_stickless(std::uint64_t id, const std::string& sentence);
   bool has_ended() const noexcept { return awaited_ends_.load() == 0; }
 
  private:
   using Clock = std::chrono::steady_clock;
-  // A device as one driver sees it, for as long as it is seen.
+  // A device as one driver sees it, while it is there.
   struct Candidate {
     Clock::time_point first_seen, next_try;
     int failures = 0;
-    bool is_refused = false;     // opening it showed that it is no pad
-    bool is_from_start = false;  // it was there at the first look
-    bool is_seen = true;         // at the last look
+    bool is_refused = false;     // its opening showed that it is no pad
+    bool is_from_start = false;  // it was there when the finder started
+    bool is_seen = true;         // it was there at the last look
     std::string problem;
-    bool is_stickless = false;  // `problem` says so; the open device stays if no other can serve
+    // No stick in its reports, as `problem` says; it stays open if no other driver can serve.
+    bool is_stickless = false;
   };
   struct Open {
     std::uint64_t id = 0;
@@ -118,14 +121,17 @@ class PadFinder {
     const DriverEntry* driver = nullptr;
     std::uint16_t index = 0;
     Clock::time_point since;
-    std::vector<std::string> parts;                  // as in DeviceListing
-    std::optional<Clock::time_point> missing_since;  // not seen any more, but not yet given back
+    std::vector<std::string> parts;  // pad paths of the joined devices, as in
+                                     // DeviceListing
+    // Since when it is no longer seen, though its device was not given back.
+    std::optional<Clock::time_point> missing_since;
     bool is_stickless = false, is_released = false;
   };
-  // Each on a thread of its own: a pad that does not answer keeps no other waiting.
+  // Each opening has its own thread, so that a pad that does not answer delays no other.
   struct Opening {
     PadSighting sighting;
-    std::optional<Result<std::unique_ptr<Device>>> outcome;  // under the mutex; none: on its way
+    // The result, guarded by the mutex; none: the opening has not ended.
+    std::optional<Result<std::unique_ptr<Device>>> outcome;
     std::thread thread;
   };
   struct Gone {
@@ -136,7 +142,7 @@ class PadFinder {
     std::uint64_t id;
     std::string sentence;
   };
-  struct Index {  // what an index of the stream stands for
+  struct Index {  // the device that an index of the stream stands for
     DeviceInfo info;
     bool is_present = false;
   };
@@ -173,20 +179,21 @@ class PadFinder {
 
   Bell bell_;
   std::atomic<bool> is_ending_{false};
-  std::atomic<int> awaited_ends_{-1};  // of a recording's devices; -1: it is no recording
+  // Number of a recording's devices that have not ended; -1: it is no recording.
+  std::atomic<int> awaited_ends_{-1};
   std::mutex mutex_;
-  std::vector<Gone> gone_;            // under the mutex
-  std::vector<Stickless> stickless_;  // likewise
-  bool awaits_openings_ = false;      // likewise
+  std::vector<Gone> gone_;            // guarded by the mutex
+  std::vector<Stickless> stickless_;  // guarded by the mutex
+  bool awaits_openings_ = false;      // guarded by the mutex
   std::condition_variable opened_;
 
-  // The finder thread's own.
+  // Used by the finder thread only.
   std::optional<HotplugMonitor> monitor_;
   Clock::time_point now_, next_look_;
   bool is_first_look_ = true;
   std::map<std::string, Candidate> candidates_;
   std::vector<Open> open_;
-  std::vector<std::unique_ptr<Opening>> openings_;  // in the order of their beginnings
+  std::vector<std::unique_ptr<Opening>> openings_;  // in the order in which they began
   std::vector<Index> indices_;
   std::uint64_t opened_count_ = 0;
   std::thread thread_;

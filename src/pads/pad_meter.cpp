@@ -10,7 +10,7 @@
 namespace gaitpad {
 namespace {
 
-constexpr std::size_t kMaxKept = 20000;  // times of one second that are looked at
+constexpr std::size_t kMaxKept = 20000;  // most times of one second that are evaluated
 
 template <class T>
 void keep(std::vector<T>& values, T value) {
@@ -25,7 +25,7 @@ void watch_sticks(MonitoredPad& pad, std::int64_t time_ns) {
   pad.untouched += pad.watch[1].take(time_ns, c.right, {axis[kRightX], axis[kRightY]}, stick.right);
 }
 
-// Once a minute.
+// Asks for the battery; called once a minute.
 void look_at_battery(MonitoredPad& pad, const DeviceInfo& info, std::int64_t time_ns) {
   constexpr std::int64_t kMinuteNs = 60'000'000'000;
   if (pad.battery_ns == 0 || time_ns >= pad.battery_ns + kMinuteNs) {

@@ -37,22 +37,23 @@ class PadQueue {
   explicit PadQueue(std::size_t capacity) : ring_(capacity) {}  // a power of two
   bool is_open() const noexcept { return bell_.fd() >= 0; }
 
-  // The I/O thread. `report_id` is 0 if the device has none; device < kMaxPads or kNoDevice.
+  // Called by the I/O thread. `report_id` is 0 if the device has none; device < kMaxPads or
+  // kNoDevice.
   void push(const Report& report, std::uint8_t report_id);
-  // Moves what waits into the ring. True: nothing waits any more.
+  // Moves the waiting reports into the ring. True: none waits any more.
   bool flush();
   bool is_waiting() const noexcept { return !waiting_.empty(); }
-  // The queue is full: sources must be left alone until flush().
+  // True if the queue is full: sources must not be read until flush() has made room.
   bool is_blocked() const noexcept { return waiting_.size() >= kMaxWaiting; }
-  // Wakes the reader if it sleeps in wait(); once for many reports.
+  // Wakes the reader if it sleeps in wait(); one call serves many reports.
   void wake_reader() noexcept;
 
-  // The reader.
+  // Called by the reader: the oldest report in the ring.
   const Report* front() noexcept { return ring_.front(); }
   void pop() noexcept { ring_.pop(); }
   void wait(std::chrono::milliseconds timeout);
 
-  // Any thread: reports written to the ring, input reports left out.
+  // Any thread: numbers of reports written to the ring, and of input reports left out.
   std::int64_t written() const noexcept { return written_.load(std::memory_order_relaxed); }
   std::int64_t lost() const noexcept { return lost_.load(std::memory_order_relaxed); }
 
@@ -68,7 +69,7 @@ class PadQueue {
 
   SpscRing<Report> ring_;
   std::deque<Waiting> waiting_;  // its elements keep their addresses
-  NewestReports newest_;         // in waiting_
+  NewestReports newest_;         // the newest waiting input report of each device and id
   std::atomic<std::int64_t> written_{0}, lost_{0};
   std::atomic<bool> reader_sleeps_{false};
   Bell bell_;
@@ -100,7 +101,8 @@ void PadQueue::hold(const Report& report, std::uint8_t report_id) {
   if (is_input) {
     newest_.set(device, report_id, &waiting_.back().report);
   } else {
-    newest_.forget(device);  // reports from now on stay behind the plugging
+    // Later reports stay behind the plugging, so they replace none before it.
+    newest_.forget(device);
   }
 }
 
@@ -115,8 +117,8 @@ bool PadQueue::flush() {
   return true;
 }
 
-// Whichever thread changes `reader_sleeps_` second sees what the other one did before: no wake-up
-// is missed.
+// Of two threads that change `reader_sleeps_`, the second sees what the first wrote before, so no
+// wake-up is missed.
 void PadQueue::wake_reader() noexcept {
   if (reader_sleeps_.exchange(false, std::memory_order_acq_rel)) bell_.ring();
 }
@@ -136,27 +138,30 @@ void PadQueue::wait(std::chrono::milliseconds timeout) {
 using Introductions = SpscRing<KnownPad*>;
 
 struct PadCounters {
-  std::atomic<std::int64_t> lost{0};  // by the sources
+  std::atomic<std::int64_t> lost{0};  // reports that the sources have lost
   std::atomic<std::int64_t> plugged{0}, unplugged{0};
 };
 
 // --- the I/O thread
 
-constexpr int kReadsInRound = 64;  // of one device, then it is the turn of the others
+// Most reports that are read from one device before the others get their turn.
+constexpr int kReadsInRound = 64;
 // More wakes without a report than any sound source makes (SDL's: one each millisecond). Such a
 // source would keep the thread busy all the time.
 constexpr int kMaxIdleWakes = 500;
 constexpr auto kIdleWindow = 100ms;
-constexpr int kMaxErrorWakes = 200;  // at any rate
-constexpr auto kRoomPoll = 2ms;      // how often a full ring is looked at
-constexpr auto kMaxRumble = 10s;     // a longer one is a mistake of the caller
-constexpr auto kStopRetry = 20ms;    // for a motor whose stop was not sent
+constexpr int kMaxErrorWakes = 200;  // most wakes with an error between two reports
+constexpr auto kRoomPoll = 2ms;      // wait between two attempts to write to a full ring
+constexpr auto kMaxRumble = 10s;     // longest rumble; a longer request is a mistake of the caller
+// Wait until the stop of a motor is sent again, if it could not be sent.
+constexpr auto kStopRetry = 20ms;
 constexpr auto kWatch = 500ms;
-constexpr double kMaxBusy = 0.8;  // of a processor, with real-time priority
+// Most processor time of a thread with real-time priority, as a share.
+constexpr double kMaxBusy = 0.8;
 constexpr std::size_t kMaxCommands = 1024;
 constexpr std::int64_t kClockSlack_ns = 1'000'000'000;
 // A pad counts as one without a stick after this time and this number of reports: a pad that
-// reports changes only may send a few of another kind before its stick is touched.
+// reports changes only may send a few reports of other kinds before its stick is touched.
 constexpr std::int64_t kStickWait_ns = 1'000'000'000;
 constexpr int kMinStickless = 20;
 
@@ -164,7 +169,8 @@ std::int64_t nanoseconds(std::chrono::steady_clock::time_point time) {
   return std::chrono::nanoseconds(time.time_since_epoch()).count();
 }
 
-// Makes it a report without content. Its bytes are not cleared: they are many and not read.
+// Makes it a report without content. Its bytes are not cleared, because they are many and are not
+// read.
 void make_event(Report& report, ReportKind kind, std::uint16_t device, std::int64_t time_ns) {
   report.time_ns = time_ns;
   report.device = device;
@@ -191,33 +197,34 @@ class PadIo {
   ~PadIo() { stop(); }
   bool is_open() const noexcept { return bell_.fd() >= 0; }
   void start();
-  void stop();  // ends the thread and closes what is still open
+  void stop();  // Ends the thread and closes the devices that are still open.
 
-  void take_over(OpenedPad pad);        // any thread
-  void release(std::uint64_t id);       // any thread: gives this opening back, if it is still open
-  void command(std::string_view text);  // any thread
+  void take_over(OpenedPad pad);        // Any thread.
+  void release(std::uint64_t id);       // Any thread. Gives this opening back, if it is still open.
+  void command(std::string_view text);  // Any thread.
   std::int64_t commands_left_out() const noexcept {
     return commands_left_out_.load(std::memory_order_relaxed);
   }
   void rumble(std::uint16_t device, const Rumble& rumble,
-              std::chrono::milliseconds duration) noexcept;  // one thread, wait-free
+              std::chrono::milliseconds duration) noexcept;  // Call it from one thread; it does not
+                                                             // wait.
 
  private:
   using Clock = std::chrono::steady_clock;
   struct Pad {
     OpenedPad opened;
-    bool is_ready = true;      // it may have something to read
-    bool is_present = false;   // as announced
-    std::int64_t last_ns = 0;  // the stamps of one device never go back
-    std::int64_t lost = 0;     // as the device said last
-    bool is_running = false;   // the motors
+    bool is_ready = true;      // the device may have something to read
+    bool is_present = false;   // the pad is plugged in, as was announced last
+    std::int64_t last_ns = 0;  // stamp of the last report; stamps of one device never decrease
+    std::int64_t lost = 0;     // the device's count of lost reports when it was read last
+    bool is_running = false;   // the motors run
     Clock::time_point motor_end;
-    // Wakes with nothing to read: within the running window, and with an error since the last
-    // report.
+    // Counts of wakes with nothing to read: within the running window, and with an error since the
+    // last report.
     int idle_wakes = 0, error_wakes = 0;
-    bool has_error = false;  // as the last poll() says
+    bool has_error = false;  // the last poll() reported an error
     Clock::time_point window_end;
-    // Reports before the first that tells the stick.
+    // No report of the pad has contained a stick yet.
     bool is_stick_awaited = true;
     int stickless = 0;
     std::int64_t stickless_since_ns = 0;
@@ -258,20 +265,20 @@ class PadIo {
 
   Bell bell_;
   std::atomic<bool> is_ending_{false};
-  std::mutex mutex_;  // of the three below
+  std::mutex mutex_;  // guards the three members below
   std::vector<OpenedPad> handed_;
   std::vector<std::uint64_t> released_;
   std::deque<std::string> commands_;
   std::atomic<std::int64_t> commands_left_out_{0};
   SpscRing<MotorRequest> motor_requests_{64};
 
-  // The I/O thread's own.
+  // Used by the I/O thread only.
   std::vector<std::unique_ptr<Pad>> pads_;
   std::vector<pollfd> fds_;
-  std::vector<Pad*> fd_owners_;  // of fds_ from the second on
-  std::int64_t now_ns_ = 0;      // after the last wait
+  std::vector<Pad*> fd_owners_;  // owners of fds_ from the second element on
+  std::int64_t now_ns_ = 0;      // the time after the last wait
   Clock::time_point watched_;
-  std::chrono::nanoseconds busy_{0};  // processor time until then
+  std::chrono::nanoseconds busy_{0};  // the thread's processor time at `watched_`
   std::thread thread_;
 };
 
@@ -302,7 +309,8 @@ void PadIo::release(std::uint64_t id) {
 }
 
 void PadIo::command(std::string_view text) {
-  if (trimmed(text, " \t\r\n").empty()) return;  // a recording cannot hold it
+  // An empty command is left out, because a recording cannot hold it.
+  if (trimmed(text, " \t\r\n").empty()) return;
   if (text.size() > kMaxReportBytes) {
     commands_left_out_.fetch_add(1, std::memory_order_relaxed);
     remarks_.add_once(fmt::format("a command of {} bytes was left out, {} can be taken",
@@ -328,7 +336,7 @@ void PadIo::rumble(std::uint16_t device, const Rumble& rumble,
 }
 
 void PadIo::run() {
-  // If it is refused, the loop thread tells the user.
+  // If the priority is refused, the loop thread tells the user.
   static_cast<void>(take_priority(RealtimeRank::pads));
   while (!is_ending_) {
     wait_for_fds();
@@ -354,7 +362,7 @@ void PadIo::run() {
   handed_.clear();
 }
 
-// Until the next motor must stop or the full ring is looked at again; -1: no limit.
+// Time until the next motor must stop or the full ring is tried again; -1: no limit.
 int PadIo::timeout_ms(Clock::time_point now) const {
   auto wait = std::chrono::milliseconds(-1);
   const auto at_most = [&wait](std::chrono::milliseconds time) {
@@ -425,11 +433,11 @@ void PadIo::take_releases() {
   }
 }
 
-// Before the pad's first `added`: the reader finds it when it reads that.
+// Called before the pad's first `added`, so that the reader finds the pad when it reads that.
 void PadIo::introduce(Pad& pad) {
   if (!pad.opened.known) return;
   [[maybe_unused]] const bool has_room = introductions_.push(pad.opened.known.release());
-  assert(has_room);  // one for each index
+  assert(has_room);  // there is room for one introduction of each index
 }
 
 void PadIo::take_commands() {
@@ -442,7 +450,7 @@ void PadIo::take_commands() {
     Report report;
     make_event(report, ReportKind::command, kNoDevice, now_ns_);
     report.size = static_cast<std::uint16_t>(text.size());
-    // A recording holds it as one line, and a replay must find the same text.
+    // A recording holds the text as one line, and a replay must find the same text.
     std::ranges::replace_copy_if(
         text, report.bytes.begin(), [](char c) { return c == '\n' || c == '\r'; }, ' ');
     queue_.push(report, 0);
@@ -505,7 +513,8 @@ PadIo::Reading PadIo::read(Pad& pad) {
   return Reading::goes_on;
 }
 
-// A source that is always ready but has nothing to read has an error that its driver does not know.
+// Counts wakes without a report. A source that is always ready but has nothing to read has an error
+// that its driver does not know.
 PadIo::Reading PadIo::count_idle_wake(Pad& pad) {
   const Clock::time_point now = Clock::now();
   if (now >= pad.window_end) {
@@ -553,7 +562,7 @@ void PadIo::await_stick(Pad& pad, const Report& report) {
               : fmt::format("{}: sends reports without a stick (id {:#04x})", pad.opened.name, id));
 }
 
-// Each change once: a recording contains its own `added` and `removed`.
+// Announces each change once: a recording contains its own `added` and `removed`.
 void PadIo::announce(Pad& pad, ReportKind kind, std::int64_t time_ns) {
   const bool is_present = kind == ReportKind::added;
   if (kind == ReportKind::command || is_present == pad.is_present) return;
@@ -588,7 +597,8 @@ void PadIo::take_remarks(Pad& pad) {
     remarks_.add_once(fmt::format("{}: {}", pad.opened.name, sentence));
 }
 
-// A thread with real-time priority that never sleeps would leave no time for the others.
+// Gives the priority up if the thread is too busy: a thread with real-time priority that never
+// sleeps would leave no time for the others.
 void PadIo::watch_itself(Clock::time_point now) {
   const std::chrono::nanoseconds busy(thread_time_ns());
   if (busy - busy_ > kMaxBusy * (now - watched_)) give_up_priority();
@@ -599,7 +609,7 @@ void PadIo::watch_itself(Clock::time_point now) {
 
 // --- the stream
 
-// Keys are exact: no dead zones.
+// A calibration without dead zones, because keys are exact.
 CalibrationFile keyboard_calibration() {
   CalibrationFile file;
   file.name = "keyboard";
@@ -628,7 +638,7 @@ Result<std::optional<Keyboard>> opened_keyboard(const PadStreamOptions& options)
   known.device.calibration = calibration_text(calibration);
   auto config = pad_config(options.files, known.device.info, calibration, "keyboard");
   if (!config) return config.error();
-  config->is_present = false;  // until the reader sees `added`
+  config->is_present = false;  // true as soon as the reader has taken `added`
   known.config = std::move(*config);
   known.layout = known.config.layout;
   return std::optional<Keyboard>(std::move(keyboard));
@@ -636,8 +646,8 @@ Result<std::optional<Keyboard>> opened_keyboard(const PadStreamOptions& options)
 
 }  // namespace
 
-// Ends from the bottom up: first the finder, so that nothing is opened any more, then the I/O
-// thread closes what is open.
+// Members are destroyed from the last to the first: first the finder, so that nothing more is
+// opened, then the I/O thread, which closes the open devices.
 struct PadStream::Impl {
   Impl(PadStreamOptions options, const std::optional<Keyboard>& keyboard)
       : queue(options.ring_reports),
@@ -661,7 +671,7 @@ struct PadStream::Impl {
 
   PadQueue queue;
   Introductions introductions{kMaxPads};
-  std::array<std::unique_ptr<KnownPad>, kMaxPads> known;  // the reading end's
+  std::array<std::unique_ptr<KnownPad>, kMaxPads> known;  // used by the reader only
   PadCounters counters;
   Remarks remarks;
   PadIo io;
@@ -674,7 +684,7 @@ PadStream::Impl::~Impl() {
   for (KnownPad* unread = nullptr; introductions.pop(unread);) delete unread;
 }
 
-// Before the threads run, so that it is announced first.
+// Called before the threads run, so that the keyboard is announced first.
 void PadStream::Impl::take_over(Keyboard keyboard) {
   OpenedPad opened;
   opened.device = std::move(keyboard.device);
@@ -685,7 +695,7 @@ void PadStream::Impl::take_over(Keyboard keyboard) {
   io.take_over(std::move(opened));
 }
 
-// Introductions come in the order of the first `added` reports.
+// Introductions are in the order of the first `added` reports.
 void PadStream::Impl::take_introduction(std::uint16_t device) noexcept {
   KnownPad* pad = nullptr;
   [[maybe_unused]] const bool is_there = introductions.pop(pad);

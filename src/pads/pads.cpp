@@ -11,11 +11,13 @@
 namespace gaitpad {
 namespace {
 
-constexpr double kMostCount = 65536.0;  // of a gyroscope's 16 bits
-constexpr double kNearCentre = 0.1;     // of the calibrated deflection
-constexpr double kMoved = 0.1;          // likewise; the inner zone has taken the noise away
+constexpr double kMostCount = 65536.0;  // number of counts of a gyroscope with 16 bits
+constexpr double kNearCentre = 0.1;     // calibrated deflection below which a stick counts as
+                                        // centred
+// Change of the calibrated deflection that counts as a movement; noise is below the inner zone.
+constexpr double kMoved = 0.1;
 constexpr int kYielding_s = 5;
-constexpr int kSilencesInSecond = 10;  // 100 ms each
+constexpr int kSilencesInSecond = 10;  // silences of 100 ms
 const PadState kAtRest;
 
 // The D-pad as a stick: fully deflected, or 0.
@@ -101,7 +103,7 @@ void Pads::add_pad(std::uint16_t device) noexcept {
   if (driving_ == kNoDevice || (is_fallback(driving_) && !is_fallback(device))) give_seat(device);
 }
 
-// The first report tells where the pad is, not that it was moved.
+// The first report tells the pad's state, not that it was moved.
 bool Pads::take_movement(Pad& pad, std::uint32_t buttons_before) noexcept {
   const Stick stick = calibrated(pad);
   const bool is_elsewhere = has_moved(pad.moved_to, stick);
@@ -184,7 +186,7 @@ bool Pads::is_at_rest(const Pad& pad) const noexcept {
 bool Pads::can_take_over(const Pad& pad) const noexcept {
   if (!pad.config.is_usable || !pad.config.is_present || pad.is_awaited || is_silent(pad))
     return false;
-  // While another pad is plugged in, a fallback's stick counts without driving.
+  // While another pad is plugged in, the stick of a fallback is watched but does not drive.
   if (pad.config.is_fallback) return !is_other_plugged_in();
   return pad.is_seen && is_near_centre(pad);
 }
@@ -215,7 +217,7 @@ Stick Pads::stick_of(const Pad& pad) const noexcept {
   return stick;
 }
 
-// If several are deflected, the one that was plugged in first counts.
+// If several fallbacks are deflected, the one that was plugged in first counts.
 Stick Pads::fallback_stick() const noexcept {
   Stick stick;
   int first = 0;

@@ -44,7 +44,7 @@ std::optional<Error> StandIn::plug(const DeviceListing& listing) {
              copy.axes(), copy.keys(), {}};
   shape.effects = (*node)->effect_codes();
 
-  // Before the virtual pad is there: programs never see two.
+  // Grab the real pad before the virtual one is there, so that programs never see two.
   if (const int problem = (*node)->grab()) return grab_error(listing.node, problem);
   if (!pad_ || shape != shape_) {
     pad_.reset();
@@ -86,7 +86,7 @@ void StandIn::serve() noexcept {
   if (pad_) pad_->serve_effects(effects_);
 }
 
-// An event that the kernel refuses is lost; the next one comes with the next change.
+// An event that the kernel refuses is lost; the next change of the control corrects it.
 void StandIn::send() noexcept {
   const Calibration& calibration = config_.calibration;
   const VirtualPadState now = calibrated(calibration, filter_.filtered(calibration, state_));

@@ -25,7 +25,7 @@ bool is_same_kind(const DeviceInfo& a, const DeviceInfo& b) noexcept {
 struct FoundPad {
   std::uint16_t device = kNoDevice;
   PadLayout layout;
-  int others = 0;  // further pads
+  int others = 0;  // number of further pads in the recording
 };
 Result<FoundPad> first_pad(const Trace& trace, const PadOverrides& overrides) {
   FoundPad found;
@@ -47,7 +47,7 @@ Result<FoundPad> first_pad(const Trace& trace, const PadOverrides& overrides) {
   return Error{trace.path + ": none of its devices is a pad with a stick"};
 }
 
-// Tracks the reports of the device. Returns how many could not be decoded.
+// Tracks the reports of the device. Returns the number of those that could not be decoded.
 std::int64_t take_reports(const Trace& trace, std::uint16_t device, PadTracker& tracker,
                           GyroMeter& gyro) {
   std::int64_t bad = 0;

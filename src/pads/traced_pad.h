@@ -10,8 +10,8 @@
 
 namespace gaitpad {
 
-// The first pad with a stick of each recording; all must be the same kind of pad. Remarks: damaged
-// lines, reports that do not decode, other pads in the recordings.
+// Measures the first pad with a stick of each recording; all must be the same kind of pad. Remarks:
+// damaged lines, reports that do not decode, other pads in the recordings.
 Result<GuidedPad> traced_pad(const std::vector<std::string>& paths, Damage damage,
                              const PadFiles& files, std::vector<std::string>& remarks);
 

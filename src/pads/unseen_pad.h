@@ -7,7 +7,7 @@ namespace gaitpad {
 inline constexpr const char* kNoUdev =
     "udev is not running, so device permissions and types are unknown";
 
-// A sentence with the command that mends it; empty if nothing is known to be in the way.
+// A sentence with the command that helps; empty if no obstacle is known.
 std::string unseen_pad();
 
 }  // namespace gaitpad

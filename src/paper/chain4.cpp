@@ -4,7 +4,8 @@ namespace gaitpad {
 namespace {
 
 constexpr std::size_t kMaxRows = 512;
-constexpr double kChainReach = 0.98;  // share of its length; goals beyond it count as out of reach
+// Share of the chain's length; goals beyond it count as out of reach.
+constexpr double kChainReach = 0.98;
 
 std::array<IkRow, 2> plane_rows(const vec2& goal_m) {
   return {IkRow{vec3(0.0), vec3(1.0, 0.0, 0.0), goal_m.x},

@@ -13,10 +13,10 @@ inline constexpr double kChainTolerance_m = 1e-5;
 // The root's weights in figure 4; 1 gives the chain with even weights.
 inline constexpr std::array<double, 5> kRootWeights = {1.0, 0.5, 0.2, 0.1, 0.05};
 
-// The links turn about z; at angles of 0 the chain points from the origin along x.
+// Makes the chain. Its links turn about z; at angles of 0 it points from the origin along x.
 IkChain plane_chain(const std::array<double, kChainLinks>& weights);
 vec2 plane_end(const IkChain& chain, const IkAngles& angles_rad);
-// Positions of its joints, from the origin to the end.
+// Positions of the chain's joints, from the origin to the end.
 std::vector<vec2> plane_joints(const IkChain& chain, const IkAngles& angles_rad);
 
 struct ChainTask {
@@ -26,7 +26,7 @@ struct ChainTask {
 ChainTask figure_4_task();
 
 struct ChainSolve {
-  std::vector<IkAngles> angles_rad;  // row k: after k iterations
+  std::vector<IkAngles> angles_rad;  // row k holds the angles after k iterations
   std::vector<double> error_m;
   IkResult result;
   const IkAngles& answer() const { return angles_rad.back(); }

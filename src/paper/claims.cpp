@@ -62,7 +62,7 @@ Claims endurance_group(Study& s, IkMode mode) {
   return endurance_claims(walked(what), mode);
 }
 
-// Claims that do not depend on the solver are reported once, for robust, a session's default mode.
+// Measures claims that do not depend on the solver once, in robust mode, a session's default.
 template <Claims (*group)(const Study&)>
 Claims robust_only(Study& s, IkMode mode) {
   return mode == IkMode::robust ? group(s) : Claims{};

@@ -19,7 +19,7 @@ inline constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 struct Bound {
   enum class Kind { at_most, less, at_least, more, within, equal } kind = Kind::at_most;
   double limit = 0.0;
-  double low = 0.0;  // within: low <= value <= limit
+  double low = 0.0;  // lower limit, for the kind `within`: low <= value <= limit
 };
 inline constexpr Bound at_most(double v) { return {Bound::Kind::at_most, v}; }
 inline constexpr Bound less_than(double v) { return {Bound::Kind::less, v}; }
@@ -28,16 +28,16 @@ inline constexpr Bound more_than(double v) { return {Bound::Kind::more, v}; }
 inline constexpr Bound within(double low, double high) { return {Bound::Kind::within, high, low}; }
 inline constexpr Bound equal_to(double v) { return {Bound::Kind::equal, v}; }
 
-bool holds(const Bound& bound, double value) noexcept;  // false if the value is not finite
-std::string text_of(const Bound& bound);                // "<= 0.95"
+bool holds(const Bound& bound, double value) noexcept;  // False if the value is not finite.
+std::string text_of(const Bound& bound);                // The bound in words: "<= 0.95".
 
 struct Claim {
-  std::string name;     // begins with its number among the thirty
-  std::string section;  // of the paper
+  std::string name;     // the claim's name; it begins with its number among the thirty
+  std::string section;  // section of the paper
   IkMode mode = IkMode::robust;
   std::optional<double> value;
   std::string bound;
-  std::optional<bool> pass;  // none: this motion cannot test it; `note` gives the reason
+  std::optional<bool> pass;  // none: this motion cannot test the claim; `note` gives the reason
   std::string note;
 };
 
@@ -64,7 +64,7 @@ std::string claims_json(const std::string& motion, const std::vector<Claim>& cla
 std::vector<Claim> all_claims(Study& study, const std::function<void(double share)>& progress = {});
 
 // Each function below measures one group of assertions from its arguments only, so that a test can
-// pass a broken walk.
+// pass a broken walk. The numbers beside the functions are those of the assertions.
 
 // claims_motion.cpp: the motion data and other legs, section 3.2.
 std::vector<Claim> flight_claims(const PaperSource& source, IkMode mode);  // 1-5
@@ -73,7 +73,7 @@ std::vector<Claim> sliding_claims(const Study& study, IkMode mode);        // 29
 
 // claims_cycle.cpp: the two-stage cycle, turns and uneven ground, section 3.3.1.
 std::vector<Claim> table_1_claims(const Walk& walk, double after_s, IkMode mode);  // 7
-struct FootBuild {  // of a walk's character
+struct FootBuild {  // sizes of the walking character's feet
   std::array<double, 2> toe_rest_m{};
 };
 FootBuild foot_build(const WalkModel& model);

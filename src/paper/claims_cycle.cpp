@@ -11,7 +11,8 @@ namespace gaitpad {
 namespace {
 
 constexpr std::array<Side, 2> kSides = {kLeftSide, kRightSide};
-constexpr double kPrintRate_hz = 60.0;  // the bound on jumps is for a frame of the screen
+// The display's frame rate for which the paper states its bound on jumps.
+constexpr double kPrintRate_hz = 60.0;
 
 std::size_t first_tick(double after_s) { return static_cast<std::size_t>(after_s * kPaperRate_hz); }
 
@@ -140,9 +141,10 @@ double stride_difference(const Walk& walk, const Ticks& a, const Ticks& b) {
 
 // Assertion 24: walking straight or in a turn.
 
-constexpr double kForwardStick = 0.6, kHalf = 0.5;  // stick
+// Deflections of the stick in the walk and in the turn.
+constexpr double kForwardStick = 0.6, kHalf = 0.5;
 constexpr std::array<double, 3> kSideways = {0.25, kHalf, 0.8};
-constexpr double kTurning_s = 4.0;  // the turn is steady this long after the start
+constexpr double kTurning_s = 4.0;  // time after the start from which the turn is steady
 
 Walk turning(const WalkModel& model, IkMode mode, double x, double end_s) {
   WalkCase what;
@@ -182,7 +184,7 @@ double mirror_gap_m(const Walk& a, const Walk& b) {
 }
 
 struct Circle {
-  double radius_error = kNoNumber;  // relative to speed / turn rate
+  double radius_error = kNoNumber;  // error of the path's radius relative to speed / turn rate
   double closes_m = kNoNumber;
 };
 Circle circle_of(const Walk& walk) {
@@ -217,10 +219,10 @@ void circle_claims(const Walk& walk, ClaimList& list) {
 // Assertion 22: uneven ground, "including climbing and descending steps".
 
 constexpr double kStick = 0.5, kEnd_s = 20.0, kStop_s = 17.0;
-constexpr double kGrade = 0.176;                   // 10 degrees
-constexpr double kRise_m = 0.17, kTread_m = 0.28;  // of a stair
+constexpr double kGrade = 0.176;                   // rise / run of the slope: 10 degrees
+constexpr double kRise_m = 0.17, kTread_m = 0.28;  // height and depth of a stair
 constexpr int kStairs = 8;
-constexpr double kSoleHalf_m = 0.045;  // of the reference leg
+constexpr double kSoleHalf_m = 0.045;  // half the width of a sole on the reference leg
 
 struct Ground22 {
   const char* name;

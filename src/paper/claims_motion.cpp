@@ -15,13 +15,14 @@ namespace gaitpad {
 namespace {
 
 constexpr const char* kSection = "3.2, figure 2";
-constexpr int kSamples = 120;                // per stride, as in the derivation of the bounds
-constexpr double kFrame = 100.0 / kSamples;  // percent
+constexpr int kSamples = 120;                // samples of a stride, as in the derivation of the
+                                             // bounds
+constexpr double kFrame = 100.0 / kSamples;  // length of a sample in percent of the stride
 constexpr const char* kNotAdult = "this number was derived for the built-in adult's curve alone";
 
 double percent(int index) { return 100.0 * index / kSamples; }
 Bound near_frame(double at_percent) {
-  constexpr double kRounding = 0.05;  // the bounds have one decimal
+  constexpr double kRounding = 0.05;  // half a unit of the bounds' one decimal
   return within(at_percent - kFrame - kRounding, at_percent + kFrame + kRounding);
 }
 FlightRule rule_of(IkMode mode) { return {true, mode == IkMode::robust}; }
@@ -31,12 +32,12 @@ constexpr const char* kNoTargets = "no three targets in this motion's stride";
 struct Wanted {
   FootPoint point;
   const char* name;
-  std::array<double, 3> percent;  // of the stride; 0: not stated
+  std::array<double, 3> percent;  // phases in percent of the stride; 0: not stated
 };
 constexpr std::array<Wanted, 2> kWanted = {Wanted{FootPoint::ankle, "ankle", {44.2, 71.7, 94.2}},
                                            Wanted{FootPoint::heel, "heel", {0.0, 70.8, 95.0}}};
 
-// 1: the phases of the targets.
+// Claim 1: the phases of the targets.
 void target_claims(const PaperSource& source, const Wanted& wanted, IkMode mode, ClaimList& list) {
   const auto heights = stride_heights(source.cycle, kRightSide, wanted.point, kSamples);
   const FlightTargets t =
@@ -57,7 +58,7 @@ void target_claims(const PaperSource& source, const Wanted& wanted, IkMode mode,
   }
 }
 
-// 1: the bands that the targets lie in.
+// Claim 1: the bands that the targets lie in.
 void band_claims(const PaperSource& source, IkMode mode, ClaimList& list) {
   const auto heights = stride_heights(source.cycle, kRightSide, FootPoint::ankle, kSamples);
   const auto targets = flight_targets(heights, rule_of(mode));
@@ -77,7 +78,7 @@ void band_claims(const PaperSource& source, IkMode mode, ClaimList& list) {
   list.add(ends, std::max(share(targets->lift), share(targets->land)), band);
 }
 
-// 1: both feet, in frames of the file.
+// Claim 1: both feet, in frames of the file.
 void file_claims(const PaperSource& source, IkMode mode, ClaimList& list) {
   int found = 0;
   std::string text;
@@ -101,7 +102,7 @@ double apart_percent(const FlightTargets& a, const FlightTargets& b) {
       std::max({std::abs(a.lift - b.lift), std::abs(a.peak - b.peak), std::abs(a.land - b.land)}));
 }
 
-// 2, 3: the purpose of the 10 % bands.
+// Claims 2 and 3: the purpose of the 10 % bands.
 void threshold_claims(const PaperSource& source, IkMode mode, ClaimList& list) {
   const auto heights = stride_heights(source.cycle, kRightSide, FootPoint::ankle, kSamples);
   const FlightRule rule = rule_of(mode);
@@ -130,7 +131,7 @@ void threshold_claims(const PaperSource& source, IkMode mode, ClaimList& list) {
   }
 }
 
-// 4: which low and which point of the foot the paper means.
+// Claim 4: which low and which point of the foot the paper means.
 void ambiguity_claims(const PaperSource& source, IkMode mode, ClaimList& list) {
   auto heights = stride_heights(source.cycle, kRightSide, FootPoint::ankle, kSamples);
   add_standing_jitter(heights, kSamples);
@@ -156,7 +157,8 @@ void ambiguity_claims(const PaperSource& source, IkMode mode, ClaimList& list) {
   }
 }
 
-// 5: no result instead of an incomplete one, and the same result for every beginning of the clip.
+// Claim 5: no result instead of an incomplete one, and the same result for every beginning of the
+// clip.
 void completeness_claims(const PaperSource& source, IkMode mode, ClaimList& list) {
   auto heights = stride_heights(source.cycle, kRightSide, FootPoint::ankle, kSamples);
   const auto whole = flight_targets(heights, rule_of(mode));

@@ -15,7 +15,7 @@
 namespace gaitpad {
 namespace {
 
-constexpr int kTasks = 1000;  // random near goals
+constexpr int kTasks = 1000;  // number of random near goals
 constexpr const char* kSection = "3.3.2";
 using Weights = std::array<double, kChainLinks>;
 
@@ -109,8 +109,10 @@ Shares near_goals(const NearGoals& what, IkMode mode) {
   return found;
 }
 
-constexpr double kGentle_rad = 1.2;  // bend of a chain like an arm
-constexpr double kTickReach = 0.1;   // in links; a walk's goal moves this far in a few ticks
+// Most bend at each joint, for chains that are bent like an arm.
+constexpr double kGentle_rad = 1.2;
+// Distance of a goal in links, as far as a walk's goal moves in a few ticks.
+constexpr double kTickReach = 0.1;
 
 void near_claims(IkMode mode, ClaimList& list) {
   const Shares any = near_goals({}, mode), tick = near_goals({kGentle_rad, kTickReach}, mode),
@@ -135,7 +137,7 @@ void near_claims(IkMode mode, ClaimList& list) {
            not_near);
 }
 
-// 10: the root turns less, the other joints more.
+// Claim 10: the root turns less, the other joints more.
 void figure_4_claims(IkMode mode, ClaimList& list) {
   std::string roots;
   int rises = 0;
@@ -159,7 +161,7 @@ void figure_4_claims(IkMode mode, ClaimList& list) {
   list.add("10 ends of the chain off the goal, mm", 1e3 * apart, at_most(1e3 * kChainTolerance_m));
 }
 
-// 11: only the ratios of the weights count.
+// Claim 11: only the ratios of the weights count.
 void relative_claims(IkMode mode, ClaimList& list) {
   std::vector<double> iterations;
   std::string text;
@@ -219,7 +221,7 @@ double contraction_norm(const IkChain& chain, const IkAngles& q, const vec2& goa
   return std::sqrt(std::max(square, 0.0));
 }
 
-// 12: without redundancy weights have no effect; and the rate of convergence of eq. (5).
+// Claim 12: without redundancy weights have no effect; and the rate of convergence of eq. (5).
 void limit_claims(IkMode mode, ClaimList& list) {
   IkAngles even{}, stiff{};
   error_of_two_links(1.0, mode, even);
@@ -234,7 +236,8 @@ void limit_claims(IkMode mode, ClaimList& list) {
   const ChainSolve s = solve_chain(chain, task, mode);
   double worst = 0.0;
   for (std::size_t k = 0; k + 1 < s.angles_rad.size(); ++k) {
-    if (s.error_m[k] > 0.04 * kChainLink_m) continue;  // only where the linearisation is valid
+    // Compare only near the goal, where the linearisation is valid.
+    if (s.error_m[k] > 0.04 * kChainLink_m) continue;
     worst = std::max(worst, contraction_norm(chain, s.angles_rad[k + 1], task.goal_m) /
                                 contraction_norm(chain, s.angles_rad[k], task.goal_m));
   }
@@ -242,9 +245,9 @@ void limit_claims(IkMode mode, ClaimList& list) {
            "1 - least weight = 0.8, beside terms of second order");
 }
 
-constexpr int kFrames = 60;            // on the way to the goal, and the same number at it
-constexpr double kFar = 1.5;           // in leg lengths from the hip: a very high step
-constexpr double kMostTurn_rad = kPi;  // no joint of a leg can turn farther between two frames
+constexpr int kFrames = 60;            // frames on the way to the goal, and as many at the goal
+constexpr double kFar = 1.5;           // distance of a very high step from the hip, in leg lengths
+constexpr double kMostTurn_rad = kPi;  // most that a leg's joint can turn between two frames
 
 IkResult solve(const IkChain& chain, const vec3& heel_m, const vec3& goal_m, IkMode mode,
                IkAngles& angles) {
@@ -290,7 +293,7 @@ Pair in_turns(A even, B weighted) {
 struct HeelPath {
   IkChain even, weighted;
   vec3 heel_m{0.0};
-  std::vector<IkAngles> start_rad;  // pose of the walk before each goal
+  std::vector<IkAngles> start_rad;  // the walk's pose before each goal
   std::vector<vec3> goal_m;
 };
 HeelPath heel_path(const WalkModel& model, const Walk& walk) {

@@ -13,7 +13,8 @@ namespace gaitpad {
 namespace {
 
 constexpr const char* kSection5a = "4, figure 5a";
-constexpr double kEndShare = 0.1;  // of a flight: before its strike the leg is nearly stretched
+// Last share of a flight: before its strike the leg is nearly stretched.
+constexpr double kEndShare = 0.1;
 constexpr std::array<Side, 2> kSides = {kLeftSide, kRightSide};
 
 double worst_of(const std::array<double, 2>& v) { return std::max(v[0], v[1]); }
@@ -47,7 +48,7 @@ double least_knee(const Walk& walk, const Ticks& stride) {
                   joint_range(walk, stride, kRightSide, LegJoint::knee).min);
 }
 
-// 13: a stiffened hip.
+// Claim 13: a stiffened hip.
 void stiff_hip_claims(const WeightWalks& w, const Ticks& stride, ClaimList& list) {
   const auto rms =
       each_leg([&](Side s) { return joint_rms(*w.even, *w.stiff_hip, stride, s, LegJoint::hip); });
@@ -82,7 +83,7 @@ void stiff_hip_claims(const WeightWalks& w, const Ticks& stride, ClaimList& list
                        least_knee(*w.even, stride)));
 }
 
-// 14: a slightly stiffened knee.
+// Claim 14: a slightly stiffened knee.
 void stiff_knee_claims(const WeightWalks& w, const Ticks& stride, ClaimList& list) {
   constexpr double kLeast = 0.2, kMost = 1.5;
   const auto extremes = each_leg([&](Side s) {
@@ -122,7 +123,7 @@ EndsAndMiddle ends_and_middle(const Walk& even, const Walk& other, const Ticks& 
   return found;
 }
 
-// 15: walks agree where a leg is nearly stretched, and differ before that.
+// Claim 15: walks agree where a leg is nearly stretched, and differ before that.
 void end_claims(const WeightWalks& w, const Ticks& stride, ClaimList& list) {
   const EndsAndMiddle hip = ends_and_middle(*w.even, *w.stiff_hip, stride),
                       knee = ends_and_middle(*w.even, *w.stiff_knee, stride);
@@ -144,7 +145,7 @@ void end_claims(const WeightWalks& w, const Ticks& stride, ClaimList& list) {
 
 double distance_mm(const vec3& a, const vec3& b) { return 1000.0 * glm::distance(a, b); }
 
-// 16: weights do not change the paths of the feet.
+// Claim 16: weights do not change the paths of the feet.
 void place_claims(const WeightWalks& w, const Ticks& stride, ClaimList& list) {
   double landing = 0.0, heel = 0.0, lifting = 0.0, standing = 0.0, flying = 0.0;
   for (const Walk* other : {w.stiff_hip, w.stiff_knee}) {
@@ -178,8 +179,10 @@ void place_claims(const WeightWalks& w, const Ticks& stride, ClaimList& list) {
 }
 
 constexpr const char* kSection5b = "4, figure 5b";
-constexpr double kSteady_s = 3.5;                 // after the start
-constexpr double kMidFrom = 0.25, kMidTo = 0.75;  // of a flight
+constexpr double kSteady_s = 3.5;  // time after the start from which the walk is
+                                   // steady
+// The middle of a flight, in shares of its duration.
+constexpr double kMidFrom = 0.25, kMidTo = 0.75;
 
 double forward_m(const WalkFrame& frame, const vec3& v) {
   return glm::dot(v, heading_direction(frame.heading_rad));
@@ -187,9 +190,9 @@ double forward_m(const WalkFrame& frame, const vec3& v) {
 
 struct FlightFigures {
   double ticks = 0.0, peak_m = 0.0;
-  double reach_m = 0.0;      // distance covered by the heel
+  double reach_m = 0.0;      // distance that the heel covers in the flight
   double clearance_m = 0.0;  // smallest height of the toe in mid-flight
-  double step_m = 0.0;       // from standing heel to landing heel
+  double step_m = 0.0;       // distance from the standing heel to the landing heel
 };
 
 // Means over the steady flights of a foot.
@@ -205,7 +208,7 @@ FlightFigures flight_figures(const Walk& walk, Side side) {
       if (u > kMidFrom && u < kMidTo) clearance = std::min(clearance, frame.toe_m[side].y);
     }
     const WalkFrame &lift = walk.samples[f.begin].frame, &land = walk.samples[f.end].frame;
-    std::size_t stood = f.begin;  // last tick at which the other heel stood
+    std::size_t stood = f.begin;  // the last tick at which the other heel stood
     while (stood > 0 && !walk.samples[stood].frame.heel_planted[other(side)]) --stood;
     sum.step_m +=
         forward_m(land, land.heel_m[side] - walk.samples[stood].frame.heel_m[other(side)]);

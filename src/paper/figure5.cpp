@@ -13,7 +13,7 @@ namespace {
 
 constexpr int kWidth = 1500, kHeight = 1070;
 constexpr double kInner = kWidth - 2.0 * kPageMargin;
-constexpr int kPoses = 7;  // per stride
+constexpr int kPoses = 7;  // number of poses that are drawn of a stride
 constexpr double kPanelTop = 104.0, kPanelHeight = 280.0, kPlotTop = 456.0, kPlotHeight = 300.0,
                  kTableTop = 842.0, kTableHeight = 190.0;
 
@@ -27,7 +27,8 @@ struct Figure5 {
   bool is_limp = false;
   IkMode mode = IkMode::robust;
   std::array<Character3, 3> characters;
-  Ticks stride;  // of all three, because weights do not change the timing
+  // The drawn stride; all three walks have it, because weights do not change the timing.
+  Ticks stride;
 };
 
 Figure5 figure_of(Study& study, const FigureStyles& styles, IkMode mode, bool is_limp) {
@@ -88,7 +89,7 @@ struct Panel {
   std::string title, words;
   unsigned colour;
   std::vector<std::vector<vec3>> poses;
-  std::array<std::vector<vec3>, 2> trail;  // heels
+  std::array<std::vector<vec3>, 2> trail;  // paths of the left and the right heel
 };
 
 Panel panel_of(const Figure5& f, const Character3& c) {
@@ -116,7 +117,7 @@ Panel panel_of_data(const std::vector<DataPose>& data) {
   return panel;
 }
 
-struct Extent {  // of a panel's figures, metres
+struct Extent {  // bounds of the stick figures in a panel, metres
   double low_z = 1e9, high_z = -1e9, top = 0.0;
 };
 Extent extent_of(const Panel& panel) {

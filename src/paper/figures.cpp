@@ -20,7 +20,7 @@ struct FootHeight {
   std::vector<double> height_m, gradient_m_s;
   std::optional<Swing> literal, robust;
   double frame_s = 0.0, low_m = 0.0, high_m = 0.0;
-  std::size_t first = 0, last = 0;  // frames shown
+  std::size_t first = 0, last = 0;  // first and last frame that are shown
 };
 
 FootHeight foot_height(const PaperSource& source, Side side) {
@@ -124,13 +124,13 @@ std::string figure_csv(const FootHeight& f) {
 // Figure 3 and table I: the two-stage cycle.
 
 constexpr double kPanelTop = 120.0, kPanelHeight = 450.0, kFloor = 530.0, kPxPerM = 220.0;
-constexpr double kBehind_m = 0.60;  // from the pelvis to a panel's left edge
+constexpr double kBehind_m = 0.60;  // distance from the pelvis to a panel's left edge
 
-struct Beginning {  // start of a stage
+struct Beginning {  // the start of a stage
   std::size_t tick = 0;
   Stage stage = Stage::flight;
   Side swing = kRightSide;
-  std::array<bool, 2> heel{}, toe{};  // planted at the start
+  std::array<bool, 2> heel{}, toe{};  // the foot's points that are planted at the start
 };
 
 // Four stages in a row, beginning with the right foot's flight, and a fifth for the last arrows.

@@ -9,7 +9,7 @@
 namespace gaitpad {
 
 struct Figure {
-  std::string name;  // `figure5a`: NAME.png and NAME.csv
+  std::string name;  // name of the files: `figure5a` gives figure5a.png and figure5a.csv
   Surface picture;
   std::string csv;
 };

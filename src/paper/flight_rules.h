@@ -10,9 +10,9 @@ namespace gaitpad {
 
 struct FlightRule {
   bool has_bands = true;    // a target's height must be within 10 % of the extreme
-  bool takes_last = false;  // lift: the last low before the peak, not the first low
+  bool takes_last = false;  // the lift is the last low before the peak, not the first low
 };
-struct FlightTargets {  // as indices of the heights
+struct FlightTargets {  // the three targets of a flight, as indices of the heights
   int lift = 0, peak = 0, land = 0;
   bool operator==(const FlightTargets&) const = default;
 };

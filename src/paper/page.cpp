@@ -62,7 +62,8 @@ void draw_path(cairo_t* cr, const SideView& view, const std::vector<vec3>& path_
 }
 
 void draw_arrow(cairo_t* cr, const vec2& from, const vec2& to, const Stroke& stroke) {
-  constexpr double kLongestHead = 9.0, kShortest = 4.0, kHalf = 0.4;  // pixels, rad
+  // Longest and shortest arrow head in pixels, and half its angle in radians.
+  constexpr double kLongestHead = 9.0, kShortest = 4.0, kHalf = 0.4;
   const vec2 way = to - from;
   const double length = glm::length(way), head = std::min(kLongestHead, 0.5 * length);
   if (length < kShortest) return;
@@ -98,7 +99,7 @@ std::vector<vec3> figure_points(const std::vector<vec3>& joints_m,
 }
 
 std::vector<StickBone> stick_bones(const GaitCycle& cycle, const std::vector<vec3>& points_m) {
-  // In leg lengths. Fingers and loose ends of meshes are not drawn.
+  // Limits of a drawn bone, in leg lengths. Fingers and loose ends of meshes are not drawn.
   constexpr double kShortest = 0.015, kLongest = 0.9, kLongestEnd = 0.5;
   using Part = StickBone::Part;
   const auto& joints = cycle.skeleton.joints;

@@ -33,8 +33,8 @@ PlotSeries curve_of(std::vector<PlotPoint> points, const Stroke& stroke);
 // The sagittal plane: z to the right, y up.
 struct SideView {
   Box box;
-  double left_z_m = 0.0;  // at the box's left edge
-  double floor_px = 0.0;  // y of height 0
+  double left_z_m = 0.0;  // z of the box's left edge
+  double floor_px = 0.0;  // y at which height 0 is drawn
   double px_per_m = 100.0;
 };
 vec2 pixel_in(const SideView& view, const vec3& place_m) noexcept;
@@ -42,7 +42,7 @@ void draw_floor(cairo_t* cr, const SideView& view);
 void draw_path(cairo_t* cr, const SideView& view, const std::vector<vec3>& path_m,
                const Stroke& stroke);
 void draw_arrow(cairo_t* cr, const vec2& from, const vec2& to, const Stroke& stroke);
-void draw_plant(cairo_t* cr, const vec2& at);  // a triangle below the planted point
+void draw_plant(cairo_t* cr, const vec2& at);  // Draws a triangle below a planted point.
 
 // The points of a stick figure: its joints, then both heels, left first.
 std::vector<vec3> figure_points(const std::vector<vec3>& joints_m,
@@ -54,11 +54,12 @@ struct StickBone {
   enum class Part { left_leg, right_leg, rest } part = Part::rest;
 };
 std::vector<StickBone> stick_bones(const GaitCycle& cycle, const std::vector<vec3>& points_m);
-// Draws the left leg paler.
+// Draws a stick figure, its left leg paler.
 void draw_stick_figure(cairo_t* cr, const SideView& view, const std::vector<StickBone>& bones,
                        const std::vector<vec3>& points_m, const Stroke& stroke);
 
-// The first row has the headings; `shares` are the relative widths of the columns.
+// A table of texts. The first row has the headings; `shares` are the relative widths of the
+// columns.
 struct Table {
   std::vector<double> shares;
   std::vector<std::vector<std::string>> rows;

@@ -36,7 +36,7 @@ bool is_landing(const Walk& walk, std::size_t tick, Side side) {
 double slide_of(const Walk& walk, std::size_t from, std::array<bool, 2> WalkFrame::*planted,
                 std::array<vec3, 2> WalkFrame::*place, Side side) {
   double most = 0.0;
-  bool stood = true;  // a plant that began before `from` is ignored
+  bool stood = true;  // true at first, so that a plant that began before `from` is ignored
   vec3 anchor(0.0);
   bool counts = false;
   for (std::size_t k = from; k < walk.samples.size(); ++k) {
@@ -60,7 +60,7 @@ DeviceInfo device() {
   info.vendor = 0x1209;
   info.product = 0x0001;
   info.name = "figures";
-  // Game Pad: X and Y, 16 bits each, -32767..32767.
+  // A descriptor of a game pad with X and Y, 16 bits each, -32767..32767.
   info.descriptor = {0x05, 0x01, 0x09, 0x05, 0xa1, 0x01, 0x09, 0x30, 0x09, 0x31, 0x16, 0x01,
                      0x80, 0x26, 0xff, 0x7f, 0x75, 0x10, 0x95, 0x02, 0x81, 0x02, 0xc0};
   return info;

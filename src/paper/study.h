@@ -18,10 +18,10 @@
 namespace gaitpad {
 
 struct PaperSource {
-  std::string motion;     // `procedural`, or the file as given
-  bool is_adult = false;  // the built-in adult's curve, for which some claims have numbers
-  Motion frames;          // the motion as in the file
-  GaitCycle cycle;        // its best stride
+  std::string motion;     // `procedural`, or the path of the file as given
+  bool is_adult = false;  // it is the built-in adult's walk, for which some claims state numbers
+  Motion frames;          // the motion as it is in the file
+  GaitCycle cycle;        // the motion's best stride
   std::vector<Style> styles;
 };
 
@@ -48,7 +48,7 @@ inline constexpr double kPaperStick = 0.8;  // forward deflection in the walk of
 
 struct StickAt {
   double time_s = 0.0;
-  vec2 left{0.0};  // from that time on; +x right, +y forward
+  vec2 left{0.0};  // deflection from that time on; +x right, +y forward
 };
 struct WalkCase {
   const WalkModel* model = nullptr;
@@ -61,13 +61,13 @@ struct WalkCase {
 struct WalkSample {
   WalkFrame frame;
   std::array<LegAngles, 2> angles_rad{};
-  double phase = 0.0;          // of the data's stride, not wrapped
-  vec3 hips_m{0.0};            // on the ground, without the data's oscillations
-  double pelvis_yaw_rad = 0;   // relative to the heading; with keeps_joints
-  std::vector<vec3> joints_m;  // of the skeleton, world; with keeps_joints
+  double phase = 0.0;          // phase of the data's stride, not wrapped
+  vec3 hips_m{0.0};            // place of the hips on the ground, without the data's oscillations
+  double pelvis_yaw_rad = 0;   // yaw relative to the heading; only with keeps_joints
+  std::vector<vec3> joints_m;  // joints of the skeleton in the world; only with keeps_joints
 };
 struct Walk {
-  std::vector<WalkSample> samples;  // one for each tick
+  std::vector<WalkSample> samples;  // one sample for each tick
 };
 using EachTick = std::function<void(const WalkState&, const Pose&)>;
 Walk walked(const WalkCase& what, const EachTick& each = {});
@@ -77,11 +77,11 @@ enum class LegJoint { hip, knee, ankle };
 inline constexpr std::array<const char*, 3> kLegJointNames = {"hip", "knee", "ankle"};
 double joint_deg(const LegAngles& angles_rad, LegJoint joint) noexcept;
 
-struct Ticks {  // [begin, end)
+struct Ticks {  // the ticks [begin, end)
   std::size_t begin = 0, end = 0;
   std::size_t count() const noexcept { return end - begin; }
 };
-// The strides of a foot, each from one strike to the next.
+// The strides of a foot; each lasts from one strike to the next.
 std::vector<Ticks> strides(const Walk& walk, Side side);
 // The first stride that begins after `time_s`; empty if there is none.
 Ticks stride_after(const Walk& walk, Side side, double time_s);
@@ -107,7 +107,7 @@ class Study {
 
   const PaperSource& source() const { return source_; }
   const WalkModel& model() const { return *model_; }
-  // The same motion on longer or shorter legs.
+  // The motion on longer or shorter legs.
   Result<WalkModel> model_with_legs(double leg_ratio) const;
   // A straight walk, kPaperStick forward, long enough for figure_stride().
   const Walk& walk(const std::string& style, IkMode mode);
@@ -130,9 +130,9 @@ double planted_slide_mm(const Walk& walk, std::size_t from = 0);
 
 // A gamepad with two 16-bit axes, for the claims about the joystick.
 
-// It has the calibration of an unknown stick (inner zone 0.2, outer zone 0.95).
+// The pad's configuration: the calibration of an unknown stick (inner zone 0.2, outer zone 0.95).
 PadConfig paper_pad();
-// Raw -1..1, +x right, +y forward.
+// A report of that pad. `raw` is -1..1, +x right, +y forward.
 Report paper_report(const vec2& raw);
 Report paper_unplug();
 // A session with that pad and one character for each style, on this motion.

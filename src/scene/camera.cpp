@@ -5,12 +5,16 @@ namespace {
 
 constexpr double kNearest_m = 1.0, kFarthest_m = 40.0;
 constexpr double kLowestEye_m = 0.1, kHighestTarget_m = 4.0;
-constexpr double kSteepest_rad = 1.5;  // almost straight down; straight down leaves "up" undefined
+// Greatest pitch, almost straight down, where "up" would be undefined.
+constexpr double kSteepest_rad = 1.5;
 constexpr double kNearPlane_m = 0.1, kFarPlane_m = 200.0;
-constexpr double kFollow_1_s = 4.0;    // rate at which the camera follows
-constexpr double kFastest_m_s = 20.0;  // a faster move is a jump: a reset or another character
-constexpr double kUsed = 0.92;         // share of the picture's width and height for the characters
-constexpr double kLeastUsed = 0.3;     // if labels take the rest
+// Rate at which the camera approaches the place that it follows.
+constexpr double kFollow_1_s = 4.0;
+// A followed place that moves faster has jumped: a reset or another character.
+constexpr double kFastest_m_s = 20.0;
+// Share of the picture's width and height in which the characters are framed.
+constexpr double kUsed = 0.92;
+constexpr double kLeastUsed = 0.3;  // the least such share; labels may take the rest
 constexpr double kNearestPoint_m = 0.5;
 constexpr double kOutTime_s = 0.25, kInTime_s = 0.6, kLetPass = 0.97;
 

@@ -19,24 +19,26 @@ struct Camera {
   double distance_m = 6.0;
   double yaw_rad = 0.16;   // 0: looks along -z, at the front of a character that walks along +z
   double pitch_rad = 0.2;  // above the horizon
-  double field_of_view_rad = 0.66;  // from the lower edge to the upper one
+  double field_of_view_rad = 0.66;  // angle between the picture's lower and upper edge
   // Ground heights below target and eye; the limits are relative to them.
   double floor_m = 0.0, eye_floor_m = 0.0;
   bool is_following = true;
-  vec3 followed_m{0.0, 0.8, 0.0};  // the last place of follow()
-  vec3 pace_m_s{0.0};              // the target's velocity while it follows
-  vec3 aside_m{0.0};               // from the followed place to the target
-  double framed_m = 6.0;           // shows all characters; distance_m / framed_m: zoom
+  vec3 followed_m{0.0, 0.8, 0.0};  // the place that follow() was last called with
+  vec3 pace_m_s{0.0};              // the target's velocity while the camera follows
+  vec3 aside_m{0.0};               // from the followed place to the target, as moved by the user
+  // Distance that shows all characters; the user's zoom is distance_m / framed_m.
+  double framed_m = 6.0;
 
   vec3 eye_m() const noexcept;
-  mat4 view() const noexcept;  // world to eye: x right, y up, looking along -z
+  // Transforms the world to the eye's frame: x right, y up, looking along -z.
+  mat4 view() const noexcept;
   mat4 projection(double aspect) const noexcept;
 };
 
-// All keep the camera above the floor and 1 to 40 m from the target. Positive yaw moves the eye
-// counter-clockwise as seen from above, positive pitch upwards.
+// Both keep the camera above the floor and 1 to 40 m from the target, as do the functions below.
+// Positive yaw moves the eye counter-clockwise as seen from above, positive pitch upwards.
 void orbit(Camera& camera, double yaw_rad, double pitch_rad) noexcept;
-void dolly(Camera& camera, double factor) noexcept;  // multiplies the distance
+void dolly(Camera& camera, double factor) noexcept;  // Multiplies the distance by `factor`.
 // Moves the picture at the target's distance by this number of pixels, y downwards. Ends following.
 void pan(Camera& camera, const vec2& pixels, double viewport_height_px) noexcept;
 // Call it on uneven ground after the target or the eye has moved.
@@ -55,10 +57,11 @@ struct Framing {
 // pixels). At least `least_m` away; without points the present position.
 Framing framing(const Camera& camera, std::span<const vec3> points_m, int width_px, int height_px,
                 const vec2& label_px, double least_m) noexcept;
-// Moves there at once and follows `place_m` from then on.
+// Moves to this framing at once and follows `place_m` from then on.
 void show(Camera& camera, const Framing& framing, const vec3& place_m) noexcept;
-// If is_following is set, moves there smoothly, outwards faster than inwards, and keeps the user's
-// zoom. Inwards it ignores 3 %, so that the picture does not pulsate with each step.
+// If is_following is set, moves to this framing smoothly, outwards faster than inwards, and keeps
+// the user's zoom. Differences of up to 3 % inwards are ignored, so that the picture does not
+// pulsate with each step.
 void approach(Camera& camera, const Framing& framing, double dt_s) noexcept;
 
 // Pixels from the viewport's upper left corner, y downwards; z is the depth in metres along the

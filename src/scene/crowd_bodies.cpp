@@ -6,15 +6,17 @@
 namespace gaitpad {
 namespace {
 
-constexpr double kFull_m = 11.0;  // nearer members are drawn with all bones
+constexpr double kFull_m = 11.0;  // members that are nearer to the eye are drawn with all bones
 constexpr Colour kPlain = {0.60, 0.61, 0.64};
-constexpr double kPlainShare = 0.45;  // share of grey, so that walkers stand out
+// Share of grey in the crowd's colours, so that walkers stand out.
+constexpr double kPlainShare = 0.45;
 constexpr double kPaleCrowdShare = 0.30;
-constexpr double kAroundFocus_m = 3.0;  // floor that is drawn beyond the last member
+constexpr double kAroundFocus_m = 3.0;  // width of the floor that is drawn beyond the last member
 // Shadows on the floor: below each foot, and where the light casts the body's shadow.
 constexpr double kFootShade_m = 0.17, kBodyShade_m = 0.26, kHeadShade_m = 0.22;
 constexpr double kShadeUp_m = 0.006;
-const vec3 kThrown = vec3(-0.49, 0.0, -0.42);  // shadow's offset per metre of height
+// The shadow's offset on the floor per metre of the body's height.
+const vec3 kThrown = vec3(-0.49, 0.0, -0.42);
 
 // The colour of the style, brighter or darker by member, so that neighbours differ.
 Colour colour_of(const Theme& theme, int style, std::size_t member) {

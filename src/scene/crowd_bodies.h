@@ -11,7 +11,7 @@ namespace gaitpad {
 
 class CrowdBodies {
  public:
-  CrowdBodies() = default;  // no members
+  CrowdBodies() = default;  // Has no members.
   explicit CrowdBodies(const Cast& cast);
 
   // The place of the eye in the next fill(): members near it are drawn with all bones.
@@ -28,9 +28,10 @@ class CrowdBodies {
   void add(const Mannequin& mannequin, const Colour& colour, const Terrain* terrain,
            SceneContent& content);
 
-  std::vector<Mannequin> full_, coarse_;  // one for each build
+  // Mannequins with all bones and with few, one for each build.
+  std::vector<Mannequin> full_, coarse_;
   std::vector<Member> members_;
-  std::size_t joints_ = 0;  // of all members
+  std::size_t joints_ = 0;  // number of joints of all members
   vec3 eye_m_{0.0, 1.6, 9.0};
   Pose pose_;
   JointFrames frames_;

@@ -96,7 +96,7 @@ class GlRows {
  private:
   void load(Of of, const void* data, std::size_t count, std::size_t row_bytes);
   GlVertexArray vertices_;
-  std::array<GlBuffer, 2> buffer_;  // indexed by Of
+  std::array<GlBuffer, 2> buffer_;  // a buffer of vertices and one of instances, indexed by Of
   std::array<GLsizei, 2> count_ = {};
   GlBuffer indices_;
   GLsizei index_count_ = 0;
@@ -112,7 +112,8 @@ class GlProgram {
   void set(const char* uniform, double value) const;
   void set(const char* uniform, const vec2& value) const;
   void set(const char* uniform, const vec3& value) const;
-  void set(const char* uniform, const Colour& value) const;  // vec3, without alpha
+  // Sets a vec3: the colour without its alpha.
+  void set(const char* uniform, const Colour& value) const;
   void set(const char* uniform, const glm::dmat4& value) const;
 
  private:

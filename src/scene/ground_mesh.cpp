@@ -6,7 +6,7 @@
 namespace gaitpad {
 namespace {
 
-constexpr int kMostSide = 400;      // rows or columns
+constexpr int kMostSide = 400;      // greatest number of rows and of columns
 constexpr double kBeside_m = 1e-6;  // distance at which the two sides of a riser are sampled
 
 struct GroundRow {

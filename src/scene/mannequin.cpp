@@ -10,8 +10,9 @@
 namespace gaitpad {
 namespace {
 
-constexpr double kAdultTrunk_m = 0.50;  // hip joints to shoulder joints
-constexpr double kAdultArm_m = 0.57;    // shoulder to elbow to wrist
+// An adult's distance from the hip joints to the shoulder joints.
+constexpr double kAdultTrunk_m = 0.50;
+constexpr double kAdultArm_m = 0.57;  // an adult's distance from shoulder over elbow to wrist
 // Half depth of the trunk, its width / depth, and the distance of its middle ahead of the spine's
 // joints, from the hips (height 0) to the shoulders (1). Proportions:
 // tests/view/mannequin_test.cpp.
@@ -37,10 +38,10 @@ Girth girth_at(double height) {
 
 vec3 between(const vec3& a, const vec3& b, double t) { return a + (b - a) * t; }
 
-// A place fixed to a joint.
+// A place that is fixed to a joint.
 struct Held {
   int joint = 0;
-  vec3 at_m{0.0};  // world, standing pose
+  vec3 at_m{0.0};  // the place in the standing pose, world frame
 };
 
 class Builder {
@@ -69,10 +70,10 @@ class Builder {
   vec3 local(int joint, const vec3& world_m) const {
     return glm::conjugate(standing_.rotation[joint]) * (world_m - at(joint));
   }
-  // Radii in metres of the character; `wide` in the world, standing pose.
+  // Radii are in metres of the character; `wide` is a direction of the world in the standing pose.
   MannequinBone& add(const Held& from, const Held& to, double radius_from_m, double radius_to_m,
                      const vec3& wide = vec3(0.0), double width = 1.0);
-  void make_pale(int last);  // from bone `last` on
+  void make_pale(int last);  // Marks the bones from number `last` on as pale.
   void add_leg(Side side);
   void add_foot(const LegModel& leg);
   void add_pelvis();
@@ -86,11 +87,12 @@ class Builder {
   Mannequin& mannequin_;
   const WalkModel& model_;
   const UpperBodyJoints& joints_;
-  JointFrames standing_;                 // world, facing +z, the feet on the floor
-  std::vector<int> trunk_;               // from the root upwards to the head
-  vec3 hips_m_{0.0}, shoulders_m_{0.0};  // middle of left and right; estimated without both arms
-  double leg_, size_ = 1.0;              // over an adult's: of the legs; of the rest
-  vec3 along_{0.0};  // along_ * (place - hips) is 0 at the hips and 1 at the shoulders
+  JointFrames standing_;    // joint frames in the world, facing +z, the feet on the floor
+  std::vector<int> trunk_;  // the trunk's joints from the root upwards to the head
+  // Middles of the left and right joints; estimated if an arm is missing.
+  vec3 hips_m_{0.0}, shoulders_m_{0.0};
+  double leg_, size_ = 1.0;  // lengths relative to an adult's: of the legs, of the rest
+  vec3 along_{0.0};          // along_ * (place - hips) is 0 at the hips and 1 at the shoulders
 };
 
 void Builder::stand() {
@@ -385,10 +387,13 @@ constexpr Colour kPale = {0.83, 0.84, 0.86};
 constexpr double kPaleShare = 0.48;
 constexpr double kStickLine_px = 3.2;
 constexpr double kLongestEnd = 0.5,
-                 kLongestLine = 0.9;  // in leg lengths; joints of meshes may be far off
-constexpr double kDeepest_m = 0.05;   // of a foot in the ground; deeper: beside a riser
+                 kLongestLine = 0.9;  // longest drawn bone, in leg lengths; joints of meshes may be
+                                      // far off
+// Greatest depth of a foot in the ground; a deeper foot is beside a riser.
+constexpr double kDeepest_m = 0.05;
 constexpr double kShortestLine = 0.015,
-                 kShortestDotted = 0.045;  // in leg lengths; leaves fingers out
+                 kShortestDotted = 0.045;  // shortest bone with dots at its joints, in leg lengths;
+                                           // fingers get none
 
 // Lifts an end that is slightly below the ground. A deeper end is beside a riser, not on its tread,
 // and stays.

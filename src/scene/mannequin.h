@@ -14,17 +14,18 @@ namespace gaitpad {
 // A tapered capsule between two places, each fixed to a joint. Along `wide` it is `width` times as
 // thick.
 struct MannequinBone {
-  int from = 0, to = 0;         // joints
-  vec3 from_m{0.0}, to_m{0.0};  // in the frames of these joints
+  int from = 0, to = 0;         // the joints that carry the two ends
+  vec3 from_m{0.0}, to_m{0.0};  // the ends, in the frames of these joints
   double radius_from_m = 0.05, radius_to_m = 0.05;
-  vec3 wide{0.0}, wide_to{0.0};  // the same direction in the frames of `from` and `to`, standing
+  // One direction of the standing pose in the frames of `from` and `to`.
+  vec3 wide{0.0}, wide_to{0.0};
   double width_from = 1.0, width_to = 1.0;
-  bool is_pale = false;  // forearm, hand, head, foot: mixed with grey, so that they stand out
+  bool is_pale = false;  // mixed with grey, so that forearm, hand, head and foot stand out
 };
 struct Mannequin {
   std::shared_ptr<const WalkModel> model;
   std::vector<MannequinBone> bones;
-  int top = 0;            // joint of the highest place
+  int top = 0;            // the joint that carries the highest place
   vec3 top_m{0.0};        // the highest place, in that joint's frame
   double height_m = 0.0;  // height of that place when standing
 };

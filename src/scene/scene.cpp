@@ -23,10 +23,10 @@ namespace {
 struct SceneView {
   Camera camera;
   vec3 origin_m{0.0};      // whole metres on the floor
-  mat4 to_clip{1.0};       // from places relative to the origin
-  vec2 size_px{1.0, 1.0};  // of the viewport
+  mat4 to_clip{1.0};       // transforms places relative to the origin to clip coordinates
+  vec2 size_px{1.0, 1.0};  // size of the viewport
   double band_px = 0.0;    // lower edge of the drawn band, from the viewport's lower edge
-  double scale = 1.0;      // of the display
+  double scale = 1.0;      // factor of the display
   const Theme* theme = nullptr;
 
   vec3 eye_m() const noexcept { return camera.eye_m() - origin_m; }
@@ -37,13 +37,14 @@ struct SceneView {
 const vec3 kLightDirection = glm::normalize(vec3(0.42, 0.86, 0.36));
 
 struct MeshDetail {
-  int segments = 36, rings = 8;  // round the axis; of each cap
-  int shadow_px = 1024;          // side of the shadows' texture
+  // Triangles of a capsule: segments round its axis, rings of each cap.
+  int segments = 36, rings = 8;
+  int shadow_px = 1024;  // side of the texture that holds the shadows
 };
 // Square of the floor that the shadows' texture covers, relative to the view's origin.
 struct ShadowPlace {
   vec2 centre_m{0.0};
-  double half_m = 0.0;  // 0: there are no shadows
+  double half_m = 0.0;  // half the square's side; 0: there are no shadows
 };
 
 // Draws bodies of capsules, instanced, and renders their shadows into a texture of the floor.
@@ -65,7 +66,7 @@ class CapsuleScene {
 
   struct Instance {
     glm::vec4 a_radius, b_radius, across_width_a, colour_width_b;
-    glm::vec3 ground_layer;  // height of the floor below a, below b
+    glm::vec3 ground_layer;  // heights of the floor below a and b, and the layer
     glm::vec3 across_b;
   };
   GlProgram program_, shadow_program_;
@@ -74,15 +75,17 @@ class CapsuleScene {
   GlFrameBuffer shadow_target_;
   int shadow_px_ = 0;
 
-  std::vector<Instance> rows_;       // bodies near the floor, then the others, then lines
-  std::vector<Instance> high_rows_;  // the other bodies, while rows_ is filled
+  std::vector<Instance> rows_;  // bodies near the floor, then the other bodies, then lines
+  // Bodies that are not near the floor, until rows_ holds the others.
+  std::vector<Instance> high_rows_;
   std::size_t low_capsules_ = 0, capsules_ = 0;
   bool has_layers_ = false;
 };
 
-constexpr double kLineShadow_m = 0.014;  // radius of a stick figure's lines for their shadow
+constexpr double kLineShadow_m = 0.014;  // radius with which a stick figure's line casts its shadow
 constexpr double kContact_m = 0.55;      // higher bodies cast no contact shadow
-constexpr double kShadowStep_m = 2.0;    // steps of the texture's size, against flicker
+// The texture's size changes in steps of this length, so that shadows do not flicker.
+constexpr double kShadowStep_m = 2.0;
 constexpr double kLargestShadow_m = 16.0;
 
 // A unit vector at right angles to the axis, towards `wide` if possible.
@@ -340,7 +343,7 @@ void CrowdScene::draw_shades(const SceneContent& content, const SceneView& view)
 class FloorScene {
  public:
   std::optional<Error> open();
-  // Call it after the bodies are drawn. Without shadows `place.half_m` is 0.
+  // Call it after the bodies are drawn. `place.half_m` is 0 if there are no shadows.
   void draw(const SceneContent& content, const SceneView& view, const ShadowPlace& place,
             GLuint shadow_texture);
 
@@ -352,7 +355,7 @@ class FloorScene {
                    double half_m);
 
   GlProgram floor_, ground_, sky_;
-  GlVertexArray nothing_;  // the shader computes the corners
+  GlVertexArray nothing_;  // without data: the shader computes the corners
   // Uneven ground, rebuilt when the focus has moved far enough.
   GlRows mesh_;
   std::shared_ptr<const Terrain> terrain_;
@@ -361,9 +364,11 @@ class FloorScene {
   double mesh_half_m_ = 0.0;
 };
 
-constexpr double kFadesFrom_m = 3.0, kFadesTo_m = 9.0;  // at the camera's usual distance
+// Distances between which the grid fades, at the camera's usual distance.
+constexpr double kFadesFrom_m = 3.0, kFadesTo_m = 9.0;
 constexpr double kUsualDistance_m = 6.0;
-constexpr double kMeshStep_m = 0.125, kMeshMoves_m = 1.0;  // at the camera's usual distance
+// Size of a cell and way of the focus until the mesh is rebuilt, at the camera's usual distance.
+constexpr double kMeshStep_m = 0.125, kMeshMoves_m = 1.0;
 constexpr double kBehind_m = 0.05;  // the ground is drawn slightly behind its place, so that it
                                     // does not cut what stands on it
 
@@ -448,7 +453,8 @@ void FloorScene::draw_ground(const SceneContent& content, const SceneView& view,
   set_floor(ground_, content, view, place);
   ground_.set("moved", mesh_origin_m_ - view.origin_m);
   ground_.set("light", kLightDirection);
-  ground_.set("tone", view.is_light() ? 0.92 : 1.0);  // leaves a range for brighter parts
+  // On light ground the tone stays below 1, so that higher parts can be brighter.
+  ground_.set("tone", view.is_light() ? 0.92 : 1.0);
   ground_.set("relief", view.is_light() ? 5.0 : 10.0);
   ground_.set("level", mesh_origin_m_.y - view.origin_m.y);
   ground_.set("behind_m", kBehind_m);
@@ -467,7 +473,8 @@ void FloorScene::draw(const SceneContent& content, const SceneView& view, const 
   glBindVertexArray(nothing_.get());
   sky_.use();
   set_background(sky_, view);
-  glDrawArrays(GL_TRIANGLES, 0, 3);  // at the largest depth
+  // Three vertices at the largest depth, so that everything else hides the background.
+  glDrawArrays(GL_TRIANGLES, 0, 3);
   glBindTexture(GL_TEXTURE_2D, 0);
 }
 
@@ -487,7 +494,7 @@ class StrokeScene {
     glm::vec3 b;
     glm::vec4 colour;
   };
-  struct Edge {  // one side of a ribbon
+  struct Edge {  // one side of a ribbon at one point of the trail
     glm::vec4 clip;
     glm::vec3 edge, colour;
   };
@@ -496,7 +503,8 @@ class StrokeScene {
   GlProgram line_, trail_;
   GlRows line_rows_, trail_rows_;
   std::vector<Stroke> strokes_;
-  std::vector<Edge> ribbon_;  // pairs of edges as separate triangles
+  // Each two successive edges give two triangles, which share no vertices with the next ones.
+  std::vector<Edge> ribbon_;
 };
 
 constexpr double kAxisRadius_px = 1.5, kDotRadius_px = 3.6, kTrailHalf_px = 2.4,
@@ -706,7 +714,8 @@ struct Scene::Impl {
   StrokeScene strokes;
   Target target, resolved;
   std::string renderer;
-  int samples = 1, most_samples = 1;  // per pixel: normally; with half transparent bodies
+  // Samples per pixel: usually, and with half transparent bodies.
+  int samples = 1, most_samples = 1;
   bool is_software = false, has_bands = false;
 };
 

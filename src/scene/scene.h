@@ -17,21 +17,22 @@ namespace gaitpad {
 // The convex hull of two balls. Along the component of `wide` that is perpendicular to a-b it is
 // stretched by `width`, because a trunk is wider than deep.
 struct Capsule {
-  vec3 a_m{0.0}, b_m{0.0};  // world
+  vec3 a_m{0.0}, b_m{0.0};  // ends in the world
   double radius_a_m = 0.05, radius_b_m = 0.05;
-  vec3 wide{0.0};  // zero: round
+  vec3 wide{0.0};  // direction in which the capsule is wider; zero: it is round
   double width_a = 1.0, width_b = 1.0;
   Colour colour;
   // 1, 2: half transparent, one body over the other. Bodies of the same layer occlude each other.
   int layer = 0;
-  vec3 wide_b{0.0};  // `wide` at b, so that two capsules share a seam; zero: as at a
+  // `wide` at the end b, so that two capsules share a seam; zero: the same as at a.
+  vec3 wide_b{0.0};
 };
-struct SceneLine {  // of constant width in pixels, for stick figures; casts a faint shadow
+struct SceneLine {  // a line of constant width in pixels, for stick figures; casts a faint shadow
   vec3 a_m{0.0}, b_m{0.0};
   Colour colour;
-  double width_px = 3.0;  // at scale 1
+  double width_px = 3.0;  // width of the line at scale 1
 };
-struct Trail {  // oldest first; fades towards the old end
+struct Trail {  // a line of past places, oldest first; it fades towards the old end
   std::vector<vec3> points_m;
   Colour colour;
 };
@@ -44,17 +45,18 @@ inline glm::vec4 row(const vec3& v, double w) {
 // round, for a fraction of the cost. It casts no shadow. Relative to SceneContent::crowd_origin_m.
 struct FlatCapsule {
   glm::vec4 a_radius{0.0f}, b_radius{0.0f};
-  // As in Capsule. A negative width at b: both ends are inside other capsules and have no caps.
+  // Direction and widths as in Capsule, and the colour. A negative width at b: both ends are inside
+  // other capsules and have no caps.
   glm::vec4 wide_width_a{0.0f}, colour_width_b{0.0f};
-  float ground_m = 0.0f;  // height of the ground below it
+  float ground_m = 0.0f;  // height of the ground below the capsule
 };
 // A soft dark strip on the floor with a radius at each end; also relative to crowd_origin_m.
 struct FloorShade {
   glm::vec4 a_radius{0.0f}, b_radius{0.0f};
-  float dark = 0.0f;  // 0 .. 1
+  float dark = 0.0f;  // darkness in the middle, 0 .. 1
 };
 struct SceneContent {
-  std::vector<Capsule> capsules;  // these cast shadows
+  std::vector<Capsule> capsules;  // bodies, which cast shadows
   std::vector<SceneLine> lines;
   std::vector<vec3> joints_m;  // dots of the stick figures
   Colour joint_colour;
@@ -86,7 +88,8 @@ class Scene {
   // stays bound. `scale`: of the display. Turns depth test and blending off.
   void draw(const SceneContent& content, const Camera& camera, const Theme& theme,
             const Viewport& viewport, int window_height_px, double scale);
-  // "llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 3.3, 4x anti-aliasing"
+  // The renderer and its settings: "llvmpipe (LLVM 15.0.6, 256 bits), OpenGL 3.3, 4x
+  // anti-aliasing".
   const std::string& renderer() const noexcept;
   bool is_software() const noexcept;
 

@@ -127,7 +127,7 @@ void main() {
 }
 )";
 
-// The same light, with cheaper powers.
+// The light of kLight with cheaper powers, for the crowd.
 inline constexpr const char* kCrowdFragment = R"(
 in float height;
 in vec2 spot;

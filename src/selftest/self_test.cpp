@@ -45,9 +45,10 @@ using nlohmann::ordered_json;
 using Answer = SelfTestPerson::Answer;
 
 constexpr std::chrono::milliseconds kLook{20};
-constexpr std::int64_t kOpening_ns = 8 * kSecond_ns;  // time limit for opening a pad
+// Longest time that the opening of a pad may take.
+constexpr std::int64_t kOpening_ns = 8 * kSecond_ns;
 
-// everything that identifies the pad is removed from the kept files
+// Removing everything that identifies the pad from the kept files.
 
 // A Bluetooth address as bytes, most significant first, else the text itself.
 std::vector<std::uint8_t> identity_bytes(const std::string& unique_id) {
@@ -61,7 +62,8 @@ std::vector<std::uint8_t> identity_bytes(const std::string& unique_id) {
 }
 
 bool holds(std::span<const std::uint8_t> report, const std::vector<std::uint8_t>& identity) {
-  constexpr std::size_t kShortest = 4;  // shorter ones may match by chance
+  // Shorter addresses are not searched for, because they may match by chance.
+  constexpr std::size_t kShortest = 4;
   if (identity.size() < kShortest) return false;
   return std::search(report.begin(), report.end(), identity.begin(), identity.end()) !=
              report.end() ||
@@ -111,7 +113,7 @@ class OpenPad {
     stream_->rumble(device_, strength, duration);
   }
 
-  ordered_json rate() const;  // rate and jitter over all reports so far
+  ordered_json rate() const;  // The rate and the jitter of all reports so far.
   std::optional<Error> save(const std::string& path) &&;
 
  private:
@@ -167,7 +169,8 @@ void OpenPad::look(CalibrationGuide* guide) {
     take_report(*report);
     if (guide != nullptr && report->device == device_) guide->take_report(*report);
   }
-  constexpr std::int64_t kOnTheWay_ns = 50'000'000;  // reports may arrive this late
+  // A report may arrive this long after the user's answer.
+  constexpr std::int64_t kOnTheWay_ns = 50'000'000;
   if (guide != nullptr) guide->tick(now_ns() - kOnTheWay_ns);
 }
 
@@ -251,12 +254,12 @@ ordered_json system_facts() {
           {"is_root", ::geteuid() == 0}};
 }
 
-// the controls that a pad has, and the requests to operate them
+// The controls that a pad has, and the requests to operate them.
 
 struct ControlAction {
-  std::string name;     // in the report: left_x+, left_trigger, a
-  std::string request;  // to the user
-  int axis = -1;        // PadAxis, else `button`
+  std::string name;     // the control's name in the report: left_x+, left_trigger, a
+  std::string request;  // the request to the user
+  int axis = -1;        // a PadAxis; -1: the control is `button`
   float direction = 1.0f;
   PadButton button = kButtonA;
 };
@@ -264,7 +267,7 @@ struct ControlAction {
 constexpr float kPushed = 0.6f, kBeside = 0.4f, kBack = 0.3f;
 
 struct Controls {
-  std::uint32_t axes = 0, buttons = 0;  // bits
+  std::uint32_t axes = 0, buttons = 0;  // operated axes and buttons, a bit each
 };
 
 Controls controls_of(const PadLayout& layout) {
@@ -396,9 +399,9 @@ class SelfTest {
   const SelfTestOptions& options_;
   SelfTestPerson& person_;
   std::string folder_;
-  std::vector<PadSighting> ways_;  // to the same pad, one for each driver
-  PadSelector selector_;           // its ids, which find it again after unplugging
-  std::string driver_;             // the first driver that opened it
+  std::vector<PadSighting> ways_;  // the same pad as each driver sees it, one for each driver
+  PadSelector selector_;           // the pad's ids, by which it is found again after unplugging
+  std::string driver_;             // the first driver that could open the pad
   std::unique_ptr<OpenPad> pad_;
   CalibrationFile calibration_;
   bool has_calibration_ = false;
@@ -449,7 +452,7 @@ SelfTestPrompt SelfTest::prompt_of(Part part, std::string request) const {
 
 template <class LookOn>
 Answer SelfTest::ask(SelfTestPrompt& prompt, const LookOn& look_on) {
-  static_cast<void>(person_.take_answer());  // drop an answer from before the question
+  static_cast<void>(person_.take_answer());  // drops an answer that was given before the question
   for (;;) {
     if (look_on(prompt)) return Answer::none;
     person_.show(prompt);
@@ -503,7 +506,8 @@ bool SelfTest::compare_drivers() {
       worst = std::max(worst, std::abs(driver["left_stick"][key].get<double>() -
                                        (*first)["left_stick"][key].get<double>()));
     driver["differs_by"] = worst;
-    constexpr double kAlike = 0.25;  // two turns by hand differ, and kernel drivers scale values
+    // Allowed difference: two turns by hand differ, and kernel drivers scale values.
+    constexpr double kAlike = 0.25;
     if (worst > kAlike)
       fail(fmt::format("{} shows the left stick otherwise than {}: by {:.2f}",
                        driver["driver"].get<std::string>(), (*first)["driver"].get<std::string>(),
@@ -616,7 +620,7 @@ bool SelfTest::ask_control(const ControlAction& action, ordered_json& control) {
   if (answer == Answer::quit) return false;
   const bool is_wrong = answer == Answer::no;
   control["result"] = is_seen && !is_wrong ? "seen" : is_wrong ? "wrong" : "absent";
-  control["others"] = others;  // operated at the same time
+  control["others"] = others;  // controls that were operated at the same time
   control["from_s"] = from_s;
   control["to_s"] = pad_->time_s();
   if (is_wrong)
@@ -777,7 +781,8 @@ bool SelfTest::walk_straight() {
     bool is_new = false;
     const SessionFrame& frame = (*session)->latest(is_new);
     p.seen = fmt::format("stick {:+.2f} {:+.2f}", frame.stick.left.x, frame.stick.left.y);
-    if (static_cast<double>(frame.stick.left.y) < kForwardStick) {  // start again
+    // The walk was not straight ahead: measure from the beginning.
+    if (static_cast<double>(frame.stick.left.y) < kForwardStick) {
       first_tick = -1, frames = straight = 0;
       p.done = 0.0;
       return false;

@@ -13,16 +13,18 @@ namespace {
 
 // The formation: rows behind the first character; every second row is shifted by half a place.
 constexpr double kRow_m = 1.2, kPlace_m = 1.2;
-constexpr double kWidth_m = 1.5;   // times sqrt(number of members)
+constexpr double kWidth_m = 1.5;   // width of the formation, multiplied by sqrt(number of members)
 constexpr double kAstray_m = 0.1;  // random offset, so that rows are not straight
 
 // Keeps a member in its place of the formation. It walks faster by this share for each metre that
 // it is behind, slower if it is ahead (stairs slow the first character down earlier), and turns
 // towards its place by kAim_rad_m for each metre sideways. The bounds keep this inconspicuous.
 constexpr double kCatchUp_1_m = 0.4, kMostCatchUp = 0.15, kMostWait = 0.7;
-constexpr double kLeastSpeed = 0.1;  // share of the first character's speed
+// Share of the first character's speed that a member has at least.
+constexpr double kLeastSpeed = 0.1;
 constexpr double kAim_rad_m = 0.2, kMostAim_rad = 0.12;
-constexpr double kTurn_1_s = 0.8, kMostTurn_rad_s = 0.15;  // towards the aim
+// Rate at which a member turns towards its aim, and its limit.
+constexpr double kTurn_1_s = 0.8, kMostTurn_rad_s = 0.15;
 
 // Pseudorandom numbers, equal on every machine (splitmix64).
 std::uint64_t mixed_bits(std::uint64_t number) noexcept {
@@ -125,7 +127,7 @@ Followers::Followers(const Options& options,
       kind.build = build;
       kind.style = style;
       kind.values = styles[static_cast<std::size_t>(style)];
-      kind.values.fatigue = 0.0;  // a tired follower could not keep up
+      kind.values.fatigue = 0.0;  // a tired follower could not keep up, so followers do not tire
       kind.limits = gait_limits(*builds[static_cast<std::size_t>(build)]);
     }
   }
@@ -163,8 +165,9 @@ GaitParams Followers::params_of(int member, const GaitParams& first, const WalkS
   const vec3 off_m = (first_state.path.hips_m - first_m_) -
                      (path.hips_m - start_m_[static_cast<std::size_t>(member)]);
   const double behind_m = glm::dot(vec3(off_m.x, 0.0, off_m.z), ahead);
-  const double beside_m = off_m.x * ahead.z - off_m.z * ahead.x;  // + to the left
-  const double speed = speed_m_s(first);                          // at least 0
+  // Distance from the way, + to the left.
+  const double beside_m = off_m.x * ahead.z - off_m.z * ahead.x;
+  const double speed = speed_m_s(first);  // speed_m_s() is at least 0
 
   GaitOverrides overrides;
   GaitLimits limits = kind.limits;

@@ -25,7 +25,7 @@ class HumanoidBuilder {
     const vec3 line = facing_ * (standing_.position_m[to] - standing_.position_m[from]);
     return rotation_between(glm::normalize(line), aim) * facing_;
   }
-  // The same, but turns only about y.
+  // A rotation about y only, after which the bone from one joint to the other points forward.
   quat heading_forward(int from, int to) const {
     const vec3 line = facing_ * (standing_.position_m[to] - standing_.position_m[from]);
     return rotation_y(-heading_of(line)) * facing_;
@@ -118,7 +118,7 @@ void humanoid_pose(const Humanoid& humanoid, const Skeleton& skeleton, const Pos
   const auto world = std::make_unique<JointFrames>();
   forward_kinematics(skeleton, pose, *world);
   const std::size_t count = humanoid.bones.size();
-  std::vector<BonePose> placed(count);  // in the world
+  std::vector<BonePose> placed(count);  // bones placed in the world
   out.resize(count);
   for (std::size_t b = 0; b < count; ++b) {
     const HumanoidBone& bone = humanoid.bones[b];

@@ -11,7 +11,7 @@ namespace gaitpad {
 
 struct HumanoidBone {
   const char* name;
-  int joint = -1;           // in the skeleton
+  int joint = -1;           // index of the joint in the skeleton
   int parent = -1;          // in Humanoid::bones, before this one; -1: a child of the root
   quat t_pose = kIdentity;  // the joint's world rotation in the T pose
 };

@@ -30,7 +30,7 @@ struct LiveSession::Prepared {
   Script script;
   PadFiles pad_files;
   RecordedSession recorded;
-  std::unique_ptr<PoseStream> stream;  // may be null
+  std::unique_ptr<PoseStream> stream;  // null: poses are not sent
   std::vector<std::string> remarks;
 };
 
@@ -60,19 +60,19 @@ struct LiveSession::Impl {
   Simulation simulation;
   Cast cast;
   Script script;
-  std::vector<Style> styles;  // that commands may name; used by the viewing thread only
+  std::vector<Style> styles;  // styles that commands may name; used by the viewing thread only
   // Style lists that the loop uses or has given back. They are freed here, never on the loop's
   // thread.
   std::deque<std::shared_ptr<const std::vector<Style>>> style_lists;
   RecordedSession recorded;
-  std::unique_ptr<PoseStream> stream;       // may be null
-  std::unique_ptr<PadForward> forward;      // may be null
-  std::shared_ptr<KeyboardStick> keyboard;  // may be null
+  std::unique_ptr<PoseStream> stream;       // null: poses are not sent
+  std::unique_ptr<PadForward> forward;      // null: there is no virtual pad
+  std::shared_ptr<KeyboardStick> keyboard;  // null: the keyboard is not a pad
   std::unique_ptr<PadStream> pads;
   std::unique_ptr<Recording> recording;
   std::unique_ptr<LiveLoop> loop;
   std::thread thread;
-  std::string time_policy;  // of the thread when it started
+  std::string time_policy;  // scheduling of the thread when it started
   bool is_memory_locked = false;
   bool is_stopped = false;
 
@@ -80,7 +80,7 @@ struct LiveSession::Impl {
   std::optional<PadStreamCounts> final;  // set when the session was stopped
   std::vector<std::string> remarks;
   LiveStatus remarked;           // status at the last remark about late ticks
-  bool is_failure_said = false;  // of the recording
+  bool is_failure_said = false;  // the user was told that the recording has failed
 };
 
 std::optional<Error> LiveSession::Impl::open_recording() {

@@ -44,7 +44,8 @@ void TickClock::set_pace(double pace, std::int64_t tick, std::int64_t now_ns) no
   if (stood_still) {
     last_late_ns_ = 0;
   } else {
-    run_anew(tick, std::min(before_ns, due_ns(tick + 1)));  // at most one tick from now
+    // The next tick is due at most one tick from now.
+    run_anew(tick, std::min(before_ns, due_ns(tick + 1)));
   }
 }
 
@@ -214,7 +215,8 @@ constexpr std::size_t kUsed = 4096;           // reports that wait for a frame: 
 constexpr std::int64_t kDueWait_ns = 2'000'000, kDueNap_ns = 100'000;
 constexpr std::chrono::milliseconds kBeat{80};
 constexpr double kFullBeatSpeed_m_s = 1.5;
-constexpr double kFeltBeat = 0.25;  // of full strength; less does not turn a motor in 80 ms
+// Share of full strength; a weaker beat does not turn a motor in 80 ms.
+constexpr double kFeltBeat = 0.25;
 constexpr auto kRelaxed = std::memory_order_relaxed;
 
 static_assert(std::atomic<double>::is_always_lock_free);

@@ -38,7 +38,8 @@ class TickClock {
   static double usable_pace(double pace) noexcept;
 
   TickClock(int rate_hz, std::int64_t start_ns) : rate_hz_(rate_hz), base_ns_(start_ns) {}
-  std::int64_t due_ns(std::int64_t tick) const noexcept;  // kNever_ns at pace 0
+  // The time at which a tick is due; kNever_ns at pace 0.
+  std::int64_t due_ns(std::int64_t tick) const noexcept;
 
   // Sets the pace from `tick`, the next one, on. A late tick stays late; after pace 0 it is due
   // now.
@@ -46,10 +47,10 @@ class TickClock {
   double pace() const noexcept { return pace_; }
 
   enum class Begin {
-    on_time,  // at most one tick late
+    on_time,  // the tick began at most one tick late
     late,
     // More than a second late: this tick is due now, and the clock restarts with it.
-    after_standstill,  // late at once: the process was stopped
+    after_standstill,  // much too late all at once: the process was stopped
     after_overload,    // late by degrees: ticks take longer than their time
   };
   // Must not be called at pace 0.
@@ -74,16 +75,16 @@ class TickClock {
 // no wider than 1/64 of the value. One thread adds, any thread reads; both are wait-free.
 class TimeHistogram {
  public:
-  void add(std::int64_t time_ns) noexcept;  // negative counts as 0
+  void add(std::int64_t time_ns) noexcept;  // Counts a time; a negative one counts as 0.
   // Smallest duration that this share of all does not exceed, within 1 %; 0 if there is none.
   double percentile_us(double share) const noexcept;
   double median_us() const noexcept { return percentile_us(0.5); }
   double max_us() const noexcept;
-  // How many durations lie in each step of `width_ns`, the longer ones in the last, within 1 %.
+  // Counts the durations in each step of `width_ns`, the longer ones in the last step, within 1 %.
   void count_steps(std::int64_t width_ns, std::span<std::int64_t> counts) const noexcept;
 
  private:
-  static constexpr int kStepBits = 6;              // classes in an octave: 64
+  static constexpr int kStepBits = 6;              // each octave has 2^kStepBits = 64 classes
   static constexpr int kOctaves = 40 - kStepBits;  // up to 2^40 ns, 18 minutes
   static constexpr std::size_t kClasses = static_cast<std::size_t>(kOctaves + 2) << kStepBits;
   static std::size_t class_of(std::uint64_t time_ns) noexcept;
@@ -102,7 +103,7 @@ class TickReports {
  public:
   static constexpr std::size_t kMaxInTick = 256;  // more reports wait for the next tick
 
-  // Both must outlive this object.
+  // `pads` and `simulation` must outlive this object.
   TickReports(PadStream& pads, Simulation& simulation);
 
   // Reports of the tick that begins now. Valid until the next call.
@@ -118,7 +119,7 @@ class TickReports {
   bool is_known(std::uint16_t device) const noexcept;
 
  private:
-  struct Gathered {  // of one device, since the last tick
+  struct Gathered {  // reports of one device since the last tick
     PadState state;
     bool has_state = false;
     PressCounts presses{};
@@ -131,7 +132,7 @@ class TickReports {
 
   PadStream& pads_;
   Simulation& simulation_;
-  std::vector<Report> reports_;  // kMaxInTick
+  std::vector<Report> reports_;  // room for kMaxInTick reports
   std::size_t count_ = 0;
   bool is_used_ = false;  // the last tick has used reports_
   std::array<Gathered, kMaxPads> gathered_{};
@@ -147,7 +148,7 @@ class LiveLoop {
   struct Options {
     int rate_hz = kDefaultRateHz;
     bool rumble = true;
-    int frame_ticks = 1;  // as in SessionSpec::Live
+    int frame_ticks = 1;  // number of ticks between two frames, as in SessionSpec::Live
     // Receives each tick for other programs; may be null.
     Latest<StreamedTick>* stream = nullptr;
     ForwardMail* forward = nullptr;
@@ -206,13 +207,13 @@ class LiveLoop {
 
   Options options_;
   const Script& script_;
-  std::size_t next_event_ = 0;  // of the script
+  std::size_t next_event_ = 0;  // index of the script's next event
   Simulation& simulation_;
   PadStream& pads_;
   Recording* recording_;
   TickClock clock_;
   TickReports reports_;
-  std::int64_t tick_ = 0;        // the next one
+  std::int64_t tick_ = 0;        // number of the next tick
   std::int64_t steps_left_ = 0;  // ticks to run at pace 0
   std::int64_t last_begin_ns_ = 0;
   std::int64_t shown_ns_ = 0;  // SessionFrame::time_ns of the last tick
@@ -226,10 +227,11 @@ class LiveLoop {
   // Reports that a tick has used and no frame has shown yet.
   struct UsedReport {
     ReportTime time;
-    bool is_real_time = false;  // arrived and was used at pace 1
+    bool is_real_time = false;  // the report arrived and was used at pace 1
   };
   SpscRing<UsedReport> used_;
-  std::int64_t viewed_tick_ = -1, viewed_ns_ = 0;  // last frame read; viewing thread only
+  // Tick and time of the last frame read; viewing thread only.
+  std::int64_t viewed_tick_ = -1, viewed_ns_ = 0;
 
   std::atomic<bool> is_stopping_{false}, has_ended_{false};
   std::atomic<double> wanted_pace_{1.0};
@@ -238,7 +240,7 @@ class LiveLoop {
   std::atomic<bool> wants_beat_{false};
   std::atomic<bool> leaves_recording_{false};
   std::atomic<std::int64_t> recorded_ticks_{-1};
-  std::atomic<std::int64_t> start_ns_{0}, end_ns_{0};  // of run(); 0: not yet
+  std::atomic<std::int64_t> start_ns_{0}, end_ns_{0};  // begin and end of run(); 0: not yet
   std::atomic<std::int64_t> ticks_{0}, overruns_{0}, standstills_{0}, overloads_{0}, skipped_ns_{0};
   TimeHistogram tick_times_, wait_times_, late_times_, frame_times_;
 };

@@ -76,7 +76,7 @@ void PadForward::run() {
     bool is_new = false;
     const ForwardedTick& tick = mail_.read(is_new);
     if (!is_new) continue;
-    // If the kernel refuses an event, it is lost; the next change sends the next one.
+    // An event that the kernel refuses is lost; the next change sends the next event.
     static_cast<void>(pad_.set(between(sent, tick)));
     static_cast<void>(pad_.set(tick.state));
     sent = tick;

@@ -99,7 +99,7 @@ void TraceRun::step(const PreparedTrace& prepared) noexcept {
 namespace {
 
 constexpr std::size_t kMaxSnapshots = 1024, kLeastSnapshots = 4;
-constexpr std::size_t kMostCrowdBytes = std::size_t{256} << 20;  // of all snapshots
+constexpr std::size_t kMostCrowdBytes = std::size_t{256} << 20;  // most memory of all snapshots
 
 // Returns fewer snapshots for a large crowd, whose states need more memory.
 std::size_t most_snapshots(const Simulation& simulation) {

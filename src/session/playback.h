@@ -18,12 +18,12 @@
 namespace gaitpad {
 
 struct PreparedTrace {
-  Trace trace;  // its events, and the script's, with their ticks
+  Trace trace;  // the recording's events, and the script's, with their ticks
   std::int64_t ticks = 0;
-  SimulationConfig config;  // with the rate to run at
+  SimulationConfig config;  // the configuration, with the rate to run at
   Simulation start;
   std::vector<StyleChange> style_changes;
-  std::vector<UsedFile> used_files;  // without the recording itself
+  std::vector<UsedFile> used_files;  // files of the recording, except the recording itself
 };
 // Reads `spec.replay.trace` and every file of the session, and adds the script's events. Also an
 // error: `spec.rate_hz` differs from the trace's rate or none of the trace's devices is a pad.
@@ -36,7 +36,7 @@ class TraceRun {
 
   // Runs one tick with its reports. `prepared` must be the one given to begin().
   void step(const PreparedTrace& prepared) noexcept;
-  std::int64_t ticks() const { return simulation_.counts().ticks; }  // so far
+  std::int64_t ticks() const { return simulation_.counts().ticks; }  // Number of ticks so far.
   const Simulation& simulation() const { return simulation_; }
 
  private:
@@ -76,7 +76,8 @@ class Playback {
   // the snapshot before the target's history. A jump into a part that was computed before costs
   // kHistoryTicks and about one second of ticks.
   bool seek(std::int64_t tick, int budget);
-  const SessionFrame& frame() const noexcept;  // tick -1, standing, before the first seek()
+  // The frame of the present tick; before the first seek() tick -1, standing.
+  const SessionFrame& frame() const noexcept;
   // Takes the oldest sample that was not taken yet; false: there is none. None is lost while seek()
   // does not jump and at most kHistoryTicks samples wait. After a jump the samples begin
   // kHistoryTicks before the target; TickSample::tick tells the tick.

@@ -74,7 +74,7 @@ std::string json_datagram(const StreamedFrame& frame) {
     fmt::format_to(end, "[{:.6f},{:.6f},{:.6f},{:.9f},{:.9f},{:.9f},{:.9f}]", p.x + 0.0, p.y + 0.0,
                    p.z + 0.0, q.x + 0.0, q.y + 0.0, q.z + 0.0, q.w + 0.0);
   };
-  const nlohmann::json name = frame.character;  // escapes quotes in the name
+  const nlohmann::json name = frame.character;  // written as JSON, which escapes quotes in the name
   fmt::format_to(
       end, R"({{"source":{},"character":{},"tick":{},"time_s":{:.6f},"hips_m":{:.6f},"root":)",
       frame.source, name.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace), frame.tick,
@@ -142,7 +142,7 @@ lo_message placed(const char* name, const BonePose& bone) {
 std::vector<std::string> osc_datagrams(const StreamedFrame& frame) {
   OscBundles bundles;
   lo_message ready = lo_message_new();
-  lo_message_add_int32(ready, 1);  // a model is loaded
+  lo_message_add_int32(ready, 1);  // 1: a model is loaded
   bundles.add("/VMC/Ext/OK", ready);
   lo_message time = lo_message_new();
   lo_message_add_float(time, static_cast<float>(frame.time_s));
@@ -244,7 +244,7 @@ void PoseStream::run() {
   }
 }
 
-// It is no error if the receiver is missing or too slow: the datagrams are lost.
+// A missing or slow receiver is no error: the datagrams are lost.
 void PoseStream::send(const StreamedTick& tick) {
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     const Source& source = sources_[i];

@@ -38,7 +38,7 @@ struct StreamedTick {
     Pose pose;
     double heading_rad = 0.0;
   };
-  std::int64_t tick = -1;  // -1: none yet
+  std::int64_t tick = -1;  // tick of the frame; -1: none yet
   int walker_count = 0;
   std::array<Character, kMaxWalkers> walkers;
 };
@@ -59,7 +59,7 @@ class PoseStream {
   std::int64_t frames() const noexcept { return frames_.load(std::memory_order_relaxed); }
 
  private:
-  struct Source {  // a character
+  struct Source {  // a character whose poses are sent
     std::string name;
     std::shared_ptr<const WalkModel> model;
     Humanoid humanoid;
@@ -74,7 +74,7 @@ class PoseStream {
   const int fps_, rate_hz_;
   std::vector<Source> sources_;
   Latest<StreamedTick> newest_;
-  std::vector<BonePose> bones_;  // of the source that is being sent
+  std::vector<BonePose> bones_;  // bones of the character that is being sent
   std::atomic<std::int64_t> frames_{0};
   std::mutex mutex_;
   std::condition_variable ending_;
@@ -84,7 +84,7 @@ class PoseStream {
 
 // One character's frame, to be encoded as datagrams.
 struct StreamedFrame {
-  int source = 1;  // 1: the first character
+  int source = 1;  // number of the character; 1: the first one
   std::string_view character;
   std::int64_t tick = 0;
   double time_s = 0.0;

@@ -34,7 +34,7 @@ std::string name_in_folders(const std::string& path, const std::vector<std::stri
 // A file on the disk that a replay depends on.
 struct UsedFile {
   std::string path;
-  std::uint64_t hash = 0;  // FNV-1a of its bytes
+  std::uint64_t hash = 0;  // FNV-1a hash of the file's bytes
 };
 std::uint64_t bytes_hash(std::string_view bytes);
 // The files, of those that were read, on which the replay depends: without styles that it does not

@@ -25,7 +25,7 @@ namespace fs = std::filesystem;
 namespace {
 
 constexpr std::int64_t kBridge_us = kMaxTraceGapUs / 2;
-constexpr std::size_t kCommands = kMaxTraceDevices;  // index in streams_
+constexpr std::size_t kCommands = kMaxTraceDevices;  // index of the commands' stream in streams_
 
 std::string seconds(std::int64_t time_ns) {
   return fmt::format("{}.{:09}", time_ns / kSecond_ns, time_ns % kSecond_ns);
@@ -65,7 +65,8 @@ void RecordingLines::clock(std::int64_t tick, std::int64_t time_ns, double pace)
 bool RecordingLines::add(std::int64_t tick, const Report& report) {
   if (is_over(tick)) return false;
   const bool is_command = report.kind == ReportKind::command;
-  if (is_command && trimmed(text_of(report), " \t\r\n").empty()) return true;  // no command
+  // A blank command is left out.
+  if (is_command && trimmed(text_of(report), " \t\r\n").empty()) return true;
   if (!is_command && !describe(report.device)) return false;
   begin_time(report.time_ns);
   const Stream& stream = streams_[is_command ? kCommands : report.device];
@@ -182,7 +183,7 @@ bool is_same(const Style& a, const Style& b) {
 }
 
 constexpr std::size_t kRingItems = 4096;
-constexpr std::chrono::milliseconds kPause{20};  // between two looks at the ring
+constexpr std::chrono::milliseconds kPause{20};  // pause between two looks at the ring
 constexpr std::size_t kWriteBytes = std::size_t{1} << 18;
 
 // Creates and locks the file; replaces one that a killed session has left.

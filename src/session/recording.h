@@ -40,7 +40,7 @@ inline void copy_used_bytes(const Report& from, std::int64_t latest_ns, Report& 
 // Everything that a session is made of, so that its recording replays on any machine.
 struct RecordedSession {
   std::optional<Pace> pace;
-  std::vector<std::string> options;  // as Trace::options
+  std::vector<std::string> options;  // texts of `O:` lines, as in Trace::options
   std::vector<TraceFile> files;
   // The file of `config/pads` with an entry for the pad; null if there is none. May be empty.
   std::function<const TraceFile*(const DeviceInfo&)> pad_file;
@@ -68,7 +68,7 @@ class RecordingLines {
   // Sets the style's values from `tick` on, before its reports. Only with a rate.
   void style(std::int64_t tick, const Style& style);
   void end(std::int64_t ticks, std::int64_t time_ns);
-  std::string take_text();  // whole lines, since the last call
+  std::string take_text();  // The whole lines that were made since the last call.
   std::size_t text_size() const { return writer_.text().size(); }
 
   // Full: adding more would make the file too large to read.
@@ -93,15 +93,16 @@ class RecordingLines {
   RecordedSession session_;
   Limits limits_;
   TraceWriter writer_;
-  std::array<Stream, kMaxTraceDevices + 1> streams_;  // one a device, commands last
-  std::optional<std::int64_t> start_ns_;              // of tick 0
-  std::optional<std::int64_t> zero_ns_;               // time 0 of the file
-  std::int64_t tick_ = 0;                             // of the last event
+  // One stream for each device; that of commands is the last.
+  std::array<Stream, kMaxTraceDevices + 1> streams_;
+  std::optional<std::int64_t> start_ns_;  // time of tick 0
+  std::optional<std::int64_t> zero_ns_;   // time that is 0 in the file
+  std::int64_t tick_ = 0;                 // tick of the last event
   std::int64_t latest_us_ = 0;
   std::int64_t end_tick_ = 0;  // is_full(): the first tick that is not recorded
   std::size_t bytes_ = 0, events_ = 0;
   bool is_full_ = false, has_devices_ = false;
-  std::set<std::string> pad_files_;  // already written
+  std::set<std::string> pad_files_;  // pad files that were written already
 };
 
 // Writes a trace on a thread of its own while the session runs. The file is named FILE.part until
@@ -111,7 +112,7 @@ class Recording {
  public:
   struct Options {
     std::string path;
-    std::optional<int> rate_hz;  // of the ticks; none: there is no loop, only times
+    std::optional<int> rate_hz;  // rate of the ticks; none: there is no loop, only times
     RecordingLines::Limits limits;
     RecordedSession session{};
   };
@@ -120,8 +121,9 @@ class Recording {
   static Result<std::unique_ptr<Recording>> start(const Options& options, RecordedDevices devices);
   ~Recording();
 
-  // Both from one thread, wait-free. add(): `tick` used the report. clock(): `tick` began at
-  // `time_ns`, and the next ones follow at rate * pace (0: they stand still).
+  // Both functions are called from one thread and never wait. add(): `tick` used the report.
+  // clock(): `tick` began at `time_ns`, and the next ones follow at rate * pace (0: they stand
+  // still).
   void add(std::int64_t tick, const Report& report) noexcept;
   void clock(std::int64_t tick, std::int64_t time_ns, double pace = 1.0) noexcept;
   // Changes the styles from `tick` on. Both lists must outlive the recording.
@@ -139,9 +141,10 @@ class Recording {
  private:
   struct Item {
     std::int64_t tick = 0;
-    std::int64_t clock_ns = kNoClock;  // set: a clock() instead of a report
+    std::int64_t clock_ns = kNoClock;  // if it is set, the item is a clock() instead of a report
     double pace = 1.0;
-    const std::vector<Style>*styles_before = nullptr, *styles = nullptr;  // set: a styles()
+    // If they are set, the item is a styles().
+    const std::vector<Style>*styles_before = nullptr, *styles = nullptr;
     Report report;
   };
   static constexpr std::int64_t kNoClock = -1;
@@ -155,7 +158,7 @@ class Recording {
 
   std::string path_, part_;
   OwnedFd file_;
-  std::int64_t written_ = 0;     // bytes of whole lines
+  std::int64_t written_ = 0;     // bytes of the whole lines that were written
   std::atomic<int> problem_{0};  // errno of the first write that failed
   RecordingLines lines_;
   SpscRing<Item> ring_;

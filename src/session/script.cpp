@@ -18,7 +18,7 @@ namespace {
 
 using Verb = Command::Verb;
 
-constexpr std::string_view kGaps = " \t";  // between the words of a command
+constexpr std::string_view kGaps = " \t";  // characters between the words of a command
 constexpr double kMostCamera_deg = 1e6;
 
 std::string_view next_word(std::string_view& text) noexcept { return take_word(text, kGaps); }

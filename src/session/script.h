@@ -18,20 +18,20 @@ namespace gaitpad {
 // A parsed command.
 struct Command {
   enum class Verb : std::uint8_t {
-    mark,     // no effect
-    style,    // name
-    set,      // name, value: a style value
-    gait,     // name, value: a gait parameter
-    release,  // `gait KEY stick`: name
-    stick,    // `gait stick`: all parameters
+    mark,     // has no effect
+    style,    // needs a name
+    set,      // a style value; needs a name and a value
+    gait,     // a gait parameter; needs a name and a value
+    release,  // `gait KEY stick`; needs a name
+    stick,    // `gait stick`, for all parameters
     steers,   // `stick steers`
     points,   // `stick points`; value: the camera's heading, degrees
     restart,  // `reset`
-    ik,       // name: paper or robust, for all walkers
+    ik,       // a mode, paper or robust, for all walkers; needs a name
   } verb = Verb::mark;
-  int walker = 0;         // from 1; 0: all
-  std::string_view name;  // points into the text
-  double value = 0.0;     // finite
+  int walker = 0;         // number of the walker, from 1; 0: all walkers
+  std::string_view name;  // the name in the command; points into its text
+  double value = 0.0;     // the value; finite
 };
 // Returns nothing if the text is malformed. The simulation checks whether the names, the value and
 // the walker exist. No heap.
@@ -44,17 +44,17 @@ std::optional<std::string> command_problem(std::string_view text,
                                            std::span<const std::string> styles, int characters);
 
 inline constexpr std::array<std::string_view, 2> kIkNames = {"paper",
-                                                             "robust"};  // indexed by IkMode
+                                                             "robust"};  // names, indexed by IkMode
 
 inline constexpr std::size_t kMaxScriptEvents = 4096;
 
 struct ScriptEvent {
-  std::int64_t time_us = 0;  // since tick 0
-  std::string command;       // well-formed
-  std::string where;         // "walk.toml:12", for messages
+  std::int64_t time_us = 0;  // time since tick 0
+  std::string command;       // a well-formed command
+  std::string where;         // place in the script, "walk.toml:12", for messages
 };
 struct Script {
-  std::vector<ScriptEvent> events;  // in order of time
+  std::vector<ScriptEvent> events;  // events in order of time
 };
 Result<Script> load_script(const std::string& path);
 Result<Script> parsed_script(std::string_view text, const std::string& path);

@@ -16,7 +16,7 @@
 namespace gaitpad {
 namespace {
 
-constexpr double kMostHours = 1e6;  // of a replay
+constexpr double kMostHours = 1e6;  // greatest limit on a replay's length
 
 std::vector<std::string> folders_of_lists(const SessionSpec& spec) {
   return spec.recording.empty() ? spec.config_folders : std::vector{spec.recording};

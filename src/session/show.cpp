@@ -91,7 +91,8 @@ class LiveShow final : public Show {
 };
 
 constexpr int kTicksAtOnce = 48;
-constexpr std::int64_t kComputing_ns = 12'000'000;  // per frame, so that drawing stays smooth
+// Time for computing ticks in each frame, so that drawing stays smooth.
+constexpr std::int64_t kComputing_ns = 12'000'000;
 
 // A trace on a time line, computed up to the tick that is shown.
 class PlaybackShow final : public Show {
@@ -110,13 +111,13 @@ class PlaybackShow final : public Show {
     const std::int64_t end_ns = now_ns() + kComputing_ns;
     do {
       is_there_ = playback_->seek(tick(), kTicksAtOnce);
-      take_samples();  // after each part, so that no sample is lost
+      take_samples();  // taken after each part, so that no sample is lost
     } while (!is_there_ && now_ns() < end_ns);
   }
 
   void update_for_picture() override {
     if (!std::exchange(is_for_pictures_, true))
-      position_ = -1.0;  // the first picture also shows one step
+      position_ = -1.0;  // before the first tick, because the first picture also shows one step
     go_on(static_cast<double>(cast().rate_hz) / kPictureRateHz);
     do {
       is_there_ = playback_->seek(tick(), kTicksAtOnce);
@@ -170,7 +171,7 @@ class PlaybackShow final : public Show {
   }
 
   std::unique_ptr<Playback> playback_;
-  double position_ = 0.0;  // in ticks; target of the playback
+  double position_ = 0.0;  // place of the playback, in ticks
   bool is_there_ = true;
   bool is_for_pictures_ = false, are_remarks_taken_ = false;
   Timeline timeline_;

@@ -29,8 +29,8 @@ struct Timeline {
 class Show {
  public:
   static Result<std::unique_ptr<Show>> open(const SessionSpec& spec);
-  // The same in two parts, so that a running show ends only if the next one can be opened:
-  // prepare() reads the files; the function that it returns opens the show and is called once.
+  // Opening in two parts, so that a running show ends only if the next one can be opened: prepare()
+  // reads the files; the function that it returns opens the show and is called once.
   using Start = std::function<Result<std::unique_ptr<Show>>()>;
   static Result<Start> prepare(const SessionSpec& spec);
   virtual ~Show() = default;
@@ -49,16 +49,16 @@ class Show {
   // Takes over the new state; call once for each drawn frame. `passed_s`: wall time since the last
   // call, by which a playback advances.
   virtual void update(double passed_s) = 0;
-  // The same for pictures: computes 1 / kPictureRateHz seconds of the session at once.
+  // Computes 1 / kPictureRateHz seconds of the session at once, for a picture.
   virtual void update_for_picture() = 0;
   // Says that the state of the last update() was displayed, or will not be displayed.
   virtual void end_frame(FrameEnd) {}
   // Fraction for drawing one tick in the past: 0 at WalkerFrame::before, 1 at pose.
   virtual double share(std::int64_t now_ns) const noexcept = 0;
 
-  double pace() const noexcept { return pace_; }  // 0: paused
+  double pace() const noexcept { return pace_; }  // The pace; 0: paused.
   virtual void set_pace(double pace) = 0;
-  virtual void step() = 0;  // one tick, while paused
+  virtual void step() = 0;  // Runs one tick while the show is paused.
 
   // Live sessions only; otherwise without effect.
   virtual void steer(const vec2&) {}
@@ -76,9 +76,9 @@ class Show {
   virtual void seek(std::int64_t) {}
   virtual void set_looping(bool) {}
 
-  virtual std::string pad_name() const = 0;  // of the driving pad; empty: none
+  virtual std::string pad_name() const = 0;  // Name of the driving pad; empty: there is none.
   virtual std::vector<std::string> take_remarks() = 0;
-  virtual Result<RunSummary> stop() = 0;  // ends the show
+  virtual Result<RunSummary> stop() = 0;  // Ends the show.
 
  protected:
   explicit Show(SessionSpec options) : options_(std::move(options)) {}

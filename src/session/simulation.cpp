@@ -14,7 +14,8 @@
 namespace gaitpad {
 namespace {
 
-constexpr double kSpacing_m = 1.2;  // between neighbours, to the right of the first
+// Distance of neighbours; each stands to the right of the one before.
+constexpr double kSpacing_m = 1.2;
 
 // A character with its own skeleton has the retargeted cycle; only the motion's leg length is still
 // taken from the motion itself.

@@ -108,7 +108,7 @@ void UndoList::add(const std::string& command, const SessionFrame& frame, const 
 
 std::vector<std::string> UndoList::undo() {
   if (done_ == 0) return {};
-  changes_[done_ - 1].what.clear();  // the next drag is a change of its own
+  changes_[done_ - 1].what.clear();  // the next drag is a separate change
   return changes_[--done_].back;
 }
 

@@ -22,13 +22,13 @@ class UndoList {
   // The commands to send; empty: there is nothing to undo or redo.
   std::vector<std::string> undo();
   std::vector<std::string> redo();
-  void clear();  // called when a new session begins
+  void clear();  // Forgets all changes. Call it when a new session begins.
 
  private:
   struct Change {
     std::vector<std::string> back, again;
-    std::string what;       // the command without its value
-    std::int64_t tick = 0;  // of the last command
+    std::string what;       // the command up to its value
+    std::int64_t tick = 0;  // tick of the last command
   };
   static constexpr std::size_t kMost = 200;
   std::vector<Change> changes_;

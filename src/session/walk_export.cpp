@@ -61,7 +61,7 @@ namespace {
 
 // Each value ends with a comma; that of the last becomes the end of the line.
 void append(double value, std::string& out) {
-  append_fixed(out, value + 0.0, 9);  // + 0.0 avoids "-0"
+  append_fixed(out, value + 0.0, 9);  // adding 0.0 avoids "-0"
   out += ',';
 }
 void append(const vec3& place_m, std::string& out) {

@@ -58,8 +58,8 @@ std::string numbered_name(const std::string& stem, const std::string& extension,
 
 struct ExportFormat {
   int rate_hz = 240;
-  int fps = 240;           // poses a second, in every file of poses
-  bool with_gltf = false;  // pose.glb beside pose.bvh
+  int fps = 240;           // poses in a second, in every file of poses
+  bool with_gltf = false;  // writes pose.glb beside pose.bvh
 };
 
 // Writes pose.bvh, frames.csv, summary.json and, if asked for, pose.glb of one character while it
@@ -82,7 +82,7 @@ class WalkExport {
   std::ostream* frames_ = nullptr;
   std::ostream* summary_ = nullptr;
   std::unique_ptr<BvhWriter> poses_;
-  std::unique_ptr<GltfWriter> gltf_;  // null: not asked for
+  std::unique_ptr<GltfWriter> gltf_;  // null: the file was not asked for
   std::string gltf_path_;
   std::string row_;
 };

@@ -30,7 +30,7 @@ int startable_threads(int wanted) {
   try {
     while (static_cast<int>(others.size()) + 1 < wanted)
       others.emplace_back([&end] { end.wait(); });
-  } catch (const std::system_error&) {  // a limit of the user or of the container
+  } catch (const std::system_error&) {  // thrown at a limit of the user or of the container
   }
   end.count_down();
   return static_cast<int>(others.size()) + 1;

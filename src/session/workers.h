@@ -19,7 +19,7 @@ class Workers {
  private:
   struct Arena;
   int threads_ = 1;
-  std::unique_ptr<Arena> arena_;  // null: one thread
+  std::unique_ptr<Arena> arena_;  // null: there is only one thread
 };
 
 // Number of threads that can be started now, with the caller's: 1 .. `wanted`.

@@ -19,9 +19,10 @@ namespace {
 
 constexpr std::size_t kMaxDevices = 256;
 constexpr std::size_t kMaxFolderFiles = 4096;
-constexpr double kMaxMeasured = 100.0;  // of any measured number; far beyond what sticks do
+constexpr double kMaxMeasured = 100.0;  // limit on any measured number, far beyond what sticks show
 constexpr std::string_view kShapeNames[] = {"radial", "axial", "both"};
-constexpr std::string_view kDirectionNames[] = {"x", "-x", "y", "-y"};  // by RawDirection
+// Names of the directions, by RawDirection.
+constexpr std::string_view kDirectionNames[] = {"x", "-x", "y", "-y"};
 constexpr std::string_view kDriverNames[] = {"hidraw", "usb", "evdev", "sdl"};
 
 // The index of the key's value in `names`; none if the key is absent or its value unknown.

@@ -48,16 +48,16 @@ Result<std::vector<MappingLine>> mapping_lines_of(std::string_view text,
   return mappings;
 }
 
-constexpr double kLeastImportedHalfRange = 0.1;  // raw, as calibration files have it
+constexpr double kLeastImportedHalfRange = 0.1;  // least half range, raw, as in calibration files
 constexpr double kLeastImportedInner = 0.05, kMostInner = 0.9;
 constexpr double kLeastTriggerWay = 0.1;
 constexpr unsigned kCodesByKernel = 0x8000;
 
 // The claims of a tool about one axis of the pad, in counts.
 struct Claim {
-  std::string axis;  // for sentences
+  std::string axis;  // name of the axis in sentences
   double min = 0.0, low = 0.0, high = 0.0, max = 0.0;
-  bool is_zone_told = false;  // from low to high
+  bool is_zone_told = false;  // the user was told about the zone
 };
 
 bool is_hat_field(const Field& f) {
@@ -105,7 +105,7 @@ double raw_of(const AxisOp& op, double count) {
 // The calibration that the claims have built so far.
 struct Sticks {
   Calibration calibration;
-  std::array<double, 2> inner{};  // left, right; 0: not stated
+  std::array<double, 2> inner{};  // inner zones of the left and the right stick; 0: not stated
   bool is_any_told = false;
 };
 
@@ -220,7 +220,8 @@ unsigned guid_word(const std::string& line, std::size_t byte) {
 std::string mapping_problem(const std::string& line, const DeviceInfo& device) {
   if (!is_one_line(line)) return "SDL mapping: it holds a control character";
   const unsigned vendor = guid_word(line, 4), product = guid_word(line, 8);
-  if (guid_word(line, 6) != 0 || guid_word(line, 10) != 0) return {};  // a name, no ids
+  // The GUID holds a name instead of ids.
+  if (guid_word(line, 6) != 0 || guid_word(line, 10) != 0) return {};
   if (vendor != 0 && (vendor != device.vendor || product != device.product)) {
     return fmt::format("SDL mapping: it is for {}, the pad is {}", ids_text(vendor, product),
                        ids_text(device.vendor, device.product));

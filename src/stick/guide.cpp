@@ -16,27 +16,32 @@ namespace gaitpad {
 namespace {
 
 constexpr std::int64_t kBucketNs = 100 * kMillisecondNs;
-constexpr double kStillWithin = 0.04;  // between means over 0.1 s: 3 sigma of a very noisy stick
+// Limit on the difference of means over 0.1 s: 3 sigma of a very noisy stick.
+constexpr double kStillWithin = 0.04;
 // Anything shorter is a spike: to another place and back within three reports.
 constexpr std::int64_t kSpikeNs = 40 * kMillisecondNs;
 
 constexpr std::int64_t kStillNs = 500 * kMillisecondNs;
 constexpr std::int64_t kNearNs = 1500 * kMillisecondNs;
-constexpr double kAway = 0.3;           // from the rest
-constexpr double kAwayUnknown = 0.5;    // from the middle, while the rest is not known
-constexpr double kFarthestRest = 0.45;  // from the middle; farther out a stick is held
-constexpr std::size_t kMaxRests = 64;   // further releases are not needed
-constexpr double kAside = 0.1;          // from the middle; few sticks rest so far off
+constexpr double kAway = 0.3;  // distance from the rest at which a stick is pushed
+// Distance from the middle at which a stick is pushed, while its rest is not known.
+constexpr double kAwayUnknown = 0.5;
+// Greatest distance of a rest from the middle; farther out a stick is held.
+constexpr double kFarthestRest = 0.45;
+constexpr std::size_t kMaxRests = 64;  // places of further releases are ignored
+// A rest this far from the middle is rare, so more releases are asked for.
+constexpr double kAside = 0.1;
 
-constexpr double kOfReach = 0.6;      // of the farthest that was seen: counts as pushed out
+constexpr double kOfReach = 0.6;      // share of the farthest position: pushed out
 constexpr double kOfMedianRim = 0.6;  // less is a cut corner; a square gate has 0.71
-constexpr double kLeastTravel = 15.0 * kDegree, kMostTravel = 90.0 * kDegree;  // noise, spikes
+// Limits of the travel between two reports along the rim: less is noise, more is a spike.
+constexpr double kLeastTravel = 15.0 * kDegree, kMostTravel = 90.0 * kDegree;
 
 constexpr double kUnpressed = 0.1;  // raw; a turn that stays this far inside of a push was not
                                     // pressed to the rim
 
 constexpr std::int64_t kHeldNs = 250 * kMillisecondNs;
-constexpr double kInOfRim = 0.6;  // nearer than this it is let go
+constexpr double kInOfRim = 0.6;  // share of the rim's radius below which the stick was released
 
 // 0 right, 1 front, 2 left, 3 back.
 std::size_t quarter_of(const vec2& v) noexcept {
@@ -70,7 +75,7 @@ void ReleaseWatch::hold(const vec2& raw, std::int64_t duration_ns) {
     away_ns_ += duration_ns;
     away_ = from_rest;
     if (away_ns_ > kSpikeNs) {
-      if (!is_away_) still_ = StillWatch();  // forget how it stood before
+      if (!is_away_) still_ = StillWatch();  // forgets the place of the rest before
       reach_ = std::max(reach_, glm::length(from_rest));
       is_away_ = true;
       near_ns_ = 0;
@@ -142,7 +147,7 @@ int ReleaseWatch::sides() const noexcept {
 void TurnWatch::add_position(const vec2& from_rest, double rim) noexcept {
   rim_ = rim;
   const double radius = glm::length(from_rest);
-  if (!(radius > rim)) return;  // also for not-a-number
+  if (!(radius > rim)) return;  // also true for not-a-number
   const double angle_rad = atan2(from_rest.y, from_rest.x);
   const int bin = static_cast<int>(std::lround(angle_rad / (2.0 * kPi) * kTurnBins));
   double& greatest = radius_[static_cast<std::size_t>((bin + kTurnBins) % kTurnBins)];
@@ -379,7 +384,7 @@ void CalibrationGuide::hold(Trigger& trigger, std::int64_t duration_ns) {
 
 void CalibrationGuide::take_push(Stick& stick, const vec2& push) {
   const std::size_t number = push_of(step());
-  if (stick.pushed[number]) return;  // the other stick is not done yet
+  if (stick.pushed[number]) return;  // this push was seen; the other stick is not done yet
   if (!direction_of(push)) {
     stick.advice = "that was between two directions, hold it straighter";
     return;

@@ -25,22 +25,26 @@ inline constexpr std::int64_t kMillisecondNs = 1'000'000;
 class StillWatch {
  public:
   void hold(const vec2& raw, std::int64_t duration_ns) noexcept;
-  std::int64_t still_ns() const noexcept { return still_ns_; }  // in whole tenths of a second
-  const vec2& mean() const noexcept { return mean_; }           // over the time it stood still
+  // Time for which the stick has stood still, in whole tenths of a second.
+  std::int64_t still_ns() const noexcept { return still_ns_; }
+  // Mean position over the time in which it stood still.
+  const vec2& mean() const noexcept { return mean_; }
 
  private:
-  vec2 sum_{0.0};  // of the running tenth of a second, times nanoseconds
+  vec2 sum_{0.0};  // sum of the positions in the running tenth of a second, times nanoseconds
   std::int64_t sum_ns_ = 0;
   vec2 mean_{0.0};
   std::int64_t still_ns_ = 0;
 };
 
-inline constexpr double kHalfWay = 0.5;  // from rest; farther out a control is pushed
+// Distance from the rest beyond which a control counts as pushed.
+inline constexpr double kHalfWay = 0.5;
 
 inline constexpr int kWantedReleases = 6, kWantedSides = 3;
 inline constexpr int kWantedReleasesAside = 10;  // if the stick rests off its middle, where a thumb
                                                  // may hold it
-inline constexpr std::int64_t kWantedRestNs = 2500 * kMillisecondNs;  // at the end, to see drift
+// Wanted time of rest at the end, which shows drift.
+inline constexpr std::int64_t kWantedRestNs = 2500 * kMillisecondNs;
 
 // Counts releases: the stick was away from its rest, then stood still there for half a second, or
 // was near it for one and a half (a stick that wanders at rest).
@@ -51,12 +55,13 @@ class ReleaseWatch {
   void lose() noexcept;  // unplugged: the running release does not count
 
   int count() const noexcept { return static_cast<int>(rests_.size()); }
-  int wanted() const noexcept;     // releases
-  bool is_aside() const noexcept;  // it rests off the raw middle
-  int sides() const noexcept;      // quarters (right, front, left, back) from which it was let go
+  int wanted() const noexcept;     // Number of releases that are wanted.
+  bool is_aside() const noexcept;  // True if the stick rests off the raw middle.
+  int sides() const noexcept;      // Number of sides (of four) from which it was let go.
   bool is_away() const noexcept { return is_away_; }
-  std::int64_t rested_ns() const noexcept { return near_ns_; }  // since the last release
-  // Once complete it stays so while the other stick is moved.
+  // Time of rest since the last release.
+  std::int64_t rested_ns() const noexcept { return near_ns_; }
+  // Stays true while the other stick is moved.
   bool is_complete() const noexcept { return is_complete_; }
   // The stick stands still, but too far out to be at rest.
   bool is_held() const noexcept;
@@ -72,13 +77,13 @@ class ReleaseWatch {
 
   StillWatch still_;
   std::vector<vec2> rests_;
-  std::array<bool, 4> sides_{};  // right, front, left, back, of raw axes
+  std::array<bool, 4> sides_{};  // sides of the raw axes that were seen: right, front, left, back
   std::optional<vec2> rest_;
-  vec2 away_{0.0};            // from rest, where it was last seen away
-  double reach_ = 0.0;        // the farthest of these, without spikes
-  std::int64_t away_ns_ = 0;  // without a break
-  std::int64_t near_ns_ = 0;  // since it was away, without spikes
-  vec2 near_sum_{0.0};        // over that time, times nanoseconds
+  vec2 away_{0.0};            // position from the rest where the stick was last seen away
+  double reach_ = 0.0;        // the farthest of these positions, without spikes
+  std::int64_t away_ns_ = 0;  // time for which it has been away without a break
+  std::int64_t near_ns_ = 0;  // time since it was away, without spikes
+  vec2 near_sum_{0.0};        // sum of its positions over that time, times nanoseconds
   bool is_away_ = false, is_complete_ = false;
 };
 
@@ -93,8 +98,10 @@ class TurnWatch {
   void lose() noexcept { anchor_rad_.reset(); }
 
   int filled() const noexcept;
-  double radius_towards(const vec2& to) const noexcept;  // greatest, about that direction; 0: none
-  double turns() const noexcept { return travelled_rad_ / (2.0 * kPi); }  // in either direction
+  // Greatest radius near that direction; 0: none was seen.
+  double radius_towards(const vec2& to) const noexcept;
+  // Number of turns, in either direction.
+  double turns() const noexcept { return travelled_rad_ / (2.0 * kPi); }
   bool is_complete() const noexcept { return filled() == kTurnBins && turns() >= kWantedTurns; }
   // Direction (unit) of the middle of the greatest gap; none without gaps.
   std::optional<vec2> missing() const noexcept;
@@ -113,7 +120,7 @@ class PushWatch {
  public:
   enum class State : std::uint8_t { waiting, out, held };
   void hold(const vec2& from_rest, double rim, std::int64_t duration_ns) noexcept;
-  void restart() noexcept;  // a push that is already out does not count
+  void restart() noexcept;  // Begins again; a push that is already out does not count.
   void lose() noexcept { *this = PushWatch(); }
 
   State state() const noexcept;
@@ -125,7 +132,7 @@ class PushWatch {
   enum class Zone : std::uint8_t { unknown, in, between, out };
   Zone zone_ = Zone::unknown;
   std::int64_t zone_ns_ = 0, out_ns_ = 0;
-  bool is_armed_ = true;  // it was let go since the step began
+  bool is_armed_ = true;  // the control was released since the step began
   bool was_short_ = false;
   vec2 sum_{0.0};
   std::optional<vec2> push_;
@@ -141,14 +148,15 @@ enum class GuideStep : std::uint8_t {
   triggers,
   done,
 };
-const char* name_of(GuideStep step) noexcept;  // "rest", "turning", "push forward" ...
+// Name of a step: "rest", "turning", "push forward" ...
+const char* name_of(GuideStep step) noexcept;
 
 // One control's progress in the running step.
 struct GuideProgress {
-  std::string control;  // "left stick", "right trigger"
-  double done = 0.0;    // 0..1
+  std::string control;  // name of the control: "left stick", "right trigger"
+  double done = 0.0;    // share of the step that is done, 0..1
   std::string text;     // `5 of 6 releases`, `41 of 48 directions, 1.5 of 2 turns; not yet: ...`
-  vec2 raw{0.0};        // the position now; of a trigger: x
+  vec2 raw{0.0};        // the present position; x for a trigger
 };
 
 // Reports that are kept: a quarter of an hour at 2 kHz. A full guide ignores further reports.
@@ -169,14 +177,14 @@ class CalibrationGuide {
   GuideStep step() const noexcept { return steps_[index_]; }
   // The steps for which the pad has controls, then `done`.
   std::span<const GuideStep> steps() const noexcept { return steps_; }
-  std::size_t index() const noexcept { return index_; }  // of step() in them
-  std::string instruction() const;                       // one sentence for the step
+  std::size_t index() const noexcept { return index_; }  // Index of the present step in steps().
+  std::string instruction() const;                       // One sentence for the step.
   std::vector<GuideProgress> progress() const;
   bool is_full() const noexcept { return reports_ >= kMaxGuideReports; }
 
-  void skip();    // to the next step, keeping what was seen
-  void repeat();  // begins the step again
-  void back();    // begins the step before again
+  void skip();    // Goes to the next step and keeps what was seen.
+  void repeat();  // Begins the step again.
+  void back();    // Begins the step before this one again.
 
   // The tracks so far (also of skipped steps, raw as the layout has them) and the sticks' frames. A
   // frame is the layout's own if there were no pushes or they contradict each other.
@@ -185,24 +193,25 @@ class CalibrationGuide {
 
  private:
   struct Stick {
-    int side = 0;  // 0 left, 1 right
+    int side = 0;  // side of the control: 0 left, 1 right
     ReleaseWatch release;
     TurnWatch turn;
     PushWatch push;
-    std::array<std::optional<vec2>, 4> pushed;  // forward, right, back, left: raw, from rest
-    std::string advice;                         // what was wrong with the last push; empty: nothing
-    bool turns_again = false;                   // its pushes went farther than its turn
+    // Raw positions, from the rest, of the pushes forward, right, back, left.
+    std::array<std::optional<vec2>, 4> pushed;
+    std::string advice;        // what was wrong with the last push; empty: nothing
+    bool turns_again = false;  // asks for another turn: the pushes went farther
   };
   struct Trigger {
     int side = 0;
     PushWatch push;
     StillWatch level;
-    std::optional<double> released;  // the lowest level seen
+    std::optional<double> released;  // the lowest level that was seen
     bool is_done = false;
   };
   struct Piece {  // the tracks of a finished step
     GuideStep step = GuideStep::rest;
-    bool continues = false;  // the piece before, without a cut between them
+    bool continues = false;  // goes on from the piece before without a cut
     std::int64_t reports = 0;
     PadTracks tracks;
   };
@@ -227,12 +236,13 @@ class CalibrationGuide {
   std::vector<Stick> sticks_;
   std::vector<Trigger> triggers_;
 
-  PadTracker tracker_;  // of the running step
+  PadTracker tracker_;  // tracks of the running step
   std::vector<Piece> pieces_;
-  std::int64_t reports_ = 0, running_reports_ = 0;  // kept: in all steps, in the running step
-  bool continues_ = false;                          // of the running step's piece
-  bool is_cut_ = true;                              // since the last report
-  bool is_placed_ = false;                          // the position of the controls is known
+  // Reports kept in all steps, and in the running step.
+  std::int64_t reports_ = 0, running_reports_ = 0;
+  bool continues_ = false;  // the piece of the running step continues
+  bool is_cut_ = true;      // a cut came since the last report
+  bool is_placed_ = false;  // the position of the controls is known
   std::int64_t time_ns_ = 0;
 };
 

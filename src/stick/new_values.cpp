@@ -4,14 +4,16 @@ namespace gaitpad {
 
 namespace {
 
-constexpr std::uint64_t kPause_ns = 50'000'000;  // as long as a slow pad's interval
-constexpr double kMovementTravel = 0.5;          // raw; less is noise, or too slow for every report
+constexpr std::uint64_t kPause_ns = 50'000'000;  // a pause, as long as a slow pad's interval
+// Least travel of a movement, raw; less is noise, or too slow for every report.
+constexpr double kMovementTravel = 0.5;
 constexpr double kOutOfRange = 8.0;
 
 }  // namespace
 
 void NewValueCount::take(std::int64_t time_ns, const vec2& left, const vec2& right) noexcept {
-  if (!(glm::length(left) + glm::length(right) <= kOutOfRange)) return;  // also if one is no number
+  // Also true if a position is not a number.
+  if (!(glm::length(left) + glm::length(right) <= kOutOfRange)) return;
   ++reports_;
   if (has_position_ && left == left_ && right == right_) return;
   // Unsigned: a time that went back is a pause as well.

@@ -10,9 +10,10 @@
 namespace gaitpad {
 
 struct MovementRate {
-  double report_hz = 0.0;     // reports
+  double report_hz = 0.0;     // reports a second
   double new_value_hz = 0.0;  // reports with another position than the one before
-  double repeats() const noexcept { return 1.0 - new_value_hz / report_hz; }  // share, 0..1
+  // Share of reports that repeat a value, 0..1.
+  double repeats() const noexcept { return 1.0 - new_value_hz / report_hz; }
 };
 
 class NewValueCount {
@@ -33,8 +34,8 @@ class NewValueCount {
 
   bool has_position_ = false;
   vec2 left_{0.0}, right_{0.0};
-  std::int64_t changed_ns_ = 0;  // when the position was new
-  std::int64_t reports_ = 0;     // since then
+  std::int64_t changed_ns_ = 0;  // time at which the position was new
+  std::int64_t reports_ = 0;     // reports since then
   Movement running_, sum_;
 };
 

@@ -14,36 +14,41 @@ namespace {
 // ---- The samples on the rim
 
 constexpr double kSpacing = 2.0 * kPi / kOutlineDirections;
-constexpr double kLeastRadius = 0.25;     // raw; no gate is nearer to the middle
-constexpr double kLeastNoise = 0.003;     // raw; rounding to 8 bits comes to 0.0023
-constexpr double kSeam = 30.0 * kDegree;  // more than any window reaches
-constexpr double kMeanOfUpperHalf = 0.8;  // of a Gaussian, in sigma
+// Least radius of a gate, raw; no gate is nearer to the middle.
+constexpr double kLeastRadius = 0.25;
+constexpr double kLeastNoise = 0.003;  // least noise, raw; rounding to 8 bits gives 0.0023
+// Overlap at the seam, which is more than any window reaches.
+constexpr double kSeam = 30.0 * kDegree;
+constexpr double kMeanOfUpperHalf = 0.8;  // mean of the upper half of a Gaussian, in sigma
 
 constexpr double kGreatestRadius = 4.0;  // more than from any middle to any corner of the range
-constexpr double kInsideHull = 0.85;     // no gate bends inwards by more
-constexpr double kSteepest = 2.0;        // slope over radius; at a square's corner it is 1
-constexpr int kSteepReach = 8;           // directions; farther off the hull is the better bound
+// Share of the convex hull's radius; no gate bends inwards by more.
+constexpr double kInsideHull = 0.85;
+constexpr double kSteepest = 2.0;  // slope over radius; at a square's corner it is 1
+constexpr int kSteepReach = 8;     // directions; farther off the hull is the better bound
 constexpr double kLeastSpread = 0.1 * kSpacing * kSpacing;
 
 // Half width of the lines that tell the rim from samples inside it: wide enough for two samples of
 // the slowest pad's two turns, narrow enough for a corner.
 constexpr double kSelectionWidth = 3.0 * kSpacing;
 constexpr int kFewOfDirection = 8;
-constexpr int kSelectionRounds = 6;         // three or four are enough
-constexpr double kSelectionQuantile = 0.9;  // of the samples' heights: the search begins there
-constexpr double kSigmas = 3.0;             // this far below the line a sample is still on the rim
+constexpr int kSelectionRounds = 6;  // rounds of selecting samples; three or four are enough
+// Quantile of the samples' heights at which the search begins.
+constexpr double kSelectionQuantile = 0.9;
+constexpr double kSigmas = 3.0;  // this far below the line a sample is still on the rim
 
-using Radii = std::array<double, kOutlineDirections>;  // raw, by direction
+using Radii = std::array<double, kOutlineDirections>;  // raw radius in each direction
 
 struct Polar {
-  double angle, radius;  // rad, raw
+  double angle, radius;  // angle in rad, radius raw
 };
 
 // A straight line radius(angle) through samples.
 struct Line {
-  double samples = 0.0, angle = 0.0, radius = 0.0, slope = 0.0;  // the means; it passes there
-  double spread = 0.0;    // sum of squared angles about the mean
-  double residual = 0.0;  // mean square
+  // Sums and means of a line, which passes through the means.
+  double samples = 0.0, angle = 0.0, radius = 0.0, slope = 0.0;
+  double spread = 0.0;    // sum of squared angles about their mean
+  double residual = 0.0;  // mean square of the differences from the line
 
   double at(double a) const noexcept { return radius + slope * (a - angle); }
 };
@@ -252,7 +257,7 @@ std::vector<Polar> rim_samples(std::span<const StickTrack> tracks, const vec2& m
 
 // ---- The gate through them
 
-constexpr double kGreatestNoise = 0.2;  // raw; beyond that nothing is a rim
+constexpr double kGreatestNoise = 0.2;  // largest noise, raw, with which a rim can be found
 // Half widths of the windows; the radius comes from the widest line that agrees with the narrower.
 constexpr double kWidths[] = {1.0 * kSpacing, 1.5 * kSpacing, 2.0 * kSpacing, 3.0 * kSpacing,
                               4.0 * kSpacing, 6.0 * kSpacing, 8.0 * kSpacing};
@@ -262,15 +267,17 @@ constexpr double kWidths[] = {1.0 * kSpacing, 1.5 * kSpacing, 2.0 * kSpacing, 3.
 constexpr double kAgreement = 1.5, kOwnAgreement = 3.0;
 constexpr double kGreatestError =
     0.025;                      // raw, one standard error; beyond it the direction was not seen
-constexpr int kGap = 3;         // directions to fill in between seen ones
+constexpr int kGap = 3;         // most unseen directions between seen ones that are filled in
 constexpr double kSharp = 0.6;  // sine of the angle by which a corner turns at least
 
 // A side's reach is known if the outline was seen this near to it: on both sides of it, or straight
 // there.
 constexpr double kOfSide = 15.0 * kDegree, kStraight = 3.0 * kSpacing;
-constexpr int kParts = 8;                        // of each piece of the outline, for the bins
-constexpr double kLeastCircularityRadius = 0.2;  // dualshock-tools'
-constexpr int kLeastFilledBins = 44;             // with fewer bins the error is not comparable
+constexpr int kParts = 8;  // parts of each piece of the outline, for the bins
+// Smallest radius that counts, as in dualshock-tools.
+constexpr double kLeastCircularityRadius = 0.2;
+// Fewest bins with a radius; with fewer the error is not comparable.
+constexpr int kLeastFilledBins = 44;
 
 double cross(const vec2& a, const vec2& b) noexcept { return a.x * b.y - a.y * b.x; }
 
@@ -285,7 +292,7 @@ enum class Piece { arc, edge };
 struct Neighbourhood {
   double direction;
   std::span<const Polar> rim;
-  std::array<std::vector<Polar>, 2> straight;  // arc, edge
+  std::array<std::vector<Polar>, 2> straight;  // samples that may form an arc, an edge
 
   std::span<const Polar> window(Piece piece, double from, double to) const {
     const auto inner = between(rim, direction + from, direction + to);
@@ -308,9 +315,9 @@ Neighbourhood about(std::span<const Polar> all, double direction) {
 }
 
 struct Estimate {
-  double radius = 0.0, error = 1.0;  // standard error
-  double width = 0.0;                // of the window
-  double residual = 0.0;             // mean square
+  double radius = 0.0, error = 1.0;  // radius and its standard error
+  double width = 0.0;                // width of the window
+  double residual = 0.0;             // mean square of the differences
 };
 
 // Whether the line passes through the middle of the direction's own samples.
@@ -407,7 +414,7 @@ void sharpen(Outline& outline) noexcept {
     const auto corner = corner_between(round, {k - 5, k - 2, k + 2, k + 5});
     if (!corner) continue;
     const vec2 at = *corner - outline.middle;
-    if (direction_of(gaitpad::atan2(at.y, at.x)) != k) continue;  // another direction's
+    if (direction_of(gaitpad::atan2(at.y, at.x)) != k) continue;  // a sample of another direction
     const vec2 in = *corner - point_of(round, k - 2), out = point_of(round, k + 2) - *corner;
     for (int n = k - 1; n <= k + 1; ++n) {
       // Intersection of the ray and the side.
@@ -434,7 +441,7 @@ std::vector<Polar> turned_samples(std::span<const StickTrack> tracks, const vec2
   constexpr double kOfTurn = 10.0 * kDegree;
   std::vector<Polar> turned;
   for (const StickTrack& track : tracks) {
-    std::vector<std::pair<Polar, double>> run;  // each with the angle turned by then
+    std::vector<std::pair<Polar, double>> run;  // samples, each with the angle turned until then
     const auto end_run = [&] {
       const double whole = run.empty() ? 0.0 : run.back().second;
       for (const auto& [polar, way] : run) {
@@ -526,7 +533,8 @@ std::array<double, kCircularityBins> least_reaches(const Outline& outline) noexc
 }
 
 std::optional<int> unpressed_direction(const Outline& outline, std::span<const vec2> pushes) {
-  constexpr double kDeep = 0.1, kAsFar = 0.06;  // raw
+  // Raw lengths: depth of a dent, and how far a push may exceed the outline.
+  constexpr double kDeep = 0.1, kAsFar = 0.06;
   Radii farthest = outline.radius;
   const auto direction = [&](const vec2& push) {
     const vec2 p = push - outline.middle;
@@ -581,7 +589,8 @@ int filled_bins(const Outline& outline) noexcept {
 
 namespace {
 
-double outwards(const Outline& outline, int k, int side) noexcept {  // right, front, left, back
+// The outline's distance in direction k towards a side: right, front, left, back.
+double outwards(const Outline& outline, int k, int side) noexcept {
   const vec2 p = point_of(outline, k);
   return (side < 2 ? 1.0 : -1.0) * (side % 2 == 0 ? p.x : p.y);
 }
@@ -665,7 +674,8 @@ namespace {
 // Counts whole turns in either direction; turning back begins anew.
 struct Turning {
   int turns = 0;
-  double turned = 0.0, farthest = 0.0;  // of the running turn, as parts of a whole one
+  // The running turn and its farthest point, as parts of a whole turn.
+  double turned = 0.0, farthest = 0.0;
   void add(double angle) noexcept {
     turned += angle;
     if (std::fabs(turned) > std::fabs(farthest) && turned * farthest >= 0.0) farthest = turned;
@@ -687,7 +697,7 @@ int whole_turns(std::span<const StickTrack> tracks, const vec2& middle, double r
   constexpr int kStray = 3;  // reports that may be spikes
   Turning turning;
   for (const StickTrack& track : tracks) {
-    vec2 before(0.0);  // 0: inside the radius
+    vec2 before(0.0);  // radius of the report before; 0: inside the radius
     int strays = 0;
     for (const StickSample& sample : track) {
       const vec2 p = sample.raw - middle;

@@ -15,10 +15,10 @@ inline constexpr int kOutlineDirections = 192;  // evenly spaced, the first one 
 inline constexpr int kCircularityBins = 48;     // bin k is centred on k times 7.5 degrees
 
 struct Outline {
-  vec2 middle{0.0};  // raw; the directions start here
+  vec2 middle{0.0};  // raw position from which the directions start
   // Raw radius by direction, counter-clockwise from +x; 0: not seen.
   std::array<double, kOutlineDirections> radius{};
-  std::int64_t samples = 0;  // used for it
+  std::int64_t samples = 0;  // number of samples from which it was made
 };
 // `sigma`: noise of one position, so that the outermost of many samples is not taken for the gate.
 // Spikes are left out.
@@ -26,9 +26,9 @@ Outline outline_of(std::span<const StickTrack> tracks, const vec2& middle, doubl
 // The raw point of the outline in direction k (modulo the number of directions).
 vec2 point_of(const Outline& outline, int k) noexcept;
 
-// The direction in which it reaches least far; none if no direction was seen.
+// The direction in which the outline reaches least far; none if no direction was seen.
 std::optional<int> worst_direction(const Outline& outline) noexcept;
-// The direction (of the outline) in which it lies deepest inside the shapes that gates have, as if
+// The direction in which the outline lies deepest inside the shapes that gates have, as if
 // the stick was turned there without being pressed to its rim; none if there is no such direction.
 // Directions in which a push (`pushes`: raw) was held and reached no farther are left out: there
 // the gate itself is short.

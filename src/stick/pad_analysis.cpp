@@ -19,34 +19,44 @@ namespace {
 constexpr double kLeastJudgedHalfRange = 0.1001, kGreatestCentre = 0.89;
 constexpr double kGreatestInner = 0.89, kLeastSpan = 0.0501, kGreatestOuter = 0.95;
 
-constexpr double kLeastInner = 0.05;         // raw; a good stick returns within 5 %
-constexpr double kAssumedHysteresis = 0.05;  // raw, if the stick was let go only once
+constexpr double kLeastInner = 0.05;  // least inner zone, raw; good sticks return within 5 %
+// Assumed hysteresis, raw, of a stick that was released only once.
+constexpr double kAssumedHysteresis = 0.05;
 // Two-dimensional noise exceeds 5.5 sigma once in four million reports, and less than once in
 // 20,000 if the measured sigma is 15 % too small.
 constexpr double kSigmasOfRest = 5.5;
-constexpr double kSigmasOfRim = 4.5;  // at the rim one report in 300,000 is not full
+// Distance of full output from the rim in sigmas: one report in 300,000 is not full.
+constexpr double kSigmasOfRim = 4.5;
 // From 0.14 on full deflection could be less than 0.96, where the sideways zone takes most off it.
 constexpr double kLeastSideways = 0.11, kGreatestSideways = 0.14;
 constexpr double kSigmasOfForward = 4.0;
 constexpr double kSpreadOfDisplaced = 1.1;
 constexpr double kSigmasOfWander = 5.0;  // a minute shows more of it than the second measured
 
-// Beyond these no calibration helps.
-constexpr double kUselessZone = 0.3;      // raw; the stick would do nothing for a third of its way
-constexpr double kUselessReach = 0.5;     // raw, from the centre
-constexpr double kUselessSigma = 0.05;    // raw; a tenth of the travel of the shortest usable reach
-constexpr double kUselessDrift = 0.002;   // raw a second: leaves a zone of 0.1 within a minute
-constexpr double kUselessWander = 0.029;  // raw, in a second; within a minute it leaves any zone
-constexpr double kDriftSure_s = 5.0;      // at rest, if the stick was let go only once
-constexpr double kLeastRate_hz = 22.5;    // slower reports show no movement by itself
-constexpr int kFewestDirections = 44;     // of 48; the unseen ones may be weak
+// Limits beyond which no calibration helps.
+// Greatest useful inner zone, raw: beyond it a third of the stick's way does nothing.
+constexpr double kUselessZone = 0.3;
+constexpr double kUselessReach = 0.5;  // least useful reach, raw, from the centre
+// Greatest useful sigma, raw: a tenth of the least useful reach.
+constexpr double kUselessSigma = 0.05;
+// Fastest useful drift, raw a second: a faster one leaves a zone of 0.1 within a minute.
+constexpr double kUselessDrift = 0.002;
+// Greatest useful wander, raw in a second: a greater one leaves any zone within a minute.
+constexpr double kUselessWander = 0.029;
+// Least rest for a drift of a stick that was released only once.
+constexpr double kDriftSure_s = 5.0;
+// Least report rate: slower reports show no movement by itself.
+constexpr double kLeastRate_hz = 22.5;
+constexpr int kFewestDirections = 44;  // fewest directions of 48; the unseen ones may be weak
 constexpr int kUselessDropOuts = 2;
-constexpr double kUselessPassing = 0.2;  // a minute
-constexpr int kUselessStuck = 2;         // a single one may be a lost report
+// Jumps a minute beyond the filter that make a stick useless.
+constexpr double kUselessPassing = 0.2;
+constexpr int kUselessStuck = 2;  // a single frozen time may be a lost report
 // Beyond these a stick is worn: two or three times what new ones show.
 constexpr double kWornHysteresis = 0.06, kWornSigma = 0.01, kWornCentre = 0.12, kWornReach = 0.8;
 constexpr double kWornWander = 0.01;
-constexpr double kWornSteps = 1.5;  // smaller noise comes from the steps
+// Noise of a worn stick, in steps: smaller noise comes from the steps.
+constexpr double kWornSteps = 1.5;
 constexpr int kWornJumps = 3;
 // A thumb or a finger that lies on a stick holds it aside, while its range stays symmetric. After
 // kSureRests rests this is no accident.
@@ -55,8 +65,8 @@ constexpr std::size_t kSureRests = 14;
 
 struct Side {
   const char* name;
-  std::optional<double> reach;  // raw, from the centre
-  int direction;                // of the outline
+  std::optional<double> reach;  // smallest reach, raw, from the centre
+  int direction;                // direction of that reach in the outline
 };
 std::array<Side, 4> sides_of(const StickStatistics& s) {
   const vec2 centre = s.centre.value_or(vec2(0.0));
@@ -93,7 +103,7 @@ std::vector<std::string> short_sides(const StickStatistics& s, double least) {
   return reasons;
 }
 
-// Whether its range was seen to all four sides.
+// Whether the stick's range was seen to all four sides.
 bool is_turned(const StickStatistics& s) noexcept {
   return s.min_x && s.max_x && s.min_y && s.max_y;
 }
@@ -101,17 +111,17 @@ bool is_turned(const StickStatistics& s) noexcept {
 vec2 middle_of_range(const StickStatistics& s) noexcept {
   return 0.5 * vec2(*s.min_x + *s.max_x, *s.min_y + *s.max_y);
 }
-// The distance of its rest from the middle of its range; 0 if that is not known.
+// The distance of the stick's rest from the middle of its range; 0 if one of them is not known.
 double off_middle(const StickStatistics& s) noexcept {
   return s.centre && is_turned(s) ? glm::length(*s.centre - middle_of_range(s)) : 0.0;
 }
-// Whether something may have held it aside at every rest.
+// Whether something may have held the stick aside at every rest.
 bool may_be_held(const StickStatistics& s) noexcept {
   return off_middle(s) >= kHeldCentre && glm::length(middle_of_range(s)) <= kSymmetric &&
          s.rests.size() < kSureRests;
 }
 
-// The jumps that the median of three takes out.
+// Number of jumps that the median of three reports removes.
 std::int64_t single_jumps(const StickStatistics& s) noexcept { return s.jumps - s.long_jumps; }
 
 double share_of_jumps(const StickStatistics& s) noexcept {
@@ -430,8 +440,8 @@ StickAnalysis stick_analysis(std::vector<StickTrack> tracks, const vec2& step,
   return analysis;
 }
 
-// Both sticks come in the same reports. The one that moved tells their rate best: repeated values
-// of one that rests may look like lost reports.
+// Gives both sticks the timing of the one that moved, because they come in the same reports:
+// repeated values of a resting stick may look like lost reports.
 void share_timing(StickStatistics& a, StickStatistics& b) noexcept {
   const StickStatistics& best = a.rate_hz.value_or(0.0) >= b.rate_hz.value_or(0.0) ? a : b;
   const bool is_silent_at_rest = (a.rate_hz && !a.gaps) || (b.rate_hz && !b.gaps);

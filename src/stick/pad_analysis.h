@@ -15,26 +15,27 @@ enum class Verdict : std::uint8_t { good, worn, replace, unknown };
 const char* name_of(Verdict verdict) noexcept;
 
 struct StickAdvice {
-  StickCalibration calibration;  // unknown parts are as for an unknown stick
-  double inner_zone = 0.0;       // raw: max(0.05, 3 sigma + hysteresis)
-  double outer_zone = 0.0;       // raw
+  StickCalibration calibration;  // parts that are not known have the values for an unknown stick
+  double inner_zone = 0.0;       // raw radius: max(0.05, 3 sigma + hysteresis)
+  double outer_zone = 0.0;       // raw radius
   Verdict verdict = Verdict::unknown;
-  std::string reason;  // one sentence with its numbers
+  std::string reason;  // the reason of the verdict: one sentence with numbers
   // Parts of `calibration` that were seen and are not doubted.
   bool has_centre = false, has_range = false;
 };
-// `statistics` are in `frame`.
+// The positions of `statistics` are given in `frame`.
 StickAdvice stick_advice(const StickStatistics& statistics, const StickFrame& frame);
 TriggerCalibration trigger_advice(const TriggerStatistics& statistics) noexcept;
 
 // The whole pad: statistics of its sticks and triggers, and the calibration that follows.
 
 struct StickAnalysis {
-  std::vector<StickTrack> tracks;  // in the frame of the advice
+  std::vector<StickTrack> tracks;  // tracks in the frame of the advice
   StickStatistics statistics;
   StickAdvice advice;
 };
-struct PadAnalysis {  // left, right; none if the pad has no such control
+// Results for the left and the right control; none if the pad has no such control.
+struct PadAnalysis {
   std::array<std::optional<StickAnalysis>, 2> stick;
   std::array<std::optional<TriggerStatistics>, 2> trigger;
 };
@@ -45,9 +46,9 @@ PadAnalysis analysis_of(const PadLayout& layout, const PadTracks& tracks,
 bool has_a_centre(const PadAnalysis& analysis) noexcept;
 // Whether the verdict on the stick (0 left, 1 right) is not `unknown`: a file takes it over.
 bool is_known(const PadAnalysis& analysis, std::size_t side) noexcept;
-// Whether it can calibrate anything: a stick is known.
+// Whether the analysis can calibrate anything: a stick is known.
 bool is_useful(const PadAnalysis& analysis) noexcept;
-// The reason why it is not useful: a sentence without a full stop.
+// The reason why the analysis is not useful: a sentence without a full stop.
 std::string why_useless(const PadAnalysis& analysis);
 // Writes the advice for sticks whose verdict is not `unknown` into `file`, and triggers that were
 // pressed. The rest of the calibration that `file` holds stays: an unknown stick, the range of a

@@ -7,7 +7,8 @@ namespace gaitpad {
 namespace {
 
 constexpr double kTurn_rad = 2.0 * kPi;
-constexpr double kLeastReach = 0.2;  // of a direction that counts; dualshock-tools'
+// Least reach in a direction that counts, as in dualshock-tools.
+constexpr double kLeastReach = 0.2;
 
 }  // namespace
 
@@ -15,7 +16,8 @@ void ReachedOutline::add(const vec2& before, const vec2& now, std::int64_t tick,
                          int rate_hz) noexcept {
   constexpr std::int64_t kKept_s = 10;
   constexpr int kParts = 8;
-  constexpr double kMostTurn_rad = 1.0;  // between two frames; more is no turn along the rim
+  // Largest turn between two frames; more is no turn along the rim.
+  constexpr double kMostTurn_rad = 1.0;
   for (Reached& r : reached_)
     if (tick - r.tick > kKept_s * rate_hz) r.radius = 0.0;
   if (!std::isfinite(before.x + before.y + now.x + now.y)) return;

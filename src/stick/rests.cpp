@@ -35,7 +35,7 @@ void divide(RestPoint& sum) noexcept {
 // Straight line through points by least squares; slope 0 if they have no extent in time.
 struct RestTrend {
   RestPoint mean;
-  vec2 slope{0.0};      // per second
+  vec2 slope{0.0};      // slope per second
   double spread = 0.0;  // sum of weight times squared time from the mean
   vec2 at(double time_s) const noexcept { return mean.place + slope * (time_s - mean.time_s); }
 };
@@ -49,8 +49,8 @@ struct RestNoise {
 };
 
 constexpr double kPart_s = 0.02, kPiece_s = 1.0;
-constexpr double kFewestReports = 8.0;  // for an estimate of noise
-constexpr double kSpike = 4.5;          // standard deviations
+constexpr double kFewestReports = 8.0;  // fewest reports for an estimate of noise
+constexpr double kSpike = 4.5;          // distance of a spike, in standard deviations
 
 double time_s(const StickTrack& track, std::int64_t time_ns) noexcept {
   const double whole_s = seconds_between(track.front().time_ns, track.back().time_ns);
@@ -160,15 +160,15 @@ std::vector<RestPoint> rest_blocks(std::span<const RestPoint> points, int count)
 
 // A rest between two movements. Rests that noise or a touch cut in two belong to one release.
 struct Release {
-  std::vector<Still> stills;  // at one place, in the order of time
+  std::vector<Still> stills;  // still times at one place, in the order of time
   std::size_t track = 0;
-  RestPoint rest;  // mean of all; weight: reports
-  vec2 from{0.0};  // unit, the side from which the stick returned; 0: not seen
+  RestPoint rest;  // mean of all reports; its weight is their number
+  vec2 from{0.0};  // unit vector to the side from which the stick returned; 0: not seen
 };
 
 constexpr double kSamePlace = 0.02;
-constexpr double kOdd = 0.005;          // raw; less does no harm
-constexpr std::size_t kMostTried = 64;  // releases that are left out one by one
+constexpr double kOdd = 0.005;          // odd rests that are nearer, raw, do no harm
+constexpr std::size_t kMostTried = 64;  // most releases that are left out one by one
 
 // One release from the longest of the stills and those at its place.
 Release release_of(std::span<const StickTrack> tracks, std::span<const Still> stills,
@@ -208,16 +208,16 @@ std::vector<Release> releases_of(std::span<const StickTrack> tracks, std::span<c
 struct ReturnModel {
   std::vector<bool> counts;  // of each release; odd ones and those without `from` do not count
   int used = 0;
-  vec2 home{0.0};          // mean over the releases used
-  vec2 drift{0.0};         // per second; 0 unless it was asked for
-  double residual = 0.0;   // sum of squares, both axes
-  double spread_s2 = 0.0;  // of the times: the part that `from` does not explain
+  vec2 home{0.0};          // mean rest of the releases that are used
+  vec2 drift{0.0};         // drift per second; 0 unless it was asked for
+  double residual = 0.0;   // sum of squared differences of both axes
+  double spread_s2 = 0.0;  // spread of the times that `from` does not explain
 };
 enum class Explain { home, returns, returns_and_drift };
 
 // One release and what may explain its place, relative to the means of its track.
 struct Row {
-  std::array<double, 3> cause{};  // from.x, from.y, time
+  std::array<double, 3> cause{};  // variables of the fit: from.x, from.y, time
   vec2 place{0.0};
 };
 
@@ -393,7 +393,7 @@ double greatest_distance(std::span<const vec2> places) noexcept {
 
 constexpr double kBlock_s = 0.1;
 constexpr double kFewestRestReports = 5.0;
-constexpr double kSettling_s = 1.0;  // some sticks creep home for a while
+constexpr double kSettling_s = 1.0;  // time after a release in which some sticks creep home
 constexpr double kShortestForDrift_s = 0.5;
 constexpr double kSlowestDrift_per_s = 0.0005;
 
@@ -402,14 +402,14 @@ struct Evidence {
   std::vector<Release> releases;
   RestNoise noise;
   double mean_noise = 0.0;   // standard deviation of a release's mean, one axis
-  double block_noise = 0.0;  // of a block's mean, as measured
-  double white_noise = 0.0;  // of a block's mean if all noise were white
+  double block_noise = 0.0;  // measured noise of a block's mean
+  double white_noise = 0.0;  // noise of a block's mean if all noise were white
   double seconds = 0.0, longest_s = 0.0;
-  double weight = 0.0;                         // reports
-  std::vector<std::vector<RestPoint>> blocks;  // by still, each of weight 1
+  double weight = 0.0;                         // number of reports
+  std::vector<std::vector<RestPoint>> blocks;  // blocks of each still time, each of weight 1
   std::vector<RestPoint> settled;              // blocks of the longest still, without settling
   double step = 0.0;
-  double step_noise = 0.0;  // of a mean by rounding, unless noise averages it out
+  double step_noise = 0.0;  // noise of a mean by rounding, unless noise averages it out
 };
 
 void add_still(Evidence& evidence, std::span<const StickTrack> tracks, const Release& release,
@@ -654,7 +654,7 @@ Home home_of(std::span<const Release> releases, const Evidence& evidence) {
 // rest's track ends away from it. A stick that rests while the pad is unplugged, or from one
 // recording to the next, shows no return.
 bool was_let_go(std::span<const StickTrack> tracks, std::span<const Release> releases) noexcept {
-  constexpr double kSeenMovement = 0.2;  // raw
+  constexpr double kSeenMovement = 0.2;  // raw movement between two rests that counts as seen
   for (std::size_t i = 1; i < releases.size(); ++i) {
     const Release& before = releases[i - 1];
     if (releases[i].from != vec2(0.0)) return true;
@@ -690,9 +690,9 @@ void set_sigma(RestStatistics& to, const Evidence& evidence, const vec2& step) {
 // Estimated from the changes over 0.2 s, less the part that noise and flipping codes explain. The
 // median over the hands-off times, because a thumb may lie on the stick in some of them.
 double wander_of(std::span<const HandsOff> times, const vec2& drift, const vec2& step) {
-  constexpr std::size_t kLag = 2;                    // blocks of 0.1 s
+  constexpr std::size_t kLag = 2;                    // compared blocks are 0.2 s apart
   constexpr double kShare = kLag * 0.1 - 0.1 / 3.0;  // s; a block is a mean over 0.1 s
-  constexpr double kFewest = 8.0;                    // changes, both axes
+  constexpr double kFewest = 8.0;                    // fewest changes of both axes
   std::vector<double> squares, noises;
   double changes = 0.0;
   for (const HandsOff& time : times) {
@@ -734,7 +734,8 @@ void add_displaced(RestStatistics& to) {
       mean += time.places[k] / static_cast<double>(time.places.size());
       noise = std::max(noise, time.variances[k]);
     }
-    if (glm::length(most - least) > kQuiet + 5.0 * std::sqrt(noise)) continue;  // it was moved
+    // The stick was moved.
+    if (glm::length(most - least) > kQuiet + 5.0 * std::sqrt(noise)) continue;
     away.push_back(glm::length(mean - *to.centre));
     quiet.push_back(&time);
   }

@@ -29,7 +29,7 @@ void add_rim(StickStatistics& to, std::span<const StickTrack> tracks, const Exte
   if (reach.min_y) to.min_y = std::max(*reach.min_y, extent.least.y);
   if (reach.max_y) to.max_y = std::min(*reach.max_y, extent.most.y);
   to.circularity_error = circularity_error(to.outline);
-  // One that wanders is not where it was between its turn and its pushes.
+  // A stick that wanders has moved between its turn and its pushes.
   constexpr double kWanders = 0.02;
   if (to.wander < kWanders) to.unpressed = unpressed_direction(to.outline, to.pushes);
   to.rim_samples = to.outline.samples;
@@ -116,7 +116,7 @@ std::optional<double> median_within(std::span<const Held> values, double least, 
 }  // namespace
 
 TriggerStatistics trigger_statistics(std::span<const TriggerTrack> tracks) {
-  constexpr double kNear = 0.15;  // of an end
+  constexpr double kNear = 0.15;  // distance from an end, raw, that counts as near
   TriggerStatistics result;
   for (const TriggerTrack& track : tracks)
     result.samples += static_cast<std::int64_t>(track.size());

@@ -16,25 +16,26 @@ namespace gaitpad {
 // Positions and lengths are raw, as in StickSample. A value is none if there are too few data for
 // it.
 struct StickStatistics : RestStatistics {
-  std::int64_t samples = 0;  // all reports
+  std::int64_t samples = 0;  // number of all reports
 
   // At the rim, see outline.h.
-  Outline outline;  // about `centre`; about 0 if that is none
+  Outline outline;  // outline about `centre`; about 0 if there is none
   std::optional<double> min_x, max_x, min_y, max_y;
-  std::optional<double> circularity_error;  // percent
-  std::optional<int> unpressed;             // see unpressed_direction()
+  std::optional<double> circularity_error;  // circularity error in percent
+  std::optional<int> unpressed;             // direction from unpressed_direction()
   std::int64_t rim_samples = 0;
-  int turns = 0;  // whole ones, either way
+  int turns = 0;  // number of whole turns, either way
 
   // The values and the reports, see stick_track.h.
-  double step_x = 0.0, step_y = 0.0;   // as measured, else as declared; 0: not known
-  std::optional<double> rate_hz;       // without gaps
-  std::optional<MovementRate> moving;  // while the stick moved
+  // Steps of the position: measured, else as declared; 0: not known.
+  double step_x = 0.0, step_y = 0.0;
+  std::optional<double> rate_hz;       // report rate without gaps
+  std::optional<MovementRate> moving;  // rates while the stick moved
   std::optional<double> jitter_ms;     // standard deviation of the intervals, without gaps
   std::optional<std::int64_t> gaps;    // where reports were lost; none: the pad is silent at rest
   std::int64_t jumps = 0;              // spikes: to another place and back within three reports
   std::int64_t long_jumps = 0;         // those of them that last for more than one report
-  std::int64_t drop_outs = 0;          // an axis lost contact for longer
+  std::int64_t drop_outs = 0;          // number of times that an axis lost contact for longer
   double drop_out_s = 0.0;
   std::int64_t stuck = 0;  // the value froze while the stick moved; seen if the pad repeats values
 };
@@ -43,7 +44,8 @@ StickStatistics stick_statistics(std::span<const StickTrack> tracks, const vec2&
 
 struct TriggerStatistics {
   std::int64_t samples = 0;
-  std::optional<double> released, pressed;  // raw 0..1; pressed: none if it was never pressed
+  // Levels of a trigger, raw 0..1; pressed: none if it was never pressed.
+  std::optional<double> released, pressed;
 };
 TriggerStatistics trigger_statistics(std::span<const TriggerTrack> tracks);
 

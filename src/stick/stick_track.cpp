@@ -137,16 +137,19 @@ double reports_stood(double hold_s, double interval_s) noexcept {
 
 namespace {
 
-constexpr double kSmallestSpike = 0.03;     // raw; less is noise
-constexpr double kShortMovement_s = 0.04;   // no hand moves there and back faster
-constexpr double kLongestDropOut_s = 0.12;  // with edges of one report that no hand can make
+constexpr double kSmallestSpike = 0.03;    // least height of a spike, raw; less is noise
+constexpr double kShortMovement_s = 0.04;  // no hand moves there and back in a shorter time
+// Longest jump there and back with edges of one report, which no hand can make.
+constexpr double kLongestDropOut_s = 0.12;
 constexpr double kShortestDropOut_s = 0.0035;
-constexpr double kSlowestForDropOuts_s = 0.025;  // a spring takes two reports or more
-constexpr double kFarthest = 4.0;                // raw; positions beyond are damaged
-constexpr std::int64_t kLatest_ns = 4'000'000'000'000'000'000;  // so that sums of times fit
+// Longest interval for drop-outs: a spring takes two reports or more.
+constexpr double kSlowestForDropOuts_s = 0.025;
+constexpr double kFarthest = 4.0;  // greatest raw position; those beyond are damaged
+// Latest time, so that sums of times fit in 64 bits.
+constexpr std::int64_t kLatest_ns = 4'000'000'000'000'000'000;
 
 bool is_place(const vec2& p) noexcept {
-  return std::fabs(p.x) <= kFarthest && std::fabs(p.y) <= kFarthest;  // false for not-a-number
+  return std::fabs(p.x) <= kFarthest && std::fabs(p.y) <= kFarthest;  // false also for not-a-number
 }
 
 StickTrack sound_track(const StickTrack& track) {
@@ -163,13 +166,14 @@ StickTrack sound_track(const StickTrack& track) {
   return sound;
 }
 
-double step_length(const StickTrack& track, std::size_t i) noexcept {  // from i - 1 to i
+// Length of the step from sample i - 1 to i.
+double step_length(const StickTrack& track, std::size_t i) noexcept {
   return glm::length(track[i].raw - track[i - 1].raw);
 }
 
 struct Scale {
   double interval_s = 0.0;
-  double smallest = kSmallestSpike;  // raw
+  double smallest = kSmallestSpike;  // least height of a spike, raw
 };
 
 // A stick held against its end has small, one-sided noise, so a spike must be long compared with
@@ -232,7 +236,7 @@ bool stands_out(double height, const std::array<Steps, 2>& around) noexcept {
 // Nearer to the middle in the same direction: a sector of the gate that reaches less far, which the
 // stick is turned through.
 bool is_weak_sector(const vec2& before, const vec2& place) noexcept {
-  constexpr double kOut = 0.5, kSameDirection = 0.95;  // raw, cosine
+  constexpr double kOut = 0.5, kSameDirection = 0.95;  // a raw distance; the cosine of an angle
   const double far = glm::length(before), near = glm::length(place);
   return far > kOut && near < far && glm::dot(before, place) > kSameDirection * far * near;
 }
@@ -243,7 +247,7 @@ bool is_spike(const StickTrack& track, std::size_t i, std::size_t length, const 
   const vec2& after = track[i + length].raw;
   double least = 2.0 * kFarthest;
   for (const std::size_t edge :
-       {i, i + length - 1}) {  // a sound report may stand between two spikes
+       {i, i + length - 1}) {  // both ends, because a sound report may be between two spikes
     least = std::min(
         {least, glm::length(track[edge].raw - before), glm::length(track[edge].raw - after)});
   }
@@ -264,7 +268,7 @@ std::size_t spike_length(const StickTrack& track, std::size_t i, const Scale& sc
   return 0;
 }
 
-// Returns whether there were any.
+// Returns whether there were spikes.
 bool remove_spikes(StickTrack& track, const Scale& scale, CleanTracks& counts) {
   bool is_any = false;
   for (std::size_t i = 1; i + 1 < track.size(); ++i) {
@@ -283,7 +287,8 @@ bool remove_spikes(StickTrack& track, const Scale& scale, CleanTracks& counts) {
 // jumps to another value, stays there and jumps back, each within one report. A hand needs several.
 std::size_t drop_out_length(const StickTrack& track, std::size_t i, int axis,
                             double interval_s) noexcept {
-  constexpr double kSmallest = 0.2, kPlateau = 0.04, kOfHeight = 0.2;  // raw, raw, share
+  // Raw heights, and a share of the height.
+  constexpr double kSmallest = 0.2, kPlateau = 0.04, kOfHeight = 0.2;
   const auto at = [&](std::size_t k) { return track[std::min(k, track.size() - 1)].raw[axis]; };
   const double before = at(i - 1), height = std::fabs(at(i) - before);
   const double steady = kOfHeight * height;
@@ -356,7 +361,8 @@ CleanTracks clean_tracks(std::span<const StickTrack> tracks) {
 
 namespace {
 
-constexpr std::size_t kMostIntervals = std::size_t{1} << 20;  // enough for a median
+// Number of intervals that is enough for a median.
+constexpr std::size_t kMostIntervals = std::size_t{1} << 20;
 constexpr std::size_t kFewestIntervals = 20;
 constexpr double kSilence_s = 0.1, kSlowest_s = 0.5;
 constexpr double kBurst_s = 0.0007;  // nearly all pads send at most 1000 reports a second
@@ -368,7 +374,7 @@ constexpr double kFrozen_s = 0.07;
 std::vector<double> intervals(std::span<const StickTrack> tracks) {
   std::vector<double> all, moving, slow;
   for (const StickTrack& track : tracks) {
-    std::size_t back = 0;  // the sample 50 ms ago
+    std::size_t back = 0;  // index of the sample 50 ms ago
     for (std::size_t i = 1; i < track.size() && all.size() < kMostIntervals; ++i) {
       const double interval_s = seconds_between(track[i - 1].time_ns, track[i].time_ns);
       while (seconds_between(track[back].time_ns, track[i - 1].time_ns) > 0.05) ++back;
@@ -459,7 +465,7 @@ std::vector<double> distinct_values(std::span<const StickTrack> tracks, int axis
     }
   }
   std::sort(values.begin(), values.end());
-  constexpr double kRounding = 1e-6;  // axes are decoded to floats
+  constexpr double kRounding = 1e-6;  // rounding error, because axes are decoded to floats
   const auto end = std::unique(values.begin(), values.end(),
                                [](double a, double b) { return b - a <= kRounding; });
   values.erase(end, values.end());
@@ -486,9 +492,11 @@ vec2 place_at(const StickTrack& track, std::size_t i, double seconds) noexcept {
 // `quiet`: the chance that noise shows the same value so often.
 bool is_frozen(const StickTrack& track, std::size_t first, std::size_t last, const vec2& axes,
                double quiet) {
-  constexpr double kMoved = 0.1, kRun_s = 0.03, kRunning = 0.02, kOut = 0.4;  // raw, s, raw, raw
-  constexpr double kUnlikely = 1e-6, kInside = 0.7;     // noise may end where the range does
-  constexpr double kSpring_per_s = 60.0, kSlack = 0.2;  // raw; no stick snaps back faster
+  // A raw distance, seconds, and raw distances.
+  constexpr double kMoved = 0.1, kRun_s = 0.03, kRunning = 0.02, kOut = 0.4;
+  constexpr double kUnlikely = 1e-6, kInside = 0.7;  // noise may end where the range does
+  // Greatest raw speed of a stick that snaps back, and its tolerance.
+  constexpr double kSpring_per_s = 60.0, kSlack = 0.2;
   if (last + 1 >= track.size()) return false;
   const vec2 place = track[last].raw, next = track[last + 1].raw;
   const double jump = glm::length((next - place) * axes);

@@ -24,14 +24,14 @@ using StickTrack = std::vector<StickSample>;
 
 struct TriggerSample {
   std::int64_t time_ns = 0;
-  double raw = 0.0;  // 0..1
+  double raw = 0.0;  // position, 0..1
 };
 using TriggerTrack = std::vector<TriggerSample>;
 
 // One pad's tracks, from one recording or several. Unplugging ends a track.
 struct PadTracks {
-  std::array<std::vector<StickTrack>, 2> stick;      // left, right
-  std::array<std::vector<TriggerTrack>, 2> trigger;  // left, right
+  std::array<std::vector<StickTrack>, 2> stick;      // tracks of the left and the right stick
+  std::array<std::vector<TriggerTrack>, 2> trigger;  // tracks of the left and the right trigger
 };
 
 // ---- Collecting tracks
@@ -47,7 +47,7 @@ double declared_step(const PadLayout& layout, PadAxis axis) noexcept;
 class PadTracker {
  public:
   explicit PadTracker(const PadLayout& layout) : layout_(&layout) {}
-  bool add_report(const Report& report);  // false: the report does not decode
+  bool add_report(const Report& report);  // False: the report does not decode.
   void cut() noexcept;                    // the pad was unplugged, or another recording begins
   const PadTracks& tracks() const noexcept { return tracks_; }
   PadTracks take_tracks() noexcept;  // moves the tracks out; the next report begins new ones
@@ -70,7 +70,7 @@ vec2 median_of(std::span<const vec2> places);
 // ---- Where the stick went
 
 struct Extent {
-  vec2 least{4.0}, most{-4.0};  // of each axis
+  vec2 least{4.0}, most{-4.0};  // least and greatest position of each axis
   vec2 middle() const noexcept { return 0.5 * (least + most); }
   vec2 half() const noexcept { return 0.5 * (most - least); }
 };
@@ -101,7 +101,7 @@ struct CleanTracks {
   std::int64_t long_jumps = 0;  // those of them that a median of three reports lets through
   // An axis jumped to another value, stayed there for two reports to 0.12 s, and jumped back.
   std::int64_t drop_outs = 0;
-  double drop_out_s = 0.0;  // of all together
+  double drop_out_s = 0.0;  // duration of all drop-outs together
 };
 CleanTracks clean_tracks(std::span<const StickTrack> tracks);
 
@@ -112,8 +112,9 @@ CleanTracks clean_tracks(std::span<const StickTrack> tracks);
 double typical_interval_s(std::span<const StickTrack> tracks);
 
 struct ReportTiming {
-  std::optional<double> rate_hz, jitter_ms;  // none: too few reports
-  std::optional<std::int64_t> gaps;          // none: as above, or silence means nothing on this pad
+  std::optional<double> rate_hz, jitter_ms;  // none: there are too few reports
+  // None: there are too few reports, or the pad is silent at rest.
+  std::optional<std::int64_t> gaps;
 };
 // `repeats_expected`: the chance that a report at rest repeats the one before it, given noise and
 // step. A pad that repeats less often reports changes only, so its gaps cannot be counted.

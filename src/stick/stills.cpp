@@ -16,23 +16,26 @@ namespace {
 // ---- Finding the stills
 
 constexpr double kCell_s = 0.02;
-constexpr std::size_t kMostCells = 86400 * 50;  // a day, all tracks together
+// Most cells, for all tracks together: those of a day.
+constexpr std::size_t kMostCells = 86400 * 50;
 // A place is still if the means of the 0.1 s before it and behind it are equal.
-constexpr std::size_t kHalfWindow = 5, kWindow = 2 * kHalfWindow;  // cells
-constexpr std::size_t kShortestStill = 5;                          // cells
+constexpr std::size_t kHalfWindow = 5, kWindow = 2 * kHalfWindow;  // lengths in cells
+constexpr std::size_t kShortestStill = 5;                          // length in cells
 constexpr std::size_t kSettling = 3;  // cells of a half window that may belong to a movement
-constexpr double kSlow = 0.006;       // raw, between the halves of a window: 0.06 a second
-constexpr double kNoiseLimit = 4.5;   // standard deviations
+// Largest raw difference of the halves of a window at rest: 0.06 a second.
+constexpr double kSlow = 0.006;
+constexpr double kNoiseLimit = 4.5;  // limit of the noise in standard deviations
 
 // 20 ms of a track. Weights count reports, see reports_stood().
 struct Cell {
   std::int64_t begin_ns = 0;
-  std::size_t sample = 0;  // the one in force at the beginning
+  std::size_t sample = 0;  // the sample that holds at the beginning of the cell
   double weight = 0.0;
   vec2 sum{0.0};
   double change = 0.0;  // sum of the squared steps between its reports
   vec2 mean() const noexcept { return sum / weight; }
-  double variance() const noexcept { return 0.5 * change / weight; }  // of one report, both axes
+  // Variance of one report, of both axes.
+  double variance() const noexcept { return 0.5 * change / weight; }
 };
 
 void add(Cell& to, const Cell& cell) noexcept {
@@ -43,7 +46,7 @@ void add(Cell& to, const Cell& cell) noexcept {
 
 std::vector<Cell> cells_of(const StickTrack& track, double interval_s, std::size_t most) {
   std::vector<Cell> cells;
-  double left_s = 0.0;  // room in the last cell
+  double left_s = 0.0;  // time that is left in the last cell
   for (std::size_t i = 0; i < track.size(); ++i) {
     const double stood_s = hold_s(track, i, interval_s);
     const double weight = reports_stood(stood_s, interval_s);
@@ -105,13 +108,13 @@ bool is_still(std::span<const Cell> cells, std::size_t first, double slow) noexc
 }
 
 struct Run {
-  std::size_t begin = 0, end = 0;  // cells
+  std::size_t begin = 0, end = 0;  // cells [begin, end)
 };
 
 // Whether the cells behind the run stay at its place: a touch, or the step of a stick that wanders,
 // does not cut a rest in two.
 bool stays(std::span<const Cell> cells, const Run& run, std::size_t end) noexcept {
-  constexpr double kNudge = 0.03;  // raw
+  constexpr double kNudge = 0.03;  // raw distance of a nudge
   Cell place;
   for (std::size_t k = run.end; k > run.begin && k + kHalfWindow > run.end; --k)
     add(place, cells[k - 1]);
@@ -183,10 +186,11 @@ std::vector<std::vector<Cell>> cells_of(std::span<const StickTrack> tracks, doub
 
 // ---- Which of them are rests
 
-constexpr double kFarthestHome = 0.5;  // raw; farther out a stick is held, not at rest
+constexpr double kFarthestHome = 0.5;  // farthest rest, raw; farther out a stick is held
 
-constexpr double kReleaseMovement = 0.2;      // raw; less movement between two rests is no release
-constexpr std::size_t kShortestMovement = 3;  // cells
+// Least distance from a rest that counts as a movement between two rests, raw.
+constexpr double kReleaseMovement = 0.2;
+constexpr std::size_t kShortestMovement = 3;  // length in cells
 
 bool is_near_middle(const vec2& p) noexcept {
   return std::max(std::fabs(p.x), std::fabs(p.y)) < kFarthestHome;
@@ -212,8 +216,9 @@ std::optional<Extent> turned_extent(std::span<const StickTrack> tracks) {
 // stay together.
 std::vector<Still>::iterator sort_out_rests(std::vector<Still>& found,
                                             std::span<const StickTrack> tracks) {
-  constexpr double kSquare = 0.0625, kSame = 3;  // raw, squares
-  constexpr double kNearMiddle = 0.25;           // raw; worn sticks rest up to that far off
+  constexpr double kSquare = 0.0625, kSame = 3;  // side of a square, raw; distance in squares
+  // Distance from the middle, raw; worn sticks rest up to that far off.
+  constexpr double kNearMiddle = 0.25;
   struct Place {
     double seen_s = 0.0, count = 0.0;
     vec2 sum{0.0};
@@ -289,13 +294,13 @@ vec2 side_of_return(std::span<const Cell> way, const vec2& place) noexcept {
 constexpr double kPushed = 0.5, kFar = 0.7, kBack = 0.45;
 constexpr std::size_t kSpringCells = 7, kSettlingCells = 15, kLeastSettlingCells = 8;
 constexpr std::size_t kBlockCells = 5;
-constexpr double kOutwards = 0.012;       // raw in 60 ms: a push may have begun
-constexpr std::size_t kLongestPush = 25;  // cells
+constexpr double kOutwards = 0.012;       // raw distance in 60 ms with which a push may begin
+constexpr std::size_t kLongestPush = 25;  // length in cells
 
 // The mean place of the stick while it was slow and not held at its rim: for a stick that never
 // stands still, the middle of its wanderings. None if it was always moved.
 std::optional<vec2> usual_place(std::span<const Cell> cells) {
-  constexpr double kFast = 0.05;  // raw from cell to cell
+  constexpr double kFast = 0.05;  // raw distance between neighbouring cells
   std::vector<vec2> places;
   for (std::size_t k = 1; k < cells.size(); ++k) {
     const vec2 at = cells[k].mean();

@@ -13,13 +13,13 @@ namespace gaitpad {
 // A time in which the stick stood still: samples `first` to `last` (inclusive) of one track.
 struct Still {
   std::size_t track = 0, first = 0, last = 0;
-  std::size_t begin_cell = 0, end_cell = 0;  // 20 ms each, from the beginning of the track
+  std::size_t begin_cell = 0, end_cell = 0;  // cells of 20 ms, from the beginning of the track
   std::int64_t begin_ns = 0, end_ns = 0;     // `first` may be earlier, `last` may hold for longer
   // Includes the hold of the last position; silence counts for 2 s at most.
   double duration_s = 0.0;
-  vec2 mean{0.0};  // raw, weighted as if the pad streamed
-  // Unit: the side from which it came back since the rest before, or since the track began; 0: it
-  // was hardly moved.
+  vec2 mean{0.0};  // raw mean, weighted as if the pad streamed
+  // Unit vector: the side from which the stick came back since the rest before, or since the track
+  // began; 0: the stick was hardly moved.
   vec2 from{0.0};
 };
 // A time in which the stick was not held: from when it has settled after a release, or from the
@@ -34,7 +34,7 @@ struct HandsOff {
 };
 struct Stills {
   std::vector<Still> rests;   // let go: near the place to which the stick returns
-  std::vector<Still> pushes;  // held at half of the reach or farther
+  std::vector<Still> pushes;  // times in which it was held at half of the reach or farther
   std::vector<HandsOff> hands_off;
 };
 // Finds the stills in the order of time, track by track; the first day of all tracks counts.
@@ -43,7 +43,7 @@ struct Stills {
 // or was only held aside. `tracks`: clean ones (clean_tracks). `step`: of x and y, 0 if not known.
 // `interval_s`: typical_interval_s of the tracks.
 Stills stills(std::span<const StickTrack> tracks, const vec2& step, double interval_s);
-// The same in tracks as they were recorded.
+// Finds still times in tracks as they were recorded.
 Stills stills(std::span<const StickTrack> raw_tracks);
 
 }  // namespace gaitpad

@@ -18,22 +18,24 @@ namespace {
 // A plot of stick positions: x and y have the same scale.
 struct Plane {
   Box box;
-  vec2 middle{0.0};          // position at the box's middle
-  double half_height = 1.2;  // in positions, from the middle to the upper edge
+  vec2 middle{0.0};          // the position that is drawn in the middle of the box
+  double half_height = 1.2;  // difference of position from the box's middle to its upper edge
 };
 vec2 pixel_in(const Plane& plane, const vec2& position) noexcept {
-  constexpr double kFar = 1e5;  // in pixels: cairo stores them with 24 bits
+  // Largest coordinate in pixels, because cairo stores them with 24 bits.
+  constexpr double kFar = 1e5;
   const double scale = plane.box.height / 2.0 / plane.half_height;
   const vec2 offset = (position - plane.middle) * scale;
   return {plane.box.x + plane.box.width / 2.0 + std::clamp(offset.x, -kFar, kFar),
           plane.box.y + plane.box.height / 2.0 - std::clamp(offset.y, -kFar, kFar)};
 }
 
-constexpr std::size_t kMaxSegments = 20000;  // of a longer track only every n-th is drawn
-constexpr double kLeastMove = 0.7;           // pixels; a shorter move is joined to the next
-constexpr int kCurvePoints = 180;            // of a zone's edge
-constexpr double kTurn = 2.0 * kPi;          // rad
-constexpr double kFarDeflection = 3.0;       // outside of every plane
+// Most segments of a track that are drawn; of a longer one only every n-th is.
+constexpr std::size_t kMaxSegments = 20000;
+constexpr double kLeastMove = 0.7;      // pixels; a shorter move is joined to the next one
+constexpr int kCurvePoints = 180;       // number of points of a zone's edge
+constexpr double kTurn = 2.0 * kPi;     // a whole turn in radians
+constexpr double kFarDeflection = 3.0;  // a deflection outside of every plane
 
 using PixelOf = std::function<std::optional<vec2>(const vec2& raw)>;
 
@@ -148,7 +150,7 @@ double response_of(const StickCalibration& c, double deflection) {
 // Adds one half (forward or back) of the sideways zone, in which x is set to 0: where the
 // response's x is smaller than `sideways`.
 void sideways_path(cairo_t* cr, const Plane& plane, const StickCalibration& c, double forward) {
-  std::vector<vec2> edge;  // right edge
+  std::vector<vec2> edge;  // the zone's right edge; its left edge is the mirror image
   for (int i = 0; i <= 300; ++i) {
     const double length = c.inner + (kFarDeflection - c.inner) * i * i / (300.0 * 300.0);
     const double response = response_of(c, length);
@@ -235,7 +237,7 @@ void draw_calibrated_plane(cairo_t* cr, const Box& box, const StickPicture& stic
   if (stick.advice) {
     const Clipped clipped(cr, plane.box);
     StickCalibration calibration = stick.advice->calibration;
-    calibration.frame = {};  // the tracks are in this frame already
+    calibration.frame = {};  // the tracks are already in the stick's frame
     const PixelOf pixel_of = [&](const vec2& raw) {
       return is_finite(raw) ? std::optional<vec2>(pixel_in(plane, stick_position(calibration, raw)))
                             : std::nullopt;
@@ -247,7 +249,7 @@ void draw_calibrated_plane(cairo_t* cr, const Box& box, const StickPicture& stic
   draw_plane_frame(cr, plane);
 }
 
-constexpr double kLeastHalfHeight = 0.02;  // raw
+constexpr double kLeastHalfHeight = 0.02;  // least half height of the magnified plane, raw
 constexpr std::size_t kMaxDots = 20000;
 
 // Magnified so that the inner zone fills most of the height.
@@ -534,7 +536,7 @@ void draw_strip(cairo_t* cr, const Box& box, const StickPicture& stick) {
       for (const vec2& place : hands_off.places) {
         const double away = glm::length(place - *stick.statistics->centre);
         inside.points.emplace_back(time_s += 0.1, away);
-        highest = std::max(highest, 1.4 * away);  // leaves space for a word above
+        highest = std::max(highest, 1.4 * away);  // leaves space for a word above the curve
         if (away > radius)
           plot.marks.push_back({PlotMark::Shape::dot, {time_s, away}, rgb(colour::kVermilion)});
       }
@@ -689,7 +691,7 @@ struct Panel {
   std::vector<LegendEntry> (*legend)(const StickPicture&);
 };
 
-// Caption above, legend below the tick labels.
+// Draws one plot of a card with its caption above and its legend below the tick labels.
 void draw_panel(cairo_t* cr, const Box& plot, const Panel& what, const StickPicture& stick) {
   draw_text(cr, {13.0, colour::kInk, Align::left, true}, {plot.x, plot.y - 9.0}, what.caption,
             plot.width);
@@ -698,7 +700,7 @@ void draw_panel(cairo_t* cr, const Box& plot, const Panel& what, const StickPict
               what.legend(stick));
 }
 
-// Two square planes, then a column of two plots.
+// Draws two square planes, then a column of two plots.
 void draw_panels(cairo_t* cr, const Box& box, const StickPicture& stick) {
   const double stride = (box.width - kGutter - kPlot) / 2.0, top = box.y + kCaptionHeight;
   const auto left = [&](int column) { return std::round(box.x + kGutter + column * stride); };
@@ -750,7 +752,7 @@ vec2 raw_of(const StickCalibration& c, const vec2& p) noexcept {
 
 namespace {
 
-// A heading, and below it one card for each stick.
+// Draws a page: a heading, and below it one card for each stick.
 template <typename Stick>
 Surface page_of(const std::string& heading, std::span<const Stick> sticks, double card_height,
                 void (*draw)(cairo_t*, const Box&, const Stick&)) {

@@ -14,8 +14,8 @@
 namespace gaitpad {
 
 struct StickPicture {
-  std::string title;                   // "left stick"
-  std::span<const StickTrack> tracks;  // in the frame of the advice
+  std::string title;                   // for example "left stick"
+  std::span<const StickTrack> tracks;  // raw tracks, turned to the frame that the advice found
   const StickStatistics* statistics = nullptr;
   const StickAdvice* advice = nullptr;
 };
@@ -23,10 +23,11 @@ struct StickPicture {
 // image of a circle or square of deflections.
 vec2 raw_of(const StickCalibration& calibration, const vec2& deflection) noexcept;
 
-// One card for each stick, opaque (CAIRO_FORMAT_RGB24); cairo's error surface if memory is
-// exhausted.
+// Draws one card for each stick, opaque (CAIRO_FORMAT_RGB24); returns cairo's error surface if
+// memory is exhausted.
 Surface stick_picture(const std::string& heading, std::span<const StickPicture> sticks);
-// The same as a PNG, written beside `path` first: an error leaves an old file unchanged.
+// Writes stick_picture() as a PNG, beside `path` first, so that an error leaves an old file
+// unchanged.
 std::optional<Error> write_stick_picture(const std::string& path, const std::string& heading,
                                          std::span<const StickPicture> sticks);
 

@@ -14,12 +14,14 @@
 namespace gaitpad {
 namespace {
 
-constexpr int kOwn = 5;  // the table of the data's own stride
+constexpr int kOwn = 5;  // index of the table of the data's own stride
 // Iterations. In most clips angles then are within 2e-2 rad of the converged solution (the rest is
 // mostly at nearly straight knees); more iterations make no walk smoother or closer to its data.
 constexpr int kFirstSolve = 7, kNextSolve = 3;
-constexpr int kLongSolve = 6;  // for strides longer than the data's, which stretch the legs
-constexpr int kNextBack = 5;   // for backward strides, which change more from one to the next
+// Iterations for strides longer than the data's, which stretch the legs.
+constexpr int kLongSolve = 6;
+// Iterations for backward strides, which change more from one to the next.
+constexpr int kNextBack = 5;
 // Extrapolation factor of the next start: its change of the data grows by half as much as in the
 // previous table. The full growth overshoots for short steps.
 constexpr double kGoesOn = 0.5;
@@ -371,7 +373,7 @@ Result<StrideFamily> stride_family(const GaitCycle& cycle) {
   std::thread beside;
   if (std::thread::hardware_concurrency() > 1) {
     beside = std::thread(solve_back);
-  } else {  // no second core, or no threads at all
+  } else {  // there is no second core, or no thread can be started
     solve_back();
   }
   const bool forwards_solved = builder.solve();

@@ -13,33 +13,35 @@
 namespace gaitpad {
 namespace {
 
-constexpr int kPelvis = 3, kUnknowns = kPelvis + 2 * kLegDofs;  // of one sample
+constexpr int kPelvis = 3, kUnknowns = kPelvis + 2 * kLegDofs;  // numbers of unknowns of one sample
 
 // Weights of squared residuals, relative to a change of 1 rad of a knee.
-constexpr double kDegreeCosts_m = 0.04;  // a pelvis this far off costs as much as one degree
+constexpr double kDegreeCosts_m = 0.04;  // an error of the pelvis that costs as much as 1 degree
 constexpr double kPelvisWeight = (kDegree / kDegreeCosts_m) * (kDegree / kDegreeCosts_m);
 constexpr double kHip = 1.8, kAnkle = 1.8;
-constexpr double kSmooth = 20.0;  // of second differences between samples
-constexpr double kPelvisSmooth = 5000.0, kPelvisSmoothUp = 4000.0;  // factors on it for the pelvis
-constexpr double kPlanted = 3e5, kFloor = 3e6, kKnee = 1e4;         // per square metre, radian
-constexpr double kLevel = 5e2;  // for a sole that is level and points ahead, per square metre
-// For heels that come to rest and toes that begin to move smoothly: of second differences, per
-// square metre.
+constexpr double kSmooth = 20.0;  // weight of second differences between samples
+// Factors on kSmooth for the pelvis.
+constexpr double kPelvisSmooth = 5000.0, kPelvisSmoothUp = 4000.0;
+// Weights per square metre, for the knee per square radian.
+constexpr double kPlanted = 3e5, kFloor = 3e6, kKnee = 1e4;
+constexpr double kLevel = 5e2;  // weight of a sole that is level and points ahead, per square metre
+// Weights per square metre of second differences, for heels that come to rest and toes that begin
+// to move smoothly.
 constexpr double kSoftStrike = 3e4, kSoftToeDown = 1.3e4;
-constexpr int kLanding = 3;  // samples over which these weights fade
+constexpr int kLanding = 3;  // number of samples over which these weights fade
 // People's hips accelerate by 2 to 4 m/s^2 along the path. Excess costs kSurge per square metre of
 // a second difference.
 constexpr double kMostSurge_m_s2 = 2.8, kSoftSurge_m_s2 = 0.8, kSurge = 1e6;
-constexpr double kSoftHeave_m_s2 = 2.0;  // vertical
+constexpr double kSoftHeave_m_s2 = 2.0;  // bound on the vertical acceleration, which is soft
 constexpr double kSide_m = 0.1;          // lever of kLevel across the foot
 // Depth to which the edge of a heel may sink into the floor.
 constexpr double kMostSink_m = 0.002, kSoftEdge_m = 0.0015;
 constexpr double kSoftFloor_m = 0.004, kSoftHeel_m = 0.001;
 constexpr double kSoftKnee = 2.0 * kDegree;
-constexpr double kToeClearance_m = 0.01;  // in the middle of the flight
-constexpr double kMostStep = 0.25;        // radians or metres per iteration
+constexpr double kToeClearance_m = 0.01;  // height of the toe in the middle of the flight
+constexpr double kMostStep = 0.25;        // largest change in an iteration, radians or metres
 
-constexpr std::array<double, 3> kBend = {1.0, -2.0, 1.0};  // a second difference
+constexpr std::array<double, 3> kBend = {1.0, -2.0, 1.0};  // coefficients of a second difference
 
 // Slope of soft_positive().
 double soft_slope(double x, double width) { return std::min(1.0, 0.5 * (x + width) / width); }
@@ -67,7 +69,8 @@ double weight_of(int k) {
 // Place of a foot's point and its derivatives by the unknowns of its sample.
 struct PointRows {
   vec3 place_m;
-  std::array<vec3, kLegDofs> by_angle;  // by the pelvis' place: the identity
+  // Derivatives by the leg's angles. The derivative by the pelvis' place is the identity.
+  std::array<vec3, kLegDofs> by_angle;
 };
 
 struct LegFrames {
@@ -100,10 +103,10 @@ PointRows point_rows(const LegFrames& f, const vec3& in_foot) {
 
 struct StrideSolver::System {
   using Matrix = Eigen::SparseMatrix<double>;
-  static constexpr int kReach = 3;  // samples that a row involves at most
+  static constexpr int kReach = 3;  // most samples that a row involves
   static constexpr int kBlock = kUnknowns * kUnknowns;
 
-  int samples;  // of the stride
+  int samples;  // number of samples of the stride
   int solved;   // unknown samples: half of them if the stride is symmetric
   // Normal equations as dense blocks of samples i and i + d. The sparse matrix holds every entry
   // that was ever written.
@@ -111,7 +114,7 @@ struct StrideSolver::System {
   std::vector<char> is_entry;
   bool has_new_entries = true;
   std::vector<int> entry_at;  // index in `block` of each number of the sparse matrix
-  Matrix normal;              // lower triangle
+  Matrix normal;              // lower triangle of the normal matrix
   Eigen::VectorXd gradient;
   Eigen::SimplicialLDLT<Matrix, Eigen::Lower> factor;
 
@@ -312,7 +315,8 @@ double factor_of(const StrideProblem& p, int k) {
   return p.leg_weight[(k - kPelvis) / kLegDofs][(k - kPelvis) % kLegDofs];
 }
 
-constexpr double kSameMirrored = 1e-9;  // metres, radians, cycles
+// Differences in metres, radians or cycles up to which strides count as mirrored.
+constexpr double kSameMirrored = 1e-9;
 
 bool is_mirrored(const vec3& a, const vec3& b) {
   return glm::distance(a, mirrored(b)) < kSameMirrored;
@@ -464,7 +468,7 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
           across.by_angle[j] -= heel.by_angle[j];
           along.by_angle[j] -= heel.by_angle[j];
         }
-        // Neither depends on the pelvis.
+        // These differences do not depend on the pelvis' place.
         std::array<int, kLegDofs> where;
         for (int j = 0; j < kLegDofs; ++j) where[j] = i * kUnknowns + leg_unknown(side) + j;
         const double want_x = (leg.toe_m - leg.heel_m).x;

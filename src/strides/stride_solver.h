@@ -19,24 +19,24 @@ namespace gaitpad {
 // One sample of a stride. Travel frame (see gait_cycle.h).
 struct StrideSample {
   vec3 pelvis_m{0.0};
-  quat pelvis = kIdentity;  // not changed by the solve
+  quat pelvis = kIdentity;  // the pelvis' rotation, which the solve does not change
   std::array<LegAngles, 2> leg{};
 };
 
 // Input of a solve. Samples are evenly spaced in phase; sample 0 is the right strike.
 struct StrideProblem {
   std::array<LegModel, 2> leg;
-  double stride_m = 0.0;  // travel in the stride
+  double stride_m = 0.0;  // distance that is travelled in the stride
   double duration_s = 0.0;
-  std::vector<StrideSample> wanted;  // the data, scaled to this stride
-  std::array<double, 2> strike{};    // phases, as in GaitCycle
+  std::vector<StrideSample> wanted;  // samples of the data, scaled to this stride
+  std::array<double, 2> strike{};    // phases of the strikes, as in GaitCycle
   std::array<double, 2> toe_off{};
-  std::vector<double> time;  // of each sample, in cycles: 0 at sample 0
+  std::vector<double> time;  // time of each sample in cycles, 0 at sample 0
   // Footprints of the heels; the travel frame is at stride_m * time.
   std::array<vec3, 2> heel_m{};
   // Factors on the cost of changing the angles.
   std::array<LegAngles, 2> leg_weight{{{1, 1, 1, 1, 1, 1, 1}, {1, 1, 1, 1, 1, 1, 1}}};
-  double smoothness = 1.0;  // and on the cost of changing them unevenly
+  double smoothness = 1.0;  // factor on the cost of uneven changes
   double least_knee_rad = 2.0 * kDegree;
   double soft_toe = 3e3;  // cost of a toe's jerky start, per square metre of second differences
   double most_heave_m_s2 = 7.0;  // soft limit on the hips' vertical acceleration
@@ -58,7 +58,8 @@ class StrideSolver {
   void begin(const StrideProblem& problem);
   void fill(const StrideProblem& problem, const std::vector<StrideSample>& x);
   bool move(std::vector<StrideSample>& x);
-  std::unique_ptr<System> system_;  // of the previous problem, kept for its sparsity pattern
+  // Equations of the previous problem, kept for their sparsity pattern.
+  std::unique_ptr<System> system_;
 };
 
 }  // namespace gaitpad

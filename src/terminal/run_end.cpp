@@ -14,8 +14,9 @@
 namespace gaitpad {
 namespace {
 
-constexpr std::size_t kMaxLineBytes = 4096;  // a longer line is cut
-constexpr int kMaxReads = 64;                // at once, if a writer never stops
+constexpr std::size_t kMaxLineBytes = 4096;  // a longer line of standard input is cut
+constexpr int kMaxReads = 64;                // most reads at once, in case that a writer never
+                                             // stops
 
 constexpr int kEndingSignals[] = {SIGINT, SIGTERM, SIGHUP};
 
@@ -26,7 +27,7 @@ sigset_t ending_signals() noexcept {
   return set;
 }
 
-// Keeps the sum with the clock in range.
+// The longest time limit; keeps the sum with the clock in range.
 constexpr double kMaxSeconds = 1e9;
 
 // A second signal within this time counts as the first: a terminal and `timeout` may both send one.
@@ -55,7 +56,8 @@ RunEnd::RunEnd() {
   pthread_sigmask(SIG_BLOCK, &set, nullptr);
   ::signal(SIGPIPE, SIG_IGN);
   signals_ = OwnedFd(signalfd(-1, &set, SFD_NONBLOCK | SFD_CLOEXEC));
-  if (signals_.get() < 0) pthread_sigmask(SIG_UNBLOCK, &set, nullptr);  // or no signal could end it
+  // There is nothing to wait for, so no signal could end the program.
+  if (signals_.get() < 0) pthread_sigmask(SIG_UNBLOCK, &set, nullptr);
 }
 
 void RunEnd::end_after(double seconds) noexcept {
@@ -93,7 +95,8 @@ std::vector<std::string> InputLines::take_lines() {
     char bytes[1024];
     const ssize_t count = ::read(0, bytes, sizeof bytes);
     if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) is_open_ = false;  // end of input; a last line without a line break counts
+    // End of input; the rest counts as a line even without a line break.
+    if (count <= 0) is_open_ = false;
     if (count <= 0 && !rest_.empty()) rest_ += '\n';
     if (count > 0) rest_.append(bytes, static_cast<std::size_t>(count));
     for (std::size_t end; (end = rest_.find('\n')) != std::string::npos; rest_.erase(0, end + 1)) {
@@ -112,7 +115,7 @@ void StatusLine::write_all(std::string_view text) const {
   while (!text.empty()) {
     const ssize_t count = ::write(file_, text.data(), text.size());
     if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) return;  // it is not an error if the status cannot be shown
+    if (count <= 0) return;  // a status that cannot be shown is no error
     text.remove_prefix(static_cast<std::size_t>(count));
   }
 }
@@ -126,7 +129,7 @@ void StatusLine::show(std::span<const std::string> lines) {
   for (std::size_t i = 0; i < lines.size(); ++i) {
     text += fmt::format("{}\r\033[K{:.{}}", i > 0 ? "\n" : "", lines[i], width);
   }
-  text += "\033[J";  // fewer lines than before
+  text += "\033[J";  // erases the lines below: there are fewer than before
   write_all(text);
   shown_ = lines.size();
 }

@@ -21,11 +21,13 @@ namespace gaitpad {
 class RunEnd {
  public:
   RunEnd();
-  void end_after(double seconds) noexcept;  // from this call; 0: only signals end
+  // Ends the command this number of seconds after this call; 0: only signals end it.
+  void end_after(double seconds) noexcept;
   bool is_reached() noexcept;
   // Exit status of an interrupted command: 128 + signal, as in shells; 0: no signal came.
   int cut_off_status() const noexcept { return signal_ == 0 ? 0 : 128 + signal_; }
-  pollfd fd() const noexcept { return {signals_.get(), POLLIN, 0}; }  // of the signals
+  // Readable when a signal has arrived.
+  pollfd fd() const noexcept { return {signals_.get(), POLLIN, 0}; }
   // Sleeps until the end, until one of `others` is ready, or for `time`.
   void wait(std::chrono::milliseconds time, std::span<const pollfd> others = {});
 
@@ -33,7 +35,7 @@ class RunEnd {
   OwnedFd signals_;
   bool is_reached_ = false;
   int signal_ = 0;
-  std::int64_t end_ns_ = 0;  // 0: none
+  std::int64_t end_ns_ = 0;  // time of the end; 0: there is no limit
 };
 
 // Reads lines of standard input without waiting.
@@ -44,7 +46,7 @@ class InputLines {
 
  private:
   bool is_open_ = true;
-  std::string rest_;  // an incomplete line
+  std::string rest_;  // the beginning of a line whose end has not arrived
 };
 
 // Lines on a terminal, rewritten in place. Shows nothing if `file` is not a terminal.
@@ -55,23 +57,23 @@ class StatusLine {
   bool is_terminal() const noexcept { return is_terminal_; }
   void show(std::span<const std::string> lines);
   void show(const std::string& line) { show(std::span(&line, 1)); }
-  void clear();  // call it before other output
+  void clear();  // Erases the lines; call it before other output.
 
  private:
   void write_all(std::string_view text) const;
 
   int file_;
   bool is_terminal_;
-  std::size_t shown_ = 0;  // lines
+  std::size_t shown_ = 0;  // number of lines on the terminal now
 };
 
 // Progress of long work: percent and remaining time, on a terminal, after two seconds.
 class Progress {
  public:
   explicit Progress(std::string_view work) : work_(work) {}
-  void show(double share);  // 0 .. 1, share of the work done
+  void show(double share);  // Shows the share of the work that is done, 0 .. 1.
   void clear() { line_.clear(); }
-  double seconds() const;  // since the work began
+  double seconds() const;  // The time since the work began.
 
  private:
   std::string work_;

@@ -30,11 +30,11 @@ void put_back_and_obey(int signal) {
   const int error = errno;
   ::tcsetattr(0, TCSANOW, &mode_before);
   if (signal == SIGTSTP) {
-    ::kill(::getpid(), SIGSTOP);  // returns when the process is continued
+    ::kill(::getpid(), SIGSTOP);  // stops the process; the call returns when it is continued
     ::tcsetattr(0, TCSANOW, &mode_of_keys);
   } else {
     ::signal(signal, SIG_DFL);
-    ::raise(signal);  // delivered when the handler has returned
+    ::raise(signal);  // the signal is delivered when the handler has returned
   }
   errno = error;
 }
@@ -95,7 +95,8 @@ std::optional<char> TerminalKeys::take_key() {
     if (*next != kEscape && *next != kEndOfInput) return *next == '\r' ? '\n' : *next;
   }
   if (!is_at_end_ || line_.empty()) return std::nullopt;
-  return std::exchange(line_, {}).front();  // a last line without a line break
+  // The rest of the input, a last line without a line break.
+  return std::exchange(line_, {}).front();
 }
 
 ScreenSize screen_size() noexcept {

@@ -14,7 +14,8 @@ namespace gaitpad {
 // Ctrl-C still sends a signal. At most one object at a time.
 class TerminalKeys {
  public:
-  enum class Earlier { count, forgotten };  // keys that were pressed before
+  // Whether keys count that were pressed before the object was made.
+  enum class Earlier { count, forgotten };
   explicit TerminalKeys(Earlier earlier = Earlier::count);
   ~TerminalKeys();
   TerminalKeys(const TerminalKeys&) = delete;
@@ -23,14 +24,15 @@ class TerminalKeys {
   // The next key, '\n' for Enter or an empty line; nothing if none was pressed. Never waits. Skips
   // arrows and other escape sequences.
   std::optional<char> take_key();
-  bool is_at_end() const noexcept { return is_at_end_; }  // end of input: no more keys
+  // True at the end of input: there will be no more keys.
+  bool is_at_end() const noexcept { return is_at_end_; }
 
  private:
   std::optional<char> byte();
 
   bool is_terminal_ = false;
   bool is_at_end_ = false;
-  std::string line_;  // an incomplete line
+  std::string line_;  // the beginning of a line whose end has not arrived
 };
 
 // Size of standard error, one column less than the terminal's; 79 x 24 without a terminal.

@@ -16,10 +16,13 @@
 namespace gaitpad {
 namespace {
 
-constexpr double kCalibrationWidth = 900.0, kCalibrationHeight = 600.0;  // at scale 1
+// The dialog's size at scale 1.
+constexpr double kCalibrationWidth = 900.0, kCalibrationHeight = 600.0;
 constexpr double kWaitingHeight = 150.0;
-constexpr double kPlane = 150.0, kLeastPlane = 64.0;  // side of a control's picture, at scale 1
-constexpr double kButtonsWidth = 690.0;               // of the guide's buttons in one row
+// Usual and least side of a control's picture, at scale 1.
+constexpr double kPlane = 150.0, kLeastPlane = 64.0;
+// Room that the guide's buttons need in one row, at scale 1.
+constexpr double kButtonsWidth = 690.0;
 constexpr const char* kTitles[] = {"Left stick", "Right stick"};
 
 std::string shown_name(const DeviceInfo& info) {
@@ -82,7 +85,7 @@ class CalibrationView final : public PadDialog {
 
   const PadDialogOptions options_;
   const PadFiles files_;
-  std::unique_ptr<GuidedCalibration> guided_;  // until the guide is done
+  std::unique_ptr<GuidedCalibration> guided_;  // null once the guide is done
   bool is_pad_told_ = false;
   State state_ = State::goes_on;
   // Set once the guide is done.
@@ -109,7 +112,7 @@ void CalibrationView::read_pad(std::vector<std::string>& messages) {
     is_pad_told_ = true;
     const std::string remark = driver_remark(guided_->pad());
     if (!remark.empty()) messages.push_back(shown_name(guided_->pad()) + ": " + remark);
-    if (guide->steps().size() <= 1) {  // only the step `done`
+    if (guide->steps().size() <= 1) {  // the only step is `done`
       messages.push_back(shown_name(guided_->pad()) + ": has no stick to calibrate");
       state_ = State::ended;
       return;
@@ -251,7 +254,7 @@ PadDialog::State CalibrationView::draw(Ui& ui, const ImVec2& window_px,
                                        std::vector<std::string>& messages) {
   read_pad(messages);
   CalibrationGuide* guide = guided_ ? guided_->guide() : nullptr;
-  const bool is_waiting = guide == nullptr && !analysis_;  // for a pad
+  const bool is_waiting = guide == nullptr && !analysis_;  // a pad is not there yet
   const ImVec2 size = begin_modal(ui, "calibration", kCalibrationWidth,
                                   is_waiting ? kWaitingHeight : kCalibrationHeight, window_px);
   const ImGuiStyle& style = ImGui::GetStyle();

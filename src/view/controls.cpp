@@ -152,7 +152,8 @@ constexpr HelpLine kWalkingHelp[] = {
 };
 
 constexpr double kDollyAStep = 0.9;
-constexpr std::uint32_t kMostPresses = 8;  // of one button, counted between two frames
+// Most presses of one button that count between two frames.
+constexpr std::uint32_t kMostPresses = 8;
 
 constexpr SDL_Keycode kWalkingKeys[] = {SDLK_w,  SDLK_a,    SDLK_s,    SDLK_d,
                                         SDLK_UP, SDLK_LEFT, SDLK_DOWN, SDLK_RIGHT};

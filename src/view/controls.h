@@ -20,11 +20,11 @@ namespace gaitpad {
 
 enum class Action : std::uint8_t {
   pause,
-  step,         // one tick; pauses first
-  slow_motion,  // on and off
+  step,         // computes one tick; pauses the session first
+  slow_motion,  // switches slow motion on and off
   reset,
-  stick,    // the stick steers, or points where to go
-  style_1,  // the first style of the session's list ...
+  stick,    // switches between a stick that steers and one that points where to go
+  style_1,  // gives the walker the first style of the session's list; the next eight follow
   style_2,
   style_3,
   style_4,
@@ -35,21 +35,21 @@ enum class Action : std::uint8_t {
   style_9,
   next_style,
   previous_style,
-  undo,  // of sliders, styles and overrides
+  undo,  // takes back the last change of a slider, style or override
   redo,
-  next_terrain,  // the next ground; starts the session again
+  next_terrain,  // starts the session again on the next ground
   next_walker,   // selects the next walker for camera and panels; after the last one: all
   record,
   screenshot,
   open_file,
   calibrate,
-  follow,  // switches the camera's following on and off
+  follow,  // the camera follows the walkers, or stops following them
   reset_camera,
   theme,
   trails,
   source,       // shows the source motion as a stick figure
   first_panel,  // opens and closes the first panel; the other panels' actions follow it
-  navigate = first_panel + kPanels,  // keys and pad move between buttons and sliders
+  navigate = first_panel + kPanels,  // lets keys and pad move between buttons and sliders
   help,
   fullscreen,
   quit,
@@ -63,9 +63,9 @@ constexpr Action action_of(std::size_t panel) noexcept {
 struct ActionInfo {
   Action action;
   SDL_Keycode key;         // SDLK_UNKNOWN: none
-  SDL_Keycode second_key;  // has the same effect
-  int button;              // PadButton, -1: none
-  std::string_view name;   // "pause"
+  SDL_Keycode second_key;  // another key with the same effect
+  int button;              // a PadButton; -1: none
+  std::string_view name;   // the action's name, for example "pause"
   std::string_view group;  // heading on the help page
   std::string_view text;   // one line for the help page
 };
@@ -77,11 +77,13 @@ struct Chord {
   SDL_Keycode key;
   bool has_shift;
   Action action;
-  std::string_view name;  // "Ctrl+Z"
+  std::string_view name;  // the keys' names, for example "Ctrl+Z"
 };
 std::span<const Chord> chords() noexcept;
-std::string_view key_name(SDL_Keycode key) noexcept;  // "Space", "F1", "W"; "?" for an unknown key
-std::string_view button_label(PadButton button) noexcept;  // "A", "left shoulder"
+// The name of a key: "Space", "F1", "W"; "?" for an unknown key.
+std::string_view key_name(SDL_Keycode key) noexcept;
+std::string_view button_label(PadButton button) noexcept;  // The name of a pad's button: "A", "left
+                                                           // shoulder".
 
 // Input that is not an action, for the help page.
 struct HelpLine {
@@ -93,31 +95,32 @@ std::span<const HelpLine> walking_help() noexcept;
 // does not poll SDL's state, so that events pushed by a test have the same effect as real ones.
 
 struct Mouse {
-  vec2 place_px{0.0};  // in the window
+  vec2 place_px{0.0};  // the pointer's place in the window
   bool is_inside = false;
-  std::array<bool, 3> is_down{};  // left, right, middle: Dear ImGui's order
+  std::array<bool, 3> is_down{};  // buttons: left, right, middle (Dear ImGui's order)
 };
 
 // Input that the panels used in the previous frame.
 struct TakenInput {
-  bool keys = false;       // text is being typed
+  bool keys = false;       // the user types text
   bool mouse = false;      // the pointer is over a panel
-  bool navigates = false;  // arrows, Tab, Enter and Space go to the panels
+  bool navigates = false;  // arrows, Tab, Enter and Space move between the panels' items
   bool is_modal = false;   // a modal box is open: Tab starts the navigation
 };
 
 // Moves between buttons and sliders, and changes of the focused one.
 struct NavigationInput {
-  int steps = 0;     // to following items; negative: to earlier ones
-  int sideways = 0;  // steps of a slider to the right
+  int steps = 0;     // number of items to move on; negative: to earlier ones
+  int sideways = 0;  // number of steps that a slider moves to the right
   bool press = false;
 };
 
 // Requests since the last call of take_requests().
 struct UserRequests {
   std::vector<Action> actions;
-  std::vector<std::string> files;  // dropped
-  std::vector<SDL_Keycode> keys;   // pressed, by the engraved letter; without those typed as text
+  std::vector<std::string> files;  // files that were dropped on the window
+  // Keys that were pressed, by the letter printed on them; without those typed as text.
+  std::vector<SDL_Keycode> keys;
   NavigationInput navigation;
   vec2 orbit_px{0.0}, pan_px{0.0};
   double dolly = 1.0;  // factor for the camera's distance
@@ -130,7 +133,7 @@ class Controls {
 
   // Direction of the walking keys, +x right, +y forward, of length 1 at most.
   vec2 walk() const noexcept;
-  void release_all() noexcept;  // walking keys and mouse buttons
+  void release_all() noexcept;  // Treats all walking keys and mouse buttons as released.
   const Mouse& mouse() const noexcept { return mouse_; }
 
  private:
@@ -142,7 +145,7 @@ class Controls {
   void handle_window_event(const SDL_WindowEvent& window);
 
   UserRequests requests_;
-  std::array<bool, 8> is_held_{};  // W A S D, up left down right
+  std::array<bool, 8> is_held_{};  // keys W A S D, then arrows up left down right
   bool is_shifted_ = false;
   Mouse mouse_;
   Drag drag_ = Drag::none;
@@ -152,7 +155,8 @@ class Controls {
 class ButtonPresses {
  public:
   void add_new_presses(const SessionFrame& frame, std::vector<Action>& actions);
-  void start_again() noexcept { is_first_ = true; }  // a new session counts from 0
+  // Call it for a new session, which counts presses from 0.
+  void start_again() noexcept { is_first_ = true; }
 
  private:
   bool is_first_ = true;

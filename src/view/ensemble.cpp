@@ -11,18 +11,20 @@
 namespace gaitpad {
 namespace {
 
-constexpr double kTrail_s = 3.0;         // length of a trail
-constexpr double kTrailPoint_s = 0.025;  // between two points of a trail
+constexpr double kTrail_s = 3.0;         // time that a trail covers
+constexpr double kTrailPoint_s = 0.025;  // time between two points of a trail
 constexpr double kLook_m = 0.95;         // height of the camera's target, for an adult
-constexpr double kSourceAside_m = 1.2;   // the distance between neighbours
+// The source's sideways distance, the same as between neighbours.
+constexpr double kSourceAside_m = 1.2;
 constexpr double kAdult_m = 1.8;
 constexpr double kHeightOverLeg = 2.1;                    // body height / (thigh + shank)
 constexpr double kOnePerson_m = 4.2;                      // least framing distance of one person
 constexpr double kWithCrowd_m = 9.0;                      // least framing distance with a crowd
 constexpr double kLabelAbove_m = 0.14;                    // height of a name above the head
-constexpr double kHalfLabel_px = 40.0, kLabel_px = 22.0;  // half its width; its height
-constexpr double kReach = 0.25;     // of a foot from below the root, in body heights
-constexpr double kHeadReach = 0.5;  // reach of the head, in reaches of the feet
+constexpr double kHalfLabel_px = 40.0, kLabel_px = 22.0;  // half a name's width; its height
+// Distance of a foot in front of or behind the root, in body heights.
+constexpr double kReach = 0.25;
+constexpr double kHeadReach = 0.5;  // how far the head reaches, as a share of the feet's reach
 
 std::string with_blanks(std::string name) {
   std::ranges::replace(name, '_', ' ');

@@ -45,16 +45,16 @@ class Ensemble {
   void add_source(const SessionFrame& frame, double share, const Cast& cast, const Theme& theme,
                   SceneContent& content);
 
-  std::int64_t trail_ticks_, point_ticks_;  // length of a trail; distance of its points
+  std::int64_t trail_ticks_, point_ticks_;  // ticks that a trail covers; ticks between its points
   double ground_m(const vec3& place_m) const noexcept;
   void lift_source(std::size_t first_line, std::size_t first_joint, SceneContent& content);
 
-  std::shared_ptr<const Terrain> terrain_;  // null: level at height 0
+  std::shared_ptr<const Terrain> terrain_;  // the ground; null: level at height 0
   std::vector<Mannequin> mannequins_;
   CrowdBodies crowd_;
-  std::vector<Pose> shown_;  // one for each mannequin
+  std::vector<Pose> shown_;  // the interpolated pose of each mannequin
   double source_height_m_ = 0.0;
-  vec3 source_place_m_{0.0};  // on the floor below the source
+  vec3 source_place_m_{0.0};  // place on the floor below the source's root
   bool has_source_ = false, has_crowd_ = false;
 };
 

@@ -17,7 +17,7 @@ namespace gaitpad {
 namespace fs = std::filesystem;
 namespace {
 
-constexpr double kBrowserWidth = 780.0, kBrowserHeight = 520.0;  // at scale 1
+constexpr double kBrowserWidth = 780.0, kBrowserHeight = 520.0;  // the browser's size at scale 1
 constexpr std::pair<FileFilter, const char*> kFilters[] = {{FileFilter::all, "All"},
                                                            {FileFilter::motions, "Motions"},
                                                            {FileFilter::recordings, "Recordings"},

@@ -31,7 +31,7 @@ class FileBrowser {
   void enter(const std::string& path);
   void draw_path(Ui& ui);
   void draw_places(Ui& ui);
-  struct Place {  // opened by one click
+  struct Place {  // a file or folder that one click opens
     std::string path, tip;
   };
   void draw_place(Ui& ui, const std::string& id, const Place& place);
@@ -43,12 +43,12 @@ class FileBrowser {
   std::string folder_;
   FileFilter filter_ = FileFilter::all;
   FolderList list_;
-  int chosen_ = -1;                // in the list
-  std::array<char, 1024> path_{};  // as typed
-  std::string problem_;            // of the path that was typed
+  int chosen_ = -1;                // index of the chosen entry in the list; -1: none
+  std::array<char, 1024> path_{};  // the path as the user types it
+  std::string problem_;            // why the path that was typed cannot be opened
   std::optional<std::string> result_;
   RecentFiles recent_;
-  std::vector<Place> last_, bundled_;  // as of the opening of the browser
+  std::vector<Place> last_, bundled_;  // recent and bundled files when the browser was opened
 };
 
 }  // namespace gaitpad

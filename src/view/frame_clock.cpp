@@ -9,7 +9,8 @@ namespace {
 
 constexpr std::int64_t kSecond_ns = 1'000'000'000;
 constexpr std::int64_t kWarmFrames = 5;
-constexpr double kLongest_s = 0.25;  // limit after a suspended machine wakes up
+// Longest time of a frame; longer after a suspended machine wakes up.
+constexpr double kLongest_s = 0.25;
 
 }  // namespace
 
@@ -27,7 +28,7 @@ void FramePacer::measure(std::int64_t free_ns) noexcept {
 
 std::int64_t FramePacer::begin_ns(std::int64_t free_ns) noexcept {
   const bool is_first = last_free_ns_ == 0, was_paced = frame_ > kMeasured && period_ns_ > 0;
-  // A frame missed its refresh: begin the next ones earlier, and return to later begins slowly.
+  // A frame missed its refresh: begin the next ones earlier at once, and later again only slowly.
   if (was_paced && free_ns - last_free_ns_ > period_ns_ + period_ns_ / 2)
     margin_ns_ = std::min(margin_ns_ + kMargin_ns, period_ns_);
   margin_ns_ = std::max(kMargin_ns, margin_ns_ - kMargin_ns / kCycle);
@@ -76,7 +77,7 @@ double FrameClock::mean_frames_per_second() const noexcept {
 }
 
 double FrameClock::rate_hz(std::uint64_t count) noexcept {
-  if (counted_ns_ == 0 || count < counted_) {  // a new session counts from 0
+  if (counted_ns_ == 0 || count < counted_) {  // a new session counts reports from 0
     counted_ns_ = now_ns_;
     counted_ = count;
     rate_hz_ = 0.0;

@@ -16,7 +16,8 @@ class FramePacer {
  public:
   static constexpr int kCycle = 1024, kMeasured = 16;
   static constexpr std::int64_t kShortest_ns = 2'000'000, kLongest_ns = 50'000'000;
-  static constexpr std::int64_t kMargin_ns = 2'000'000;  // between ready and refresh
+  // Planned time between a picture's end and the refresh that shows it.
+  static constexpr std::int64_t kMargin_ns = 2'000'000;
 
   // Time at which the next frame should begin, not before `free_ns`, the time at which the display
   // took the last one.
@@ -29,10 +30,11 @@ class FramePacer {
   void measure(std::int64_t free_ns) noexcept;
 
   std::array<std::int64_t, kMeasured> distances_ns_{};
-  int frame_ = 0;  // of the cycle
+  int frame_ = 0;  // number of the frame in its cycle
   std::int64_t last_free_ns_ = 0;
-  std::int64_t period_ns_ = 0;  // 0: unknown, or the display does not limit the frames
-  std::int64_t work_ns_ = 0;    // slowest of the last frames
+  // Display's period; 0: unknown, or the display does not limit the frames.
+  std::int64_t period_ns_ = 0;
+  std::int64_t work_ns_ = 0;  // longest time that one of the last frames took
   std::int64_t margin_ns_ = kMargin_ns;
 };
 
@@ -45,10 +47,10 @@ class FrameClock {
   double begin_frame(std::int64_t now_ns) noexcept;
   // Sleeps until the next frame may begin.
   void wait_for_next() noexcept;
-  std::int64_t now_ns() const noexcept { return now_ns_; }  // when this frame began
+  std::int64_t now_ns() const noexcept { return now_ns_; }  // The time at which this frame began.
   double passed_s() const noexcept { return passed_s_; }
 
-  double frames_per_second() const noexcept { return shown_; }  // over the last half second
+  double frames_per_second() const noexcept { return shown_; }  // Mean over the last half second.
   // Mean over all frames except the first few, which compile shaders.
   double mean_frames_per_second() const noexcept;
 

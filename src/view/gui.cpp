@@ -22,7 +22,7 @@ namespace {
 constexpr double kBodyPixels = 14.5, kSmallPixels = 12.0, kTickPixels = 10.5, kTitlePixels = 17.0;
 constexpr double kLeastScale = 0.5, kMaxAsked = 4.0;
 constexpr double kMaxScale = kMaxAsked * kMostTypeSize;
-constexpr double kMaxDisplayScale = 3.0;  // a larger value of the display is assumed wrong
+constexpr double kMaxDisplayScale = 3.0;  // a larger scale of a display is assumed to be wrong
 constexpr double kUsualDotsPerInch = 96.0;
 constexpr std::size_t kMaxFontBytes = 64 << 20;
 
@@ -171,7 +171,7 @@ Gui::Gui(const WindowSurface& surface) : scale_(surface.scale()) {
   IMGUI_CHECKVERSION();
   ImGui::CreateContext();
   ImGuiIO& io = ImGui::GetIO();
-  io.IniFilename = nullptr;  // view/layout.h stores the layout
+  io.IniFilename = nullptr;  // ImGui writes no file: view/layout.h stores the layout
   io.LogFilename = nullptr;
   io.ConfigWindowsMoveFromTitleBarOnly = true;
   fonts_ = load_fonts(scale_);
@@ -203,10 +203,11 @@ TakenInput Gui::taken_input() const noexcept {
 
 void Gui::begin(const Mouse& mouse, double passed_s) {
   ImGui_ImplOpenGL3_NewFrame();
-  ImGui::GetIO().Fonts->ClearTexData();  // the texture holds the pixels now
+  // Frees ImGui's copy of the pixels, which the texture holds now.
+  ImGui::GetIO().Fonts->ClearTexData();
   ImGui_ImplSDL2_NewFrame();
-  // The back end asks SDL for the pointer, which does not exist offscreen; use the place in the
-  // events.
+  // The back end asks SDL for the pointer, which does not exist offscreen, so use the pointer's
+  // place from the events.
   ImGuiIO& io = ImGui::GetIO();
   io.MousePos = mouse.is_inside ? ImVec2(static_cast<float>(mouse.place_px.x),
                                          static_cast<float>(mouse.place_px.y))

@@ -17,9 +17,9 @@ struct Fonts {
   ImFont* body = nullptr;
   ImFont* small = nullptr;
   ImFont* tick = nullptr;
-  ImFont* heading = nullptr;  // of a panel: as high as body, bolder
+  ImFont* heading = nullptr;  // font of a panel's heading: as high as body, bolder
   ImFont* title = nullptr;
-  std::string family;  // the family that was found: "DejaVu Sans", "built in"
+  std::string family;  // name of the fonts that were found: "DejaVu Sans", "built in"
 };
 // Loads the fonts into the current ImGui context, before its first frame, or between frames and
 // followed by a rebuild of the font texture. Without a font file ImGui's own font is used.
@@ -32,7 +32,7 @@ double display_scale(double asked, double dots_per_inch) noexcept;
 
 class Gui {
  public:
-  explicit Gui(const WindowSurface& surface);  // one at a time
+  explicit Gui(const WindowSurface& surface);  // Only one Gui may exist at a time.
   ~Gui();
   Gui(const Gui&) = delete;
   Gui& operator=(const Gui&) = delete;
@@ -45,7 +45,7 @@ class Gui {
   TakenInput taken_input() const noexcept;
   // `passed_s` > 0 replaces ImGui's measured time, for pictures.
   void begin(const Mouse& mouse, double passed_s);
-  void end();  // draws into the bound frame buffer
+  void end();  // Draws into the bound frame buffer.
   void end_undrawn();
 
  private:

@@ -64,7 +64,7 @@ void add_marks(const History& history, const GraphSpan& span, int walker, Side s
   const auto at = [&](std::size_t i) {
     return PlotPoint{span.x_of(i), sample(history, i, walker).heel_above_m[side] * 100.0};
   };
-  std::size_t peak = span.end;  // of the present flight; end: none
+  std::size_t peak = span.end;  // index of the present flight's highest sample; end: there is none
   for (std::size_t i = span.begin; i < span.end; ++i) {
     const bool is_up = is_flying(sample(history, i, walker), side);
     const bool was_up = i > span.begin && is_flying(sample(history, i - 1, walker), side);
@@ -153,7 +153,7 @@ Plot heel_plot(const History& history, const GraphSpan& span, int walker, const 
   Plot plot = leg_plot(
       history, span, walker, theme,
       [](const WalkerSample& s, Side side) { return s.heel_above_m[side] * 100.0; }, 4.0);
-  plot.y.min -= 0.06 * (plot.y.max - plot.y.min);  // room for curves along the floor
+  plot.y.min -= 0.06 * (plot.y.max - plot.y.min);  // leaves room for curves along the floor
   if (!has_walker(history, walker)) return plot;
   for (const Side side : {kLeftSide, kRightSide}) {
     add_marks(history, span, walker, side, theme, plot);

@@ -10,14 +10,15 @@ namespace gaitpad {
 
 // In all plots below x is the time in seconds before now.
 
-inline constexpr std::size_t kShownJointCount = 3;  // hip, knee, ankle: WalkerSample::joint_rad
+// Hip, knee and ankle, as in WalkerSample::joint_rad.
+inline constexpr std::size_t kShownJointCount = 3;
 
 // The newest samples [begin, end): a walker's last two cycles, or two seconds if it has not walked
 // that far.
 struct GraphSpan {
   std::size_t begin = 0, end = 0;
   double tick_s = 1.0 / 240.0;
-  PlotRange x;  // seconds, max 0
+  PlotRange x;  // seconds before now, from a negative number to 0
   double x_of(std::size_t index) const noexcept {
     return -static_cast<double>(end - 1 - index) * tick_s;
   }

@@ -11,7 +11,7 @@ namespace gaitpad {
 
 struct Layout {
   UiState state;
-  std::string remark;  // why a damaged file was ignored; else empty
+  std::string remark;  // why a damaged file was ignored; empty if it was not
 };
 // Returns the defaults if the path is empty or there is no such file.
 Layout load_layout(const std::string& path);

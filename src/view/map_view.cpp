@@ -12,7 +12,7 @@
 namespace gaitpad {
 namespace {
 
-constexpr double kMapWidth = 760.0, kMapHeight = 320.0;  // at scale 1
+constexpr double kMapWidth = 760.0, kMapHeight = 320.0;  // the dialog's size at scale 1
 
 class MapView final : public PadDialog {
  public:

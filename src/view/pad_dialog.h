@@ -15,9 +15,9 @@ namespace gaitpad {
 
 class PadDialog {
  public:
-  virtual ~PadDialog() = default;  // frees the pad
+  virtual ~PadDialog() = default;  // Frees the pad.
 
-  // wants_map, wants_test: the user asks for that dialog instead.
+  // wants_map, wants_test: the user asks for the mapping dialog or the self-test instead.
   enum class State { goes_on, ended, calibrated, wants_map, wants_test };
   // Draws in the middle of a window of this size. Remarks and errors are added to `messages`.
   virtual State draw(Ui& ui, const ImVec2& window_px, std::vector<std::string>& messages) = 0;
@@ -27,16 +27,16 @@ class PadDialog {
 void draw_step(Ui& ui, std::string_view title, std::string_view who, std::string_view request);
 // Moves the cursor to the row of buttons at the lower edge of a dialog of this height.
 void go_to_buttons(float height_px);
-// A button that a key presses as well.
+// A button that a key presses as well; true if either pressed it.
 bool key_button(Ui& ui, std::string_view id, std::string_view label, SDL_Keycode key,
                 const ButtonLook& look = {});
 
 struct PadDialogOptions {
   PadSelector selector;
-  std::string map;  // a pad file; empty: none
+  std::string map;  // path of a pad file (--map); empty: none
   std::vector<std::string> config_folders;
-  std::string calibration_folder;  // for the calibration's file; empty: the user's own
-  std::string program;             // for the self-test: gaitpad itself
+  std::string calibration_folder;  // folder of the calibration's file; empty: the user's own
+  std::string program;             // "gaitpad" with its version, for the report of the self-test
 };
 
 // Uses the guide, analysis, files and picture of `gaitpad calibrate`.

@@ -42,7 +42,8 @@ void draw_title(Ui& ui, std::string_view title, std::string_view unit, const Plo
     needed += text_width(ui.fonts.tick, values.back().text) + gap;
   }
   const float room = width - text_width(ui.fonts.small, text);
-  if (values.size() > 1 && needed > room) {  // only the selected one's, and the number
+  // The selected curve's value only, or the number of curves.
+  if (values.size() > 1 && needed > room) {
     const auto one = static_cast<std::size_t>(std::max(ui.state.walker, 0));
     const Value& shown = values[std::min(one, values.size() - 1)];
     values = {{fmt::format("{}  of {}", shown.text, values.size()), shown.colour}};

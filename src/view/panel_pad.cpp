@@ -12,10 +12,10 @@
 namespace gaitpad {
 namespace {
 
-constexpr double kHalfHeight = 1.15;  // half the plane's height, in half logical ranges
+constexpr double kHalfHeight = 1.15;  // half the plane's height, relative to half the logical range
 constexpr int kCirclePoints = 40, kBandPoints = 12;
 constexpr double kTurn = 2.0 * std::numbers::pi;
-constexpr double kLeastReach = 0.2;  // least radius of a direction that is drawn
+constexpr double kLeastReach = 0.2;  // nearer to the centre no direction is drawn
 
 struct StickPlane {
   ImVec2 min;
@@ -154,7 +154,7 @@ constexpr PadSpot kSpots[] = {
     {kButtonPaddle2, 0.360f, 0.425f, 0.016f, ""},   {kButtonPaddle3, 0.690f, 0.425f, 0.016f, ""},
     {kButtonPaddle4, 0.310f, 0.425f, 0.016f, ""},
 };
-constexpr float kPictureHeight = 0.47f;  // fraction of its width
+constexpr float kPictureHeight = 0.47f;  // height as a fraction of the width
 constexpr float kStickRadius = 0.062f;
 
 // True for buttons that few pads have; they are drawn only while pressed.
@@ -162,7 +162,8 @@ bool is_rare(PadButton button) noexcept { return button > kButtonDpadRight; }
 
 bool is_lit(const PadState& pad, PadButton button) noexcept {
   if (pressed(pad, button)) return true;
-  const auto hat = static_cast<int>(pad.hat);  // clockwise from up; 8: none
+  // The hat's direction in eighths of a turn, clockwise from up; 8: none.
+  const auto hat = static_cast<int>(pad.hat);
   switch (button) {
     case kButtonDpadUp:
       return hat == 7 || hat == 0 || hat == 1;
@@ -269,7 +270,7 @@ void draw_pad_picture(Ui& ui) {
 }
 
 constexpr std::size_t kTrailPlaces = 40;
-constexpr double kWaitStep_ms = 0.25;  // of LiveStatus::wait_counts
+constexpr double kWaitStep_ms = 0.25;  // width of a bar of the histogram LiveStatus::wait_counts
 constexpr std::array<std::string_view, 9> kHatNames = {
     "D-pad up",         "D-pad up right", "D-pad right",
     "D-pad down right", "D-pad down",     "D-pad down left",

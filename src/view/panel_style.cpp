@@ -185,8 +185,8 @@ constexpr std::string_view kOfBoth[] = {"legs.", "arms.", "hands."};
 // A row: one key, or the same key of both sides.
 struct StyleRow {
   std::string label;
-  const StyleKey* left = nullptr;   // or the key without a side
-  const StyleKey* right = nullptr;  // null: a key without a side
+  const StyleKey* left = nullptr;   // the left side's key, or a key without sides
+  const StyleKey* right = nullptr;  // the right side's key; null: a key without sides
 };
 
 template <std::size_t n>
@@ -227,7 +227,7 @@ std::vector<StyleRow> rows_of(const UiMemory& memory) {
   return rows;
 }
 
-// The value of the style as loaded; none if it is unknown.
+// The value of the key in the style as loaded; none if it is unknown.
 std::optional<double> own_value(const Ui& ui, const WalkerFrame& walker, const StyleKey& key) {
   const auto& all = ui.in.cast.style_values;
   const auto index = static_cast<std::size_t>(walker.style_index);
@@ -269,7 +269,7 @@ void draw_value(Ui& ui, const StyleKey& key, float width, std::string_view lette
   }
 }
 
-// Number of a selected walker in commands.
+// The number that names a selected walker in commands.
 int number_of(const Ui& ui, const WalkerFrame& walker) {
   return static_cast<int>(&walker - ui.in.frame.walkers.data()) + 1;
 }

@@ -12,7 +12,7 @@
 
 namespace gaitpad {
 
-struct Ui;  // view/widgets.h
+struct Ui;  // declared in view/widgets.h
 
 enum class Panel : std::uint8_t { pad, control, style, graphs, solver, loop };
 
@@ -25,12 +25,13 @@ void draw_solver_panel(Ui& ui);
 void draw_loop_panel(Ui& ui);
 
 enum class PanelColumn { left, right };
-enum class PanelSubject { session, walker, changed_walker };  // whom it shows, or changes
+// The subject of a panel: the session, the selected walker, or a walker that it changes.
+enum class PanelSubject { session, walker, changed_walker };
 
 struct PanelInfo {
-  std::string_view id, title;  // of its button; the id is also the name of its action
-  SDL_Keycode key;             // opens and closes it
-  PanelColumn column;          // while the window has two
+  std::string_view id, title;  // words on its button; the id is also the name of its action
+  SDL_Keycode key;             // key that opens and closes the panel
+  PanelColumn column;          // its column while the window has two
   PanelSubject subject;
   void (*draw)(Ui& ui);
   constexpr std::string_view name() const noexcept { return id.substr(id.find(' ') + 1); }

@@ -8,7 +8,7 @@ namespace gaitpad {
 namespace {
 
 constexpr double kLeftGutterPixels = 30.0, kRightGutterPixels = 14.0, kTickRowPixels = 14.0;
-constexpr float kTolerancePixels = 0.15f;  // invisible at any scale
+constexpr float kTolerancePixels = 0.15f;  // a difference that is invisible at any scale
 constexpr double kTickSpacePixels = 18.0, kTickWidthPixels = 46.0;
 
 // The part of a plot's box that holds the curves.
@@ -145,7 +145,7 @@ void draw_ends(ImDrawList& list, const PlotArea& area, const Plot& plot, const P
   }
   std::stable_sort(ends.begin(), ends.end(),
                    [](const EndLabel& a, const EndLabel& b) { return a.y < b.y; });
-  constexpr float kClosest = 0.8f;  // of a line's height
+  constexpr float kClosest = 0.8f;  // least distance of two letters, in heights of a line
   const float line = style.fonts->tick->FontSize;
   const float height = std::min(line, area.height() / static_cast<float>(ends.size()));
   if (height < kClosest * line) return;

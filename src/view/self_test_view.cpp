@@ -16,7 +16,7 @@
 namespace gaitpad {
 namespace {
 
-constexpr double kSelfTestWidth = 760.0, kSelfTestHeight = 320.0;  // at scale 1
+constexpr double kSelfTestWidth = 760.0, kSelfTestHeight = 320.0;  // the dialog's size at scale 1
 
 std::string outcome(const Result<std::optional<SelfTestResult>>& result) {
   if (!result) return result.error().message;
@@ -41,7 +41,7 @@ class WindowPerson final : public SelfTestPerson {
       has_ended_ = true;
     });
   }
-  ~WindowPerson() override {  // cancels the test
+  ~WindowPerson() override {  // Cancels the test.
     is_leaving_ = true;
     answer(Answer::quit);
     thread_.join();
@@ -78,7 +78,7 @@ class WindowPerson final : public SelfTestPerson {
 
  private:
   const SelfTestOptions options_;
-  std::mutex mutex_;  // guards the members below
+  std::mutex mutex_;  // guards the members after it
   SelfTestPrompt prompt_;
   Answer answer_ = Answer::none;
   std::vector<std::string> remarks_;

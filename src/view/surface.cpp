@@ -18,8 +18,9 @@ namespace gaitpad {
 namespace {
 
 constexpr int kSmallest_px = 64, kLargestWindow_px = 16384;
-constexpr int kSmallestWindowWidth = 640, kSmallestWindowHeight = 400;  // at scale 1
-constexpr int kNeededGl = 33;                                           // 3.3
+// The window's least size at scale 1.
+constexpr int kSmallestWindowWidth = 640, kSmallestWindowHeight = 400;
+constexpr int kNeededGl = 33;  // OpenGL 3.3
 constexpr const char* kPictures = "--screenshot FILE.png and --video FILE.mp4 draw without one";
 
 std::atomic<bool> is_display_lost = false;  // Xlib's connection outlives every surface
@@ -39,7 +40,7 @@ void set_hints(bool is_hidden) {
   if (is_hidden) {
     SDL_SetHintWithPriority(SDL_HINT_VIDEODRIVER, "offscreen", SDL_HINT_OVERRIDE);
   } else {
-    SDL_ResetHint(SDL_HINT_VIDEODRIVER);  // $SDL_VIDEODRIVER decides again
+    SDL_ResetHint(SDL_HINT_VIDEODRIVER);  // lets $SDL_VIDEODRIVER choose the driver again
     // Without this folder Wayland cannot work, and its library would print an error.
     const char* runtime = std::getenv("XDG_RUNTIME_DIR");
     if (!runtime || *runtime == '\0') SDL_SetHint(SDL_HINT_VIDEODRIVER, "x11,KMSDRM,offscreen");

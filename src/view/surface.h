@@ -24,10 +24,10 @@ namespace gaitpad {
 
 struct SurfaceOptions {
   std::string title = "gaitpad";
-  int width = 1280, height = 720;  // pixels at scale 1
-  double scale = 0.0;              // 0: the display's own
-  std::string without_display;     // the alternative that the error names
-  bool is_hidden = false;          // only draws pictures, with SDL's offscreen driver, at scale 1
+  int width = 1280, height = 720;  // size in pixels at scale 1
+  double scale = 0.0;              // factor on sizes; 0: the display's own
+  std::string without_display;     // what to do without a display, for the error
+  bool is_hidden = false;          // no window: only pictures, by SDL's offscreen driver at scale 1
 };
 
 class WindowSurface {
@@ -42,11 +42,11 @@ class WindowSurface {
   double scale() const noexcept { return scale_; }
   // Call it after the window was moved: takes the scale of its display. Returns true if it changed.
   bool follow_display() noexcept;
-  void size(int& width_px, int& height_px) const noexcept;  // drawable pixels
+  void size(int& width_px, int& height_px) const noexcept;  // The size in drawable pixels.
   // Call it before drawing a frame: binds the frame buffer to draw into, which has that size. It is
   // the window's own, or one in memory, because SDL's offscreen windows cannot grow.
   void begin();
-  void show();  // swaps the buffers
+  void show();  // Swaps the buffers, so that the display shows the frame.
   // True after the X server has gone. Then no function of this class or of SDL's video may be
   // called, and the program has to end. (Xlib alone would end it at once, in the middle of a
   // recording.)

@@ -103,7 +103,7 @@ constexpr Tip kBeginnings[] = {
     {"overlay ",
      "Two that are marked stand in one place, half transparent, the second where the first walks."},
     {"own ", "The value of the style as it was loaded."},
-    {"style slider ", ""},  // tip by its key
+    {"style slider ", ""},  // the style key's own tip
     {"slider ", ""},
     {"style ", "Walk like this. The change blends in over the style's time."},
     {"pace ", "How fast the recording plays."},

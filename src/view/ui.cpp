@@ -17,9 +17,9 @@ namespace {
 // Pixels at scale 1.
 constexpr float kTopBar = 44.0f, kTimeline = 64.0f, kStatus = 24.0f;
 constexpr float kLeftColumn = 268.0f, kRightColumn = 320.0f;
-constexpr float kLeastScene = 260.0f;  // least width between two columns
+constexpr float kLeastScene = 260.0f;  // least width of the scene between two columns of panels
 constexpr float kLeastSceneBesideOne = 180.0f;
-constexpr float kLeastSceneHeight = 100.0f;  // less hides the status line
+constexpr float kLeastSceneHeight = 100.0f;  // a scene lower than this hides the status line
 
 bool is_any_open(const UiState& state, bool left) noexcept {
   for (int i = 0; i < kPanels; ++i) {
@@ -69,7 +69,7 @@ void begin_area(Ui& ui, const char* id, const UiRect& rect, const Colour& back,
 
 void end_area() { ImGui::End(); }
 
-constexpr std::size_t kMaxMessages = 4;  // shown at once
+constexpr std::size_t kMaxMessages = 4;  // most messages that are shown at once
 constexpr int kMaxMessageLines = 3;
 
 std::string file_name(const std::string& path) {
@@ -277,7 +277,8 @@ void draw_separator(Ui& ui) {
 }
 
 constexpr float kChip = 22.0f, kChipGap = 4.0f, kCastPadding = 8.0f;
-constexpr int kNamedCast = 4;  // up to this number the styles' names fit
+// Up to this number of characters the chips have room for the styles' names.
+constexpr int kNamedCast = 4;
 
 int chips_a_row(int characters) noexcept { return characters <= kNamedCast ? 2 : 7; }
 
@@ -550,7 +551,7 @@ void draw_top_bar(Ui& ui, const UiRect& rect) {
   const float menu = fits ? 0.0f : button_width(ui, "Panels", {}) + gap;
   const float end = rect.width - ui.px(8) - menu;
   const std::size_t most =
-      fits ? all.size() : kBarButtons;  // either all of the panels' buttons are in the bar or none
+      fits ? all.size() : kBarButtons;  // either all or none of the panels' buttons are in the bar
   std::size_t i = 0;
   for (; i < most; ++i) {
     if (i == kBarButtons) x += ui.px(10);
@@ -572,7 +573,8 @@ void draw_top_bar(Ui& ui, const UiRect& rect) {
 }
 
 constexpr std::array<double, 5> kPaces = {0.1, 0.25, 0.5, 1.0, 2.0};
-constexpr float kFullWidth = 980.0f;  // at scale 1; if less: two rows, one button for the pace
+// Width at scale 1; a narrower window has two rows and a single button for the pace.
+constexpr float kFullWidth = 980.0f;
 
 constexpr float kTrackWithSeconds = 28.0f;
 
@@ -590,7 +592,7 @@ std::int64_t last_tick(const Timeline& timeline) {
 }
 
 struct Track {
-  UiRect rect;  // window pixels; the line is in its middle
+  UiRect rect;  // place of the time line in window pixels; the line is in the middle of it
   std::int64_t last = 0;
   float x_of(std::int64_t tick) const noexcept {
     const double share = last > 0 ? static_cast<double>(tick) / static_cast<double>(last) : 0.0;
@@ -632,7 +634,7 @@ void draw_marks(Ui& ui, const Track& track, float y) {
     if (std::abs(mouse.x - x) <= r * 1.5f && std::abs(mouse.y - (y + r * 1.6f)) <= r * 2.0f) {
       pointed = &mark;
     }
-    if (x - last_x < 1.0f) continue;  // draws overlapping marks once
+    if (x - last_x < 1.0f) continue;  // overlapping marks are drawn once
     last_x = x;
     list.AddTriangleFilled({x - r, y + 2.6f * r}, {x + r, y + 2.6f * r}, {x, y + r},
                            packed(ui.theme.warning));
@@ -772,10 +774,10 @@ constexpr double kKeysPixels = 124.0, kButtonPixels = 86.0;
 
 // A row of the help page: a heading, or keys, pad button and text.
 struct KeyRow {
-  std::string_view heading;  // if not empty, the row is a heading
+  std::string_view heading;  // heading of a group; if it is not empty, the row has nothing else
   std::vector<std::string> keys;
   std::string_view button, text;
-  std::vector<std::string_view> names;  // of its actions
+  std::vector<std::string_view> names;  // names of the row's actions
 };
 
 bool is_numbered_style(Action action) {

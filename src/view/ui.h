@@ -21,7 +21,7 @@
 
 namespace gaitpad {
 
-struct Fonts;  // view/gui.h
+struct Fonts;  // declared in view/gui.h
 
 // State of draw_ui() between frames.
 struct UiMemory {
@@ -30,18 +30,19 @@ struct UiMemory {
     std::string name;
     int walker = -1;
     double value = 0.0;
-    std::int64_t tick = 0;  // at which it was sent
+    std::int64_t tick = 0;  // tick at which the value was sent
   };
   struct StickPlace {
-    std::array<vec2, 2> raw{}, calibrated{};  // left, right; raw in the stick's frame
+    // Left and right stick; raw positions are in the stick's frame.
+    std::array<vec2, 2> raw{}, calibrated{};
   };
   std::string focus;          // the item that keys and pad press; empty: no navigation
-  bool is_focus_new = false;  // scroll to it
+  bool is_focus_new = false;  // scroll until the item is visible
   std::vector<PendingValue> pending;
   double held = 0.0;                    // the last value of the slider being dragged
-  std::vector<StickPlace> stick_trail;  // oldest first
+  std::vector<StickPlace> stick_trail;  // the latest positions of the stick, oldest first
   std::int64_t stick_tick = -1;
-  std::array<ReachedOutline, 2> reached;  // left, right
+  std::array<ReachedOutline, 2> reached;  // where the left and the right stick has been
   std::array<bool, kPanels> was_open{};
   bool has_drawn = false;
   std::array<char, 64> style_name{};
@@ -55,11 +56,13 @@ struct UiState {
   ThemeName theme = ThemeName::dark;
   bool has_trails = true, has_grid = true, has_shadows = true, has_source = true, has_names = true;
   Side graph_leg = kLeftSide;
-  int walker = -1;  // selected for panels and camera; -1: all, with the numbers of the first
-  std::vector<int> overlaid;  // two characters in one place, half transparent; else empty
-  double type_size = 1.0;     // factor on the display's scale for type, buttons and columns
+  // Index of the walker that panels and camera show; -1: all, and the numbers of the first.
+  int walker = -1;
+  // Two characters drawn in one place, half transparent; otherwise empty.
+  std::vector<int> overlaid;
+  double type_size = 1.0;  // factor on the display's scale for type, buttons and columns
   bool is_help_open = false;
-  bool is_clean = false;  // only the scene, without bars
+  bool is_clean = false;  // only the scene is drawn, without bars
   UiMemory memory;
 };
 
@@ -74,7 +77,7 @@ inline constexpr ScenePart kSceneParts[] = {{"trails", "Trails", &UiState::has_t
                                             {"shadows", "Shadows", &UiState::has_shadows},
                                             {"names", "Names", &UiState::has_names}};
 
-struct UiLabel {  // a name above a head
+struct UiLabel {  // a character's name above its head
   vec2 place_px{0.0};
   std::string text;
   Colour colour;
@@ -83,39 +86,43 @@ struct UiInput {
   const SessionFrame& frame;
   const Cast& cast;
   const History& history;
-  const LiveStatus* status = nullptr;  // live only
-  const Timeline* timeline = nullptr;  // playback only
-  std::string pad_name{};              // empty: none
+  const LiveStatus* status = nullptr;  // null in a playback
+  const Timeline* timeline = nullptr;  // null in a live session
+  std::string pad_name{};              // the driving pad; empty: none
   double pad_rate_hz = 0.0;
   double pace = 1.0;
-  double frames_per_second = 0.0;  // 0: not shown (in pictures)
-  double memory_mib = 0.0;         // of the whole program; 0: unknown
-  std::string recording{};         // file; empty: none
-  std::string source{};            // the trace, for the bar
+  double frames_per_second = 0.0;  // mean over the last half second; 0: not shown, as in pictures
+  double memory_mib = 0.0;         // memory of the whole program; 0: unknown
+  std::string recording{};         // file that is being recorded; empty: none
+  std::string source{};            // name of the played trace, for the bar
   std::string renderer{};
   std::vector<UiLabel> labels{};
   std::vector<std::string> messages{};         // errors and remarks, newest last
-  std::vector<std::string> style_summaries{};  // a line for each of Cast::styles
-  std::string change{};              // the last change and its characters; empty: none lately
-  std::string finished_recording{};  // a message offers to replay it; empty: none
-  std::string hint{};                // shown over the scene until a character walks
+  std::vector<std::string> style_summaries{};  // what each of Cast::styles does, in a line
+  std::string change{};              // the last change and the characters that it concerns; empty:
+                                     // none lately
+  std::string finished_recording{};  // the file that a message offers to replay; empty: none
+  std::string hint{};                // how to start, shown over the scene until a character walks
   std::string pad_hint{};            // why a pad may not be found, and what to do
-  bool can_leave = false;            // Esc leaves the playback for the previous live session
+  bool can_leave = false;            // Esc ends the playback and returns to the previous live
+                                     // session
   bool can_rumble = false;           // the driving pad has motors
   NavigationInput navigation{};
-  std::span<const SDL_Keycode> keys{};  // pressed in this frame
-  bool is_modal = false;                // calibration or browser is open, so panels take no input
+  std::span<const SDL_Keycode> keys{};  // keys that were pressed since the last frame
+  bool is_modal = false;                // a dialog or the browser is open, so panels take no input
 };
 struct UiOutput {
   std::vector<Action> actions;
-  std::vector<std::string> commands;  // for the session: `set 2 left_leg.weight.hip 0.4`
+  // Commands for the session, for example `set 2 left_leg.weight.hip 0.4`.
+  std::vector<std::string> commands;
   std::optional<std::int64_t> seek_tick;
   std::optional<double> pace;
   std::optional<bool> is_looping;
-  std::optional<std::string> save_style;  // new name of the selected style
+  // Name under which the selected style is saved; none: not asked for.
+  std::optional<std::string> save_style;
   bool dismisses_messages = false;
   std::optional<double> type_size;
-  bool replays = false;  // UiInput::finished_recording
+  bool replays = false;  // asks to replay UiInput::finished_recording
   bool rumbles = false;  // asks for one beat of the pad's motors
 };
 
@@ -152,7 +159,7 @@ const std::vector<std::string>& cut_texts() noexcept;
 // The layout of the window: bars at top and bottom and a column of panels on each side of the
 // scene; one column in a narrow window, none in a very narrow one.
 
-struct UiRect {  // pixels; not shown if empty
+struct UiRect {  // in pixels; an empty area is not shown
   float x = 0.0f, y = 0.0f, width = 0.0f, height = 0.0f;
   bool is_empty() const noexcept { return !(width > 0.0f && height > 0.0f); }
   ImVec2 min() const noexcept { return {x, y}; }

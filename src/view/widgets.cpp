@@ -13,7 +13,8 @@
 namespace gaitpad {
 namespace {
 
-constexpr std::size_t kMaxTextBytes = 1024;  // longer than any visible row
+// Longer text is cut; it is longer than any visible row.
+constexpr std::size_t kMaxTextBytes = 1024;
 
 std::string fit(std::string_view text) { return drawable(text.substr(0, kMaxTextBytes)); }
 
@@ -32,7 +33,7 @@ std::string_view fitting(const ImFont* font, std::string_view text, float width)
 // State of the last drawn frame; only one window draws, on one thread.
 std::vector<UiItem> items;
 std::vector<std::string> cut, drawn;
-std::vector<std::string> focusable;  // in drawing order, with items out of sight
+std::vector<std::string> focusable;  // names of items in drawing order, also of those out of sight
 
 void keep(std::string_view name, const ImVec2& min, const ImVec2& max, const ImRect& clip) {
   ImRect rect(min, max);
@@ -81,8 +82,9 @@ void draw_button_face(Ui& ui, const ImVec2& min, const ImVec2& max, std::string_
   put_text(list, font, text, {x + front, middle - font->FontSize / 2.0f}, label, content + 1.0f);
 }
 
-constexpr std::int64_t kPendingTicks = 60;  // a command takes effect within a few ticks
-constexpr double kKnobPixels = 5.0;         // half its width, and the slider's margin
+// Ticks until a moved slider shows the session's value again; a command takes effect earlier.
+constexpr std::int64_t kPendingTicks = 60;
+constexpr double kKnobPixels = 5.0;  // half a knob's width, and the slider's margin
 
 double value_under_mouse(Ui& ui, float left, float right, const SliderLook& look) {
   const float margin = ui.px(kKnobPixels);
@@ -148,11 +150,12 @@ void draw_slider(Ui& ui, const ImVec2& min, const ImVec2& max, double value,
 }
 
 constexpr float kRest_s = 0.45;       // time that the pointer rests before the tip appears
-constexpr double kTipPixels = 300.0;  // at most as wide
+constexpr double kTipPixels = 300.0;  // greatest width of a tip
 
 constexpr double kVeil = 0.55;
-constexpr double kRoom = 24.0;       // distance to the window's edges, at scale 1
-constexpr double kMessages = 104.0;  // space for messages above, if both fit
+constexpr double kRoom = 24.0;  // least distance from a box to the window's edges, at scale 1
+// Height that a box leaves to the messages above it, if both fit.
+constexpr double kMessages = 104.0;
 
 }  // namespace
 
@@ -208,7 +211,7 @@ std::vector<std::string> text_lines(const ImFont* font, std::string_view text, f
     }
     const std::size_t blank = part.rfind(' ');
     std::size_t cut = blank == std::string_view::npos || blank == 0 ? part.size() : blank;
-    if (cut == 0) break;  // not even one letter fits
+    if (cut == 0) break;  // there is no room for even one letter
     lines.push_back(rest.substr(0, cut));
     rest.erase(0, rest.find_first_not_of(' ', cut));
   }
@@ -455,7 +458,7 @@ bool slider(Ui& ui, std::string_view id, double& value, const SliderLook& look) 
   ImGui::PopID();
   if (look.is_enabled) keep_item(id);
   const ImVec2 min = ImGui::GetItemRectMin(), max = ImGui::GetItemRectMax();
-  double& held = ui.state.memory.held;  // the value last requested in this drag
+  double& held = ui.state.memory.held;  // the value that was last requested in this drag
   if (is_taken) held = look.is_mixed ? std::numeric_limits<double>::quiet_NaN() : value;
   bool is_moved = false;
   if (is_held && look.max > look.min) {
@@ -465,7 +468,7 @@ bool slider(Ui& ui, std::string_view id, double& value, const SliderLook& look) 
   }
   const bool is_reached = look.is_enabled && is_focused(ui, id);
   if (is_reached && ui.in.navigation.sideways != 0 && look.max > look.min) {
-    constexpr double kKeySteps = 40.0;  // from end to end
+    constexpr double kKeySteps = 40.0;  // key presses that move a slider from end to end
     const double unit = std::pow(10.0, look.decimals);
     const double step = std::max((look.max - look.min) / kKeySteps, 1.0 / unit);
     const double wanted = std::round((value + ui.in.navigation.sideways * step) * unit) / unit;

@@ -40,7 +40,7 @@ float text_width(const ImFont* font, std::string_view text);
 // Draws one line at `at`, after drawable(); text wider than `max_width` is cut and ends with `...`.
 void put_text(ImDrawList& list, const ImFont* font, const Colour& colour, const ImVec2& at,
               std::string_view text, float max_width);
-// The same at the cursor; the width is limited by the rest of the row or `max_width`.
+// Draws one line of text at the cursor; its width is limited by the rest of the row or `max_width`.
 void text_line(Ui& ui, const ImFont* font, const Colour& colour, std::string_view text,
                float max_width = 0.0f);
 // A label at the left and a value at the right end of a row, or of two rows if one is too narrow.
@@ -54,11 +54,13 @@ void progress_bar(Ui& ui, double done);
 std::vector<std::string> text_lines(const ImFont* font, std::string_view text, float width,
                                     int max_lines);
 
-// Records the last widget or a rectangle for ui_items(), clipped to its visible part.
+// Clears the list of ui_items(). The functions below add the last widget or a rectangle to it,
+// clipped to the visible part.
 void clear_items();
 void keep_item(std::string_view name);
 void keep_item(std::string_view name, const ImVec2& min, const ImVec2& max);
-void keep_area(std::string_view name, const ImVec2& min, const ImVec2& max);  // not a widget
+// Adds an area that is not a widget.
+void keep_area(std::string_view name, const ImVec2& min, const ImVec2& max);
 // Makes the last widget reachable by keys and pad. Returns true if it has the focus, and outlines
 // it.
 bool is_focused(Ui& ui, std::string_view name);
@@ -66,7 +68,8 @@ bool is_focused(Ui& ui, std::string_view name);
 bool is_typed(const Ui& ui, SDL_Keycode key);
 // Explains the last widget while the pointer rests on it (view/tooltips.h).
 void explain(Ui& ui, std::string_view item);
-void show_tip(Ui& ui, std::string_view text);  // the same with another text
+// Shows `text` as the tip of the last widget while the pointer rests on it.
+void show_tip(Ui& ui, std::string_view text);
 // Records and explains a rectangle that is not a widget: a graph, a picture.
 void keep_picture(Ui& ui, std::string_view name, const ImVec2& min, const ImVec2& max);
 
@@ -74,11 +77,11 @@ enum class Icon { none, play, pause, record, stop, close, to_begin, step, loop }
 void draw_icon(ImDrawList& list, Icon icon, const ImVec2& middle, float radius, ImU32 colour);
 struct ButtonLook {
   Icon icon = Icon::none;
-  bool is_on = false;       // shown as pressed
+  bool is_on = false;       // drawn as a button that is switched on
   bool is_primary = false;  // the most important button
   bool is_enabled = true;
-  float width = 0.0f;   // 0: width of the label
-  float height = 0.0f;  // 0: height of a row
+  float width = 0.0f;   // width in pixels; 0: as wide as the label
+  float height = 0.0f;  // height in pixels; 0: as high as a row
   std::optional<Colour> dot;
 };
 float button_width(const Ui& ui, std::string_view label, const ButtonLook& look);
@@ -90,11 +93,11 @@ struct SliderLook {
   double min = 0.0, max = 1.0;
   int decimals = 2;
   std::optional<double> mark;
-  bool is_changed = false;  // outlined
+  bool is_changed = false;  // outlined, because the value was changed
   bool is_mixed = false;    // the characters have different values
   bool is_enabled = true;
   float width = 0.0f;
-  std::string_view letter;  // before the number, for example "L"
+  std::string_view letter;  // shown before the number, for example "L"
 };
 // Returns true in frames in which the user moved it; `value` is then rounded to `decimals`. While
 // the slider is dragged, `value` is the user's.
@@ -104,7 +107,8 @@ bool slider(Ui& ui, std::string_view id, double& value, const SliderLook& look);
 // the characters have different values.
 std::optional<double> pending_value(Ui& ui, const std::string& name, std::optional<double> value);
 void remember_pending(Ui& ui, const std::string& name, double value);
-void forget_pending(Ui& ui, const std::string& name);  // "": all
+// Forgets the user's value for `name`; "": of all sliders.
+void forget_pending(Ui& ui, const std::string& name);
 // Sends `VERB 2 KEY VALUE` to the session, without the number if all characters are selected. The
 // value has the fewest digits that read back exactly.
 void send(Ui& ui, std::string_view verb, std::string_view rest);

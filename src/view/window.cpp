@@ -74,8 +74,9 @@ class Messages {
 };
 
 constexpr int kIcon_px = 64;
-constexpr std::int64_t kChange_ns = 5'000'000'000;   // time that the last change stays visible
-constexpr std::int64_t kPadHint_ns = 3'000'000'000;  // between two looks at the system's pads
+constexpr std::int64_t kChange_ns = 5'000'000'000;  // time that the last change stays visible
+// Time between two searches for the system's pads.
+constexpr std::int64_t kPadHint_ns = 3'000'000'000;
 
 double distance_to(const vec2& place, const vec2& a, const vec2& b) {
   const vec2 along = b - a;
@@ -96,7 +97,7 @@ void set_window_icon(SDL_Window* window) {
         static_cast<std::uint8_t*>(icon->pixels) + static_cast<std::ptrdiff_t>(y) * icon->pitch;
     for (int x = 0; x < kIcon_px; ++x) {
       const vec2 at(x + 0.5, y + 0.5);
-      double away = glm::distance(at, vec2(35, 13)) - 3.0;  // the head
+      double away = glm::distance(at, vec2(35, 13)) - 3.0;  // distance to the head
       for (const auto& [a, b] : kBones) away = std::min(away, distance_to(at, a, b));
       const double figure = std::clamp(3.4 - away, 0.0, 1.0);
       const double disc = std::clamp(31.5 - glm::distance(at, vec2(32, 32)), 0.0, 1.0);
@@ -111,12 +112,17 @@ void set_window_icon(SDL_Window* window) {
   SDL_FreeSurface(icon);
 }
 
-constexpr double kSoftwareFrame_s = 1.0 / 30.0;  // leaves processor time to the session
-constexpr double kFrame_s = 1.0 / 120.0;         // if the display does not limit the rate
-constexpr double kUnseenFrame_s = 0.1;           // minimized
-constexpr double kOrbitMouse_rad = 0.006;        // per pixel at scale 1
+// A frame's least time with a software rasterizer, which leaves processor time to the session.
+constexpr double kSoftwareFrame_s = 1.0 / 30.0;
+// A frame's least time if the display does not limit the rate.
+constexpr double kFrame_s = 1.0 / 120.0;
+constexpr double kUnseenFrame_s = 0.1;     // a frame's least time while the window is
+                                           // minimized
+constexpr double kOrbitMouse_rad = 0.006;  // the camera's turn per pixel of the mouse, at
+                                           // scale 1
 constexpr double kOrbitStick_rad_s = 1.8;
-constexpr double kStickRest = 0.02;  // of the right stick; the camera ignores less
+// Smaller deflections of the right stick do not move the camera.
+constexpr double kStickRest = 0.02;
 constexpr std::int64_t kMessage_ns = 15'000'000'000;
 
 // Runs the window: opens it, draws frames, executes the user's requests, and closes it.
@@ -130,8 +136,8 @@ class WindowLoop {
  private:
   // The steps of a frame, in order.
   bool makes_pictures() const noexcept;
-  bool makes_still() const noexcept;  // only the last frame is kept
-  bool draw_frame();                  // false after the last frame
+  bool makes_still() const noexcept;  // whether only the last frame is kept
+  bool draw_frame();                  // False after the last frame.
   void wait_for_display();
   bool is_ended();
   std::optional<Error> picture_problem() const;
@@ -167,9 +173,9 @@ class WindowLoop {
   // The user's requests.
   void run_actions(const UiOutput& out);
   void run_action(Action action);
-  bool is_read_only();  // true for a playback, with a message
+  bool is_read_only();  // True in a playback; tells the user that it cannot be changed.
   void choose_style(const std::string& name);
-  void choose_style_number(std::size_t number);  // from 0, of the session's list
+  void choose_style_number(std::size_t number);  // `number` counts from 0 in the session's list.
   void choose_style_after(int steps);
   void toggle_pause();
   void toggle_full_screen();
@@ -181,13 +187,13 @@ class WindowLoop {
   void save_walkers_style(const std::string& name);
 
   // Changes of the show.
-  void send_command(const std::string& command);  // by the user, who can undo it
+  void send_command(const std::string& command);  // Sends a change that the user made and can undo.
   void send_again(const std::vector<std::string>& commands, const char* what);
   void say_change(std::string what);
   void show_message(std::string sentence);
   void show_remarks();
   void install_show(std::unique_ptr<Show> show);
-  void end_show();  // its last state stays visible
+  void end_show();  // Ends the session; its last state stays visible.
   bool switch_to(const SessionSpec& next);
   bool restart(Result<std::unique_ptr<Show>> show, const SessionSpec& otherwise);
   void open_file(const std::string& path);
@@ -202,48 +208,50 @@ class WindowLoop {
 
   WindowOptions options_;
   WindowResult result_;
-  std::optional<Error> failure_;  // ends the window
+  std::optional<Error> failure_;  // why the window has to end; none: it goes on
 
   // In the order of their dependencies.
   std::unique_ptr<WindowSurface> surface_;
   std::unique_ptr<Gui> gui_;
   std::unique_ptr<Scene> scene_;
   std::unique_ptr<VideoWriter> video_;
-  std::unique_ptr<PadDialog> pad_dialog_;  // the show has ended while it is open
+  std::unique_ptr<PadDialog> pad_dialog_;  // while it is open, there is no show
   std::unique_ptr<Show> show_;
   std::unique_ptr<Ensemble> ensemble_;
-  std::optional<SessionSpec> live_before_;  // during a playback: the previous live session
+  // During a playback: how to start the previous live session again.
+  std::optional<SessionSpec> live_before_;
 
   UiState state_;
-  UiState remembered_;  // as in the layout file
+  UiState remembered_;  // the state that the layout file holds
   std::optional<ThemeName> applied_theme_;
   Camera camera_;
   bool is_camera_new_ = true;
   SceneContent content_;
   Controls controls_;
   ButtonPresses presses_;
-  std::vector<SDL_Keycode> keys_;  // of this frame, as the next member
+  std::vector<SDL_Keycode> keys_;  // the keys that were pressed since the last frame
   NavigationInput navigation_;
   FileBrowser browser_;
   Messages messages_;
   UndoList undo_;
-  std::string change_;  // the last change and its characters
+  std::string change_;  // the last change and the characters that it concerns
   std::int64_t change_ns_ = 0;
-  std::vector<std::string> style_summaries_;  // of the show's styles
-  std::string finished_recording_;            // a message offers to replay it
+  std::vector<std::string> style_summaries_;  // what each of the show's styles does, in a line
+  std::string finished_recording_;            // the recording that a message offers to replay
   std::string pad_hint_;
   std::int64_t pad_hint_ns_ = 0;
   FrameClock clock_;
   FramePacer pacer_;
-  bool is_paced_ = false;  // the display limits the frames
+  bool is_paced_ = false;  // the display limits the rate of frames
   LiveStatus picture_status_;
   double pace_before_pause_ = 1.0;
-  std::optional<std::string> chosen_file_;  // in the browser, in this frame
+  std::optional<std::string> chosen_file_;  // the file that was chosen in the browser in this frame
   PadDialog::State pad_dialog_state_ = PadDialog::State::goes_on;
   bool wants_screenshot_ = false, is_quitting_ = false;
-  bool is_end_told_ = false, is_untouched_told_ = false;  // the user was told
-  bool is_camera_moved_ = false;  // by the user: it no longer turns by itself
-  std::optional<int> aimed_deg_;  // the last heading that the session was told
+  // The user was told that the session has ended, that the pad was not touched.
+  bool is_end_told_ = false, is_untouched_told_ = false;
+  bool is_camera_moved_ = false;  // the user moved the camera, so it no longer turns by itself
+  std::optional<int> aimed_deg_;  // the last heading that was sent to the session
   std::int64_t aimed_tick_ = 0;
   bool has_walked_ = false;  // a character has walked since the show began
 };
@@ -258,7 +266,7 @@ WindowLoop::WindowLoop(const WindowOptions& options)
 }
 
 WindowLoop::~WindowLoop() {
-  show_.reset();  // before SDL is stopped
+  show_.reset();  // stops the session's threads before SDL stops
   if (surface_ == nullptr || !surface_->is_lost()) return;
   // Closing anything on a lost display could wait without end, so leave it to the program's end.
   static_cast<void>(pad_dialog_.release());
@@ -280,7 +288,7 @@ void WindowLoop::apply_layout(const UiState& layout) {
   state_ = remembered_ = layout;
   if (options_.theme) state_.theme = *options_.theme;
   state_.is_clean = options_.is_clean;
-  if (makes_pictures()) state_.type_size = 1.0;  // --scale sets the size
+  if (makes_pictures()) state_.type_size = 1.0;  // pictures have the size that --scale gives
   if (options_.are_panels_given) {
     state_.is_open.fill(false);
     for (const Panel panel : options_.panels)
@@ -585,7 +593,8 @@ Framing WindowLoop::wanted_framing(const Viewport& viewport) const {
 void WindowLoop::reset_camera(const Viewport& viewport) {
   camera_ = Camera();
   is_camera_moved_ = false;
-  if (ensemble_->is_on_uneven_ground()) {  // from the side: steps ahead hide no feet
+  // A view from the side, in which steps ahead hide no feet.
+  if (ensemble_->is_on_uneven_ground()) {
     const bool is_upward = ensemble_->rise_ahead_m(state_.walker) > kLeastRise_m;
     camera_.yaw_rad = is_upward ? kBehind_rad : kAside_rad;
     camera_.pitch_rad = kAbove_rad;
@@ -947,7 +956,7 @@ void WindowLoop::save_walkers_style(const std::string& name) {
   const StyleValues& values = show_->frame().walkers[walker].style;
   const auto path = save_style(folders, name, values);
   if (!path) return show_message(path.error().message);
-  show_->add_config_folder(user_config_folder());  // the folder may be new
+  show_->add_config_folder(user_config_folder());  // saving may have created this folder
   show_message("saved as " + *path);
   if (!show_->is_live()) return;
   Style style;
@@ -1021,7 +1030,7 @@ void WindowLoop::end_show() {
     show_message("the recording " + recording + " is complete");
   }
   auto still = still_show(*show_);
-  show_.reset();  // frees its pads
+  show_.reset();  // the session frees its pads for the dialog
   install_show(std::move(still));
   is_camera_new_ = false;
 }
@@ -1030,7 +1039,8 @@ bool WindowLoop::switch_to(const SessionSpec& next) {
   SessionSpec otherwise = show_->options();
   otherwise.live.record.clear();
   if (next.replay.trace.empty()) {
-    auto start = Show::prepare(next);  // reads its files before the running show ends
+    // Reads the files of the new show while the old one still runs.
+    auto start = Show::prepare(next);
     if (!start) {
       show_message(start.error().message);
       return false;
@@ -1149,7 +1159,7 @@ void WindowLoop::begin_pad_dialog(PadDialogStart& start) {
 
 // Opens the next dialog or continues the session.
 void WindowLoop::end_pad_dialog(PadDialog::State state) {
-  pad_dialog_.reset();  // frees the pad
+  pad_dialog_.reset();  // the dialog frees its pad for the session
   if (state == PadDialog::State::wants_map) return begin_pad_dialog(start_mapping);
   if (state == PadDialog::State::wants_test) return begin_pad_dialog(start_self_test);
   SessionSpec next = show_->options();

@@ -56,7 +56,7 @@ Ground waves(const void*, double x_m, double z_m) noexcept {
   return {0.1 * sin_cos(0.8 * x_m).sin + 0.1 * sin_cos(0.8 * z_m).sin};
 }
 
-// All that a style can ask of the upper body.
+// A style with every value of the upper body that differs from the even style's.
 StyleValues busy_style() {
   StyleValues style;
   style.stride[kLeftSide] = {.length = 0.7, .speed = 1.2, .flight_height = 0.7};
@@ -94,7 +94,7 @@ void walk_everywhere(const char* name, const GaitCycle& cycle) {
 }
 
 void walk_crowd() {
-  use_lanes(2);  // every processor has registers of two doubles, or computes as if
+  use_lanes(2);  // two doubles in a register, which every processor has or can imitate
   MadeCrowd made(16);
   WordHash hash;
   for (int tick = 0; tick < 20 * kCrowdRate; ++tick) {
@@ -104,7 +104,7 @@ void walk_crowd() {
   }
 }
 
-// Numbers as text, which standard libraries write and read in their own ways.
+// Prints numbers as text, which standard libraries write and read in their own ways.
 void print_numbers() {
   for (const double value : {0.1, -2.5e-7, 123456.789, 1e15 / 3.0, 6.02214076e23})
     std::printf("%s %s\n", fixed(value, 3).c_str(), fixed(value, 17).c_str());
@@ -116,7 +116,7 @@ void print_numbers() {
 }
 
 #ifdef GAITPAD_HAS_FILES
-// The procedural walk as a BVH text, read again.
+// The procedural walk, written as BVH text and read again.
 GaitCycle cycle_from_text() {
   const Motion motion = procedural_motion();
   std::ostringstream out;

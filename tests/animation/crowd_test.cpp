@@ -55,8 +55,8 @@ TEST(Crowd, WalksAsItsMembersWouldAlone) {
   }
 }
 
-// A block of three leaves lanes over, which repeat the last member. That has to hold as well when
-// its ankle bends too far and its leg is solved again, here in an abrupt stop after a turn.
+// A block of three members has unused lanes, which repeat the last member. That has to hold as well
+// when its ankle bends too far and its leg is solved again, here in an abrupt stop after a turn.
 TEST(Crowd, WalksAsItsMembersWouldAloneWhereABlockIsNotFull) {
   const auto model =
       std::make_shared<const WalkModel>(value_of(walk_model(clean_cycle(procedural_gait()), {})));

@@ -22,7 +22,7 @@ Terrain slopes() {
 Ground ask_sections(const void* game, double x_m, double z_m) noexcept {
   return ground_at(*static_cast<const Terrain*>(game), x_m, z_m);
 }
-// The same ground turned by a quarter: it rises along +x.
+// The ground of ask(), turned by a quarter turn: it rises along +x.
 Ground ask_turned(const void* game, double x_m, double z_m) noexcept {
   Ground ground = ask_sections(game, -z_m, x_m);
   ground.normal = vec3(ground.normal.z, ground.normal.y, -ground.normal.x);
@@ -80,7 +80,7 @@ TEST(AskedGround, MayRiseInAnyDirection) {
   EXPECT_GT(aside.root_m.y, 1.3);
 }
 
-// The sole's point below the toe joint.
+// The place of the sole below the toe joint.
 vec3 ball_of(const WalkModel& model, const WalkState& state, Side side) {
   const LegBuild& leg = model.leg[side];
   const FootPose& pose = state.foot[side].pose;
@@ -88,8 +88,8 @@ vec3 ball_of(const WalkModel& model, const WalkState& state, Side side) {
                   pose.heel_m + pose.tilt * pose.yaw * (leg.ball_m - leg.model.heel_m));
 }
 
-// A walk in circles that is put elsewhere, a whole number of waves away: planted feet do not move,
-// and heel and ball of a flat foot are on the ground.
+// Walks in circles and moves the walk by a whole number of waves: planted feet do not move, and
+// heel and ball of a flat foot are on the ground.
 TEST(AskedGround, IsTheGroundOfThePlaceThatAWalkIsPutTo) {
   const WalkModel model = model_on({&ask_waves, nullptr});
   Pose pose;
@@ -106,7 +106,8 @@ TEST(AskedGround, IsTheGroundOfThePlaceThatAWalkIsPutTo) {
       put_walk(state.frame.root_m +
                    vec3(2.0 * kPi / 0.8 * (tick / kRate % 2 ? 1.0 : -1.0), 0.0, 2.0 * kPi / 0.7),
                state.frame.heading_rad, state, pose);
-    const bool stands = tick / kRate % 4 == 3;  // then both feet are flat for a while
+    // In each fourth second the stick rests, so that both feet stand flat for a while.
+    const bool stands = tick / kRate % 4 == 3;
     advance(model, stands ? stand : params, IkMode::robust, kDt, state, pose);
     for (const int side : {0, 1}) {
       const WalkFrame& frame = state.frame;
@@ -159,7 +160,7 @@ TEST(AskedGround, AGameMayAnswerSeveralPlacesInOneCall) {
   EXPECT_LT(asked_several + asked_alone, calls_alone / 2);
 }
 
-// Samples of a wave that runs askew.
+// Samples of a wave that runs at an angle to the axes.
 GroundGrid made_grid() {
   GroundGrid grid{.x_m = -10.0, .z_m = -5.0, .spacing_m = 0.25, .columns = 80, .rows = 120};
   for (int row = 0; row < grid.rows; ++row)
@@ -179,10 +180,11 @@ TEST(GroundGrid, IsStraightBetweenItsSamplesAndGoesOnAtItsBorder) {
   EXPECT_DOUBLE_EQ(ground_at(grid, 1.0, 2.0).height_m, 0.0);
   EXPECT_NEAR(ground_at(grid, 1.5, 2.0).height_m, 0.1, 1e-8);
   EXPECT_NEAR(ground_at(grid, 1.0, 2.5).height_m, 0.2, 1e-8);
-  EXPECT_NEAR(ground_at(grid, 1.25, 2.25).height_m, 0.2, 1e-8);  // the mean of all four
+  // The mean of the cell's four samples.
+  EXPECT_NEAR(ground_at(grid, 1.25, 2.25).height_m, 0.2, 1e-8);
   EXPECT_NEAR(ground_at(grid, 99.0, 99.0).height_m, 0.5, 1e-8);
   EXPECT_NEAR(ground_at(grid, -99.0, 2.25).height_m, 0.1, 1e-8);
-  const vec3 normal = ground_at(grid, 1.25, 2.0).normal;  // grades .2 along x, .6 along z
+  const vec3 normal = ground_at(grid, 1.25, 2.0).normal;  // grades of 0.2 along x and 0.6 along z
   EXPECT_NEAR(normal.x / normal.y, -0.2, 1e-7);
   EXPECT_NEAR(normal.z / normal.y, -0.6, 1e-7);
   const double no_number = std::numeric_limits<double>::quiet_NaN();

@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kMinute = 60 * kRate;
 
-// Measures of a minute's stand, from its fifth second on, when all of the idle movement shows.
+// Measures of a minute's stand, from its fifth second on, when the idle movement has its full size.
 struct Stood {
   std::vector<vec3> hips_m;
   std::vector<double> breath_rad, glance_rad;
@@ -90,7 +90,7 @@ TEST(Idle, AStyleAndPaperModeLeaveItOut) {
   }
 }
 
-// The foot that landed last is the other one, and so the stand is the other way round.
+// The foot that landed last is the other one, so the stand is mirrored as well.
 TEST(Idle, MirroredWalksEndInMirroredStands) {
   MadeWalker left, right;
   for (const auto& [walker, sign] : {std::pair{&left, -1.0}, std::pair{&right, 1.0}})

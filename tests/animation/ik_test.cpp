@@ -13,17 +13,17 @@
 namespace gaitpad::test {
 namespace {
 
-// An unoptimised build, as the sanitizers', takes fewer.
+// Number of random cases; fewer in an unoptimised build, such as those with sanitizers.
 #ifdef __OPTIMIZE__
 constexpr int kMany = 100'000;
 #else
 constexpr int kMany = 20'000;
 #endif
 
-const vec3 kHeel(0.0, -0.08, -0.05), kToe(0.0, -0.06, 0.13);  // from the ankle
+const vec3 kHeel(0.0, -0.08, -0.05), kToe(0.0, -0.06, 0.13);  // heel and toe in the ankle's frame
 const vec3 kX(1.0, 0.0, 0.0), kY(0.0, 1.0, 0.0), kZ(0.0, 0.0, 1.0);
 
-// A leg of thigh 0.42 and shank 0.42 m with a human's limits.
+// A leg with thigh and shank of 0.42 m each and the limits of a human's joints.
 IkChain human_leg() {
   const vec3 shaft(0.0, -0.42, 0.0);
   IkChain c;
@@ -48,7 +48,7 @@ IkAngles random_pose(const IkChain& c, Random& random) {
   return q;
 }
 
-// Oblique axes, links of 0.2 to 0.6 m, weights 0.2 to 1, no limits.
+// A chain with oblique axes, links of 0.2 to 0.6 m, weights of 0.2 to 1, without limits.
 IkChain random_chain(int dofs, Random& random) {
   IkChain c;
   c.dofs = dofs;
@@ -102,7 +102,7 @@ using Real = long double;
 using Vector = std::vector<Real>;
 using Matrix = std::vector<Vector>;
 
-// Positions of the rows' points by rotation matrices multiplied from the root on.
+// Positions of the rows' points, by rotation matrices that are multiplied from the root on.
 Vector row_values(const IkChain& c, std::span<const IkRow> rows, const Vector& q) {
   Matrix m = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
   Vector p = {0, 0, 0};
@@ -146,7 +146,7 @@ Matrix difference_jacobian(const IkChain& c, std::span<const IkRow> rows, const 
   return j;
 }
 
-// Gauss elimination of J J^T x = b.
+// Solves J J^T x = b by Gauss elimination.
 Vector gram_solution(const Matrix& j, Vector b) {
   const std::size_t n = j.size();
   Matrix a(n, Vector(n, 0));
@@ -175,7 +175,8 @@ Vector errors(const IkChain& c, std::span<const IkRow> rows, const Vector& q) {
   return e;
 }
 
-// At full rank steps 4 and 5 change nothing, so eq. (5) is all there is.
+// Checks one step of eq. (5). At full rank steps 4 and 5 change nothing, so eq. (5) is the whole
+// step.
 void second_derivation(const IkChain& c, std::span<const IkRow> rows, Vector& q) {
   const Matrix j = difference_jacobian(c, rows, q);
   const Vector x = gram_solution(j, errors(c, rows, q));
@@ -186,7 +187,7 @@ void second_derivation(const IkChain& c, std::span<const IkRow> rows, Vector& q)
   }
 }
 
-// Rows that a pose near q meets.
+// Rows that a pose near q satisfies.
 std::vector<IkRow> near_goal(const IkChain& c, const IkAngles& q, int count, Random& random) {
   IkAngles other = q;
   for (int j = 0; j < c.dofs; ++j) other[j] += random.between(-0.05, 0.05);
@@ -295,7 +296,7 @@ TEST(IkPaper, OutOfReachEndsAtTheCap) {
   for (int j = 0; j < 7; ++j) EXPECT_TRUE(std::isfinite(q[j]));
 }
 
-// Figure 4: a chain of four links in a plane.
+// The chain of figure 4: four links in a plane.
 IkChain four_links(double root_weight) {
   IkChain c;
   c.dofs = 4;
@@ -376,7 +377,7 @@ TEST(IkPaper, TheTraceHoldsTheStartEachIterationAndTheAnswer) {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-// Cold starts: how many fail, fail unnoticed, or leave the limits.
+// Counts of cold starts: how many fail, fail without being flagged, or exceed the limits.
 struct ColdStarts {
   int failed = 0, unflagged = 0, outside = 0;
   void solve(const IkChain& c, std::span<const IkRow> rows) {
@@ -428,7 +429,7 @@ TEST(IkRobust, ColdStartsWithFiveRowsFailRarelyAndEachIsFlagged) {
 class GaitPath {
  public:
   explicit GaitPath(Random& random) : random_(random) { draw(); }
-  // The next place, at most `reach_m` from the hip.
+  // The next place; it is at most `reach_m` from the hip.
   vec3 next(double reach_m) {
     if (phase_ > 6.0 * kPi) draw();
     const double faster = std::hypot(0.5 * stride_m_ * std::sin(phase_),
@@ -541,7 +542,8 @@ TEST(IkRobust, SmallerWeightTurnsThatJointLessAndZeroLocksIt) {
   }
 }
 
-// No redundancy: hip x, hip z and knee to the ankle. The pose is the same for every W.
+// A chain without redundancy: hip x, hip z and knee move the ankle. The pose is the same for every
+// W.
 TEST(IkRobust, WeightsChangeNothingOnAChainWithoutRedundancy) {
   IkChain c;
   c.dofs = 3;
@@ -599,7 +601,7 @@ TEST(IkRobust, NotFiniteInputsLeaveTheAnglesUntouched) {
   for (const double bad : {std::nan(""), kInfinity, -kInfinity, 1e200}) {
     const IkChain c = human_leg();
     IkAngles q = standing();
-    q[0] = 2.0;  // outside the limits: not even clamped
+    q[0] = 2.0;  // outside the limits; the start stays unchanged
     const IkAngles before = q;
     const IkResult result = solve_robust(c, point_goal(kHeel, vec3(0.0, bad, 0.1)), {}, q);
     EXPECT_EQ(result.status, IkStatus::not_finite);
@@ -623,7 +625,7 @@ TEST(IkRobust, NotFiniteInputsLeaveTheAnglesUntouched) {
   }
 }
 
-// Beyond the arrays there is nothing to read.
+// Chains and rows beyond kMaxIkDofs and kMaxIkRows have no room in the arrays.
 TEST(IkChecks, MoreDofsOrRowsThanThereIsRoomForAreRefused) {
   const auto three = point_goal(kHeel, vec3(0.0, -0.7, 0.1));
   const std::vector<IkRow> seven(kMaxIkRows + 1, three[0]);

@@ -20,8 +20,8 @@ struct Leg {
   IkAngles start{};
 };
 
-// `from_goal_rad`: how far the start is from a pose that meets the rows; `off_m`: how far the goals
-// are from that pose, all of them alike.
+// `from_goal_rad`: how far the start is from a pose that meets the rows; `off_m`: how far all goals
+// are shifted from that pose.
 Leg random_leg(Random& random, double from_goal_rad, double off_m, double least_weight) {
   const std::array<vec3, kLegDofs> axis = {vec3(1, 0, 0), vec3(0, 0, 1), vec3(0, 1, 0),
                                            vec3(1, 0, 0), vec3(1, 0, 0), vec3(0, 0, 1),
@@ -41,7 +41,7 @@ Leg random_leg(Random& random, double from_goal_rad, double off_m, double least_
   }
   leg.chain.dof[kHipY].link_m = vec3(0.0, -random.between(0.2, 0.6), 0.0);
   leg.chain.dof[kKneeX].link_m = vec3(0.0, -random.between(0.2, 0.6), 0.0);
-  leg.chain.dof[kKneeX].weight = 1.0;  // the largest weight
+  leg.chain.dof[kKneeX].weight = 1.0;  // the knee has the largest weight of the chain
   const vec3 heel(0.01, -0.08, -0.05), toe(0.03, -0.06, 0.14), line = toe - heel;
   const vec3 side = glm::normalize(glm::cross(kUp, line)), beside = heel + 0.1 * side;
   const IkFrame end = end_frame(leg.chain, pose);
@@ -57,7 +57,7 @@ Leg random_leg(Random& random, double from_goal_rad, double off_m, double least_
   return leg;
 }
 
-// The number of legs, and of numbers in a register.
+// kLegs legs are solved together in registers of kNumbers numbers.
 template <int kLegs, int kNumbers>
 struct CompiledFor {
   static constexpr int kWidth = kLegs, kRegister = kNumbers;
@@ -103,7 +103,7 @@ class LegIk : public testing::Test {
     solve_legs<kWidth, false, kRegister>(places);
     return several;
   }
-  // As many legs as lanes, each with a difficulty of its own.
+  // A leg for each lane; the legs differ in difficulty.
   static std::vector<Leg> random_legs(Random& random, double off_m, double limit_rad) {
     std::vector<Leg> legs;
     for (int lane = 0; lane < kWidth; ++lane)
@@ -111,7 +111,7 @@ class LegIk : public testing::Test {
                                    : random_leg(random, off_m, limit_rad, 0.05));
     return legs;
   }
-  // Every leg as solve_robust() solves it alone: angles, error, iterations.
+  // Expects that every leg has the angles, error and iterations that solve_robust() gives it alone.
   static void expect_same(const std::vector<Leg>& legs, int number) {
     const Legs lanes = solved(legs);
     for (int lane = 0; lane < kWidth; ++lane) {
@@ -245,7 +245,7 @@ TEST(LegInClosedForm, LeavesALegAloneThatIsTooShortOrFarFromItsStart) {
       missed += far.legs[i].reached == 0.0;
     }
   }
-  EXPECT_GT(missed, 390);  // of 400
+  EXPECT_GT(missed, 390);  // of 400 legs
 }
 
 TEST(Lanes, SineAndCosineAreThoseOfOneNumber) {

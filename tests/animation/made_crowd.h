@@ -1,4 +1,4 @@
-// A crowd whose members differ in everything: build, terrain, style and stick.
+// A crowd whose members differ in build, terrain, style and stick.
 #pragma once
 #include <cmath>
 #include <memory>
@@ -48,12 +48,13 @@ class MadeCrowd {
   Crowd& crowd() { return crowd_; }
   const std::vector<CrowdMember>& members() const { return members_; }
 
-  // Commands all members in this tick: each begins, turns and rests at times of its own.
+  // Commands all members in this tick. Each begins, turns and rests at other times.
   void command(int tick) {
     for (int i = 0; i < crowd_.size(); ++i) {
       const int t = tick - 7 * i, leg = t / (2 * kCrowdRate);
       Stick stick;
-      const bool straight_on = i % 8 % 4 == 3;  // over the terrain
+      // Each fourth member goes straight on over its terrain.
+      const bool straight_on = i % 8 % 4 == 3;
       if (t > 0 && (straight_on || leg % 5 != 4))
         stick.left = vec2(straight_on ? 0.0 : 0.25 * ((i + leg) % 5 - 2), 0.3 + 0.15 * (i % 5));
       if (i % 16 == 5 && leg % 5 == 2) stick.left.y = -0.6;

@@ -40,7 +40,7 @@ inline StyleValues high_steps() {
   return style;
 }
 
-// A character with a stick and a style, and the frames of its ticks.
+// A character with a stick and a style; it keeps the frames of its ticks.
 class MadeWalker {
  public:
   explicit MadeWalker(const WalkModel& model = adult(), IkMode mode = IkMode::robust,

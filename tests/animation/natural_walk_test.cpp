@@ -17,12 +17,12 @@ constexpr double kWindow_s = 1.0 / 14.0;
 constexpr double kGentle_m_s2 = 4.0, kGravity_m_s2 = 9.81;
 constexpr int kMoments = 24;
 constexpr int kJustLanding =
-    5;  // ticks, 21 ms: a landing this soon belongs to a step that was taken before
+    5;  // ticks, 21 ms: a landing within this time belongs to a step that had begun before
 
-// A walker that also keeps its posed hips.
+// A walker that also records the places of its hips.
 struct Posed {
   MadeWalker walker;
-  std::vector<vec3> hips_m;  // between the hip joints
+  std::vector<vec3> hips_m;  // middles between both hip joints, one for each tick
   explicit Posed(IkMode mode = IkMode::robust) : walker(adult(), mode) {}
 
   const JointFrames& joints() const {
@@ -50,7 +50,7 @@ struct Posed {
   }
   // The greatest horizontal acceleration of the hips, over 1/14 s.
   double jolt_m_s2(int from, int to) const {
-    constexpr double kWindow = kWindow_s * kRate;  // ticks
+    constexpr double kWindow = kWindow_s * kRate;  // length of the window in ticks
     constexpr int kWhole = static_cast<int>(kWindow);
     const auto at = [this](int tick, int side) {
       const vec3 near = hips_m[tick + side * kWhole], far = hips_m[tick + side * (kWhole + 1)];
@@ -67,8 +67,8 @@ struct Posed {
   int steps() const { return walker.last().steps[0] + walker.last().steps[1]; }
 };
 
-// The worst over many moments at which a stick lets go: the first ones within the first steps, the
-// others over more than a stride of the steady walk.
+// The worst values over many moments at which a stick is released: the first ones within the first
+// steps, the others over more than a stride of the steady walk.
 struct Stops {
   double jolt_m_s2 = 0.0;
   int steps = 0;
@@ -107,8 +107,8 @@ TEST(NaturalWalk, StartsAndStopsAreGentleWheneverTheStickLetsGo) {
     EXPECT_LE(stops_from(stick).jolt_m_s2, kGentle_m_s2) << stick;
 }
 
-// At full stick the steady walk speeds its hips up and down by more than that in each step. A start
-// and a stop add little to it.
+// At full stick the steady walk accelerates and decelerates its hips in each step by more than that
+// bound. A start and a stop add little to it.
 TEST(NaturalWalk, AtFullStickStartsAndStopsAreHardlyHarderThanTheWalk) {
   Posed walk;
   walk.walk(0, 1.0, 8 * kRate);
@@ -128,7 +128,7 @@ TEST(NaturalWalk, AWalkStandsWithinTwoStepsWheneverTheStickLetsGo) {
 TEST(NaturalWalk, StandingKneesAreNearlyStraight) {
   Posed walk;
   walk.walk(0, 0, 1);
-  for (const double stick : {0.0, 0.4, 1.0}) {  // at first, and after a walk
+  for (const double stick : {0.0, 0.4, 1.0}) {  // the starts from rest, and then after a walk
     walk.walk(0, stick, 3 * kRate);
     walk.walk(0, 0, 4 * kRate);
     for (const Side side : {kLeftSide, kRightSide}) {
@@ -148,15 +148,16 @@ TEST(NaturalWalk, KneesAreNearlyStraightAfterAStopAtAnyMoment) {
 }
 
 struct Manner {
-  double both_feet = 0.0;       // share of the time that both feet stand
-  double swing_knee_deg = 0.0;  // the most that a swinging knee bends
+  double both_feet = 0.0;       // share of the time in which both feet stand
+  double swing_knee_deg = 0.0;  // largest bend of a swinging knee
 };
 Manner manner_at(double stick) {
   Posed walk;
   walk.walk(0, stick, 5 * kRate);
   Manner manner;
   int rolls = 0, ticks = 0, from = walk.steps();
-  while (walk.steps() == from) walk.walk(0, stick, 1);  // whole strides: from a landing to one
+  // Measures whole strides: from a landing to one of the same foot.
+  while (walk.steps() == from) walk.walk(0, stick, 1);
   for (from = walk.steps(); walk.steps() < from + 8; ++ticks) {
     rolls += walk.walker.last().stage == Stage::roll;
     walk.walk(0, stick, 1);
@@ -227,20 +228,23 @@ TEST(NaturalWalk, TheBodyLeansIntoATurnAsItsSpeedAsks) {
   for (const double x : {-0.6, -0.3, 0.3, 0.6}) {
     for (const double y : {0.5, 0.8}) {
       const Lean lean = lean_in(x, y, IkMode::robust);
-      EXPECT_GT(lean.asked_deg * -x, 0.0);  // stick right turns right: the lean is not to the left
+      // With the stick to the right the walk turns right, so it does not lean to the left.
+      EXPECT_GT(lean.asked_deg * -x, 0.0);
       EXPECT_NEAR(lean.pelvis_deg, lean.asked_deg, 1.0) << x << ", " << y;
       EXPECT_NEAR(lean.body_deg, lean.asked_deg, 1.0) << x << ", " << y;
     }
   }
-  // Nothing leans in paper mode.
+  // In paper mode the body does not lean.
   const Lean lean = lean_in(-0.6, 0.8, IkMode::paper);
   EXPECT_GT(lean.asked_deg, 3.0);
   EXPECT_NEAR(lean.pelvis_deg, 0.0, 0.2);
-  EXPECT_NEAR(lean.body_deg, 0.0, 1.0);  // the data's spine is not quite mirrored
+  // Not exactly 0, because the data's spine is not quite mirrored.
+  EXPECT_NEAR(lean.body_deg, 0.0, 1.0);
 }
 
-// Moves a slider at several moments of a walk. At most of them some joint has changed within 100 ms
-// (not where the sway that a factor multiplies passes through 0), and no leg ever jerks.
+// Moves a slider at several moments of a walk. At most of these moments some joint has changed
+// within 100 ms (not where the sway that a factor multiplies passes through 0), and no leg ever
+// jerks.
 void expect_to_show_soon(const char* key, double value, double most_turn_deg = 1.0) {
   StyleValues style;
   ASSERT_TRUE(set_value(style, key, value)) << key;
@@ -275,7 +279,7 @@ TEST(NaturalWalk, SlidersShowWithinATenthOfASecondAndWithoutAHitch) {
       {"arms.swing", 0.3},        {"arms.out_deg", 15.0},
       {"trunk.lean_deg", 10.0},   {"trunk.over_left_deg", 10.0}};
   for (const auto& [key, value] : sliders) expect_to_show_soon(key, value);
-  // Hips that travel twice as far stretch the legs to the last: knees turn more sharply, steadily.
+  // Hips that bounce twice as far stretch the legs fully, so knees turn more sharply in each step.
   expect_to_show_soon("hip_bounce", 2.0, 1.6);
 }
 

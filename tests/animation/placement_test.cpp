@@ -16,7 +16,7 @@ namespace {
 GaitParams asked(double x, double y) {
   return gait_params({.left = vec2(x, y)}, StyleValues{}, gait_limits(adult()));
 }
-// A walk that starts, turns, stops and goes on.
+// The parameters of a tick: the walk starts, turns, stops and goes on.
 GaitParams asked_at(int tick) {
   const int s = tick / kRate;
   return s % 5 == 4 ? asked(0.0, 0.0) : asked(0.3 * (s % 3 - 1), 0.5 + 0.1 * (s % 4));
@@ -150,8 +150,8 @@ TEST(Placement, AHeadLooksAtAPlaceOfTheWorld) {
     EXPECT_LT(angle_between(pose.local[j], near.local[j]), 1e-3) << j;
 }
 
-// An engine's capsule on a circle of 4 m, at 1 m/s, which then stops: the walk keeps to it in steps
-// of its own, at its heading in the end, and its feet slide nowhere.
+// An engine moves a capsule on a circle of 4 m at 1 m/s and then stops it: the walk follows it by
+// its own steps, has its heading in the end, and its feet do not slide.
 TEST(Placement, AWalkFollowsWhatAnEngineMoves) {
   Pose pose;
   WalkState state = standing(adult(), vec3(0.0), pose);

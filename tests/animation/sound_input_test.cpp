@@ -1,5 +1,5 @@
-// Numbers out of their ranges, through every function that takes run-time inputs: none crashes,
-// none reaches a pose, each is counted.
+// Feeds numbers out of range to every function that takes run-time inputs: none crashes, none
+// reaches a pose, each is counted.
 #include "animation/sound_input.h"
 
 #include <gtest/gtest.h>

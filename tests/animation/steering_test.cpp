@@ -58,7 +58,7 @@ class Thumb {
 
 // --- Paths ---------------------------------------------------------------------------------------
 
-using Path = std::vector<vec2>;  // x to the left, y ahead
+using Path = std::vector<vec2>;  // points with x to the left and y ahead
 
 Path straight() {
   Path path;
@@ -110,7 +110,7 @@ Path corners() {
   return path;
 }
 
-// The nearest of the next points from `from` on.
+// Index of the nearest path point, from `from` on.
 std::size_t nearest(const Path& path, const vec2& place, std::size_t from) {
   std::size_t best = from;
   for (std::size_t i = from; i < std::min(from + 40, path.size()); ++i) {
@@ -129,7 +129,7 @@ vec2 ahead_of(const Path& path, std::size_t from, double way_m) {
 
 // --- The player ----------------------------------------------------------------------------------
 
-// A player who sees the walk 200 ms late and guesses its present place, but not its further turn.
+// A player who sees the walk 200 ms late and estimates its present place, but not its further turn.
 class Player {
  public:
   static constexpr double kDelay_s = 0.2, kGain_per_s = 2.0;
@@ -188,7 +188,7 @@ class Player {
   std::vector<WalkFrame> seen_;
 };
 
-constexpr double kNovice = 0.0, kPractised = 0.07;  // see over_zone
+constexpr double kNovice = 0.0, kPractised = 0.07;  // values of over_zone for two players
 
 int passes(const Path& path, double half_m, double forward, double look_ahead_m) {
   int count = 0;
@@ -199,7 +199,7 @@ int passes(const Path& path, double half_m, double forward, double look_ahead_m)
 
 // --- What steering has to be ---------------------------------------------------------------------
 
-// From a stick that a thumb tilts by 30 degrees in 60 ms.
+// The stick goes to a tilt of 30 degrees within 60 ms.
 TEST(Steering, HalfOfTheTurnRateIsThereAfterThreeTenthsOfASecondAndMostAfterSix) {
   MadeWalker walker;
   walker.walk(0.0, 1.0, 4 * kRate);
@@ -239,7 +239,7 @@ TEST(Steering, APlayerWithoutForesightPassesAllGates) {
   EXPECT_EQ(passes(straight(), 0.25, 1.0, 1.2), 12);
 }
 
-// 20 s at full stick, a hand that is 5 degrees askew on a calibrated pad.
+// A hand that is 5 degrees askew holds full stick for 20 s on a calibrated pad.
 TEST(Steering, AHandThatIsHeldAskewWalksStraightAhead) {
   StickCalibration calibrated;
   calibrated.inner = 0.06;

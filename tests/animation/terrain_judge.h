@@ -1,5 +1,5 @@
-// Judges a walk over terrain from its poses alone: own forward kinematics, the whole sole on a
-// grid, the ground asked point by point. Only the stages are taken from the walk's report.
+// Judges a walk over terrain from its poses alone: its own forward kinematics, the whole sole on a
+// grid, the ground's height point by point. Only the stages are taken from the walk's report.
 #pragma once
 #include <algorithm>
 #include <cmath>
@@ -13,15 +13,15 @@ namespace gaitpad {
 
 // Worst values of a walk; lengths in millimetres, angles in degrees.
 struct TerrainWorst {
-  double height_mm = 0;    // of a planted point off its height of rest over the ground
-  double slide_mm = 0;     // of a planted point
-  double sunk_mm = 0;      // of any part of either sole at any tick
-  double overhang_mm = 0;  // of a sole beyond the edge of the piece that it stands on
-  double jump_deg = 0;     // second difference of any leg angle per tick
-  double pelvis_mm = 0;    // second difference of the pelvis per tick
+  double height_mm = 0;    // distance of a planted point from its rest height over the ground
+  double slide_mm = 0;     // movement of a planted point
+  double sunk_mm = 0;      // depth of any part of either sole in the ground at any tick
+  double overhang_mm = 0;  // length of a sole beyond the edge of the tread that it stands on
+  double jump_deg = 0;     // second difference of any leg angle, per tick
+  double pelvis_mm = 0;    // second difference of the pelvis' place, per tick
   double knee_min_deg = 180, knee_max_deg = 0;
   int failures = 0, landings = 0;
-  double jump_z_m = 0, sunk_z_m = 0;  // z of the worst place
+  double jump_z_m = 0, sunk_z_m = 0;  // z of the places with the worst jump and the deepest sole
   double end_z_m = 0;
 };
 
@@ -41,7 +41,7 @@ class TerrainJudge {
   }
   TerrainWorst worst;
 
-  // The sole: heel, ball and tip of one side, and half its width across.
+  // A sole: heel, ball and tip of one side, and half its width.
   struct Sole {
     vec3 heel, toe, ball, tip, across, toes_across;
   };
@@ -77,7 +77,8 @@ class TerrainJudge {
 
   double ground(const vec3& p) const { return ground_at(*model_.terrain, p.x, p.z).height_m; }
 
-  // The depth of a point in the ground: the shorter way out, up or through a riser's face.
+  // The depth of a point in the ground: the shorter distance out of it, upwards or through a
+  // riser's face.
   double depth_mm(const vec3& p) const {
     const double up = ground(p) - p.y;
     if (up <= 0.0) return 0.0;
@@ -118,7 +119,7 @@ class TerrainJudge {
         if (deep > worst.sunk_mm) worst.sunk_mm = deep, worst.sunk_z_m = s.heel.z;
       }
     }
-    // Flat on the ground: as long as the toe has been down and the heel has not left.
+    // The foot is flat on the ground if the toe is down and the heel has not left yet.
     const bool toe_down = frame.toe_planted[side] && s.heel.y - ground(s.heel) < 0.004;
     if (toe_down) see_edges(s);
   }

@@ -21,8 +21,8 @@ using namespace gaitpad;
 namespace {
 
 constexpr double kLongest_s = 360.0, kRate = 240.0;
-constexpr double kPlainSpeed_m_s = 1.3;  // captured walks that are faster on the adult's leg only
-                                         // keep the limits
+// A captured walk that is faster on the adult's leg only has to keep the limits.
+constexpr double kPlainSpeed_m_s = 1.3;
 
 template <class T>
 T value_or_exit(Result<T> result) {
@@ -51,7 +51,7 @@ Result<GaitCycle> cycle_of(const std::string& motion) {
   return gait_cycle(*loaded);
 }
 
-// Walks from one end of the terrain to a stop behind the other.
+// Walks from one end of the terrain to a stop beyond the other end.
 TerrainWorst walk(const WalkModel& model, double stick_y, const Style& style) {
   const double far_m = length_m(*model.terrain) + 1.0;
   const bool backward = stick_y < 0.0;
@@ -69,7 +69,7 @@ TerrainWorst walk(const WalkModel& model, double stick_y, const Style& style) {
     advance(model, rest > 0 ? stop : go, IkMode::robust, 1.0 / kRate, state, pose);
     judge.see(state, pose);
   }
-  judge.worst.failures += rest < 400;  // it did not reach the end
+  judge.worst.failures += rest < 400;  // the walk did not reach the end
   return judge.worst;
 }
 

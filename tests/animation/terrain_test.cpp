@@ -28,7 +28,7 @@ std::string refusal(const SectionShape& shape) {
   return problem ? problem->message : "";
 }
 
-// Hills of 6 cm, metres apart, as a picture would have them.
+// Hills of 6 cm, metres apart, as a picture of heights may have them.
 FieldSection field_section(double metres_per_sample) {
   auto field = std::make_shared<HeightField>();
   field->columns = 40, field->rows = 60;
@@ -85,7 +85,8 @@ TEST(Terrain, ASlopeClimbsByItsGradeBetweenRoundings) {
               1e-12);
   const double g = 0.2 / std::sqrt(1.0 + 0.04);
   EXPECT_NEAR(ground_at(terrain, 0.0, 3.5).normal.z, -g, 1e-12);
-  EXPECT_NEAR(ground_at(terrain, 0.0, 1.5).normal.z, -0.1 / std::sqrt(1.01), 1e-12);  // half-way in
+  // Half-way into the section.
+  EXPECT_NEAR(ground_at(terrain, 0.0, 1.5).normal.z, -0.1 / std::sqrt(1.01), 1e-12);
   EXPECT_NEAR(ground_at(terrain, 0.0, 6.0).height_m, 0.2 * 4.0, 1e-12);
   EXPECT_EQ(ground_at(terrain, 0.0, 99.0).height_m, ground_at(terrain, 0.0, 6.0).height_m);
   EXPECT_EQ(ground_at(terrain, 0.0, 99.0).normal, kUp);
@@ -134,7 +135,8 @@ TEST(Terrain, PieceAtTellsTheRisersAroundAPlace) {
   EXPECT_EQ(piece_at(terrain, 0.5).to_m, 1.0);
   EXPECT_EQ(piece_at(terrain, 1.0).from_m, 1.0);
   EXPECT_NEAR(piece_at(terrain, 1.0).to_m, 1.3, 1e-12);
-  EXPECT_NEAR(piece_at(terrain, 1.6).from_m, 1.3, 1e-12);  // the upper one owns the line
+  // The upper tread begins at the line itself.
+  EXPECT_NEAR(piece_at(terrain, 1.6).from_m, 1.3, 1e-12);
   EXPECT_NEAR(piece_at(terrain, 9.0).from_m, 1.85, 1e-12);
   EXPECT_EQ(piece_at(terrain, 9.0).to_m, kInfinity);
   EXPECT_NEAR(least_tread_m(terrain), 0.25, 1e-12);
@@ -169,7 +171,8 @@ TEST(Terrain, NormalsAreThoseOfTheHeights) {
   }
 }
 
-// Heel and toe on the ground, the middle of a straight sole between them off it: in any direction.
+// Largest gap between the ground and the middle of a straight sole whose heel and toe are on the
+// ground, in any direction.
 double worst_gap_m(const Terrain& terrain, double sole_m) {
   double worst = 0.0;
   for (double z = 0.0; z < length_m(terrain); z += 0.023) {
@@ -191,7 +194,7 @@ double worst_gap_m(const Terrain& terrain, double sole_m) {
 
 TEST(Terrain, ASoleLiesOnItWithinFourMillimetres) {
   EXPECT_LE(worst_gap_m(everything(), kSole_m), 0.004);
-  // A slope at the very bound reaches it, so the bound is tight.
+  // A slope at the bound reaches the limit exactly, so the bound is tight.
   const Terrain bent = terrain_of({SlopeSection{2.0, 0.512 * 0.6, 0.6}});
   EXPECT_NEAR(worst_gap_m(bent, kSole_m), 0.004, 5e-5);
 }
@@ -220,7 +223,8 @@ TEST(Terrain, RoughGroundKeepsItsAmplitudeAndItsSeed) {
 TEST(Terrain, AHeightFieldIsItsSamplesAndLevelBeyondThem) {
   const FieldSection section = field_section(0.1);
   const Terrain terrain = terrain_of({section});
-  // Beyond the fade the samples count fully; a B-spline takes in the mean of its neighbours.
+  // Beyond the fade the samples have their full height; a B-spline averages each with its
+  // neighbours.
   for (int c = 15; c < 25; ++c) {
     const double x = (0.5 * 39 - c) * 0.1;
     EXPECT_NEAR(ground_at(terrain, x, 3.0).height_m, section.field->height_m[30 * 40 + c], 3e-4);
@@ -244,7 +248,7 @@ TEST(Terrain, ScalingIsTheSameGroundInAnotherUnit) {
   for (double z = -0.5; z < length_m(terrain); z += 0.0173) {
     for (const double x : {-2.1, 0.3}) {
       const Ground a = ground_at(terrain, x, z), b = ground_at(big, 1.6 * x, 1.6 * z);
-      if (a.piece != b.piece) continue;  // on the very line of a riser
+      if (a.piece != b.piece) continue;  // the two places are exactly at a riser
       EXPECT_NEAR(b.height_m, 1.6 * a.height_m, 1e-9);
       EXPECT_LT(glm::distance(a.normal, b.normal), 1e-9);
     }
@@ -255,18 +259,18 @@ TEST(Terrain, RefusesGroundThatNobodyCouldWalkOn) {
   EXPECT_NE(refusal(FlatSection{0.0}), "");
   EXPECT_NE(refusal(FlatSection{kNaN}), "");
   EXPECT_NE(refusal(FlatSection{kInfinity}), "");
-  EXPECT_NE(refusal(SlopeSection{4.0, 0.7, 1.5}), "");  // too steep
-  EXPECT_NE(refusal(SlopeSection{4.0, 0.3, 0.3}), "");  // an edge, nearly
-  EXPECT_NE(refusal(SlopeSection{1.0, 0.1, 0.6}), "");  // more rounding than slope
+  EXPECT_NE(refusal(SlopeSection{4.0, 0.7, 1.5}), "");  // the slope is too steep
+  EXPECT_NE(refusal(SlopeSection{4.0, 0.3, 0.3}), "");  // the rounding is too short
+  EXPECT_NE(refusal(SlopeSection{1.0, 0.1, 0.6}), "");  // the rounding is longer than the slope
   EXPECT_NE(refusal(SlopeSection{4.0, kNaN, 0.5}), "");
   EXPECT_NE(refusal(StairsSection{0.17, 0.1, 3}), "");
   EXPECT_NE(refusal(StairsSection{0.5, 0.28, 3}), "");
   EXPECT_NE(refusal(StairsSection{0.17, 0.28, 0}), "");
   EXPECT_NE(refusal(StairsSection{0.17, 0.28, 101}), "");
-  EXPECT_NE(refusal(rough_section(9.0, 0.1, 1.0, 3.0, 1)), "");   // bends too much
-  EXPECT_NE(refusal(rough_section(4.0, 0.01, 2.0, 3.0, 1)), "");  // no room to fade
+  EXPECT_NE(refusal(rough_section(9.0, 0.1, 1.0, 3.0, 1)), "");   // the ground bends too sharply
+  EXPECT_NE(refusal(rough_section(4.0, 0.01, 2.0, 3.0, 1)), "");  // too short to fade in and out
   EXPECT_NE(refusal(rough_section(9.0, 0.01, kNaN, 3.0, 1)), "");
-  EXPECT_NE(refusal(field_section(0.02)), "");  // the same heights on a fifth of the way
+  EXPECT_NE(refusal(field_section(0.02)), "");  // the same heights on a fifth of the length
   EXPECT_NE(refusal(FieldSection{}), "");
   EXPECT_EQ(refusal(SlopeSection{4.0, 0.3, 0.7}), "");
   Terrain terrain;

@@ -34,7 +34,7 @@ class MadeBody : public MadeWalker {
     MadeWalker::walk(sideways, forward, ticks, style);
     forward_kinematics(model().cycle.skeleton, pose(), *world_);
   }
-  // A pace given by hand: steps of `length_m` in `time_s`.
+  // Lets steps of `length_m` and `time_s` go on for some ticks.
   void pace(int ticks, double length_m, double time_s) {
     GaitParams params;
     params.walking = true;
@@ -53,7 +53,7 @@ class MadeBody : public MadeWalker {
     const int head = model().body.head_path.back();
     return world_->rotation[head] * glm::conjugate(model().body.head_standing) * kForward;
   }
-  double elbow(Side side) const {  // degrees, 0 straight
+  double elbow(Side side) const {  // bend of the elbow in degrees; 0 is straight
     const ArmChain& j = model().body.arm[side].joints;
     const vec3 upper = at(j.elbow) - at(j.shoulder), fore = at(j.wrist) - at(j.elbow);
     return gaitpad::acos(glm::dot(glm::normalize(upper), glm::normalize(fore))) / kDegree;
@@ -98,7 +98,8 @@ TEST(WalkBody, TheHeadFollowsAPlaceThatItPasses) {
     EXPECT_LT(gaitpad::acos(glm::dot(walker.gaze(), glm::normalize(way))) / kDegree, 1.0);
   }
   EXPECT_GT(seen, 100);
-  EXPECT_LT(std::abs(heading_of(walker.gaze())) / kDegree, 10.0);  // far behind: not looked at
+  // The goal is far behind, so the head does not follow it.
+  EXPECT_LT(std::abs(heading_of(walker.gaze())) / kDegree, 10.0);
 }
 
 TEST(WalkBody, TheHeadTurnsNoFartherThanANeckDoes) {
@@ -107,7 +108,8 @@ TEST(WalkBody, TheHeadTurnsNoFartherThanANeckDoes) {
   walker.walk(1200, look, 0.7);
   for (int i = 0; i < 240; ++i) {
     walker.step(look, 0.7);
-    EXPECT_LT(heading_of(walker.gaze()) / kDegree, 70.0 + 8.0);  // the trunk turns a little
+    // The trunk turns by a few degrees as well.
+    EXPECT_LT(heading_of(walker.gaze()) / kDegree, 70.0 + 8.0);
     EXPECT_GT(heading_of(walker.gaze()) / kDegree, 55.0);
   }
 }
@@ -202,7 +204,7 @@ TEST(WalkBody, LegsAndPelvisKeepTheirBits) {
 TEST(WalkBody, OfASkeletonWithoutArmsIsLeftAlone) {
   GaitCycle cycle = procedural_gait();
   Skeleton& s = cycle.skeleton;
-  // The arm becomes a stub: its bones have no length.
+  // The forearm becomes a stub: its bones have no length.
   for (Joint& joint : s.joints) {
     const bool is_arm =
         joint.name.find("Arm") != std::string::npos || joint.name.find("Hand") != std::string::npos;
@@ -291,7 +293,7 @@ TEST(WalkBody, HandsCarryAtTheirPlacesBeforeTheChest) {
       EXPECT_LT(glm::distance(walker.hand(side), place), 0.001);
     }
   }
-  for (const Side side : {kLeftSide, kRightSide}) {  // elbows point down and out
+  for (const Side side : {kLeftSide, kRightSide}) {  // elbows point downwards and outwards
     const vec3 elbow = walker.at(adult().body.arm[side].joints.elbow);
     EXPECT_LT(elbow.y, walker.shoulder(side).y - 0.2);
     EXPECT_GT((elbow.x - walker.shoulders().x) * (side == kLeftSide ? 1.0 : -1.0), 0.15);
@@ -311,7 +313,8 @@ TEST(WalkBody, AHandSlidesAlongARailOfConstantHeight) {
   }
 }
 
-// Twelve steps up: the rail is a straight line of the stairs' slope, the hand on it does not bump.
+// Twelve steps up: the rail is a straight line with the stairs' slope, and the hand on it does not
+// bounce.
 TEST(WalkBody, ARailRisesEvenlyOverStairs) {
   Terrain stairs;
   ASSERT_FALSE(add_section(stairs, FlatSection{3.0}));
@@ -328,7 +331,7 @@ TEST(WalkBody, ARailRisesEvenlyOverStairs) {
     const vec3 hips = walker.state().path.hips_m;
     if (hips.z < 4.0 || hips.z > 5.5) continue;
     ++on_stairs;
-    const double line = 0.17 / 0.28 * (hips.z - 3.0) + 0.085;  // the treads' mean
+    const double line = 0.17 / 0.28 * (hips.z - 3.0) + 0.085;  // the mean height of the treads
     EXPECT_NEAR(walker.hand(kRightSide).y, line + 0.9 * scale, 0.03);
     height.push_back(walker.hand(kRightSide).y);
   }
@@ -344,8 +347,8 @@ TEST(WalkBody, WhatIsOutOfReachIsReachedFor) {
   walker.walk(1500, far, 0.7);
   for (const Side side : {kLeftSide, kRightSide}) {
     const vec3 arm = walker.hand(side) - walker.shoulder(side);
-    EXPECT_GT(arm.y, 0.2);  // up
-    EXPECT_GT(arm.z, 0.2);  // and ahead
+    EXPECT_GT(arm.y, 0.2);  // the arm points up
+    EXPECT_GT(arm.z, 0.2);  // the arm points ahead
     EXPECT_LT(walker.elbow(side), 45.0);
   }
 }
@@ -371,7 +374,7 @@ TEST(WalkBody, AtTheDatasPaceArmsSwingAsInTheData) {
   walker.pace(2400, adult().source_step_m, adult().body.own_step_s);
   EXPECT_NEAR(walker.state().gait.arm_swing[0], 1.0, 1e-6);
   const double arc = arm_arc(adult().source_step_m, adult().body.own_step_s).width();
-  EXPECT_GT(arc, 24.6);  // normative arc at free speed
+  EXPECT_GT(arc, 24.6);  // degrees: people's arc of the arm at free speed
   EXPECT_LT(arc, 32.0);
 }
 
@@ -413,9 +416,9 @@ TEST(WalkBody, TheStylesFactorScalesTheSwing) {
       EXPECT_GT(arc.width(), arcs.back() + 5.0);
     }
     arcs.push_back(arc.width());
-    EXPECT_GT(elbow.low, 2.0);  // no elbow is stretched
+    EXPECT_GT(elbow.low, 2.0);  // no elbow is fully stretched
   }
-  EXPECT_LT(arcs.front(), 5.0);  // what is left is the trunk's
+  EXPECT_LT(arcs.front(), 5.0);  // what remains is the trunk's movement
 }
 
 TEST(WalkBody, InPaperModeItIsTheDatas) {
@@ -433,7 +436,7 @@ TEST(WalkBody, InPaperModeItIsTheDatas) {
   }
 }
 
-// The elbow makes up for a stiff shoulder, and the hand keeps its path.
+// The elbow compensates for a stiff shoulder, so that the hand keeps its path.
 TEST(WalkBody, WeightsChangeTheJointsAndNotTheHandsPath) {
   const StyleValues stiff = style({{"left_arm.weight.shoulder", 0.15}});
   MadeBody plain, weighted;

@@ -11,7 +11,7 @@
 namespace gaitpad::test {
 namespace {
 
-// Walks straight on, then stops; the events of all ticks.
+// Walks straight on, then stops; returns the events of all ticks.
 std::vector<WalkEvent> walked_and_stopped(double dt_s, WalkState& state) {
   const GaitLimits limits = gait_limits(adult());
   const GaitParams go = gait_params({.left = vec2(0.2, 0.9)}, StyleValues{}, limits),
@@ -101,7 +101,7 @@ TEST(PartialPose, LegsAndPelvisAreTheWalksAndTheRestIsTheGames) {
   }
   const UpperBodyJoints& body = adult().body.joints;
   for (const ArmChain& arm : body.arm) EXPECT_EQ(weights[arm.shoulder], 0.0f);
-  // The feet are where the walk has them.
+  // The feet have the places that the walk gives them.
   JointFrames walk_frames, own_frames;
   forward_kinematics(skeleton, walker.pose(), walk_frames);
   forward_kinematics(skeleton, own, own_frames);
@@ -137,7 +137,7 @@ TEST(PoseOut, MatricesAreThoseOfTheJointsInTheCallersOrderAndFrame) {
   EXPECT_EQ(write_matrices(skeleton, walker.pose(), model, joints, out), 4);
   JointFrames frames;
   forward_kinematics(skeleton, walker.pose(), frames);
-  // A point of the ankle's frame, brought to the world by the caller's matrix and object.
+  // Transforms a point of the ankle's frame to the world by the caller's matrix and by the object.
   const vec3 point(0.1, -0.2, 0.3);
   vec3 seen(out[12], out[13], out[14]);
   for (int axis = 0; axis < 3; ++axis)
@@ -156,7 +156,7 @@ TEST(PoseOut, RotationsRebuildThePoseAndStopAtTheEndOfTheMemory) {
   MadeWalker walker;
   walker.walk(0.4, 0.8, 700);
   const std::array<int, 3> joints = {5, 0, 4};
-  std::array<float, 11> out{};  // room for two
+  std::array<float, 11> out{};  // room for two bones
   std::array<float, 3> root_m{};
   const Placement model{walker.last().root_m, walker.last().heading_rad};
   EXPECT_EQ(write_rotations(walker.pose(), model, joints, out, root_m), 2);

@@ -11,9 +11,9 @@ namespace gaitpad {
 namespace {
 
 constexpr double kStick = 0.8;
-constexpr int kSteady = 5 * kRate, kEnd = 9 * kRate;  // ticks
+constexpr int kSteady = 5 * kRate, kEnd = 9 * kRate;  // ticks of the measurement, at a steady walk
 constexpr double kPlanted_m = 1e-5;
-constexpr double kSharpest = 1.0;  // degrees per tick^2
+constexpr double kSharpest = 1.0;  // largest second difference of a leg angle, degrees per tick^2
 
 StyleValues shipped(const std::string& name) {
   return value_of(load_style(kSourceFolder + "/config/styles/" + name + ".toml"));
@@ -47,7 +47,7 @@ struct Steady {
   }
 };
 
-// The lean of the line from pelvis to shoulders, degrees: ahead and to the left.
+// The lean of the line from pelvis to shoulders in degrees, ahead and to the left.
 struct Lean {
   double ahead_deg = 0.0, left_deg = 0.0;
 };
@@ -97,7 +97,7 @@ TEST(WalkStyle, AChangeOfWeightsActsWithinATenthOfASecondAndWithoutAHitch) {
   changed.walk(0.0, kStick, kSteady);
   changed.walk(0.0, kStick, kRate, shipped("stiff_hip"));
   double after_rad = 0.0;
-  // A leg whose foot stands flat cannot change; the other one is free then.
+  // A leg whose foot stands flat cannot change; only the other one is free then.
   for (int k = kSteady; k < kSteady + kRate / 10; ++k)
     for (int side : {0, 1})
       after_rad = std::max(after_rad, std::abs(even.angles_rad()[k][side][kHipX] -
@@ -141,7 +141,7 @@ TEST(WalkStyle, ALimpLeansOverTheSoreLegWhileItStands) {
     const double left = lean_of(walker).left_deg;
     if (s.clock.swing == kRightSide) over_left = std::max(over_left, left);
     if (s.clock.swing != kRightSide) over_right = std::min(over_right, left);
-    // The sound knee straightens in mid-stance.
+    // The knee of the uninjured leg straightens in mid-stance.
     if (s.clock.swing == kLeftSide && s.clock.tick == s.clock.stage_ticks / 2)
       knee_rad = std::max(knee_rad, s.legs.angles_rad[kRightSide][kKneeX]);
   }

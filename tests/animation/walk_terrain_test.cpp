@@ -66,8 +66,8 @@ class Hiker : public MadeWalker {
   TerrainJudge judge_;
 };
 
-// The most that soles sink; a larger character's in proportion. A tenth beyond 5 mm is a heel's
-// corner at a stair's edge, at full stick downwards.
+// The deepest that soles may sink in; deeper for a larger character, in proportion. The tenth above
+// 5 mm is a heel's corner at a stair's edge, at full stick downwards.
 constexpr double kMostSunk_mm = 5.2;
 void expect_sound(const TerrainWorst& worst, const std::string& what, double size = 1.0,
                   double most_jump_deg = 1.0) {
@@ -82,7 +82,8 @@ void expect_sound(const TerrainWorst& worst, const std::string& what, double siz
 
 TEST(WalkTerrain, FeetStandOnEveryGroundAndNeverSinkIntoIt) {
   for (const double ratio : {0.6, 1.0, 1.6}) {
-    const double scale = ratio > 1.0 ? ratio : 1.0;  // where the foot is longer than the tread
+    // Larger characters have longer feet than the tread.
+    const double scale = ratio > 1.0 ? ratio : 1.0;
     const WalkModel model = model_on(ratio, ground_of(all_kinds(), scale));
     for (const double y : {0.4, 0.7}) {
       Hiker hiker(model);
@@ -109,7 +110,8 @@ TEST(WalkTerrain, LevelGroundIsWalkedAsWithoutTerrain) {
     hiker->walk(0.4, 0.6, 600);
     hiker->walk(0.0, 0.0, 400);
   }
-  // While hips lead, the last bits of a number are found by iteration.
+  // Allowed difference of two walks: while the hips lead, the last bits of a number are found by
+  // iteration.
   constexpr double kSame_m = 1e-5;
   for (Side side : {kLeftSide, kRightSide}) {
     EXPECT_LT(glm::distance(a.state().frame.heel_m[side], b.state().frame.heel_m[side]), kSame_m);
@@ -137,9 +139,10 @@ TEST(WalkTerrain, StairsAreClimbedATreadAStep) {
   }
 }
 
-// The standing leg's knee (degrees) through one single support, from its begin to its end.
+// The standing leg's knee in degrees during one single support, from its begin to its end.
 struct SingleSupport {
-  double rise_m = 0.0;  // from the foot that the flying one passes to its landing
+  // Height from the place of the foot that the flying one passes to its landing.
+  double rise_m = 0.0;
   std::vector<double> knee_deg;
   double at(double share) const {
     return knee_deg[static_cast<std::size_t>(share * static_cast<double>(knee_deg.size() - 1))];
@@ -164,7 +167,7 @@ std::vector<SingleSupport> single_supports(const WalkModel& model, double y, dou
   return all;
 }
 
-// McFadyen and Winter 1988: the knee that pulls the body up is straight before the next strike.
+// McFadyen and Winter 1988: the knee that lifts the body is straight before the next strike.
 TEST(WalkTerrain, UpStairsTheStandingKneeStraightensEarly) {
   const WalkModel model = model_on(1.0, ground_of(stairs(0.17)));
   for (const double y : {0.4, 0.7, 1.0}) {
@@ -180,7 +183,7 @@ TEST(WalkTerrain, UpStairsTheStandingKneeStraightensEarly) {
   }
 }
 
-// The same: going down the standing knee holds, and yields late.
+// McFadyen and Winter 1988: on the way down the standing knee holds, and yields late.
 TEST(WalkTerrain, DownStairsTheStandingKneeHoldsUntilLate) {
   const WalkModel model = model_on(1.0, ground_of(stairs(-0.17)));
   for (const double y : {0.4, 0.7, 1.0}) {
@@ -199,7 +202,7 @@ TEST(WalkTerrain, DownStairsTheStandingKneeHoldsUntilLate) {
   }
 }
 
-// The pelvis' pitch forwards from its standing rotation, degrees.
+// The pelvis' pitch relative to its standing rotation, forwards, degrees.
 double pelvis_pitch_deg(const Hiker& hiker) {
   const GaitCycle& cycle = hiker.model().cycle;
   quat rotation = kIdentity;
@@ -222,7 +225,8 @@ double mean_pitch_deg(std::shared_ptr<const Terrain> terrain, double from_m, dou
   return sum / ticks;
 }
 
-// Leroux, Fung and Barbeau 2002 on slopes; Nadeau, McFadyen and Malouin 2003 on stairs.
+// Lean of people: Leroux, Fung and Barbeau 2002 on slopes; Nadeau, McFadyen and Malouin 2003 on
+// stairs.
 TEST(WalkTerrain, TheTrunkLeansIntoSlopesAndStairs) {
   const double level = mean_pitch_deg(ground_of({FlatSection{40.0}}), 3.0, 5.0);
   const auto slope = [](double grade) {
@@ -244,7 +248,7 @@ TEST(WalkTerrain, TheTrunkLeansIntoSlopesAndStairs) {
   EXPECT_NEAR(paper, 0.0, 1.0);
 }
 
-// The farthest that the heel of a flying foot gets beyond the place where it lands.
+// The largest distance that the heel of a flying foot is beyond its landing place.
 double most_beyond_m(const WalkModel& model, double y, double until_m) {
   Hiker hiker(model);
   double farthest = -1e9, most = -1e9;
@@ -296,7 +300,8 @@ TEST(WalkTerrain, AStopOnStairsEndsWithBothFeetOnWholeTreads) {
 }
 
 TEST(WalkTerrain, BackwardsUpAndDownStairsIsAsSmooth) {
-  double from = 7.6;  // each walk comes to the stairs in another part of a step
+  // Begin at different places, so that walks reach the stairs in different parts of a step.
+  double from = 7.6;
   for (const double ratio : {0.6, 1.0, 1.6}) {
     const double scale = ratio > 1.0 ? ratio : 1.0;
     std::vector<SectionShape> sections = stairs(0.17);
@@ -317,7 +322,8 @@ TEST(WalkTerrain, AStickPulledBackOnStairsLeadsDownAsSmoothly) {
   for (const double ratio : {0.6, 1.0, 1.6}) {
     const double scale = ratio > 1.0 ? ratio : 1.0;
     const WalkModel model = model_on(ratio, ground_of(stairs(0.17), scale));
-    for (double z = 1.4; z < 3.4; z += 0.34) {  // in each part of a tread of 0.28
+    // Steps of 0.34 m reach every part of a tread of 0.28 m.
+    for (double z = 1.4; z < 3.4; z += 0.34) {
       Hiker hiker(model);
       hiker.walk_to(z * scale, 0.7);
       hiker.walk_back_to(0.5 * scale, -0.7);
@@ -328,7 +334,8 @@ TEST(WalkTerrain, AStickPulledBackOnStairsLeadsDownAsSmoothly) {
   }
 }
 
-// Feet as short as a captured skeleton may have them: they reach their highest while they rise.
+// A stride with feet as short as a captured skeleton may have them: such feet are highest while
+// they rise.
 GaitCycle short_footed_gait(double share) {
   GaitCycle cycle = procedural_gait();
   for (LegModel& leg : cycle.leg) {
@@ -355,7 +362,7 @@ TEST(WalkTerrain, ShortFeetAreNotExpectedToReachBeyondTheirTips) {
   }
 }
 
-// A riser of a third of the leg, and a swing that folds the knee even on level ground.
+// The risers are a third of the leg, and the swing folds the knee even on level ground.
 TEST(WalkTerrain, AChildThatStepsHighFoldsItsKneesNoFurtherThanTheyGo) {
   const WalkModel model = model_on(0.6, ground_of(stairs(0.17)));
   for (const double y : {0.4, 0.7}) {
@@ -402,7 +409,7 @@ TEST(WalkTerrain, NothingFailsWhereverTheStickLeadsOnStairs) {
     double ratio;
     unsigned seed;
   };
-  // The last three begin to walk from a stand on two treads that bends an ankle to its limit.
+  // The last three walks begin from a stand on two treads that bends an ankle to its limit.
   for (const auto& [ratio, seed] :
        {Walk{0.8, 11}, Walk{1.0, 11}, Walk{0.8, 27}, Walk{0.8, 29}, Walk{0.8, 31}}) {
     std::vector<SectionShape> sections = {FlatSection{0.3}};
@@ -423,8 +430,8 @@ TEST(WalkTerrain, NothingFailsWhereverTheStickLeadsOnStairs) {
       const double y = in(-0.3, 1.0), x = chance() % 2 ? 0.0 : in(-0.6, 0.6);
       hiker.walk(x, y, ticks);
     }
-    // A tenth more for hard landings of feet whose landing place changed in mid-flight, and half a
-    // millimetre more for corners of heels at an edge.
+    // The bounds are a tenth larger, for hard landings of feet whose landing place changed in
+    // mid-flight, and half a millimetre larger for corners of heels at an edge.
     const std::string what =
         "random sticks, leg " + std::to_string(ratio) + " seed " + std::to_string(seed);
     expect_sound(hiker.worst(), what, 1.1, 1.5);

@@ -33,7 +33,7 @@ StyleValues statue() {
 }
 
 TEST(Walk, AStopEndsStandingStillWithTheFeetTogether) {
-  for (int ticks = 300; ticks < 420; ticks += 13) {  // in every part of a step
+  for (int ticks = 300; ticks < 420; ticks += 13) {  // stops in every part of a step
     MadeWalker walker;
     walker.walk(0, 0.8, ticks, statue());
     walker.walk(0, 0, 700, statue());
@@ -52,7 +52,7 @@ TEST(Walk, AStopEndsStandingStillWithTheFeetTogether) {
   }
 }
 
-// A thumb that slips over the stick for a moment, and then pushes it.
+// A thumb slips over the stick for a moment, and then pushes it.
 TEST(Walk, ATouchOfTheStickDoesNotDelayTheWalkThatFollows) {
   const auto first_lift = [](double touched_y) {
     MadeWalker walker;
@@ -78,14 +78,14 @@ TEST(Walk, ALittleStickThatIsHeldBeginsAWalk) {
 
 TEST(Walk, StandingStillChangesNothing) {
   MadeWalker walker;
-  walker.walk(0, 0, 10 * kRate, statue());  // the style is in force
+  walker.walk(0, 0, 10 * kRate, statue());  // long enough for the style to take full effect
   const WalkFrame first = walker.last();
   walker.walk(0, 0, 480, statue());
   EXPECT_LT(glm::distance(walker.last().pelvis_m, first.pelvis_m), 1e-9);
   EXPECT_EQ(walker.last().stage, Stage::idle);
 }
 
-// The range of the pelvis' turn to and fro.
+// The range of the pelvis' yaw.
 double yaw_range_rad(const StyleValues& style) {
   MadeWalker walker;
   double left = -1e9, right = 1e9;
@@ -141,12 +141,13 @@ TEST(Walk, NeitherFailsNorJumpsNorLeavesItsLimitsOverRandomSticksAndStyles) {
     EXPECT_EQ(failures, 0) << ratio;
     for (const auto& legs_rad : walker.angles_rad()) ASSERT_TRUE(within_limits(model, legs_rad));
     EXPECT_LT(walker.drift_m(), 1e-4) << ratio;
-    // Half as much again as a single change may cause (0.8), because sticks and styles jump here.
+    // The bound is half as large again as for a single change (0.8), because sticks and styles jump
+    // here.
     EXPECT_LT(walker.sharpest_turn_rad(), 1.2 * kDegree) << ratio;
   }
 }
 
-// Its ankles bend up further than they can: the feet point down instead.
+// The walk asks the ankles for more bend than they have, so the feet point down instead.
 TEST(Walk, AChildThatStepsHighAtFullSpeedIsSmooth) {
   const WalkModel child = model_of(0.6);
   MadeWalker walker(child);
@@ -158,7 +159,7 @@ TEST(Walk, AChildThatStepsHighAtFullSpeedIsSmooth) {
   EXPECT_LT(walker.sharpest_turn_rad(), 1.5 * kDegree);
 }
 
-// The last step is shorter than the one before, but it is no limp, whose heels fly high.
+// The last step is shorter than the one before, but its heel must not fly high as in a limp.
 TEST(Walk, AStopRaisesHighHeelsNoHigherThanTheWalkDoes) {
   const WalkModel child = model_of(0.6);
   const auto highest_m = [](const MadeWalker& walker, std::size_t from) {
@@ -206,7 +207,7 @@ TEST(Range, BackwardDeflectionWalksBackwardsFacingAhead) {
   EXPECT_EQ(walker.last().heading_rad, 0.0);
 }
 
-// The running step ends, the feet come together, the walk begins anew.
+// The present step ends, the feet come together, and the walk begins again.
 TEST(Range, BetweenTheDirectionsItStands) {
   MadeWalker walker;
   walker.walk(0, 0.8, 600);
@@ -223,8 +224,8 @@ TEST(Range, BetweenTheDirectionsItStands) {
   EXPECT_LE(walker.sharpest_turn_rad(), 1.0 * kDegree);
 }
 
-// Adults: .52 to .64 cm per step a minute at any speed (paper-notes 4.1), from a stroll to a brisk
-// walk of 1.5 m/s; cadence 86 to 141 a minute.
+// Adults have a ratio of 0.52 to 0.64 cm per step a minute at any speed (paper-notes 4.1), from a
+// stroll to a brisk walk of 1.5 m/s, with a cadence of 86 to 141 a minute.
 TEST(Range, OneClipWalksSlowlyAndBrisklyAtAPersonsWalkRatio) {
   MadeWalker walker;
   for (const double stick : {0.55, 0.7, 0.85, 1.0}) {
@@ -255,7 +256,7 @@ TEST(Range, SidewaysAloneTurnsOnTheSpotWithSmallSteps) {
   EXPECT_EQ(walker.last().stage, Stage::idle);
 }
 
-// A start, a walk and a stop, with the values of its ticks 20 times a second.
+// A start, a walk and a stop; keeps the values of its ticks 20 times a second.
 struct RateRun {
   double walked_m = 0.0;
   std::vector<Pose> poses;

@@ -116,8 +116,8 @@ TEST_F(Files, AKilledProcessLeavesNothing) {
 
 TEST_F(Files, ATooLargeFileIsRefusedBeforeItIsRead) {
   own_.write("large");
-  fs::resize_file(own_.at("large"),
-                  std::uintmax_t{1} << 40);  // a hole: reading it would take minutes
+  // A file of 1 TB without content: reading it would take minutes.
+  fs::resize_file(own_.at("large"), std::uintmax_t{1} << 40);
   EXPECT_EQ(file_text(own_.at("large"), 1000).error().message,
             own_.at("large") + ": larger than 1000 bytes");
 }

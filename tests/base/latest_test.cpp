@@ -51,11 +51,12 @@ TEST(Latest, WhatIsBeingWrittenIsNotSeen) {
 }
 
 struct Value {
-  std::array<std::uint64_t, 64> copies{};  // of one number
+  std::array<std::uint64_t, 64> copies{};  // 64 copies of one number, so that a torn value shows
 };
 
 TEST(Latest, IsNeverTornAndNeverOlderBetweenTwoThreads) {
-  // Number of values that the reader must see; on a busy machine the number within two seconds.
+  // Number of values that the reader must see; on a busy machine the number that it sees within two
+  // seconds.
   constexpr int kSeen = 50'000, kLeast = 100;
   const auto end = std::chrono::steady_clock::now() + std::chrono::seconds(2);
   Latest<Value> latest;

@@ -14,7 +14,7 @@ namespace {
 constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 constexpr int kTries = 50000;
 
-// Distance in units of the wanted value's last place.
+// Distance of two numbers in units of the wanted value's last place.
 double ulps(double got, double wanted) {
   const double size = std::max(std::abs(wanted), std::numeric_limits<double>::min());
   return std::abs(got - wanted) / (kEpsilon * std::exp2(std::floor(std::log2(size))));
@@ -25,7 +25,7 @@ struct Chance {
   double in(double low, double high) {
     return std::uniform_real_distribution<double>(low, high)(engine);
   }
-  // A number of either sign, log-uniform between the exponents.
+  // A random number of either sign, log-uniform between the exponents.
   double wide(double low_exponent, double high_exponent) {
     const double size = std::pow(10.0, in(low_exponent, high_exponent));
     return in(0.0, 1.0) < 0.5 ? -size : size;
@@ -178,7 +178,7 @@ TEST(Rotations, NlerpGoesTheShorterWayBetweenItsEnds) {
   EXPECT_NEAR(glm::length(nlerp(from, to, 0.3)), 1.0, 1e-15);
 }
 
-// Half turns about and between the axes take each of the four branches.
+// Half turns about the axes, and about directions between them, take each of the four branches.
 TEST(Rotations, AxesGoBackAndForth) {
   Chance chance;
   for (int i = 0; i < 20000; ++i) {

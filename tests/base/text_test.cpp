@@ -81,7 +81,7 @@ TEST(Text, NothingThatCommandsATerminalIsPrintable) {
   EXPECT_EQ(in_quotes("x" + quoted), "\"x" + quoted.substr(0, 57) + "...\"");
 }
 
-// The result contains valid UTF-8 only, without control characters, C1 or direction marks.
+// Printable text is valid UTF-8 without control characters, C1 or direction marks.
 TEST(Text, RandomBytesArePrintable) {
   std::mt19937 random(5);
   for (int i = 0; i < 2000; ++i) {
@@ -115,10 +115,10 @@ TEST(Text, FixedDigitsAreThoseOfPrintf) {
        {0.0, -0.0, 0.5, 2.5, -0.0005, 1e300, -1.7976931348623157e308, 1e-10, -1e-10, 5e-324,
         4.9999999999e-10, 9.9999999995, 999999999.9999999, 1e9, 1e-30})
     expect_same(value);
-  // Ties have few binary digits after the point.
+  // Numbers exactly between two roundings have few binary digits after the point.
   for (int i = 0; i < 2000; ++i)
     expect_same(std::ldexp(static_cast<double>(random() % 100'000) - 50'000.0, -(i % 30)));
-  for (int i = 0; i < 1000; ++i)  // a decimal's neighbours
+  for (int i = 0; i < 1000; ++i)  // numbers next to a decimal
     expect_same(
         std::nextafter(static_cast<double>(random() % 1'000'000) * 5e-10, i % 2 ? 0.0 : 1.0));
 }

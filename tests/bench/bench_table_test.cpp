@@ -10,7 +10,7 @@ struct Measured {
   std::vector<BenchRow> rows;
 };
 
-// A crowd of which a character takes `ns`, over a peer of 100 ns, with a bound of 500 ns.
+// A crowd whose characters take `ns` each, compared with a peer of 100 ns, with a bound of 500 ns.
 Measured crowd_of(double ns) {
   Measured m;
   m.peer.name = "playback";

@@ -1,5 +1,5 @@
-// Bad values through every function of gaitpad.h: each is refused by a sentence that names the
-// field, or counted; no number that is none reaches a pose.
+// Feeds bad values to every function of gaitpad.h: each is refused by a sentence that names the
+// field, or counted; no NaN or infinity reaches a pose.
 #include "tests/bad_values.h"
 
 #include <gtest/gtest.h>
@@ -15,7 +15,7 @@
 namespace gaitpad {
 namespace {
 
-// A body of bones in a string that lives on, as it stands.
+// A body of bones in the standing pose. Its names live as long as the program.
 const std::vector<gaitpad_bone>& body() {
   static const std::vector<gaitpad_bone> bones = {
       {"Hips", -1, 0, {0.0, 0.0, 0.0}},         {"LeftUpLeg", 0, 0, {0.1, -0.05, 0.0}},
@@ -43,7 +43,7 @@ class BadValuesInC : public testing::Test {
     gaitpad_walk_destroy(walk_);
     gaitpad_model_destroy(model_);
   }
-  // The model's sentence; "accepted" where it was made.
+  // The sentence by which a model is refused; "accepted" if it was made.
   std::string said_of(ModelOptions given) {
     given.options.bones = given.bones.data();
     gaitpad_model* made = gaitpad_model_create(&given.options, error_.data(), error_.size());

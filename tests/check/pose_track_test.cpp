@@ -12,12 +12,12 @@ namespace {
 
 constexpr int kRateHz = 240, kTicks = 700, kPlanted = 400;
 
-// A walk of two characters; `command`, if any, is given in tick kPlanted.
+// A walk of two characters. `command`, if there is one, is given in tick kPlanted.
 struct Walked {
   PoseTrack poses;
-  std::vector<std::uint64_t> hashes;       // after each tick
-  std::vector<std::array<Pose, 2>> exact;  // from kPlanted on, 20 ticks
-  std::vector<std::string> joints;         // names of one character
+  std::vector<std::uint64_t> hashes;       // the pose hash after each tick
+  std::vector<std::array<Pose, 2>> exact;  // the poses of 20 ticks from kPlanted on
+  std::vector<std::string> joints;         // names of one character's joints
 };
 Walked walked_with(const std::string& command, int crowd = 0) {
   SimulationConfig config = made_config(2);
@@ -76,7 +76,7 @@ TEST(PoseTrack, ShowsRotationsAndPlacesWithinItsSteps) {
   }
 }
 
-// The walk's own hashes give the tick, its exact rotations the joint.
+// The first difference is known from the walk's own hashes (tick) and its exact rotations (joint).
 TEST(PoseTrack, FindsTheFirstTickAndJointThatDiffer) {
   for (const char* command : {"style 2 even", "set 2 legs.weight.knee 0.2", "reset"}) {
     const Walked before = walked_with(""), after = walked_with(command);
@@ -146,7 +146,7 @@ TEST(PoseTrack, RefusesDamageInOneSentence) {
 
 TEST(PoseTrack, ReadsAFileThatSaysItWasCompressedHarder) {
   std::string bytes = walked_with("").poses.bytes();
-  constexpr std::size_t kHeader = 24;  // after the first line and the length
+  constexpr std::size_t kHeader = 24;  // bytes of the first line and the length
   ASSERT_EQ(bytes.substr(kHeader, 2), "\x78\x9c");
   const std::string written = bytes;
   bytes[kHeader + 1] = '\xda';
@@ -157,7 +157,7 @@ TEST(PoseTrack, ReadsAFileThatSaysItWasCompressedHarder) {
 
 TEST(PoseTrack, ReservesNothingForWhatAFileMerelyClaims) {
   std::string bytes = walked_with("").poses.bytes().substr(0, 40);
-  for (std::size_t i = 16; i < 24; ++i) bytes[i] = '\x7f';  // the length before compression
+  for (std::size_t i = 16; i < 24; ++i) bytes[i] = '\x7f';  // damages the length before compression
   EXPECT_FALSE(PoseTrack::parse(bytes, "x"));
 }
 

@@ -1,4 +1,5 @@
-// The files of config/ load, and those that the paper or a page describes are what they say.
+// The files of config/ load, and those that the paper or a page describes have the described
+// values.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -79,7 +80,7 @@ TEST(ShippedStyles, BuildsHaveLowAndHighWeightsThatDiffer) {
     for (const Style* build : {&heavy, &muscular}) {
       const auto [low, high] = std::ranges::minmax(build->weight[side]);
       EXPECT_LT(low, 0.8 * high);
-      EXPECT_EQ(build->stride[side], StrideFactors());  // by weights alone
+      EXPECT_EQ(build->stride[side], StrideFactors());  // a build differs by weights alone
     }
   }
 }
@@ -97,7 +98,8 @@ TEST(ShippedTerrains, TheCourseHasAllKindsInARow) {
   EXPECT_GE(count_of<StairsSection>(course), 2);
   EXPECT_GT(count_of<RoughSection>(course), 0);
   EXPECT_GT(count_of<FieldSection>(course), 0);
-  EXPECT_TRUE(std::holds_alternative<FlatSection>(course.sections.front().shape));  // a run-in
+  // The course begins with a flat stretch.
+  EXPECT_TRUE(std::holds_alternative<FlatSection>(course.sections.front().shape));
 }
 
 TEST(ShippedCalibrations, SonyPadsGetTheNarrowZoneAndUnknownOnesTheWide) {

@@ -21,7 +21,7 @@ def values(line, key):
 
 
 def hidraw_ids():
-    """vendor:product of each hidraw line, product * where the line opens all."""
+    """The vendor:product of each hidraw line; the product is * if the line opens all."""
     ids = set()
     for line in LINES:
         if line.startswith('SUBSYSTEM=="hidraw", KERNELS'):
@@ -40,7 +40,7 @@ def usb_ids():
 
 
 def config_ids():
-    """Ids that config/pads names: `vendor` with `products`, and `ids`."""
+    """The ids that config/pads names: `vendor` with `products`, and `ids`."""
     ids = set()
     for file in (ROOT / "config/pads").glob("*.toml"):
         for entry in file.read_text().split("[[pad]]"):
@@ -54,7 +54,7 @@ def config_ids():
 
 
 def test_the_number_is_below_that_of_the_seat_rules():
-    assert int(RULES.name[:2]) < 73  # 73-seat-late.rules acts upon the tag uaccess
+    assert int(RULES.name[:2]) < 73  # 73-seat-late.rules acts on the tag uaccess
 
 
 def test_jumps_lead_to_labels_that_follow():
@@ -108,7 +108,7 @@ class Node:
 
 
 def hidraw_of(ids, interface, interfaces):
-    """Of one interface (class, subclass, protocol) of a USB device."""
+    """The hidraw node of one interface (class, subclass, protocol) of a USB device."""
     shape = dict(zip(("bInterfaceClass", "bInterfaceSubClass", "bInterfaceProtocol"), (interface[:2], interface[2:4], interface[4:])))
     return Node("hidraw", "hidraw0", [("hid", f"0003:{ids.upper()}.0001", {}), ("usb", "1-1:1.0", shape), ("usb", "1-1", {})],
                 interfaces)
@@ -128,7 +128,7 @@ def terms_of(line):
 
 
 def matches(line, node):
-    """udev: KERNELS, SUBSYSTEMS and ATTRS of a line must fit one and the same device of the chain."""
+    """True if the line matches. udev: KERNELS, SUBSYSTEMS and ATTRS of a line must fit the same device of the chain."""
     above = []
     for key, name, operator, value in terms_of(line):
         if operator not in ("==", "!="):
@@ -147,7 +147,7 @@ def matches(line, node):
 
 
 def is_opened(node):
-    """Whether the rules give the node to the user at the machine."""
+    """True if the rules give the node to the user at the machine."""
     lines, waits_for, opened = list(LINES), None, False
     for line in lines:
         label = values(line.replace("LABEL=", "LABEL=="), "LABEL")

@@ -39,14 +39,15 @@ TEST(Check, ASentenceNamesFieldValueAndRange) {
   params.body.hand[0].rail = 2.0;
   EXPECT_EQ(said_of(params), "GaitParams: left_hand.rail is 2, outside [0, 1]");
   params = {};
-  params.body.head.z_m = 5000.0;  // a place in a large world
+  params.body.head.z_m = 5000.0;  // a valid place in a large world
   EXPECT_EQ(said_of(params), "");
   GaitLimits limits;
   limits.max_step_time_s = -1.0;
   EXPECT_EQ(said_of(limits), "GaitLimits: max_step_time_s is -1, outside [0.05, 50]");
 }
 
-// Numbers are in the order of the fields: a number set through a field appears at its index.
+// The numbers have the order of the fields: a number that is set through a field appears at its
+// index.
 TEST(Check, TheNumbersOfParametersAreAllOfThem) {
   GaitParams params;
   EXPECT_EQ(numbers_of(params).size(), 67u);

@@ -99,7 +99,7 @@ TEST(GaitParams, NeutralStandsAndSidewaysAloneTurnsInPlace) {
     EXPECT_GT(p.stride[kLeftSide].time_s, 0.0);
   }
 
-  for (double y : {0.0, -0.05}) {  // 6 degrees behind the side: a thumb's noise
+  for (double y : {0.0, -0.05}) {  // 6 degrees behind the sideways direction, as by a thumb's noise
     const GaitParams p = at(-0.5, y);
     EXPECT_FALSE(p.backward);
     EXPECT_TRUE(p.walking);
@@ -160,7 +160,7 @@ TEST(OwnPace, SpeedGoesWithTheStickAndTheStepWithItsRoot) {
   }
 }
 
-// Steps reach their limit at the same deflection as an adult's.
+// Steps reach their limit at the same deflection as an adult's do.
 TEST(OwnPace, TheLongestStepIsAsMuchLongerAsTheOwnOne) {
   const GaitLimits adult = gait_limits(0.9);
   const double adult_s = at(0.0, 0.8, {}, adult).stride[kLeftSide].time_s;
@@ -197,7 +197,7 @@ TEST(OwnPace, BackwardsFatigueAndStylesAreSharesOfIt) {
   EXPECT_NEAR(left.time_s, 1.05 / 1.25, 1e-14);
 }
 
-// The numbers are from the version before walks had their own pace.
+// The numbers were printed by the version before walks had their own pace.
 TEST(OwnPace, TheAdultsIsUnchanged) {
   for (const Side side : {kLeftSide, kRightSide}) EXPECT_EQ(kAdult.step_share[side], 1.0);
   EXPECT_EQ(kAdult.max_turning_step_time_s, kMaxStepTime_s);
@@ -318,7 +318,7 @@ TEST(GaitOverrides, ASpeedWalksWithoutTheStickAtTheWalkRatio) {
     for (const StrideParams& step : p.stride)
       EXPECT_NEAR(step.length_m, std::sqrt(0.348 * speed_m_s), 1e-12);
     EXPECT_EQ(p.turn_rate_rad_s, 0.0);
-    // It replaces only the forward deflection.
+    // The override replaces only the forward deflection.
     const GaitParams turning = with(pushed(-0.5, 0.9), {{GaitKey::speed_m_s, speed_m_s}});
     EXPECT_NEAR(value_of(GaitKey::speed_m_s, turning), speed_m_s, 1e-12);
     EXPECT_EQ(turning.turn_rate_rad_s, 0.5);
@@ -457,7 +457,7 @@ TEST(GaitOverrides, AnyCombinationIsSane) {
   }
 }
 
-// The walk then goes on as it does (animation/sound_input_test).
+// The walk then ignores such a value (animation/sound_input_test).
 TEST(GaitOverrides, AStickThatIsNoNumberGivesNoneWhereNothingReplacesIt) {
   for (const double odd : {kNan, kInf, -kInf}) {
     for (const Stick& stick : {pushed(odd, 0.6), pushed(0.2, odd)}) {

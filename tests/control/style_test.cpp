@@ -73,7 +73,7 @@ TEST(StyleValue, NoLimbIsLockedAsAWhole) {
   EXPECT_TRUE(set_value(style, "left_leg.weight.ankle_y", 0.0));
 }
 
-// Every value at the end of its range, far from the even style's.
+// A style with every value at the end of its range that is farther from the even style's.
 StyleValues extreme() {
   StyleValues style;
   for (const StyleKey& key : style_keys()) EXPECT_TRUE(set_value(style, key.name, key.max));
@@ -109,12 +109,13 @@ TEST(StyleBlend, GoesSmoothlyAndEndsExactly) {
   StyleValues from, to;
   from.blend_s = 0.5;
   to.fatigue = 0.8, to.blend_s = 0.25;
-  StyleBlend blend = begun_blend(from, from, to);  // the longer time wins
+  StyleBlend blend = begun_blend(from, from, to);  // the longer of two blending times is used
   double before = 0.0, step = 0.0, largest = 0.0;
   for (int tick = 0; tick < 120; ++tick) {
     const double now = advance(blend, to, 1.0 / 240.0).fatigue;
     EXPECT_GE(now, before);
-    EXPECT_LT(std::abs(now - before - step), 0.8 * 6.5 / (120.0 * 120.0));  // smoothstep's bend
+    // Largest second difference of the smoothstep curve.
+    EXPECT_LT(std::abs(now - before - step), 0.8 * 6.5 / (120.0 * 120.0));
     step = now - before, before = now;
     largest = std::max(largest, step);
     if (tick == 59) {

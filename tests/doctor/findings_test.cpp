@@ -93,7 +93,7 @@ TEST(Findings, APadThatTheKernelHasIsUsableByUsbOnlyIfAsked) {
 
 TEST(Findings, WhatTheDriverSaysIsTheCauseIfNothingElseExplainsIt) {
   Machine machine = made_machine();
-  machine.pads[0].hidraw[0].node = "/dev/null";  // accessible to everyone
+  machine.pads[0].hidraw[0].node = "/dev/null";  // a node that everyone may open
   machine.pads[0].events.emplace_back().node = "/dev/null";
   machine.sightings = {sighting_of(machine.pads[0], "hidraw")};
   machine.sightings[0].problem = "/dev/null: the descriptor is cut off at byte 4";

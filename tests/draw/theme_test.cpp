@@ -33,7 +33,7 @@ class Contrast : public testing::TestWithParam<ThemeName> {
   const Theme& theme = theme_of(GetParam());
   const std::vector<Named> backs = {
       {"bar", theme.bar}, {"panel", theme.panel}, {"card", theme.card}, {"plot", theme.plot}};
-  // Selected buttons and rows.
+  // Text of selected buttons and rows.
   const std::vector<Named> chosen = {
       {"chosen button", mixed(theme.panel, theme.accent, kChosenShare)},
       {"chosen on the bar", mixed(theme.bar, theme.accent, kChosenShare)},

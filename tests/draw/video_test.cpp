@@ -28,7 +28,7 @@ class Video : public testing::Test {
     std::sort(names.begin(), names.end());
     return names;
   }
-  // Replaces ffmpeg by this script.
+  // Makes VideoWriter run this script instead of ffmpeg.
   void pretend_ffmpeg(const std::string& script) {
     const std::string program = own_.write("bin/ffmpeg", "#!/bin/sh\n" + script + "\n");
     ::chmod(program.c_str(), 0755);

@@ -24,7 +24,7 @@ class Pad final : public EffectTarget {
     sent.emplace_back(code, value);
     return 0;
   }
-  std::map<int, int> strong;  // by the pad's number
+  std::map<int, int> strong;  // the strong motor's strength of each effect, by the pad's number
   std::vector<std::pair<int, int>> sent;
 
  private:

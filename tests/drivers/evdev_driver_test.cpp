@@ -5,7 +5,8 @@
 namespace gaitpad {
 namespace {
 
-// The rig (tools/rig) tests real nodes; hid/evdev_layout_test tests the stated descriptor.
+// Tests without a real node; the rig (tools/rig) tests real ones, and hid/evdev_layout_test the
+// stated descriptor.
 class EvdevDriver : public testing::Test {
  protected:
   void SetUp() override {

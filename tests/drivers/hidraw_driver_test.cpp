@@ -40,18 +40,18 @@ using Packet = std::vector<std::uint8_t>;
 
 struct ScriptedRead {
   Packet bytes;
-  int error = -1;  // -1: return the bytes; otherwise fail with this errno
+  int error = -1;  // -1: the read returns the bytes; otherwise it fails with this errno
 };
-std::deque<ScriptedRead> script;  // empty: read the node itself
-std::vector<int> timeouts;        // of the reads
+std::deque<ScriptedRead> script;  // the results of the next reads; empty: read the node itself
+std::vector<int> timeouts;        // the timeouts that reads were called with
 ScriptedRead failure(int error) { return {.bytes = {}, .error = error}; }
 std::atomic<int> openings{0}, opening_now{0}, openings_at_once{0};
 std::chrono::milliseconds opening_time{0};
 int descriptors_per_opening = 1;
-std::optional<Packet> firmware;  // feature report 0x20
-// Input report by request, beginning with the id.
+std::optional<Packet> firmware;  // content of feature report 0x20
+// The input report that the pad returns on request; it begins with the id.
 std::optional<Packet> present;
-std::vector<int> asked;  // ids
+std::vector<int> asked;  // ids of the reports that were asked for
 std::mutex noting;       // guards notes of two threads that open at once
 void note(std::vector<int>& numbers, int number) {
   const std::lock_guard lock(noting);
@@ -68,7 +68,7 @@ extern "C" {
 
 hid_device* hid_open_path(const char* path) {
   ++openings;
-  // hidapi frees and sets its text of the last error here.
+  // As in hidapi, the text of the last error is freed and set here.
   if (opening_now++ > 0) ++openings_at_once;
   std::this_thread::sleep_for(opening_time);
   --opening_now;
@@ -115,7 +115,7 @@ int hid_get_feature_report(hid_device*, unsigned char* data, size_t length) {
 int hid_send_feature_report(hid_device*, const unsigned char*, size_t length) {
   return static_cast<int>(length);
 }
-// The kernel's: HIDIOCGINPUT of a hidraw node, which a pseudo-terminal is not.
+// Replaces the kernel's ioctl(): a pseudo-terminal has no HIDIOCGINPUT.
 int ioctl(int fd, unsigned long request, ...) {
   va_list arguments;
   va_start(arguments, request);
@@ -139,10 +139,10 @@ namespace {
 using namespace std::chrono_literals;
 using Status = Device::Status;
 
-// X and Y of 8 bits, no report id.
+// A descriptor of X and Y with 8 bits each, without report id.
 const Packet kDescriptor = {0x05, 0x01, 0x09, 0x05, 0xa1, 0x01, 0x09, 0x30, 0x09, 0x31, 0x15,
                             0x00, 0x26, 0xff, 0x00, 0x75, 0x08, 0x95, 0x02, 0x81, 0x02, 0xc0};
-// The same in report 1.
+// A descriptor of X and Y with 8 bits each in report 1.
 const Packet kNumbered = {0x05, 0x01, 0x09, 0x05, 0xa1, 0x01, 0x85, 0x01, 0x09, 0x30, 0x09, 0x31,
                           0x15, 0x00, 0x26, 0xff, 0x00, 0x75, 0x08, 0x95, 0x02, 0x81, 0x02, 0xc0};
 
@@ -183,7 +183,7 @@ class HidrawDriver : public testing::Test {
   void send(const Packet& report) {
     ASSERT_EQ(::write(pad_, report.data(), report.size()), static_cast<ssize_t>(report.size()));
   }
-  // Everything that the driver has written, once it is `size` bytes.
+  // Waits until the driver has written `size` bytes, and returns them.
   Packet written(std::size_t size) {
     Packet bytes(4096);
     std::size_t count = 0;
@@ -207,7 +207,7 @@ class HidrawDriver : public testing::Test {
     timeouts.clear();
     return device;
   }
-  // A pad whose motors and firmware are known.
+  // Uses a pad with these ids, whose motors and firmware are known.
   void use(std::uint16_t vendor, std::uint16_t product) {
     listing_.info.vendor = vendor;
     listing_.info.product = product;
@@ -331,7 +331,7 @@ TEST_F(HidrawDriver, AReportThatIsTooLongIsRefusedAndCounted) {
   EXPECT_EQ(device->lost(), 2);
 }
 
-// A Steam Controller's battery message.
+// The report is a Steam Controller's battery message.
 TEST_F(HidrawDriver, ARecorderGetsWhatTheModelRefusesToo) {
   use(0x28de, 0x1102);
   listing_.info.descriptor = {0x06, 0x00, 0xff, 0x09, 0x01, 0xa1, 0x01, 0x15, 0x00, 0x26, 0xff,
@@ -380,7 +380,7 @@ TEST_F(HidrawDriver, WhereReportsHaveNoIdTheKernelGetsAZeroInFront) {
   EXPECT_EQ(Packet(on.begin(), on.begin() + 3), (Packet{0x00, 0x05, 0x01}));
 }
 
-// Reading and motors share one open device.
+// Reading and rumble use one open device.
 TEST_F(HidrawDriver, APadIsOpenedOnce) {
   use(0x054c, 0x0ce6);
   const auto device = opened();
@@ -412,7 +412,7 @@ TEST_F(HidrawDriver, APlainPadHasNoMotors) {
 TEST_F(HidrawDriver, TheModelIsAskedThroughFeatureReports) {
   firmware = Packet(64, 0);
   (*firmware)[0] = 0x20;
-  (*firmware)[45] = 0x03;  // 3.0: the new motors
+  (*firmware)[45] = 0x03;  // version 3.0, which has the new motors
   use(0x054c, 0x0ce6);
   listing_.info.descriptor = kNumbered;
   const auto device = opened();
@@ -435,7 +435,8 @@ TEST_F(HidrawDriver, NothingStaysOpen) {
     device->rumble({.strong = 1, .weak = 1});
     read_in_a_row(*device, 63, Packet(64, 1));
   }
-  EXPECT_TRUE(comes_true([&] { return count() == before; }));  // the threads end a little later
+  // The threads end a little after the device.
+  EXPECT_TRUE(comes_true([&] { return count() == before; }));
 }
 
 TEST(HidrawOpening, ErrorsAreOneSentenceAboutTheNode) {
@@ -448,7 +449,7 @@ TEST(HidrawOpening, ErrorsAreOneSentenceAboutTheNode) {
   device = open_hidraw_device(listing, Detach::never);
   ASSERT_FALSE(device);
   EXPECT_EQ(device.error().message, listing.node + ": is no device node");
-  listing.node = "/dev/null";  // has no descriptor
+  listing.node = "/dev/null";  // a node that has no descriptor
   device = open_hidraw_device(listing, Detach::never);
   ASSERT_FALSE(device);
   EXPECT_EQ(device.error().message, "/dev/null: its report descriptor cannot be read");
@@ -458,7 +459,7 @@ TEST(HidrawOpening, ErrorsAreOneSentenceAboutTheNode) {
 
 TEST_F(HidrawDriver, AReaderThatComesTooLateIsToldOnce) {
   const auto device = opened();
-  read_in_a_row(*device, 100);  // from before the device was open
+  read_in_a_row(*device, 100);  // reports from before the device was open
   read_in_a_row(*device, 62);
   EXPECT_TRUE(device->take_remarks().empty());
   EXPECT_EQ(device->lost(), 0);
@@ -499,7 +500,7 @@ TEST_F(HidrawDriver, APadThatReportsWhenItIsOpenedIsNotAsked) {
   EXPECT_TRUE(asked.empty());
 }
 
-// Answers: zeros, too short, another report.
+// Answers that are no state: zeros, too short, another report's.
 TEST_F(HidrawDriver, AnAnswerThatIsNoStateIsDropped) {
   listing_.info.descriptor = kNumbered;
   for (const Packet& answer : {Packet{1, 0, 0}, Packet{1, 0x70}, Packet{2, 0x70, 0x80}}) {

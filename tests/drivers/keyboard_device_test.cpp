@@ -30,7 +30,7 @@ class KeyboardDeviceTest : public testing::Test {
     device_ = value_of(open_keyboard(stick_));
     layout_ = value_of(pad_layout(device_->info(), {}));
   }
-  // Reads like the I/O thread, for `ms` or until the stick is at `until`.
+  // Reads like the I/O thread for `ms`, or until the stick is at `until`.
   std::vector<Seen> seen_for(int ms, std::optional<vec2> until = std::nullopt) {
     std::vector<Seen> all;
     const std::int64_t end_ns = now_ns() + ms * kMillisecond_ns;
@@ -81,8 +81,8 @@ TEST_F(KeyboardDeviceTest, TellsItsRestOnceAndIsSilentThen) {
   EXPECT_EQ(wakes_, 0);
 }
 
-// Measured by time stamps, so that a late thread does not matter: a step covers the time since the
-// last one, at most 16 ms.
+// Time stamps measure the durations, so that a late thread does not matter: a step covers the time
+// since the last step, at most 16 ms.
 TEST_F(KeyboardDeviceTest, ForwardIsReachedIn150MillisecondsAndTheExactMiddleIn100) {
   seen_for(20);
   for (const auto& [wanted, whole_s] : {std::pair(vec2(0.0, 1.0), 0.15), {vec2(0.0), 0.10}}) {

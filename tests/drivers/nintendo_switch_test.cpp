@@ -7,7 +7,8 @@
 namespace gaitpad {
 namespace {
 
-// (max, centre, min) of 0x600, 0x800, 0x600 on both axes: raw 0x200 .. 0x800 .. 0xe00.
+// A stick's calibration in flash memory: (max, centre, min) of 0x600, 0x800, 0x600 on both axes:
+// raw 0x200 .. 0x800 .. 0xe00.
 const Packet kLeft = {0x00, 0x06, 0x60, 0x00, 0x08, 0x80, 0x00, 0x06, 0x60};
 const Packet kRight = {0x00, 0x08, 0x80, 0x00, 0x06, 0x60, 0x00, 0x06, 0x60};
 constexpr std::size_t kUserBytes = 22;
@@ -23,7 +24,7 @@ DeviceInfo switch_pad(std::uint16_t product, BusType bus) {
 std::unique_ptr<PadQuirks> quirks(BusType bus = BusType::usb) {
   return make_switch_quirks(switch_pad(0x2009, bus));
 }
-// A Pro Controller under a kernel driver: only its memory is read.
+// A Pro Controller under a kernel driver, started: only its memory is read.
 std::unique_ptr<PadQuirks> asked(ScriptedPort& port) {
   auto pad = quirks();
   pad->start(port, StartedBy::kernel);
@@ -98,7 +99,8 @@ TEST(SwitchPro, KnowsThePadsOfTheSwitchAlone) {
   EXPECT_EQ(make_switch_quirks(switch_pad(0x0306, BusType::bluetooth)), nullptr) << "Wii";
 }
 
-// A left stick of 0x200 .. 0x800 .. 0xd00 in x and 0x100 .. 0x7f0 .. 0xe00 in y.
+// The calibration of a left stick with 0x200 .. 0x800 .. 0xd00 in x and 0x100 .. 0x7f0 .. 0xe00 in
+// y.
 const Packet kUneven = packed({0x500, 0x610, 0x800, 0x7f0, 0x600, 0x6f0});
 
 TEST(SwitchPro, TheSticksOfASingleJoyConAreTurnedAsItIsHeld) {
@@ -106,7 +108,7 @@ TEST(SwitchPro, TheSticksOfASingleJoyConAreTurnedAsItIsHeld) {
   ScriptedPort port = pad_with({{0x603d, joined(kUneven, uneven_right)}}, 1);
   const auto left = started(0x2006, port);
   ASSERT_TRUE(left->factory_sticks());
-  // Turned to the left: up becomes left, right becomes up.
+  // The left Joy-Con is turned to the left: up becomes left, right becomes up.
   FactoryAxis x = left->factory_sticks()->left_x;
   expect_axis({-x.max, -x.centre, -x.min}, 0x100, 0x7f0, 0xe00);
   expect_axis(left->factory_sticks()->left_y, 0x200, 0x800, 0xd00);
@@ -253,7 +255,7 @@ TEST(SwitchPro, TheUsersPlausibleCalibrationOfAStickComesFirst) {
   expect_axis(sticks->left_x, 0x200, 0x800, 0xe00);
   expect_axis(sticks->right_x, 2222 - 1100, 2222, 2222 + 1102);
   expect_axis(sticks->right_y, 1888 - 1101, 1888, 1888 + 1103);
-  user.assign(kUserBytes, 0x00);  // marked, all zero: the factory's
+  user.assign(kUserBytes, 0x00);  // marked as written, but all zero: the factory's values count
   user[0] = user[11] = 0xb2;
   user[1] = user[12] = 0xa1;
   port = pad_with({{0x603d, joined(kLeft, kRight)}, {0x8010, user}});
@@ -302,15 +304,15 @@ TEST(SwitchPro, AnswersToOthersAreNotTakenForOurs) {
     other[0] = 0x21;
     other[13] = 0x90;
     other[14] = 0x10;
-    other[15] = 0x86;  // 9 bytes from 8086
+    other[15] = 0x86;  // an answer with 9 bytes from address 8086
     other[16] = 0x80;
     other[19] = 9;
     waiting.push_back(other);
-    other[15] = 0x3d;  // our address, another length
+    other[15] = 0x3d;  // an answer with the right address and another length
     other[16] = 0x60;
     waiting.push_back(other);
     other[19] = 18;
-    other[13] = 0x00;  // refused
+    other[13] = 0x00;  // an answer that refuses the request
     waiting.push_back(other);
     honest(packet, waiting);
   };
@@ -457,7 +459,8 @@ ScriptedPort switch_2_with(std::map<std::uint32_t, Packet> flash) {
 }
 
 TEST(Switch2Pro, IsStartedByCommandsAndTellsItsSticks) {
-  const Packet range = packed({0x800, 0x800, 0x600, 0x500, 0x400, 0x300});  // centre, up, down
+  // Numbers in the order centre, up, down.
+  const Packet range = packed({0x800, 0x800, 0x600, 0x500, 0x400, 0x300});
   const Packet factory = joined(Packet(0x28, 0), range);
   const Packet user = joined({0xb2, 0xa1}, packed({0x810, 0x800, 0x600, 0x600, 0x600, 0x600}));
   ScriptedPort port = switch_2_with({{0x013080, factory}, {0x0130c0, factory}, {0x1fc080, user}});

@@ -60,7 +60,7 @@ class Sink {
   bool is_open_ = true;
 };
 
-// Like hidraw_driver: the target of the writes lives as long as the thread.
+// As in hidraw_driver, the target of the writes lives as long as the thread.
 std::unique_ptr<PacketSender> sender_to(const std::shared_ptr<Sink>& sink) {
   return PacketSender::create(
       [sink, write = sink->write()](const OutPacket& packet) { return write(packet); });
@@ -85,7 +85,7 @@ TEST(PacketSender, APadThatTakesNothingHoldsNobodyUpAndGetsTheNewestPacketThatWa
   for (std::uint8_t i = 1; i < 100; ++i) EXPECT_TRUE(sender->send(packet(i)));
   sender.reset();
   EXPECT_TRUE(sink->got().empty()) << "the sender is gone, and nothing has left yet";
-  sink->open(true);  // the thread ends
+  sink->open(true);  // unblocks the writer, so that the thread ends
   EXPECT_EQ(sink->wait_for(2), (std::vector<std::uint8_t>{0, 99}));
 }
 

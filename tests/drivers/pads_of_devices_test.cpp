@@ -129,7 +129,8 @@ TEST(SeveralPads, OnePacketSetsTheMotorsOfAllPlugs) {
   const auto first = make_pad_quirks(pads[0].info), third = make_pad_quirks(pads[2].info);
   OutPacket reply;
   EXPECT_EQ(rumble_of(*first, {0xffff, 0}), (Packet{0x11, 0, 0, 0, 0})) << "power is not known";
-  for (const std::uint8_t type : {0x10, 0x26}) {  // no second cable, wireless
+  // Types without the second cable, and of a wireless controller.
+  for (const std::uint8_t type : {0x10, 0x26}) {
     first->accept(adapter_report(1, type, {}), reply);
     EXPECT_EQ(rumble_of(*first, {0xffff, 0}), (Packet{0x11, 0, 0, 0, 0}));
   }
@@ -188,7 +189,7 @@ class OneSide final : public Device {
 class JoyCons : public testing::Test {
  protected:
   JoyCons() {
-    // Turned, as a single Joy-Con reports them.
+    // The sticks are turned, as a single Joy-Con reports them.
     FactorySticks left_sticks, right_sticks;
     left_sticks.left_x = {-0.7, 0.01, 0.6};
     left_sticks.left_y = {-0.5, 0.02, 0.4};
@@ -209,7 +210,7 @@ class JoyCons : public testing::Test {
   OneSide* left_;
   OneSide* right_;
   std::unique_ptr<Device> pair_;
-  std::uint8_t side_ = 0;  // byte 12 of the last report
+  std::uint8_t side_ = 0;  // byte 12 of the last report, which names a side
 };
 
 TEST_F(JoyCons, EachReportHasTheNewestOfBothSides) {
@@ -241,7 +242,7 @@ TEST_F(JoyCons, OtherReportsAreLeftOutBothRumbleAndOneThatIsGoneEndsThePair) {
 }
 
 TEST_F(JoyCons, AReportSaysWhoseSensorsItHasAndTheFactorysAreTheRightOnes) {
-  // Both answer 0x0b for their motors.
+  // Both sides answer 0x0b for their motors.
   left_->reports.push_back({0x30, 1, 0x8e, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0x0b, 0x77});
   EXPECT_FALSE(next().empty());
   EXPECT_EQ(side_, 'L');

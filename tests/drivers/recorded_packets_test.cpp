@@ -14,11 +14,12 @@ namespace {
 
 using Packet = std::vector<std::uint8_t>;
 
-// A wired Steam Controller: hid-steam.c's collection ff00:0001 of 64 bytes without ids.
+// A recording's head for a wired Steam Controller: hid-steam.c's collection ff00:0001 of 64 bytes
+// without ids.
 const std::string kSteam =
     "R: 21 06 00 ff 09 01 a1 01 15 00 26 ff 00 75 08 95 40 09 01 81 02 c0\nN: Steam\nI: 3 28de "
     "1102\n";
-// Over Bluetooth: report 3 of 19 bytes (SDL_hidapi_steam.c).
+// A recording's head for the controller over Bluetooth: report 3 of 19 bytes (SDL_hidapi_steam.c).
 const std::string kBluetooth =
     "R: 18 06 00 ff 09 01 a1 01 85 03 75 08 95 13 09 01 81 02 c0\nN: Steam\nI: 5 28de 1106\n";
 const std::string kAdapter = "R: 7 05 01 09 05 a1 01 c0\nN: Pad\nI: 3 1209 0001\n";
@@ -58,7 +59,7 @@ TEST(RecordedPackets, ABatteryMessageIsNoStateOfTheStick) {
   EXPECT_EQ(trace.events[1].time_us, 8000);
 }
 
-// See SteamBluetooth.AStateIsPutTogetherFromWhatChanged.
+// The same segment as in SteamBluetooth.AStateIsPutTogetherFromWhatChanged.
 const Packet kStickSegment = {3, 0xc0, 0xb4, 0, 0x80, 0, 0x40, 7, 9, 0xff, 0x7f, 0, 0x80},
              kPadSegment = {3, 0xc0, 0x04, 2, 1, 2, 3, 4};
 
@@ -68,7 +69,7 @@ TEST(RecordedPackets, SegmentsBecomeTheStateThatTheyMake) {
   ASSERT_EQ(trace.events.size(), 2u);
   const Packet state = {3, 0x80, 0, 0x40, 7, 9, 0xff, 0x7f, 0, 0x80, 1, 2, 3, 4, 0, 0, 0, 0};
   EXPECT_EQ(bytes_of(trace, 1), state);
-  // Older recordings contain such states.
+  // Older recordings contain complete states.
   EXPECT_EQ(bytes_of(accepted(kBluetooth + report_line(0, state, 18)), 0), state);
 }
 

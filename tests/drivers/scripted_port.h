@@ -1,4 +1,4 @@
-// A pad for tests of pad models: answers by rules, never waits, stores written packets.
+// A pad for tests of quirks: answers by rules, never waits, stores the packets written to it.
 #pragma once
 #include <algorithm>
 #include <deque>
@@ -45,13 +45,15 @@ class ScriptedPort final : public PadPort {
     return std::min(reply.size(), answered.size());
   }
 
-  std::function<void(const Packet&, std::deque<Packet>&)> answer;  // to each packet written
-  std::function<Packet(const Packet&)> answer_command;             // to each command
+  // Called for each packet written; adds answers to the queue.
+  std::function<void(const Packet&, std::deque<Packet>&)> answer;
+  // Called for each command; returns its answer.
+  std::function<Packet(const Packet&)> answer_command;
   std::vector<Packet> commands;
-  std::deque<Packet> waiting;  // input packets to come
+  std::deque<Packet> waiting;  // input packets that have not been read
   std::map<std::uint8_t, Packet> features;
   bool is_gone = false;
-  bool is_endless = false;  // the front one repeats without end
+  bool is_endless = false;  // the front packet repeats without end
   std::vector<Packet> written;
   std::vector<std::uint8_t> features_asked;
   int reads = 0;

@@ -88,7 +88,8 @@ std::vector<Report> reports_of(Device& device) {
 
 PadState decoded(const Device& device, const std::vector<Report>& reports) {
   PadState state;
-  const Report& last = reports.at(reports.size() - 1);  // none: the test ends
+  // Without a report, at() throws and the test ends.
+  const Report& last = reports.at(reports.size() - 1);
   EXPECT_TRUE(decode(value_of(pad_layout(device.info(), {})), last, state));
   return state;
 }
@@ -122,7 +123,7 @@ TEST(SdlDriver, TheFirstReportIsTheStateAtTheOpening) {
   EXPECT_EQ(device->read(none), Device::Status::nothing);
 }
 
-// SDL's default mapping of a virtual joystick: a:b0 .. and the axes in the order of its game
+// SDL's default mapping of a virtual joystick has a:b0 .. and the axes in the order of SDL's game
 // controllers.
 TEST(SdlDriver, AxesButtonsAndHatsAreDecodedByItsMapping) {
   VirtualPad pad("Moved Pad");
@@ -144,8 +145,8 @@ TEST(SdlDriver, AxesButtonsAndHatsAreDecodedByItsMapping) {
   EXPECT_EQ(state.buttons, 1u << kButtonA | 1u << kButtonStart);
 }
 
-// Our names are SDL's, by its own numbers; SDL's triggers are 0 .. 32767. A virtual joystick has no
-// touchpad.
+// Controls have SDL's names, and are numbered as SDL does; SDL's triggers are 0 .. 32767. A virtual
+// joystick has no touchpad.
 TEST(SdlDriver, EveryControlOfSdlsGameControllerHasItsName) {
   VirtualPad pad("Full Pad");
   const auto device = opened("Full Pad");
@@ -176,7 +177,7 @@ TEST(SdlDriver, AJoystickWithoutMappingNamesTheDriversThatNeedNone) {
   EXPECT_FALSE(open_sdl_device(*listing, Detach::never));
 }
 
-// The kernel says 0, the end of both axes, until the pad has sent something.
+// Until the pad has sent something, the kernel reports 0, the end of both axes.
 TEST(SdlDriver, AStickInACornerAtTheOpeningIsNotReported) {
   VirtualPad pad("Silent Pad");
   SDL_JoystickSetVirtualAxis(pad.joystick, SDL_CONTROLLER_AXIS_LEFTX, -32768);
@@ -189,7 +190,7 @@ TEST(SdlDriver, AStickInACornerAtTheOpeningIsNotReported) {
   EXPECT_EQ(reports_of(*device).size(), 1u);
 }
 
-// SDL reports one control after the other.
+// SDL reports one control after the other, though the pad sent them in one report.
 TEST(SdlDriver, ChangesAreOneReportButTheSecondOfAControlBeginsAnother) {
   VirtualPad pad("Quick Pad");
   const auto device = opened("Quick Pad");
@@ -267,7 +268,7 @@ TEST(SdlDriver, OtherEventsStayOnSdlsQueue) {
   EXPECT_EQ(events[0].type, Uint32{SDL_KEYDOWN});
 }
 
-// The joystick of the host program.
+// The joystick belongs to the host program.
 TEST(SdlDriver, EventsOfAJoystickThatIsNotOursStayOnSdlsQueue) {
   VirtualPad pad("Our Pad"), theirs("Their Pad");
   const auto device = opened("Our Pad");
@@ -395,7 +396,7 @@ TEST(SdlDriver, LinesThatCountTheKernelsCodesAreForNodesOnly) {
   device.version = 0x0111;
   EXPECT_STREQ(first("evdev"), "x");
   EXPECT_STREQ(first("usb"), "x");
-  // Nintendo prints A on the right button; ours, like SDL's by position, is the bottom one.
+  // Nintendo prints A on the right button; for us and SDL, A is the bottom one.
   device = device_with(BusType::usb, 0x057e, 0x2009, 0x8111);
   EXPECT_STREQ(first("evdev"), "a");
 }
@@ -442,7 +443,7 @@ TEST(SdlDriver, SdlReadsTheLineThatIsWritten) {
   StickAxes sticks = kAxesAsLaidOut;
   sticks[kLeftX] = {kLeftY, false};
   sticks[kLeftY] = {kLeftX, true};
-  info.product = 0x0077;  // SDL keeps every line: other tests use other ids
+  info.product = 0x0077;  // other ids than those of other tests, because SDL keeps every mapping
   auto line = sdl_mapping_text(info, *layout, sticks);
   ASSERT_TRUE(line) << line.error().message;
   Uint16 vendor = 0, product = 0, version = 0, checksum = 1;
@@ -466,11 +467,12 @@ TEST(SdlDriver, SdlReadsTheLineThatIsWritten) {
   }
   SDL_GameController* controller = SDL_GameControllerOpen(index);
   ASSERT_NE(controller, nullptr) << SDL_GetError();
-  SDL_JoystickSetVirtualAxis(pad.joystick, 0, 20000);  // right
-  SDL_JoystickSetVirtualAxis(pad.joystick, 1, 10000);  // towards the player
+  SDL_JoystickSetVirtualAxis(pad.joystick, 0, 20000);  // the stick moves to the right
+  SDL_JoystickSetVirtualAxis(pad.joystick, 1, 10000);  // the stick moves towards the player
   SDL_JoystickSetVirtualButton(pad.joystick, 0, 1);
   SDL_JoystickUpdate();
-  // Right is the layout's forward and forward is its left, so right is now backwards.
+  // In the turned frame, what the layout calls forward is right and what it calls left is forward,
+  // so a move to the right now goes backwards.
   EXPECT_NEAR(SDL_GameControllerGetAxis(controller, SDL_CONTROLLER_AXIS_LEFTX), -10000, 1);
   EXPECT_NEAR(SDL_GameControllerGetAxis(controller, SDL_CONTROLLER_AXIS_LEFTY), 20000, 1);
   EXPECT_EQ(SDL_GameControllerGetButton(controller, SDL_CONTROLLER_BUTTON_A), 1);

@@ -14,7 +14,7 @@ namespace {
 
 using Status = Device::Status;
 
-struct Adapter {  // outlives the pads
+struct Adapter {  // declared first, because it has to outlive the pads
   std::deque<Packet> packets;
   std::vector<Packet> sent;
   bool is_gone = false, is_closed = false;
@@ -56,7 +56,7 @@ class SharedPads : public testing::Test {
     one_ = open_shared_pad(device, pads.at(0).info);
     two_ = open_shared_pad(device, pads.at(1).info);
   }
-  // The first two plugs with these types, and X of their sticks.
+  // A packet arrives: the first two plugs have these types, and their sticks this X.
   void arrive(std::uint8_t one, std::uint8_t two, std::uint8_t x) {
     Packet packet(37);
     packet[0] = 0x21;
@@ -65,7 +65,7 @@ class SharedPads : public testing::Test {
     packet[1 + 3] = packet[1 + 9 + 3] = x;
     adapter_.packets.push_back(packet);
   }
-  // True if the pad's own descriptor is readable.
+  // True if the pad has a packet to read.
   static bool is_rung(const Device& pad) {
     pollfd bell = pad.poll_fds().back();
     return ::poll(&bell, 1, 0) == 1;

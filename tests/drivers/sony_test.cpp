@@ -21,7 +21,7 @@ std::unique_ptr<PadQuirks> quirks(std::uint16_t product, BusType bus) {
   return make_sony_quirks(device);
 }
 
-// The definition, bit by bit: the reflected polynomial, start and end inverted.
+// CRC-32 by its definition, bit by bit: reflected polynomial, start and end inverted.
 std::uint32_t crc_by_bits(const Packet& bytes) {
   std::uint32_t crc = 0xffffffff;
   for (const std::uint8_t byte : bytes) {
@@ -33,7 +33,7 @@ std::uint32_t crc_by_bits(const Packet& bytes) {
   return ~crc;
 }
 
-// The report with its checksum put into the last four bytes.
+// A report with its checksum put into the last four bytes.
 Packet sealed(std::uint8_t seed, Packet report) {
   Packet covered(report.begin(), report.end() - 4);
   covered.insert(covered.begin(), seed);
@@ -50,7 +50,7 @@ bool accepts(PadQuirks& pad, const Packet& packet) {
   return is_input;
 }
 
-// Linux's hid-sony.c, sixaxis_set_operational_usb().
+// The order is that of Linux's hid-sony.c, sixaxis_set_operational_usb().
 TEST(DualShock3, IsStartedByReadingTwoFeaturesOnUsbWithoutTheKernel) {
   for (const auto& [bus, started, asked] :
        {std::tuple(BusType::usb, StartedBy::us, std::vector<std::uint8_t>{0xf2, 0xf5}),
@@ -70,7 +70,7 @@ TEST(DualShock3, IsStartedByReadingTwoFeaturesOnUsbWithoutTheKernel) {
             std::vector<std::string>{"Pad: does not answer the start over USB"});
 }
 
-// By SDL's SDL_hidapi_ps4.c; the descriptor is that of other makers' pads.
+// The packets are those of SDL's SDL_hidapi_ps4.c; the descriptor is that of other makers' pads.
 TEST(DualShock4OfOthers, RunsItsMotorsIfItTellsThatItHasAny) {
   DeviceInfo device;
   device.bus = BusType::usb;
@@ -102,7 +102,7 @@ TEST(DualShock4OfOthers, RunsItsMotorsIfItTellsThatItHasAny) {
   OutPacket packet;
   pad->rumble(kRumble, packet);
   EXPECT_EQ(packet.size, 0u);
-  device.descriptor[39] = 0x2e;  // the feature is a byte shorter: an unknown pad
+  device.descriptor[39] = 0x2e;  // the feature is a byte shorter, so the pad is unknown
   EXPECT_EQ(make_sony_quirks(device), nullptr);
 }
 
@@ -122,7 +122,7 @@ TEST(Crc32, IsTheBitwiseOneWithThePublishedCheckValueAndGoesOnInParts) {
 TEST(Sony, KnowsItsPadsAndNoOthers) {
   for (const std::uint16_t product : {0x0268, 0x05c4, 0x09cc, 0x0ba0, 0x0ce6, 0x0df2})
     EXPECT_NE(quirks(product, BusType::usb), nullptr);
-  EXPECT_EQ(quirks(0x0cda, BusType::usb), nullptr);  // PlayStation Classic: plain HID
+  EXPECT_EQ(quirks(0x0cda, BusType::usb), nullptr);  // a PlayStation Classic is plain HID
   DeviceInfo other;
   other.vendor = 0x0f0d;
   other.product = kDualShock4;
@@ -141,7 +141,7 @@ TEST(DualShock4, RumblesOverUsbIn32BytesWithoutTouchingTheLight) {
   EXPECT_EQ(rumble_of(*pad, {}), expected);
 }
 
-// Bit 2 of the second status byte (hid-playstation.c, DS4_STATUS1_DONGLE_STATE).
+// Bit 2 of the second status byte tells it (hid-playstation.c, DS4_STATUS1_DONGLE_STATE).
 TEST(DualShock4, ItsAdapterTellsWhetherAPadIsConnected) {
   const auto adapter = quirks(0x0ba0, BusType::usb);
   Packet report(64, 0x80);
@@ -163,7 +163,8 @@ TEST(DualShock4, RumblesOverBluetoothIn78BytesWithChecksum) {
   const auto pad = quirks(kDualShock4, BusType::bluetooth);
   Packet expected(78, 0);
   expected[0] = 0x11;
-  expected[1] = 0xc4;  // checksum, HID, reports every 4 ms (hid-playstation.c, SDL_hidapi_ps4.c)
+  // Bits: a checksum follows, HID, reports every 4 ms (hid-playstation.c, SDL_hidapi_ps4.c).
+  expected[1] = 0xc4;
   expected[3] = 0x01;
   expected[6] = 0x40;
   expected[7] = 0xc0;
@@ -182,13 +183,13 @@ TEST(DualSense, RumblesOverUsbByItsFirmware) {
   const auto pad = quirks(kDualSense, BusType::usb);
   Packet expected(48, 0);
   expected[0] = 0x02;
-  expected[1] = 0x03;  // compatible vibration and haptics
+  expected[1] = 0x03;  // bits: compatible vibration and haptics
   expected[3] = 0x40;
   expected[4] = 0xc0;
   EXPECT_EQ(rumble_of(*pad, kRumble), expected) << "not started: the old way";
 
   ScriptedPort port;
-  port.features[0x20] = firmware_of(0x0224);  // 2.36; the new way starts at 2.21
+  port.features[0x20] = firmware_of(0x0224);  // version 2.36; the new bits are used from 2.21 on
   pad->start(port, StartedBy::kernel);
   expected[1] = 0x02;
   expected[39] = 0x04;
@@ -196,7 +197,7 @@ TEST(DualSense, RumblesOverUsbByItsFirmware) {
   EXPECT_TRUE(port.written.empty());
 }
 
-// An Edge has the new motors with any answer.
+// An Edge has the new motors with any version.
 TEST(DualSense, TakesTheOldWayUntilFirmware2_20) {
   for (const auto& [product, version, flags] :
        {std::tuple(kDualSense, 0x0214, 0x03), {kDualSense, 0x0215, 0x02}, {kEdge, 0, 0x02}}) {
@@ -285,7 +286,7 @@ TEST(Sony, BluetoothPadsAreAskedForFullReportsOnlyIfTheKernelHasNot) {
   EXPECT_TRUE(pad->take_remarks().empty());
 }
 
-// A feature of these numbers of 16 bits.
+// A feature report that holds these numbers of 16 bits.
 Packet gyro_feature(std::uint8_t id, std::size_t size, const std::array<int, 11>& numbers) {
   Packet feature(size, 0);
   feature[0] = id;
@@ -295,7 +296,8 @@ Packet gyro_feature(std::uint8_t id, std::size_t size, const std::array<int, 11>
   }
   return feature;
 }
-// At 540 degrees a second each way: pitch counts 8640, yaw 8650 and 8630, roll 9000.
+// Expects the scales of a calibration at 540 degrees a second each way: pitch counts 8640, yaw 8650
+// and 8630, roll 9000.
 void expect_scales(const std::optional<FactoryGyro>& gyro) {
   ASSERT_TRUE(gyro);
   EXPECT_EQ(gyro->zero, (std::array<double, 3>{})) << "the reports are without bias";

@@ -155,10 +155,11 @@ TEST(SteamBluetooth, AStateIsPutTogetherFromWhatChanged) {
   for (const std::uint16_t product : {0x1105, 0x1106}) {
     const auto pad = make_steam_quirks(steam(product, 0x00));
     ASSERT_NE(pad, nullptr);
-    // Buttons, triggers and stick: bits 10, 20 and 80 of the first byte, whose lower half is 4.
+    // A message with buttons, triggers and stick: bits 10, 20 and 80 of the first byte, whose lower
+    // half is 4.
     EXPECT_EQ(handed_on(*pad, segment(0xc0, {0xb4, 0, 0x80, 0, 0x40, 7, 9, 0xff, 0x7f, 0, 0x80})),
               (Packet{3, 0x80, 0, 0x40, 7, 9, 0xff, 0x7f, 0, 0x80, 0, 0, 0, 0, 0, 0, 0, 0}));
-    // Only the right pad, bit 200: the other values stay.
+    // A message with the right pad only, bit 200: the other values stay.
     EXPECT_EQ(handed_on(*pad, segment(0xc0, {0x04, 2, 1, 2, 3, 4})),
               (Packet{3, 0x80, 0, 0x40, 7, 9, 0xff, 0x7f, 0, 0x80, 1, 2, 3, 4, 0, 0, 0, 0}));
     EXPECT_TRUE(handed_on(*pad, segment(0xc0, {0x05, 0, 90})).empty()) << "battery";
@@ -170,7 +171,8 @@ TEST(SteamBluetooth, AStateIsPutTogetherFromWhatChanged) {
 
 TEST(SteamBluetooth, AMessageOfSeveralReportsIsReadOnlyWhole) {
   const auto pad = make_steam_quirks(steam(0x1106, 0x00));
-  // All parts: two bytes, then 3 + 2 + 3 + 4 + 4 = 16, and the right pad in the second report.
+  // A message with all parts: two bytes, then 3 + 2 + 3 + 4 + 4 = 16, and the right pad in the
+  // second report.
   const Packet first = {0xf4, 3, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12, 13, 14, 15, 16};
   EXPECT_TRUE(handed_on(*pad, segment(0x80, first)).empty());
   EXPECT_EQ(handed_on(*pad, segment(0xc1, {17, 18, 19, 20})),
@@ -180,7 +182,7 @@ TEST(SteamBluetooth, AMessageOfSeveralReportsIsReadOnlyWhole) {
   EXPECT_TRUE(handed_on(*pad, segment(0x80, first)).empty());
   EXPECT_TRUE(handed_on(*pad, segment(0xc2, {1, 1, 1, 1})).empty());
   EXPECT_EQ(handed_on(*pad, segment(0xc0, {0x24, 0, 0, 0})).size(), 18u);
-  // A message without an end, and one that ends within a part.
+  // A message whose end never comes, and one that ends within a part.
   for (int i = 0; i < 20; ++i)
     EXPECT_TRUE(handed_on(*pad, segment(static_cast<std::uint8_t>(0x80 | (i & 7)), {})).empty());
   EXPECT_TRUE(handed_on(*pad, segment(0xc0, {0xf4, 3})).empty());

@@ -11,7 +11,7 @@
 namespace gaitpad {
 namespace {
 
-// The rig (tools/rig) tests real hardware; this test holds on every machine.
+// The tests hold on every machine; the rig (tools/rig) tests real hardware.
 
 TEST(SystemNodes, EveryNodeIsADeviceFileWithASysfsFolder) {
   for (const char* subsystem : {"hidraw", "input", "usb"}) {

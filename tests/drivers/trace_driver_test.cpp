@@ -28,7 +28,7 @@ class TraceDriver : public testing::Test {
     return opened ? std::move(*opened) : nullptr;
   }
 
-  // Every report until `gone`, by poll() and read() like the I/O thread.
+  // Reads every report until `gone`, by poll() and read() like the I/O thread.
   static std::vector<Report> all_reports(Device& device) {
     std::vector<Report> reports;
     while (true) {
@@ -65,7 +65,7 @@ TEST_F(TraceDriver, HandsOnEventsAtTheirOwnTimesAndNeverTooEarly) {
   EXPECT_EQ(reports[0].bytes[0], 1);
   EXPECT_EQ(reports[1].bytes[0], 2);
   EXPECT_GE(reports[0].time_ns, before_ns);
-  // Time stamps are the file's, even if a read is late.
+  // The stamps differ by the times in the file, even if a read is late.
   EXPECT_EQ(reports[1].time_ns - reports[0].time_ns, 30 * kNsInMs);
   EXPECT_GE(now_ns() - reports[0].time_ns, 50 * kNsInMs);
   Report report;

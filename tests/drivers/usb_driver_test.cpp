@@ -20,7 +20,7 @@
 #ifdef GAITPAD_HAS_USB
 #include <libusb-1.0/libusb.h>
 
-static int default_options = 0;  // set for contexts to come
+static int default_options = 0;  // number of options set for contexts that are made later
 
 extern "C" int libusb_set_option(libusb_context* context, enum libusb_option, ...) {
   default_options += context == nullptr;
@@ -87,8 +87,8 @@ TEST_F(UsbFolders, AHidPadIsKnownWithWhatTheKernelMadeOfIt) {
 
 TEST_F(UsbFolders, OfAnXbox360PadOnlyThePadItselfCounts) {
   add_endpoint(add_interface("0", "ff 5d 01"));
-  add_endpoint(add_interface("1", "ff 5d 03"));  // headset
-  add_interface("3", "ff fd 13");                // security
+  add_endpoint(add_interface("1", "ff 5d 03"));  // the headset's interface
+  add_interface("3", "ff fd 13");                // the interface for security
   const auto interfaces = usb_interfaces(device_.string());
   ASSERT_EQ(interfaces.size(), 3u);
   EXPECT_TRUE(may_be_pad(interfaces[0]));
@@ -98,7 +98,7 @@ TEST_F(UsbFolders, OfAnXbox360PadOnlyThePadItselfCounts) {
 
 TEST_F(UsbFolders, OfAnXboxOnePadTheFirstInterfaceCounts) {
   add_endpoint(add_interface("0", "ff 47 d0"));
-  add_endpoint(add_interface("1", "ff 47 d0"));  // audio
+  add_endpoint(add_interface("1", "ff 47 d0"));  // the interface for audio
   const auto interfaces = usb_interfaces(device_.string());
   ASSERT_EQ(interfaces.size(), 2u);
   EXPECT_TRUE(may_be_pad(interfaces[0]));
@@ -124,7 +124,8 @@ TEST_F(UsbFolders, OddContentsAreNoTrouble) {
   write(folder / "bInterfaceClass", "zz\n");
   fs::remove(folder / "bInterfaceProtocol");
   write(folder / "ep_81" / "interval", "-1ms\n");
-  fs::create_directories(device_ / "1-1.2:1.7");  // being made or taken away
+  // An interface that is being made or removed has no files yet.
+  fs::create_directories(device_ / "1-1.2:1.7");
   const auto interfaces = usb_interfaces(device_.string());
   ASSERT_EQ(interfaces.size(), 1u);
   EXPECT_FALSE(may_be_pad(interfaces[0]));
@@ -140,8 +141,9 @@ TEST_F(UsbFolders, TheirPortIsWrittenAsTheKernelDoes) {
   EXPECT_EQ(usb_physical_path("", 0), "");
 }
 
-// The watcher re-attaches by the device's node; here a FIFO, whose opening by the watcher shows.
-// It has another parent from its beginning, so that no zombie of it stays in a host.
+// The watcher re-attaches the driver by opening the device's node; here the node is a FIFO, which
+// shows that it is opened. The watcher has another parent from its beginning, so that no zombie of
+// it stays in a host.
 class ReattachWatcherTest : public testing::Test {
  protected:
   void SetUp() override {
@@ -149,7 +151,7 @@ class ReattachWatcherTest : public testing::Test {
     reader_ = OwnedFd(::open(fifo_.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC));
     ASSERT_GE(reader_.get(), 0);
   }
-  // Whether the watcher opens the node, and closes it, within this time.
+  // True if the watcher opens the node, and closes it, within this time.
   bool is_opened(int wait_ms) const {
     pollfd hung_up{.fd = reader_.get(), .events = POLLIN, .revents = 0};
     return ::poll(&hung_up, 1, wait_ms) == 1;
@@ -213,11 +215,11 @@ TEST_F(UsbFolders, APadThatIsGoneOrHeldByAProgramIsNotOpened) {
             "/dev/bus/usb/999/999:1: another program has the pad");
 }
 
-// The driver is a guest: its host program may also use libusb.
+// The host program may use libusb as well, so the driver must not change its options.
 TEST_F(UsbFolders, NoOptionOfAllContextsIsSet) {
   const fs::path folder = add_interface("0", "ff 5d 01");
   add_endpoint(folder);
-  own_.write("node", "");  // not a USB device, so it is only opened
+  own_.write("node", "");  // the node is an ordinary file, which can only be opened
   DeviceListing listing;
   listing.node = own_.at("node");
   listing.pad_path = folder.string();

@@ -12,7 +12,7 @@ VirtualPadState with_button(PadButton button) { return {.buttons = 1u << button}
 
 TEST(VirtualPad, ChangesAreSentWithLinuxsCountsAndDirections) {
   VirtualPadState state;
-  state.stick.left = vec2(1.0, 1.0);  // right and forward
+  state.stick.left = vec2(1.0, 1.0);  // the stick points right and forward
   state.stick.right = vec2(-0.5, 0.0);
   EXPECT_EQ(events_between({}, state),
             (Events{{EV_ABS, ABS_X, 32767}, {EV_ABS, ABS_Y, -32767}, {EV_ABS, ABS_RX, -16384}}));

@@ -1,6 +1,6 @@
-// Both Xbox protocols over USB, byte by byte after Linux's xpad (xpad360_process_packet,
-// xpadone_process_packet, xpad_play_effect), read by the descriptor that the quirks state and the
-// shipped files.
+// Packets of both Xbox protocols over USB, byte by byte after Linux's xpad (xpad360_process_packet,
+// xpadone_process_packet, xpad_play_effect), decoded by the descriptor that the quirks state and
+// the shipped files.
 #include "drivers/scripted_port.h"
 #include "tests/hid/made_pads.h"
 
@@ -10,7 +10,8 @@ namespace {
 constexpr std::uint16_t kMicrosoft = 0x045e, kXbox360 = 0x028e, kOneS = 0x02ea, kSeries = 0x0b12;
 constexpr UsbInterfaceClass kInterface360{0xff, 0x5d, 0x01}, kInterfaceGip{0xff, 0x47, 0xd0};
 
-using Changes = std::vector<std::pair<std::size_t, std::uint8_t>>;  // byte, value
+// Pairs of a byte's place and its value.
+using Changes = std::vector<std::pair<std::size_t, std::uint8_t>>;
 Packet changed(Packet packet, const Changes& changes) {
   for (const auto& [byte, value] : changes) packet[byte] = value;
   return packet;
@@ -45,7 +46,7 @@ class XboxPad : public testing::Test {
   }
   void use_360() { use(false, kMicrosoft, kXbox360); }
   void use_gip() { use(true, kMicrosoft, kOneS); }
-  // Decodes a packet like the driver.
+  // Decodes a packet as the driver does.
   bool decodes(const Packet& packet) {
     OutPacket reply;
     if (!quirks_->accept(packet, reply)) return false;
@@ -57,7 +58,7 @@ class XboxPad : public testing::Test {
     EXPECT_TRUE(decodes(packet)) << words;
     expect_state(state_, words);
   }
-  // Each bit of a byte and the button that it is; "" for none.
+  // Expects that each bit of a byte is the named button; "" for none.
   void expect_bits(const Packet& neutral, std::size_t byte, const std::vector<std::string>& names) {
     for (std::size_t bit = 0; bit < 8; ++bit)
       expect_read(changed(neutral, {{byte, static_cast<std::uint8_t>(1u << bit)}}),
@@ -82,7 +83,7 @@ TEST_F(XboxPad, EveryButtonHasItsBit) {
                "rightstick"});
 }
 
-// Left x and y 32767, right x -32768 and y -16384; triggers of 8 bits, and of 10.
+// The packets have left x and y 32767, right x -32768 and y -16384; triggers have 8 bits, and 10.
 TEST_F(XboxPad, SticksAreSixteenBitsWithYForwardAsThePadSendsIt) {
   use_360();
   expect_read(of_360({{6, 0xff}, {7, 0x7f}, {8, 0xff}, {9, 0x7f}, {11, 0x80}, {13, 0xc0}}),
@@ -106,9 +107,9 @@ TEST_F(XboxPad, SticksAreSixteenBitsWithYForwardAsThePadSendsIt) {
 }
 
 TEST_F(XboxPad, OtherMakersPadsAreTheSame) {
-  use(false, 0x046d, 0xc21d);  // Logitech F310
+  use(false, 0x046d, 0xc21d);  // a Logitech F310
   expect_read(of_360({{8, 0xff}, {9, 0x7f}, {3, 0x04}}), "left_y 1 buttons guide");
-  use(true, 0x20d6, 0x2001);  // PowerA
+  use(true, 0x20d6, 0x2001);  // a PowerA pad
   expect_read(of_gip({{12, 0xff}, {13, 0x7f}, {5, 0x80}}), "left_y 1 buttons rightstick");
 }
 
@@ -121,16 +122,16 @@ TEST_F(XboxPad, GuideOfGipComesInAMessageOfItsOwnAndLeavesTheRest) {
   expect_read({0x07, 0x20, 0x03, 0x02, 0x00, 0x5b}, "buttons a");
 }
 
-// Byte 22 of 48: Xbox Series with current firmware (SDL, SDL_hidapi_xboxone.c).
+// Byte 22 of 48, by current firmware of the Xbox Series pad (SDL, SDL_hidapi_xboxone.c).
 TEST_F(XboxPad, SeriesPadsHaveAShareButton) {
   use(true, kMicrosoft, kSeries);
   expect_read(of_gip({{12, 0xff}, {13, 0x7f}, {22, 0x01}}, 48), "left_y 1 buttons misc1");
   expect_read(of_gip({{4, 0x40}}, 48), "buttons x");
   expect_read({0x07, 0x20, 0x02, 0x02, 0x01, 0x5b}, "buttons x guide");
-  EXPECT_TRUE(decodes(of_gip({}, 36)));  // older firmware: without it
+  EXPECT_TRUE(decodes(of_gip({}, 36)));  // packets of older firmware lack the button
 }
 
-// Sizes and bytes of SDL_hidapi_xboxone.c, from the header on.
+// Sizes and places are from SDL_hidapi_xboxone.c, counted from the header on.
 TEST_F(XboxPad, TheShareButtonIsWhereThePacketsSizeSays) {
   const std::pair<std::size_t, std::size_t> kPlaces[] = {
       {36, 18}, {44, 18}, {48, 22}, {50, 32}, {64, 46}};
@@ -143,15 +144,17 @@ TEST_F(XboxPad, TheShareButtonIsWhereThePacketsSizeSays) {
 }
 
 TEST_F(XboxPad, ElitePadsHavePaddlesUnlessTheyMapThemThemselves) {
-  const std::vector<std::string> names = {"paddle1", "paddle3", "paddle2", "paddle4"};  // P1 .. P4
+  // Names of P1 .. P4.
+  const std::vector<std::string> names = {"paddle1", "paddle3", "paddle2", "paddle4"};
   const auto expect_paddles = [&](const Packet& neutral, std::size_t at, std::array<int, 4> bits) {
     for (std::size_t i = 0; i < names.size(); ++i)
       expect_read(changed(neutral, {{at, static_cast<std::uint8_t>(bits[i])}}),
                   "buttons " + names[i]);
   };
-  use(true, kMicrosoft, 0x02e3);  // the first one
+  use(true, kMicrosoft, 0x02e3);  // the first Elite pad
   expect_paddles(of_gip({}, 33), 32, {2, 8, 1, 4});
-  expect_read(of_gip({{32, 0x02}, {4, 0x20}, {18, 0x00}}, 33), "buttons b");  // P1 is its b
+  // The pad presses its button b for P1.
+  expect_read(of_gip({{32, 0x02}, {4, 0x20}, {18, 0x00}}, 33), "buttons b");
   use(true, kMicrosoft, 0x0b00);
   expect_paddles(of_gip({}, 38), 18, {1, 2, 4, 8});
   expect_read(of_gip({{18, 0x0f}, {19, 0x01}}, 38), "");
@@ -262,7 +265,8 @@ TEST_F(XboxPad, RumbleIsScaledAsTheKernelDoesWithTheStrongMotorFirst) {
 }
 
 TEST(XboxPads, OtherInterfacesAreNone) {
-  EXPECT_EQ(make_xbox_360_pad({0xff, 0x5d, 0x03}, {}).quirks, nullptr);  // its headset
+  // Interface of the pad's headset.
+  EXPECT_EQ(make_xbox_360_pad({0xff, 0x5d, 0x03}, {}).quirks, nullptr);
   EXPECT_EQ(make_xbox_360_pad(kInterfaceGip, {}).quirks, nullptr);
   EXPECT_EQ(make_xbox_360_pad({0x03, 0x00, 0x00}, {}).quirks, nullptr);
   EXPECT_EQ(make_gip_pad(kInterface360, {}).quirks, nullptr);

@@ -106,7 +106,7 @@ TEST(Asf, DamageIsNamedWithFileAndLine) {
         {"20 XYZ", "20 XYX", "28: axis: \"XYX\" is not an order of X, Y and Z"}})
     EXPECT_EQ(asf_error(replaced(good, row.sound, row.damaged)),
               std::string("body.asf:") + row.says);
-  // Missing parts and rings of bones are errors.
+  // Missing parts and cycles of bones are errors.
   for (const auto& [sound, damaged] : {std::pair("    name lfoot\n", ""),
                                        {"    direction 0 -1 2\n", ""},
                                        {"direction 0 -1 2", "direction 0 0 0"},

@@ -13,7 +13,8 @@ inline std::string acclaim_bone(const std::string& name, const std::string& dire
          length + "\n" + more + "  end\n";
 }
 
-// CMU's dialect: lengths in inches times 0.45, degrees, thighs' axes turned by 20 degrees.
+// A skeleton in CMU's dialect: lengths in inches times 0.45, degrees, thighs' axes turned by 20
+// degrees.
 inline std::string acclaim_skeleton() {
   const std::string three =
       "    dof rx ry rz\n    limits (-160.0 20.0)\n           (-70.0 70.0)\n" +

@@ -116,7 +116,8 @@ TEST(Bvh, TooManyJointsAndTooDeepASkeletonAreRefused) {
 
 TEST(Bvh, EveryTruncationIsRefused) {
   const std::string text = WalkerText().text();
-  // Cutting one or two characters may leave a valid last number; every shorter text is an error.
+  // Cutting off one or two characters may leave a valid last number; every shorter text is an
+  // error.
   for (std::size_t n = 0; n + 2 < text.size(); ++n) {
     EXPECT_NE(error_of(text.substr(0, n)), "") << "first " << n << " bytes";
   }
@@ -179,7 +180,8 @@ std::string exported(const Motion& m) {
   return out.str();
 }
 
-// Forward kinematics of the file's numbers, independent of the loader: matrices and libm.
+// Places of the joints by forward kinematics of the file's numbers, independent of the loader:
+// matrices and libm.
 std::vector<vec3> places(const Bvh& bvh, int frame) {
   std::vector<vec3> at(bvh.joints.size());
   std::vector<mat3> turn(bvh.joints.size());
@@ -211,7 +213,8 @@ std::vector<vec3> places(const Bvh& bvh, int frame) {
 
 void expect_same_motion(const Motion& m, const Bvh& bvh) {
   ASSERT_EQ(static_cast<int>(m.frames.size()), bvh.frames);
-  std::vector<int> index(m.skeleton.joints.size(), -1);  // of the file's joint
+  // Index of each of the file's joints in the skeleton; -1: none.
+  std::vector<int> index(m.skeleton.joints.size(), -1);
   for (std::size_t j = 0; j < index.size(); ++j) {
     for (std::size_t i = 0; i < bvh.joints.size(); ++i) {
       if (bvh.joints[i].name == m.skeleton.joints[j].name) index[j] = static_cast<int>(i);

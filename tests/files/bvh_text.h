@@ -8,10 +8,10 @@ struct WalkerText {
   std::string root = "Hips";
   std::string root_offset = "0 0 0";
   std::string root_channels = "6 Xposition Yposition Zposition Zrotation Xrotation Yrotation";
-  std::string left = "Left", right = "Right";  // prefixes
+  std::string left = "Left", right = "Right";  // prefixes of the joints' names
   std::string hip = "UpLeg", knee = "Leg", ankle = "Foot", toe = "ToeBase";
   std::string joint_channels = "3 Zrotation Xrotation Yrotation";
-  std::string frames = "0 90 0 0 0 0";  // the root's numbers of the one frame
+  std::string frames = "0 90 0 0 0 0";  // the root's numbers in the only frame
 
   std::string leg(const std::string& side, const std::string& x) const {
     const std::string c = "CHANNELS " + joint_channels + "\n";
@@ -25,7 +25,8 @@ struct WalkerText {
     return "HIERARCHY\nROOT " + root + "\n{\nOFFSET " + root_offset + "\nCHANNELS " +
            root_channels + "\n" + leg(left, "10") + leg(right, "-10") + "}\n";
   }
-  // One frame: the root's numbers, zeros for the eight joints' three channels each.
+  // A frame's line: the root's numbers, then zeros for the three channels of each of the eight
+  // joints.
   std::string frame(const std::string& root_values) const {
     std::string line = root_values;
     for (int i = 0; i < 24; ++i) line += " 0";

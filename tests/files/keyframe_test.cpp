@@ -20,7 +20,7 @@ std::string error_of(const std::string& text) {
   return motion ? "" : motion.error().message;
 }
 
-// The smallest walk: four poses.
+// The smallest file of a walk: four poses.
 std::string small_walk(const std::string& more = "", const std::string& in_first = "") {
   return "duration_s = 1.1\n" + more + "[[pose]]\nphase = 0.0\nhip = 23\nknee = 5\nankle = 0\n" +
          in_first +

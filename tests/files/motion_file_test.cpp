@@ -23,9 +23,10 @@ TEST(Units, AnAdultsLegTellsTheUnit) {
   EXPECT_EQ(metres_per_unit(8.4), 0.1);
   EXPECT_EQ(metres_per_unit(86.0), 0.01);
   EXPECT_EQ(metres_per_unit(840.0), 0.001);
-  EXPECT_EQ(metres_per_unit(35.7), 0.0254);            // inches
-  EXPECT_EQ(metres_per_unit(2.8), 0.3048);             // feet
-  EXPECT_NEAR(metres_per_unit(14.8), 0.0564, 0.0001);  // CMU
+  EXPECT_EQ(metres_per_unit(35.7), 0.0254);  // a leg of 35.7 units: inches
+  EXPECT_EQ(metres_per_unit(2.8), 0.3048);   // a leg of 2.8 units: feet
+  // A leg of 14.8 units: CMU's inches times 0.45.
+  EXPECT_NEAR(metres_per_unit(14.8), 0.0564, 0.0001);
 }
 
 TEST(Units, WhereNoUnitFitsTheLegBecomesAnAdults) {
@@ -73,9 +74,10 @@ TEST(Load, AppliesRotationsInTheOrderOfEachJointsChannels) {
     walker.joint_channels = "3";
     for (const int axis : order) walker.joint_channels += std::string(" ") + kNames[axis];
     std::string text = walker.text();
-    text = replaced(text, "0 90 0 0 0 0 0 0 0", "0 90 0 0 0 0 10 20 30");  // first joint: LeftUpLeg
+    // Changes the first joint, LeftUpLeg.
+    text = replaced(text, "0 90 0 0 0 0 0 0 0", "0 90 0 0 0 0 10 20 30");
     const Motion m = loaded(text);
-    // v' = R1 R2 R3 v with matrices written out.
+    // Expect v' = R1 R2 R3 v, with matrices written out.
     const double angle[] = {10 * kDegree, 20 * kDegree, 30 * kDegree};
     vec3 v(0.1, -0.7, 0.3);
     const vec3 got = m.frames[0].local[1] * v;
@@ -123,8 +125,8 @@ TEST(Load, TheRootsOffsetCountsOnce) {
   }
 }
 
-// Hips with positions under a root that never moves; positions instead of the OFFSET, and on top of
-// it.
+// Hips may have positions under a root that never moves. They replace the OFFSET in some files, and
+// are added to it in others.
 TEST(Load, HipsMayMoveUnderAStillRoot) {
   const auto text = [](const std::string& values) {
     std::string t =
@@ -144,7 +146,7 @@ TEST(Load, HipsMayMoveUnderAStillRoot) {
 TEST(Load, ZUpIsTurnedToYUp) {
   WalkerText walker;
   std::string text = walker.text();
-  // x left, z up, -y forward.
+  // The file has x left, z up, -y forward.
   text = replaced(text, "OFFSET 10 -2 0", "OFFSET 10 0 -2");
   text = replaced(text, "OFFSET -10 -2 0", "OFFSET -10 0 -2");
   text = replaced(text, "OFFSET 0 -40 0", "OFFSET 0 0 -40");
@@ -165,7 +167,7 @@ TEST(Load, SharedFilesStandOnTheFloor) {
     const auto m = load_motion(entry);
     ASSERT_TRUE(m) << m.error().message;
     const bool has_floor =
-        name != "bvhfiles_example.bvh" && name != "wisc_example.bvh";  // a jump, two odd frames
+        name != "bvhfiles_example.bvh" && name != "wisc_example.bvh";  // these are not walks
     if (!has_floor) continue;
     const std::array<int, 2> toes = {m->legs[0].toe, m->legs[1].toe};
     const auto tracks = joint_tracks_m(*m, toes);
@@ -180,7 +182,7 @@ TEST(Load, SharedFilesStandOnTheFloor) {
 
 TEST(Load, TheSameMotionFromTwoFilesIsTheSame) {
   GAITPAD_NEEDS(kCapturedMotions);
-  // SNU's walk with and without helper joints: hips, knees and ankles agree.
+  // SNU's walk exists with and without helper joints: hips, knees and ankles agree.
   const auto a = load_motion(kCapturedMotions + "dpr_walk_simple.bvh");
   const auto b = load_motion(kCapturedMotions + "mass_walk.bvh");
   ASSERT_TRUE(a && b);

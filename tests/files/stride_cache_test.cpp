@@ -59,7 +59,7 @@ TEST_F(StrideCache, GivesTheSameBitsAsSolvingAndKeepsEachCycleApart) {
   other.samples[5].leg[0].angles[kKneeX] += 1e-12;
   const auto second = loaded(other);
   EXPECT_EQ(entries_in(cache()), 2);
-  other.name = "renamed";  // the name is not part of the key
+  other.name = "renamed";  // the name does not belong to the cache's key
   EXPECT_EQ(loaded(other), second);
   EXPECT_EQ(entries_in(cache()), 2);
 }
@@ -74,8 +74,8 @@ TEST_F(StrideCache, SolvesAgainAndMendsWhereAFileIsDamaged) {
     return bytes;
   };
   const std::string damaged[] = {whole.substr(0, whole.size() / 2), whole + "x",
-                                 flipped(0),  // another version
-                                 flipped(8),  // another input
+                                 flipped(0),  // a file of another version
+                                 flipped(8),  // a file for another input
                                  flipped(whole.size() / 2)};
   for (const std::string& bytes : damaged) {
     std::ofstream(file, std::ios::binary) << bytes;

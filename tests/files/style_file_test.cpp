@@ -18,7 +18,7 @@
 namespace gaitpad {
 namespace {
 
-// A temporary file, and the error of reading it without its path.
+// A temporary file; cause() is the error of reading it, without its path.
 class OwnFile : public testing::Test {
  protected:
   std::string written(const std::string& text) const { return own_.write("mine.toml", text); }
@@ -81,7 +81,7 @@ TEST_F(StyleFile, UnknownKeysAndWrongValuesAreRefused) {
   EXPECT_EQ(refusal("name = \n").substr(0, 4), ":1: ");
 }
 
-// Random changes of equal and unequal legs, joints and single DOFs, one for each key.
+// Tries random changes of equal and unequal legs, joints and single DOFs, one for each key.
 TEST_F(StyleFile, TextReadsBackToTheSameValues) {
   std::mt19937 random(7);
   for (int round = 0; round < 60; ++round) {
@@ -123,7 +123,7 @@ TEST_F(StyleFile, TextIsAsPeopleWouldWriteIt) {
 TEST_F(StyleFile, KeysOfValuesAreThoseOfFiles) {
   bool is_below = false;
   for (const StyleKey& key : style_keys()) {
-    is_below = !is_below;  // the bounds of set_value() are in control/style_test
+    is_below = !is_below;  // values at the bounds are tested in control/style_test
     const double outside = is_below ? key.min - 0.01 : key.max + 0.01;
     EXPECT_FALSE(loaded(key.name + " = " + std::to_string(outside))) << key.name;
     const double value = 0.5 * (key.min + key.max);
@@ -136,7 +136,8 @@ TEST_F(StyleFile, KeysOfValuesAreThoseOfFiles) {
   }
 }
 
-// A key and its range as `leg: stride_length 0..1.5`; the limb is that of either side and of both.
+// Keys with their ranges, as `leg: stride_length 0..1.5`; a limb's name stands for either side and
+// for both.
 using KeysOfLimbs = std::set<std::string>;
 
 KeysOfLimbs known_keys() {
@@ -147,14 +148,15 @@ KeysOfLimbs known_keys() {
     for (const std::string_view side : {"left_", "right_"}) {
       if (limb.starts_with(side)) limb.remove_prefix(side.size());
     }
-    if (limb.ends_with('s')) limb.remove_suffix(1);  // `legs` are both of `leg`
+    if (limb.ends_with('s')) limb.remove_suffix(1);  // `legs` means both of `leg`
     keys.insert(
         fmt::format("{}{}{} {:g}..{:g}", limb, limb.empty() ? "" : ": ", name, key.min, key.max));
   }
   return keys;
 }
 
-// Rows of tables: "| leg: `weight.hip`, `weight.knee` | 0..1, default 1 | ... |".
+// Reads the keys in the tables of config/README.md: rows "| leg: `weight.hip`, `weight.knee` |
+// 0..1, default 1 | ... |".
 KeysOfLimbs documented_keys() {
   const std::string page = text_in(kSourceFolder + "/config/README.md");
   const std::size_t begin = page.find("## `styles/"), end = page.find("\n## ", begin);

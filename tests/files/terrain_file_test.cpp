@@ -33,7 +33,7 @@ TEST(TerrainFile, SectionsStandInTheOrderOfTheFile) {
               "[[section]]\nkind = \"rough\"\nlength_m = 8\namplitude_m = 0.03\n");
   ASSERT_EQ(t.sections.size(), 4u);
   const double grade = std::tan(10.0 * kDegree);
-  const double rounding_m = grade / 0.25;  // the default bend
+  const double rounding_m = grade / 0.25;  // the rounding for the default bend
   const double top_m = grade * (4.0 - rounding_m);
   EXPECT_NEAR(ground_at(t, 0.0, 6.0).height_m, top_m, 1e-9);
   EXPECT_NEAR(ground_at(t, 0.0, 6.3).height_m, top_m - 0.15, 1e-9);
@@ -88,12 +88,12 @@ TEST(HeightPicture, ReadsTheShippedOne) {
   EXPECT_EQ(picture->columns, 64);
   EXPECT_EQ(picture->rows, 48);
   const auto [low, high] = std::ranges::minmax(picture->samples);
-  EXPECT_EQ(low == 0 || high == 65535, true);  // sixteen bits, not eight
+  EXPECT_EQ(low == 0 || high == 65535, true);  // true only if the picture is read with sixteen bits
   EXPECT_GT(high - low, 32768);
 }
 
-// Two by two: 8 bits, black and white above, 128 and 64 below; the same size in colours; a header
-// of 100,000 samples a side.
+// PNG files. Two by two samples: 8 bits, black and white above, 128 and 64 below; the same size in
+// colours; a header of 100,000 samples a side.
 const std::uint8_t kSmall[] = {
     0x89, 0x50, 0x4e, 0x47, 0x0d, 0x0a, 0x1a, 0x0a, 0x00, 0x00, 0x00, 0x0d, 0x49, 0x48, 0x44,
     0x52, 0x00, 0x00, 0x00, 0x02, 0x00, 0x00, 0x00, 0x02, 0x08, 0x00, 0x00, 0x00, 0x00, 0x57,

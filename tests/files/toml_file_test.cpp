@@ -149,7 +149,7 @@ TEST(TomlFile, DeepNestingIsRefusedAndNeverOverflowsTheStack) {
   for (int i = 0; i < 400'000; ++i) dotted += ".a";
   EXPECT_EQ(syntax_error(dotted + "]\n"), "f.toml:1: a key of more than 16 parts");
   EXPECT_EQ(syntax_error("b = '#\"'\n" + dotted + "]\n!"), "f.toml:2: a key of more than 16 parts");
-  // Strings that look like separators must not hide the dots.
+  // Dots in strings do not count, even if the strings look like separators.
   std::string in_strings = "x = \"\"\"a\"\"\"\"\"\ny = '''\n'''\na";
   for (int i = 0; i < 200'000; ++i) in_strings += ".'='";
   EXPECT_EQ(syntax_error(in_strings + " = 1"), "f.toml:4: a key of more than 16 parts");

@@ -41,14 +41,14 @@ Bytes operator+(Bytes a, const Bytes& b) {
 Bytes pad(std::uint8_t kind, const Bytes& items) {
   return Bytes{0x05, 0x01, 0x09, kind, 0xa1, 0x01} + items + Bytes{0xc0};
 }
-// 8-bit axes of page 1 with these usages, 0..255.
+// Items of 8-bit axes of page 1 with these usages, 0..255.
 Bytes axes(const Bytes& usages) {
   Bytes items = {0x05, 0x01};
   for (const std::uint8_t u : usages) items = items + Bytes{0x09, u};
   const auto count = static_cast<std::uint8_t>(usages.size());
   return items + Bytes{0x15, 0x00, 0x26, 0xff, 0x00, 0x75, 0x08, 0x95, count, 0x81, 0x02};
 }
-// One-bit buttons 1..n and padding to the next byte.
+// Items of one-bit buttons 1..n and padding to the next byte.
 Bytes buttons(std::uint8_t n) {
   const auto rest = static_cast<std::uint8_t>((8 - n % 8) % 8);
   return Bytes{0x05, 0x09, 0x19, 0x01, 0x29, n,    0x15, 0x00, 0x25, 0x01,
@@ -132,7 +132,7 @@ TEST(Decode, AReportLeavesAloneWhatItDoesNotTell) {
 
 TEST(Decode, HatsOfAllKindsPointTheSameWay) {
   const Bytes xy = axes({0x30, 0x31});
-  const Bytes degrees = {0x35, 0x00, 0x46, 0x3b, 0x01};  // physical 0..315
+  const Bytes degrees = {0x35, 0x00, 0x46, 0x3b, 0x01};  // a physical range of 0..315
   struct Case {
     const char* what;
     Bytes descriptor;

@@ -16,7 +16,7 @@ Bytes operator+(Bytes a, const Bytes& b) {
   return a;
 }
 
-// One application collection around the items.
+// A descriptor with one application collection around the items.
 Bytes game_pad(const Bytes& items) {
   return Bytes{0x05, 0x01, 0x09, 0x05, 0xa1, 0x01} + items + Bytes{0xc0};
 }
@@ -24,7 +24,7 @@ Bytes game_pad(const Bytes& items) {
 ReportDescriptor parsed(const Bytes& bytes) { return value_of(parse_descriptor(bytes)); }
 std::string cause(const Bytes& bytes) { return cause_of(parse_descriptor(bytes)); }
 
-// X with the given range items, 8 bits.
+// The field of X with 8 bits and these range items.
 Field x_with_range(const Bytes& range, std::uint8_t bits = 8) {
   const auto d = parsed(game_pad(range + Bytes{0x09, 0x30, 0x75, bits, 0x95, 0x01, 0x81, 0x02}));
   EXPECT_EQ(d.fields.size(), 1u);
@@ -99,7 +99,8 @@ TEST(ReportDescriptor, UsagesTakeTheirPages) {
   // A page after the last usage applies to the usages before it,
   EXPECT_EQ(usages(game_pad(Bytes{0x05, 0x0c, 0x09, 0x30, 0x09, 0x31, 0x05, 0x01} + two)),
             (Usages{usage::kX, usage::kY}));
-  // but stops at a usage that is already on it: page 2: c5; page 1: 30; page 0c: 40; then page 1.
+  // but not to usages that are on that page already. Usages: page 2: c5; page 1: 30; page 0c: 40;
+  // then page 1 follows.
   EXPECT_EQ(usages(game_pad({0x05, 0x02, 0x09, 0xc5, 0x05, 0x01, 0x09, 0x30, 0x05, 0x0c, 0x09,
                              0x40, 0x05, 0x01, 0x25, 0x7f, 0x75, 0x08, 0x95, 0x03, 0x81, 0x02})),
             (Usages{usage::kBrake, usage::kX, 0x00010040}));
@@ -222,7 +223,7 @@ TEST(ReportDescriptor, LiesAreRefusedWithTheByte) {
 }
 
 TEST(ReportDescriptor, DeclaredCountsAllocateNothing) {
-  // 2^32 - 1 fields of 256 bits.
+  // The descriptor claims 2^32 - 1 fields of 256 bits.
   EXPECT_EQ(cause({0x76, 0x00, 0x01, 0x97, 0xff, 0xff, 0xff, 0xff, 0x81, 0x02}),
             "byte 8: report 0 grows to 1099511627520 bits, at most 131072 are read");
   EXPECT_EQ(cause({0x75, 0x01, 0x97, 0xff, 0xff, 0x01, 0x00, 0x81, 0x02}),

@@ -23,7 +23,7 @@ ReportDescriptor parsed(const std::vector<std::uint8_t>& bytes) {
   return value_of(parse_descriptor(bytes));
 }
 
-// An application collection around X, Y (bytes) and what `items` states.
+// A descriptor: an application collection with X, Y (bytes) and what `items` state.
 std::vector<std::uint8_t> pad_with(std::uint8_t application, std::vector<std::uint8_t> items) {
   std::vector<std::uint8_t> bytes = {0x05, 0x01, 0x09, application, 0xa1, 0x01, 0x15,
                                      0x00, 0x26, 0xff, 0x00,        0x75, 0x08, 0x95,
@@ -33,7 +33,7 @@ std::vector<std::uint8_t> pad_with(std::uint8_t application, std::vector<std::ui
   return bytes;
 }
 
-// Code by usage, -1 for none; without X and Y. A repeated usage gets the suffix `.2`.
+// The code of each usage except X and Y; -1: none. A repeated usage has the suffix `.2`.
 std::map<std::string, int> codes_of(std::uint8_t application,
                                     const std::vector<std::uint8_t>& items) {
   const ReportDescriptor d = parsed(pad_with(application, items));
@@ -145,7 +145,8 @@ TEST(EvdevCodes, RelativeFieldsAndOtherApplicationsHaveNone) {
 }
 
 TEST(EvdevCodes, ADescriptorWithoutAPadHasNone) {
-  const auto codes = evdev_codes(parsed(pad_with(0x02, kEighteenButtons)));  // a mouse
+  // The application is a mouse.
+  const auto codes = evdev_codes(parsed(pad_with(0x02, kEighteenButtons)));
   EXPECT_EQ(codes.size(), 20u);
   EXPECT_TRUE(std::all_of(codes.begin(), codes.end(), [](const auto& c) { return !c; }));
 }
@@ -157,7 +158,7 @@ TEST(UsageOfCode, NamesTheUsagesThatDefaultPadsAreReadBy) {
   EXPECT_EQ(usage_of_code(key(0x133), usage::kGamePad), 0x00090004u);
   EXPECT_EQ(usage_of_code(key(0x13e), usage::kGamePad), 0x0009000fu);
   EXPECT_EQ(usage_of_code(key(0x120), usage::kJoystick), 0x00090001u);
-  EXPECT_EQ(usage_of_code(key(0x2c4), usage::kJoystick), 0x00090015u);  // the 21st
+  EXPECT_EQ(usage_of_code(key(0x2c4), usage::kJoystick), 0x00090015u);  // usage of the 21st button
   EXPECT_EQ(usage_of_code(key(0x13b), usage::kJoystick), usage::kStart);
   EXPECT_EQ(usage_of_code(key(0x130), usage::kJoystick), 0xffe51130u);
   EXPECT_EQ(usage_of_code(key(0x220), usage::kGamePad), usage::kDpadUp);
@@ -217,7 +218,7 @@ class Node {
     EXPECT_TRUE(decode(layout_, report, pad_));
     return pad_;
   }
-  // Buttons pressed by one key.
+  // The buttons that one key presses.
   std::uint32_t buttons_of(std::uint16_t code) {
     set_key(code, true);
     const std::uint32_t buttons = state().buttons;
@@ -327,7 +328,7 @@ TEST(EvdevLayout, PadsOnTheirKernelDriversAreNamedByPosition) {
         EXPECT_EQ(node.buttons_of(code), bit(button)) << code;
     if (row.has_triggers) {
       expect_triggers(node);
-    } else {  // they are keys
+    } else {  // other pads' triggers are keys
       node.set_key(0x138, true);
       node.set_key(0x139, true);
       EXPECT_FLOAT_EQ(node.state().axis[kLeftTrigger], 1.0f);
@@ -356,7 +357,7 @@ TEST(EvdevLayout, AJoystickIsStatedAsOne) {
   EXPECT_EQ(node.layout().descriptor.applications[0], usage::kJoystick);
   EXPECT_TRUE(node.layout().is_pad);
   node.set_axis(0, 1023);
-  node.set_axis(5, 0);  // the twist of a flight stick
+  node.set_axis(5, 0);  // the axis of a flight stick's twist
   EXPECT_FLOAT_EQ(node.state().axis[kLeftX], 1.0f);
   EXPECT_FLOAT_EQ(node.state().axis[kRightX], 0.0f) << "a twist is no right stick";
 }
@@ -370,13 +371,13 @@ TEST(EvdevLayout, AxesOfWidestRangesAndValuesOutsideThem) {
   EXPECT_FLOAT_EQ(node.state().axis[kLeftX], -1.0f);
   node.set_axis(0, kHighest);
   EXPECT_FLOAT_EQ(node.state().axis[kLeftX], 1.0f);
-  node.set_axis(1, -1);  // uninitialised, below its range
+  node.set_axis(1, -1);  // an uninitialised value below the axis's range
   EXPECT_FLOAT_EQ(node.state().axis[kLeftY], 1.0f);
   node.set_axis(1, kHighest);
   EXPECT_FLOAT_EQ(node.state().axis[kLeftY], -1.0f);
   node.set_axis(3, 32767);
   EXPECT_FLOAT_EQ(node.state().axis[kRightX], 1.0f);
-  node.set_axis(4, 77);  // no range: no position
+  node.set_axis(4, 77);  // the axis has no range, so it has no position
   EXPECT_FLOAT_EQ(node.state().axis[kRightY], 0.0f);
 }
 
@@ -404,7 +405,7 @@ TEST(EvdevLayout, WhateverANodeClaimsItIsADescriptorAndAShortReport) {
 
 TEST(EvdevLayout, EveryCodeStandsWhereTheDescriptorSaysSo) {
   EvdevAbilities abilities = playstation_node();
-  abilities.axes.push_back({0x12, -1, 1});  // a second hat
+  abilities.axes.push_back({0x12, -1, 1});  // the axes of a second hat
   abilities.axes.push_back({0x13, -1, 1});
   abilities.axes.push_back({0x28, 0, 70000});
   abilities.keys.insert(abilities.keys.begin(), {30, 158, 172, 240});

@@ -30,7 +30,7 @@ inline Report report_of(const std::vector<std::uint8_t>& bytes, std::int64_t tim
   return report;
 }
 
-// A recording's first device.
+// The first device of a recording.
 struct RecordedPad {
   Trace trace;
   PadLayout layout;
@@ -65,7 +65,7 @@ inline void expect_push_of_dualshock(const Trace& trace, const std::string& name
   EXPECT_TRUE(pressed(state, kButtonA));
 }
 
-// Names separated by blanks.
+// The names of these buttons, separated by blanks.
 inline std::string names_of(std::uint32_t buttons) {
   std::string names;
   for (std::size_t b = 0; b < kButtonNames.size(); ++b) {
@@ -97,7 +97,7 @@ inline void expect_state(const PadState& state, const std::string& words) {
   EXPECT_EQ(names_of(state.buttons), names_of(buttons)) << "of: " << words;
 }
 
-// xpad, drivers/input/joystick/xpad.c.
+// The event node that xpad makes (drivers/input/joystick/xpad.c).
 inline EvdevAbilities xpad_node() {
   return {{{0, -32768, 32767},
            {1, -32768, 32767},
@@ -109,7 +109,8 @@ inline EvdevAbilities xpad_node() {
            {0x11, -1, 1}},
           {0x130, 0x131, 0x133, 0x134, 0x136, 0x137, 0x13a, 0x13b, 0x13c, 0x13d, 0x13e}};
 }
-// hid-playstation and hid-sony: all eight bits wide, both ways of a trigger.
+// The event node that hid-playstation and hid-sony make: all axes have eight bits, and a trigger is
+// an axis and a key.
 inline EvdevAbilities playstation_node() {
   return {
       {{0, 0, 255},

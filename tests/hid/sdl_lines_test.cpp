@@ -167,8 +167,8 @@ struct PadRow {
 
 TEST(SdlMapping, NumbersAreCountedByTheCodesThatANodeHasOrWouldHave) {
   PadRow kRows[] = {
-      // Different wiring: by usages alone the right stick would be Rx, Ry and button 1 the left
-      // one. Codes X 0, Y 1, Z 2, Rx 3, Rz 5: a3 is Rx, which no control has, a4 is Rz.
+      // The pads are wired differently: by usages alone the right stick would be Rx, Ry and button
+      // 1 the left one. Codes X 0, Y 1, Z 2, Rx 3, Rz 5: a3 is Rx, which no control has, a4 is Rz.
       {MadePad(usage::kJoystick, {usage::kX, usage::kY, usage::kZ, usage::kRx, usage::kRz}, 1,
                buttons(12)),
        "03000000790000000600000010010000,Generic USB "
@@ -179,7 +179,7 @@ TEST(SdlMapping, NumbersAreCountedByTheCodesThatANodeHasOrWouldHave) {
        {"y", "b", "a", "x", "leftshoulder", "rightshoulder", "", "", "back", "start", "leftstick",
         "rightstick"},
        {kLeftX, kLeftY, kRightY, -1, kRightX}},
-      // xpad: A B X Y TL TR SELECT START MODE THUMBL THUMBR; triggers on Z and Rz.
+      // xpad has the keys A B X Y TL TR SELECT START MODE THUMBL THUMBR; triggers are on Z and Rz.
       {evdev_pad(xpad_node()),
        "030000005e0400008e02000014010000,X360 Controller,a:b0,b:b1,back:b6," + kHat +
            "guide:b8,leftshoulder:b4,leftstick:b9,lefttrigger:a2,leftx:a0,lefty:a1,"
@@ -188,7 +188,8 @@ TEST(SdlMapping, NumbersAreCountedByTheCodesThatANodeHasOrWouldHave) {
        {"a", "b", "x", "y", "leftshoulder", "rightshoulder", "back", "start", "guide", "leftstick",
         "rightstick"},
        {kLeftX, kLeftY, kLeftTrigger, kRightX, kRightY, kRightTrigger}},
-      // hid-playstation: SOUTH EAST NORTH WEST TL TR TL2 TR2 SELECT START MODE THUMBL THUMBR.
+      // hid-playstation has the keys SOUTH EAST NORTH WEST TL TR TL2 TR2 SELECT START MODE THUMBL
+      // THUMBR.
       {evdev_pad(playstation_node()),
        "030000004c050000e60c000011810000,PS5 Controller,a:b0,b:b1,back:b8," + kHat +
            "guide:b10,leftshoulder:b4,leftstick:b11,lefttrigger:a2,leftx:a0,lefty:a1,"
@@ -251,7 +252,7 @@ TEST(SdlMapping, AnAdapterForTwoPadsIsReadAsItsFirst) {
   EXPECT_FALSE(pressed(state, kButtonB));
 }
 
-// The second hat of a node is stated as two axes of -1, 0, 1: it is still h1.
+// The second hat of a node is stated as two axes of -1, 0, 1, but SDL's name for it is h1.
 TEST(SdlMapping, AHatMayBeTwoAxes) {
   MadePad pad = evdev_pad({kStick, {0x130}});
   pad.device.mapping = kAnyGuid + "a:b0,leftx:a0,lefty:a1,x:h0.8,dpup:h1.1,";
@@ -462,7 +463,7 @@ std::vector<KnownPad> known_pads() {
   return pads;
 }
 
-// Controls and their sources.
+// Controls by name, and the sources of each.
 using Controls = std::map<std::string, std::set<std::string>>;
 Controls controls_of(const std::string& line) {
   Controls controls;
@@ -508,7 +509,7 @@ void expect_same_reading(const KnownPad& pad, const std::string& line) {
   for (int i = 0; i < 300; ++i) {
     for (const ReportLayout& r : pad.layout.reports) {
       const Report report = random_report(r, random);
-      // The kernel reads a replaced report differently.
+      // The kernel reads a report whose descriptor is replaced differently.
       if (!layout_of(pad.layout, report)->exact_sizes.empty()) continue;
       ASSERT_TRUE(decode(pad.layout, report, own));
       ASSERT_TRUE(decode(*layout, report, read_back));
@@ -575,12 +576,12 @@ TEST(SdlMappingWrite, AxesAndButtonsAreThoseOfSdlsDataBase) {
     const bool is_known =
         std::any_of(lines.begin(), lines.end(), [&](const Controls& c) { return agrees(mine, c); });
     if (is_known) agreed.insert(line->substr(8, 4) + line->substr(16, 4));
-    // Its only mapping lacks the sticks, which the pad's descriptor has.
+    // The data base's only mapping of this pad lacks the sticks, which the pad's descriptor has.
     const bool is_pokken = pad.device.vendor == 0x0f0d && pad.device.product == 0x0092;
     EXPECT_TRUE(is_known || is_pokken || lines.empty()) << pad.path << "\n" << *line;
   }
-  // Least significant byte first: DualShock 4, DualSense, Edge, Dual Action and F310, PlayStation
-  // Classic, DualShock 3, Xbox One S, Elite 2 and Series on Bluetooth.
+  // Vendor and product, least significant byte first: DualShock 4, DualSense, Edge, Dual Action and
+  // F310, PlayStation Classic, DualShock 3, Xbox One S, Elite 2 and Series on Bluetooth.
   for (const char* ids : {"4c05cc09", "4c05e60c", "4c05f20d", "6d0416c2", "4c05da0c", "4c056802",
                           "5e04fd02", "5e04050b", "5e04130b"}) {
     EXPECT_TRUE(agreed.count(ids)) << ids;
@@ -601,7 +602,7 @@ KnownPad dualsense_node() {
   return pad;
 }
 
-// The data base's own line, `030000004c050000e60c000011810000,PS5 Controller,...`.
+// The expected line is the data base's own, `030000004c050000e60c000011810000,PS5 Controller,...`.
 TEST(SdlMappingWrite, AnEventNodeUnderItsKernelDriverGivesTheLineOfTheDataBase) {
   const KnownPad pad = dualsense_node();
   const auto line = sdl_mapping_text(pad.device, pad.layout);
@@ -616,9 +617,9 @@ TEST(SdlMappingWrite, AnEventNodeUnderItsKernelDriverGivesTheLineOfTheDataBase) 
 TEST(SdlMappingWrite, TurnedSticksAreWrittenAsTheyLie) {
   const KnownPad pad = dualsense_node();
   StickAxes sticks = kAxesAsLaidOut;
-  sticks[kLeftX] = {kLeftX, true};     // right is where the layout's x falls
-  sticks[kRightX] = {kRightY, false};  // right is where the layout says forward
-  sticks[kRightY] = {kRightX, true};   // forward is where the layout says left
+  sticks[kLeftX] = {kLeftX, true};     // the stick's right is where the layout's x falls
+  sticks[kRightX] = {kRightY, false};  // the stick's right is where the layout says forward
+  sticks[kRightY] = {kRightX, true};   // the stick's forward is where the layout says left
   const auto line = sdl_mapping_text(pad.device, pad.layout, sticks);
   ASSERT_TRUE(line);
   const Controls controls = controls_of(*line);
@@ -626,7 +627,7 @@ TEST(SdlMappingWrite, TurnedSticksAreWrittenAsTheyLie) {
   EXPECT_EQ(controls.at("lefty"), std::set<std::string>{"a1"});
   // ABS_RY grows backwards, so "forward" is its low end, and right falls with it.
   EXPECT_EQ(controls.at("rightx"), std::set<std::string>{"a4~"});
-  // SDL's righty grows backwards, like x here.
+  // SDL's righty grows backwards, as this pad's x does here.
   EXPECT_EQ(controls.at("righty"), std::set<std::string>{"a3"});
 
   DeviceInfo mapped = pad.device;
@@ -672,7 +673,7 @@ TEST(SdlMappingWrite, ANameCannotBreakTheLine) {
   EXPECT_EQ(controls_of(*line).size(), 21u);
 }
 
-// SDL 2.26: bus, checksum 0, then the name if there are no ids.
+// The GUID in SDL 2.26: bus, checksum 0, then the name if there are no ids.
 TEST(SdlMappingWrite, APadWithoutIdsIsKnownByItsName) {
   KnownPad pad = dualsense_node();
   pad.device.vendor = pad.device.product = 0;

@@ -7,7 +7,8 @@
 namespace gaitpad {
 namespace {
 
-// A joystick with these axes, then buttons, in one report without an id, padded to bytes.
+// A joystick with these axes, then buttons, in one report without an id; the report is padded to
+// whole bytes.
 struct MadeStick {
   struct Axis {
     std::uint32_t usage;
@@ -36,7 +37,7 @@ struct MadeStick {
   }
 };
 
-// X and Y alone.
+// A descriptor with X and Y alone.
 std::vector<std::uint8_t> made_pad_descriptor() {
   MadeStick stick;
   stick.axes = {{usage::kX, 255, 8}, {usage::kY, 255, 8}};
@@ -72,7 +73,7 @@ std::vector<std::uint8_t> switch_descriptor() {
 }
 
 constexpr int kMid = 2048, kEnd = 4095;
-// Report 0x30 over Bluetooth: three bytes of buttons, four numbers of 12 bits.
+// Report 0x30 over Bluetooth: three bytes of buttons, then four numbers of 12 bits.
 struct SwitchReport {
   std::uint16_t product;
   std::array<std::uint8_t, 3> buttons;
@@ -98,7 +99,7 @@ constexpr std::uint16_t kLeft = 0x2006, kRight = 0x2007, kPair = 0x2008, kSnes =
 const SwitchReport kSwitchReports[] = {
     {kLeft, {0, 0, 0}, {kEnd, kMid, 0, 0}, "left_y 1"},
     {kLeft, {0, 0, 0}, {kMid, kEnd, 0, 0}, "left_x -1"},
-    {kLeft, {0xff, 0, 0}, {kMid, kMid, 0, 0}, ""},  // buttons of the right one
+    {kLeft, {0xff, 0, 0}, {kMid, kMid, 0, 0}, ""},  // the buttons of the right Joy-Con do not count
     {kLeft, {0, 0, 0x08}, {kMid, kMid, 0, 0}, "buttons a"},
     {kLeft, {0, 0, 0x01}, {kMid, kMid, 0, 0}, "buttons b"},
     {kLeft, {0, 0, 0x02}, {kMid, kMid, 0, 0}, "buttons x"},
@@ -151,7 +152,7 @@ TEST_F(ShippedPads, NoButtonIsReadFromTheBytesOfSticks) {
   for (const UnnamedButton& button : layout_.unnamed) EXPECT_NE(button.report_id, 0x30);
 }
 
-// Report of the Deck: version 1, type 9, 64 bytes.
+// A report of the Steam Deck: version 1, type 9, 64 bytes.
 std::vector<std::uint8_t> deck_report(std::uint64_t buttons, std::array<int, 6> axes) {
   std::vector<std::uint8_t> report(64);
   report[0] = 1;
@@ -197,8 +198,8 @@ TEST_F(ShippedPads, TheSteamDeckIsReadFromItsVendorReports) {
   EXPECT_FALSE(layout_.is_pad);
 }
 
-// Reports of a Steam Controller as drivers/pads/steam.cpp passes them on; an Ultimate 2 in its own
-// mode.
+// Reports of a Steam Controller as drivers/pads/steam.cpp passes them on, and of an Ultimate 2 in
+// its own mode.
 TEST_F(ShippedPads, VendorReportsOverBluetoothAndRadio) {
   take(0x28de, 0x1106, made_pad_descriptor());
   EXPECT_TRUE(layout_.is_pad);
@@ -211,7 +212,8 @@ TEST_F(ShippedPads, VendorReportsOverBluetoothAndRadio) {
   expect_read(report, "left_x 1 left_y 1 right_trigger 1 buttons a dpright paddle1 paddle4");
 }
 
-// Lines of the community's data base that SDL's own list does not have.
+// The expected numbers are from lines of the community's data base that SDL's own list does not
+// have.
 TEST_F(ShippedPads, DragonRisePadsOfEachKind) {
   MadeStick stick;
   stick.buttons = 16;
@@ -275,7 +277,7 @@ TEST_F(ShippedPads, SingleJoyConsAreHeldSidewaysOnTheKernelsNodesToo) {
   take(info);
   EXPECT_TRUE(layout_.is_pad);
   EvdevState state;
-  state.axis[4] = -32767;  // its own up
+  state.axis[4] = -32767;  // up on the Joy-Con itself
   state.keys[0x131] = true;
   Report report;
   put_state(nodes, state, report);

@@ -15,7 +15,7 @@ namespace {
 
 std::string name_of(const Motion& m, int joint) { return m.skeleton.joints[joint].name; }
 
-// hip knee ankle toe toe_end
+// The names of a leg's joints: hip knee ankle toe toe_end.
 std::string leg_text(const Motion& m, Side side) {
   const LegJoints& l = m.legs[side];
   return name_of(m, l.hip) + " " + name_of(m, l.knee) + " " + name_of(m, l.ankle) + " " +
@@ -152,7 +152,7 @@ TEST(Legs, ASkeletonWithoutTwoLegsIsRefusedWithOneSentence) {
   ASSERT_FALSE(m);
   EXPECT_EQ(m.error().message,
             "a.bvh: no two legs (hip, knee, ankle and foot on two sides) in the skeleton");
-  // Legs of very different length are not a pair.
+  // Two legs of very different length are not a pair.
   const auto odd = motion_from_bvh(
       replaced(WalkerText().text(), "RightLeg\n{\nOFFSET 0 -40 0", "RightLeg\n{\nOFFSET 0 -4 0"),
       "a.bvh");
@@ -241,7 +241,7 @@ struct Made {
 };
 
 struct Names {
-  std::string collar, shoulder, elbow, wrist;  // "#" stands for the side
+  std::string collar, shoulder, elbow, wrist;  // names in which "#" stands for the side
 };
 std::string sided(std::string name, const std::string& side) {
   const auto at = name.find('#');
@@ -286,7 +286,8 @@ TEST(UpperBodyJoints, AreFoundByTheNamesThatSkeletonsUse) {
       {large, {"J_#_Clavicle", "J_#_Shoulder", "J_#_Elbow", "J_#_Hand"}},
   };
   for (const auto& [sides, names] : all) {
-    const auto& names_of_sides = sides;  // clang 14 captures no structured binding
+    // A copy, because clang 14 cannot capture a structured binding.
+    const auto& names_of_sides = sides;
     const Made m = made(names, sides);
     const UpperBodyJoints found = m.found();
     for (int side = 0; side < 2; ++side) {

@@ -17,7 +17,7 @@ constexpr double kFrameS = 0.01, kCycleS = 1.1, kFlightS = 0.4, kStrideM = 1.2, 
 struct FootAt {
   double z_m, height_m;
 };
-FootAt foot_at(double time_s) {  // lifts at 0, kCycleS, ...
+FootAt foot_at(double time_s) {  // the foot lifts at 0, kCycleS, ...
   const double cycle = std::floor(time_s / kCycleS);
   const double u = std::min(1.0, (time_s - cycle * kCycleS) / kFlightS);
   const double bump = 64.0 * u * u * u * (1.0 - u) * (1.0 - u) * (1.0 - u);
@@ -45,7 +45,7 @@ Motion walk(double start_s, int frames) {
       const FootAt foot = foot_at(time_s - (side == kLeftSide ? 0.5 * kCycleS : 0.0));
       const int hip = 1 + 4 * side;
       frame.translation_m[hip] = vec3(0.0);
-      // The knee's place is arbitrary; only the ankle matters.
+      // The knee's place is arbitrary, because only the ankle matters.
       frame.translation_m[hip + 2] =
           vec3(0.0, 0.1 + foot.height_m - 0.5, foot.z_m - frame.root_m.z);
     }
@@ -58,8 +58,9 @@ Motion walk(double start_s, int frames) {
 TEST(Flight, LiftAndLandAreWhereTheFootStartsAndStops) {
   const Motion m = walk(0.8, 260);
   const auto right = swings(m, kRightSide), left = swings(m, kLeftSide);
-  ASSERT_EQ(right.size(), 2u);  // lifts at 1.1 and 2.2 s of 0.8 .. 3.4 s; the third is cut
-  ASSERT_EQ(left.size(), 2u);   // 1.65 and 2.75 s
+  // Lifts at 1.1 and 2.2 s within 0.8 .. 3.4 s; the third flight is cut off.
+  ASSERT_EQ(right.size(), 2u);
+  ASSERT_EQ(left.size(), 2u);  // lifts at 1.65 and 2.75 s
   for (int i = 0; i < 2; ++i) {
     EXPECT_NEAR(right[i].lift * kFrameS + 0.8, 1.1 + i * kCycleS, 0.011);
     EXPECT_NEAR(right[i].land * kFrameS + 0.8, 1.1 + i * kCycleS + kFlightS, 0.011);
@@ -81,7 +82,8 @@ TEST(Flight, HeelOffIsTheLastLowBeforeTheLift) {
 }
 
 TEST(Flight, ASwingCutByTheFilesEndsIsNone) {
-  EXPECT_TRUE(swings(walk(1.2, 80), kRightSide).empty());  // from inside one to before the next
+  // The clip begins within one flight and ends before the next.
+  EXPECT_TRUE(swings(walk(1.2, 80), kRightSide).empty());
   EXPECT_FALSE(robust_flight(walk(1.2, 80), kRightSide));
 }
 
@@ -103,7 +105,8 @@ TEST(Flight, APostureFarInFrontOfTheMotionChangesNothing) {
 }
 
 TEST(Flight, ALoopingClipIsSearchedOverItsEnd) {
-  const Motion m = walk(1.3, 111);  // one cycle, first pose = last; begins inside the right swing
+  // One cycle, whose first pose is its last; it begins within the right foot's flight.
+  const Motion m = walk(1.3, 111);
   const auto right = swings(m, kRightSide);
   ASSERT_EQ(right.size(), 1u);
   EXPECT_NEAR(right[0].lift * kFrameS, 0.9, 0.011);
@@ -124,7 +127,7 @@ TEST(Flight, StandingHoldsNoFlight) {
 TEST(Flight, AStepTooShortToCarryAStrideIsNone) {
   Motion m = walk(0.8, 300);
   const auto all = swings(m, kRightSide);
-  const auto best = robust_flight(m, kRightSide);  // the typical one of them
+  const auto best = robust_flight(m, kRightSide);  // the most typical flight of the clip
   ASSERT_TRUE(best);
   EXPECT_TRUE(std::ranges::any_of(all, [&](const Swing& s) { return s.lift == best->lift; }));
   for (MotionFrame& f : m.frames) {
@@ -134,7 +137,8 @@ TEST(Flight, AStepTooShortToCarryAStrideIsNone) {
   EXPECT_TRUE(swings(m, kRightSide).empty());
 }
 
-// Figure 2: a stride of 40 frames, low at 4, peak at 15, low at 35, with a "blip" while falling.
+// The heights of figure 2: a stride of 40 frames, low at 4, peak at 15, low at 35, with a "blip"
+// while falling.
 std::vector<double> figure_2(double blip) {
   std::vector<double> h;
   for (int f = 0; f <= 4; ++f) h.push_back(0.004 * (4 - f));
@@ -165,7 +169,8 @@ TEST(PaperFlight, TheFirstLowCountsEvenWhereTheFootStillStands) {
 
 TEST(PaperFlight, OneHighStepElsewhereBreaksIt) {
   std::vector<double> h = figure_2(-0.011);
-  h.insert(h.begin(), {1.0, 0.9});  // range 1 m: the peak of 0.22 m is outside the band
+  // The range becomes 1 m, so the peak of 0.22 m is outside the band.
+  h.insert(h.begin(), {1.0, 0.9});
   EXPECT_FALSE(paper_flight(h));
 }
 
@@ -189,7 +194,8 @@ TEST(Flight, SharedWalksGiveBothFeetByTheRobustRuleAndSevenByThePapers) {
   EXPECT_EQ(literal, 7);
 }
 
-// Speed of the raw ankle over 50 ms and its crossings of a fifth of the peak; a loop is read twice.
+// Speed of the captured ankle over 50 ms, and its crossings of a fifth of the peak; a loop is read
+// twice.
 class Speed {
  public:
   Speed(const Motion& m, Side side) : frame_s_(m.frame_time_s) {

@@ -1,5 +1,5 @@
 // The best stride of a motion as a periodic walk: from the procedural motion with typical faults of
-// captures, and from real clips if they are present.
+// captures, and from captured clips if they are present.
 #include "gaitpad/gait_cycle.h"
 
 #include <gtest/gtest.h>
@@ -49,7 +49,7 @@ double angle_difference(const GaitCycle& cycle) {
   return best;
 }
 
-// The same walk with a still root: the hips carry the position, as in some exports.
+// The walk with a still root: the hips carry the position, as in some exports.
 Motion under_still_root(const Motion& plain) {
   Motion m = plain;
   m.skeleton.joints.insert(m.skeleton.joints.begin(), {"Reference", -1, vec3(0.0), false});
@@ -210,7 +210,8 @@ TEST(GaitCycle, AFarPoseInFrontDoesNotMatter) {
 
 TEST(GaitCycle, ZeroLengthEndSitesBecomeToes) {
   Motion m = procedural_motion();
-  for (LegJoints& leg : m.legs) {  // as if the foot ended in an End Site without length
+  // Removes the toe's end, as if the foot ended in an End Site without length.
+  for (LegJoints& leg : m.legs) {
     m.skeleton.joints[leg.toe].offset_m = vec3(0.0);
     m.skeleton.joints[leg.toe_end].offset_m = vec3(0.0);
   }
@@ -225,8 +226,8 @@ TEST(GaitCycle, ALowSlowShuffleIsAWalk) {
       made_walk({.stride_m = 0.30, .stride_s = 1.4, .stance = 0.72, .lift_m = 0.01, .end_s = 6.0}));
   ASSERT_TRUE(cycle) << cycle.error().message;
   EXPECT_NEAR(cycle->stride_m, 0.30, 0.003);
-  // At 12 m/s^2 a foot is as fast as a leaving toe after 17 ms, and as slow as a heel that has
-  // struck 26 ms before its end.
+  // With an acceleration of 12 m/s^2 a foot reaches the speed of a leaving toe after 17 ms, and
+  // falls to that of a struck heel 26 ms before its end.
   EXPECT_NEAR(cycle->toe_off[kLeftSide], 0.72 - 0.5 + 0.043 / 1.4, 0.015);
 }
 
@@ -266,7 +267,7 @@ TEST(GaitCycle, AStepToLimpWalksBackwardsInACurveWithoutSuddenJoints) {
   const WalkModel model = value_of(walk_model(clean_cycle(value_of(cycle)), {}));
   Pose pose, before;
   WalkState state = standing(model, vec3(0.0), pose);
-  double fastest_deg = 0.0;  // in a tick
+  double fastest_deg = 0.0;  // largest turn of a joint in a tick
   for (int tick = 0; tick < 240 * 6; ++tick) {
     Stick stick;
     stick.left = {tick % 700 < 350 ? 0.6 : -0.6, -0.5};
@@ -304,13 +305,13 @@ TEST(GaitCycle, WhatIsNoWalkSaysWhyInOneSentence) {
             }),
        "procedural: walks on the spot: the hips go 0.0"},
       {bent(procedural_motion(), [](Motion& m) { std::ranges::reverse(m.frames); }), ""},
-      {cut(0, 60), "cut.bvh: "},  // half a stride
+      {cut(0, 60), "cut.bvh: "},  // the clip has half a stride
       {made_walk({.stride_s = 0.8, .stance = 0.28, .lift_m = 0.15}),
        "made.bvh: holds no walk: both feet leave the floor, it is a run"},
       // Feet lifted as low as in a shuffle: heights do not show that both are in the air.
       {made_walk({.stride_s = 0.9, .stance = 0.35, .lift_m = 0.005}),
        "made.bvh: holds no walk whose events are in order: the "},
-      // At a higher speed it is reported as a run.
+      // At a higher speed the same flight is reported as a run.
       {made_walk({.stride_m = 1.6, .stride_s = 0.65, .stance = 0.35, .lift_m = 0.005}),
        "made.bvh: holds no walk: both feet are in the air for 0."},
       {bent(cut(0, 60), [](Motion& m) { m.frame_time_s *= 0.25; }), " s, it is a run"},

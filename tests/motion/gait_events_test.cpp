@@ -15,9 +15,9 @@ constexpr double kRate_hz = 240.0, kStride_s = 1.1, kStride_m = 1.4, kOff = 0.62
 
 double smooth(double u) { return u * u * (3.0 - 2.0 * u); }
 
-// One foot over one stride. It strikes at 0: its heel comes down at 0.5 m/s and stops. Its toe
-// leaves at kOff and moves to the next place with constant acceleration, then constant
-// deceleration.
+// The points of one foot over one stride. The foot strikes at 0: its heel comes down at 0.5 m/s and
+// stops. Its toe leaves at kOff and moves to the next place with constant acceleration, then
+// constant deceleration.
 struct Points {
   vec3 heel_m, toe_m;
 };
@@ -33,7 +33,7 @@ Points points_at(double phase, double creep_m_s) {
   return {heel, toe};
 }
 
-// `left_at`: the phase of the left strike.
+// Tracks of both feet over a stride. `left_at`: the phase of the left strike.
 FeetTracks stride(double left_at, double creep_m_s = 0.0, double noise_m = 0.0,
                   double rate_hz = kRate_hz) {
   FeetTracks tracks;
@@ -97,7 +97,7 @@ TEST(GaitEvents, FeetThatSlideStillStrikeBeforeTheOtherToeLeaves) {
 }
 
 TEST(GaitEvents, OutOfOrderAreRefusedWithTheReason) {
-  // The left foot strikes 0.7 of a stride after the right one, which has left at 0.62.
+  // The left foot strikes 0.75 of a stride after the right one, which has left at 0.62.
   const auto events = stride_events(stride(0.75), kForward * kStride_m);
   ASSERT_FALSE(events);
   EXPECT_NE(events.error().message.find("the right toe leaves"), std::string::npos);
@@ -124,7 +124,7 @@ TEST(GaitEvents, OfAFileAreWhereItsFeetStartAndStop) {
     }
     strikes += s.strike.has_value();
   }
-  EXPECT_EQ(strikes, 8);  // at 0.6, 1.2, .. 4.8 s
+  EXPECT_EQ(strikes, 8);  // strikes at 0.6, 1.2, .. 4.8 s
 }
 
 }  // namespace

@@ -16,18 +16,18 @@ constexpr const char* kCapturedWalks[] = {
 
 struct MadeWalk {
   double stride_m = 1.2, stride_s = 1.2;
-  double stance = 0.62;        // of the stride
-  double left_at = 0.5;        // the left foot's strike; the right one's is at 0, 1, 2 strides
+  double stance = 0.62;        // duration of a stance, as a share of the stride
+  double left_at = 0.5;        // left foot's strike in strides; the right one's is at 0
   double left_behind_m = 0.0;  // shift of the left footprints backwards from even steps
-  double lift_m = 0.08;        // of the swinging foot
-  double start_s = 0.0;        // of the first frame
+  double lift_m = 0.08;        // height to which a swinging foot is lifted
+  double start_s = 0.0;        // time of the first frame
   double end_s = 5.0;
   double rate_hz = 120.0;
-  double slide_m_s = 0.0;  // of a standing foot
-  double hips_m = 0.74;    // height over the ankles; both legs always reach the ground
+  double slide_m_s = 0.0;  // speed of a standing foot
+  double hips_m = 0.74;    // height of the hips over the ankles; both legs always reach the ground
 };
 
-// A foot's height and travel: still from its strike, then through the air.
+// A foot's height and travel at a time: still after its strike, then in the air.
 struct MadeFoot {
   double height_m, z_m;
 };
@@ -41,7 +41,7 @@ inline MadeFoot foot_at(const MadeWalk& walk, double strides) {
   return {walk.lift_m * bump, place * walk.stride_m + slid_m + u * u * (3.0 - 2.0 * u) * rest_m};
 }
 
-// Thigh and shank of 0.42 m each, ankles 0.08 m high.
+// A walk with thighs and shanks of 0.42 m and ankles 0.08 m high.
 inline Motion made_walk(const MadeWalk& walk) {
   constexpr double kBone_m = 0.42, kAnkle_m = 0.08;
   Motion m;

@@ -77,7 +77,7 @@ def test_the_built_in_walk_swings_its_feet_in_order(told):
 
 
 def test_the_feet_swing_in_the_stride_that_is_walked(run):
-    """Which of four key-framed strides is walked; frames beyond the file belong to the next round of its loop."""
+    """The walked one of four key-framed strides; frames beyond the file belong to the next round of its loop."""
     text = run("motion", "keyframe_walk").stdout
     frames, first = (float(word) for word in re.search(r"gait +([\d.]+) frames from frame ([\d.]+)", text).groups())
     lifts = [int(word) for word in re.findall(r"flight +heel off .*?, lift (\d+)", text)]

@@ -16,8 +16,8 @@ const GaitCycle& walk() {
   return cycle;
 }
 
-// Adult set (gaitutils normal.gcd), degrees at every 8 % of the cycle: hip minus mean tilt, knee,
-// ankle.
+// Adults' angles (gaitutils normal.gcd) in degrees at every 8 % of the cycle: hip minus mean tilt,
+// knee, ankle.
 constexpr double kHip[] = {33.5, 32.3, 26.1, 17.9, 7.5,  -0.6, -6.5,
                            -9.8, -2.4, 14.8, 27.9, 34.3, 34.1};
 constexpr double kKnee[] = {0.4, 8.1, 15.4, 13.1, 6.5, 1.8, 2.0, 9.8, 36.9, 61.0, 61.0, 38.5, 8.4};
@@ -30,7 +30,8 @@ TEST(ProceduralGait, FollowsThePublishedCurves) {
     const LegAngles a = sample_at(walk(), 0.08 * i).leg[kRightSide].angles;
     EXPECT_NEAR(-a[kHipX] / kDegree, kHip[i] - kMeanTilt, 2.0) << i;
     EXPECT_NEAR(a[kKneeX] / kDegree, kKnee[i], 2.0) << i;
-    EXPECT_NEAR(-a[kAnkleX] / kDegree, kAnkle[i], 5.0) << i;  // plus the foot's correction of 3.5
+    // The tolerance includes the correction of 3.5 for the foot.
+    EXPECT_NEAR(-a[kAnkleX] / kDegree, kAnkle[i], 5.0) << i;
   }
 }
 
@@ -54,7 +55,7 @@ TEST(ProceduralGait, LegIsAnAdultsAndSpeedIsTheChosenOne) {
   EXPECT_DOUBLE_EQ(c.leg[kLeftSide].length_m(), 0.84);
   EXPECT_NEAR(c.stride_m / c.duration_s, 1.25, 0.01);
   const double steps_per_minute = 120.0 / c.duration_s;
-  EXPECT_GT(steps_per_minute, 99.0);  // paper-notes 4.1: 99 to 113
+  EXPECT_GT(steps_per_minute, 99.0);  // adults: 99 to 113 (paper-notes 4.1)
   EXPECT_LT(steps_per_minute, 113.0);
   EXPECT_NEAR(c.step_m[kLeftSide] + c.step_m[kRightSide], c.stride_m, 1e-12);
 }
@@ -107,7 +108,7 @@ TEST(ProceduralGait, ArmsSwingAgainstTheLegs) {
   const GaitCycle& c = walk();
   Pose pose;
   const auto world = std::make_unique<JointFrames>();
-  sample_local(c, 0.0, pose);  // right foot in front
+  sample_local(c, 0.0, pose);  // the right foot is in front
   pose.root_m = sample_at(c, 0.0).pelvis_m;
   forward_kinematics(c.skeleton, pose, *world);
   const auto ahead = [&](const char* joint) { return world->position_m[c.skeleton.find(joint)].z; };

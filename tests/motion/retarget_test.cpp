@@ -31,10 +31,11 @@ Motion grown(Motion m, double factor) {
   return m;
 }
 
-// A bare skeleton's lowest joint counts as the sole; the procedural toe end rests above the floor.
+// Height of the toe end above the floor: a bare skeleton's lowest joint counts as the sole, but the
+// procedural toe end rests above the floor.
 vec3 flesh(const GaitCycle& source) { return source.leg[0].toe_end_rest_m * kUp; }
 
-// World rotations of all joints in a cycle's sample i.
+// World rotations of all joints in sample i of a cycle.
 std::vector<quat> sample_rotations(const GaitCycle& c, int i) {
   const std::size_t joints = c.skeleton.joints.size();
   return world_rotations(c.skeleton, std::span(c.local).subspan(i * joints, joints));
@@ -113,7 +114,8 @@ GaitCycle on_skeleton(const GaitCycle& source, const Motion& body) {
   return value_of(cycle_on_skeleton(source, body));
 }
 
-using Names = std::vector<std::pair<std::string, std::string>>;  // the procedural name, the other
+// Pairs of a name in the procedural skeleton and in the other one.
+using Names = std::vector<std::pair<std::string, std::string>>;
 const Names kArmsAndLegs = {{"LeftUpLeg", "LeftLeg"},
                             {"LeftShoulder", "LeftArm"},
                             {"LeftArm", "LeftForeArm"},
@@ -122,7 +124,7 @@ const Names kArmsAndLegs = {{"LeftUpLeg", "LeftLeg"},
                             {"Spine", "Chest"},
                             {"Neck", "Head"}};
 
-// 0: hanging arms, 90: a T pose.
+// Raises the arms: 0 degrees are hanging arms, 90 a T pose.
 Motion with_arms_raised(Motion body, double degrees) {
   auto& local = body.frames[0].local;
   local[body.skeleton.find("LeftArm")] = rotation_z(degrees * kDegree);
@@ -187,7 +189,8 @@ TEST(CycleOnSkeleton, ArmsOfOtherNamesTurnAsInTheSource) {
     };
     for (int i = 0; i < kCycleSamples; i += 9) {
       for (const auto& [from, to] : kArmsAndLegs) {
-        if (from == "LeftShoulder") continue;  // another body's raised collar bone stays
+        // A raised collar bone of the other body stays raised.
+        if (from == "LeftShoulder") continue;
         EXPECT_LT(glm::distance(bone(cycle, i, other(from), other(to)), bone(source, i, from, to)),
                   1e-9)
             << other(from);

@@ -1,5 +1,5 @@
-// Every shared motion loads, and walks or gives the known reason; a motion in two formats is the
-// same.
+// Every shared motion loads, and walks or gives the known reason; a motion in two formats gives the
+// same poses.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
@@ -23,14 +23,14 @@ class SharedMotions : public testing::Test {
 
 // The reason why a file is not a walk, by the data's index. All others walk.
 const std::map<std::string, std::string> kNoWalks = {
-    // kicks, jumps and runs
+    // Files of kicks, jumps and runs.
     {"cmu_002_03_iclone.bvh", "both feet are in the air for 0.14 s before a strike, it is a run"},
     {"cmu_01_01.amc", "holds no walk: both feet leave the floor, it is a run"},
     {"cmu_01_01.bvh", "holds no walk: both feet leave the floor, it is a run"},
     {"cmu_11_01.amc", "holds no walk whose events are in order: the left toe leaves"},
     {"cmu_11_01_motionbuilder.bvh", "holds no walk: both feet leave the floor, it is a run"},
     {"mass_run.bvh", "the hips go 2.92 m in 0.55 s, it is a run"},
-    // poses
+    // Files of single poses.
     {"skeleton.asf", "has fewer than 6 frames"},
     {"daz3d_170_joints.bvh", "has fewer than 6 frames"},
     {"geno_bind_6channels.bvh", "has fewer than 6 frames"},

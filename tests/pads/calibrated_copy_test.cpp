@@ -52,7 +52,7 @@ TEST_F(CalibratedCopyTest, HasThePadsCodesAndFinerSticks) {
 TEST_F(CalibratedCopyTest, SendsThePositionNotTheCount) {
   EXPECT_TRUE(copy->events(raw, {}).empty()) << "at rest";
   VirtualPadState state;
-  state.stick.left = vec2(0.5, 1.0);  // right and forward
+  state.stick.left = vec2(0.5, 1.0);  // the stick points right and forward
   state.trigger[1] = 0.5;
   raw.axis[ABS_X] = 177;
   EXPECT_EQ(copy->events(raw, state),

@@ -28,8 +28,8 @@ std::string folder_with(const char* config, const char* home) {
 
 TEST(CalibrationFolder, IsTheXdgConfigFolderWhereItIsAbsolute) {
   EXPECT_EQ(folder_with("/c", "/home/u"), "/c/gaitpad/calibration");
-  // XDG base directory specification: a relative path is invalid and ignored; an empty one counts
-  // as unset.
+  // By the XDG base directory specification a relative path is invalid and ignored; an empty one
+  // counts as unset.
   for (const char* invalid : {"c", "./c", ""})
     EXPECT_EQ(folder_with(invalid, "/home/u"), "/home/u/.config/gaitpad/calibration");
   EXPECT_EQ(folder_with(nullptr, "/home/u"), "/home/u/.config/gaitpad/calibration");
@@ -75,7 +75,7 @@ TEST(CalibrationFor, AnIdOfZerosOrBlanksOrBytesThatAreNoTextIsNone) {
     EXPECT_EQ(file.port, "usb-1/input0") << id;
   }
   EXPECT_EQ(calibration_for(pad("00:00:00:00:00:01"), false).port, "");
-  // Neither: for its model.
+  // With neither a unique id nor a port, the file is for the pad's model.
   const CalibrationFile model = calibration_for(pad("", ""), false);
   EXPECT_GT(calibration_fit(model, identity(pad("x", "y"))), 0);
 }
@@ -93,7 +93,7 @@ TEST(CalibrationFor, DriversAreNamedWhereTheOthersValuesDiffer) {
   EXPECT_EQ(drivers("sdl", 0x8111, false), (Names{"evdev", "sdl"}));
   for (const char* driver : {"hidraw", "usb", "evdev", "sdl"})
     EXPECT_EQ(drivers(driver, 0x0111, false), Names()) << driver;
-  EXPECT_EQ(drivers("hidraw", 0x8111, false), Names());  // that bit is evdev's
+  EXPECT_EQ(drivers("hidraw", 0x8111, false), Names());  // the bit counts only for nodes of evdev
 }
 
 TEST(CalibrationPath, TellsTheDeviceInItsName) {
@@ -225,7 +225,7 @@ TEST_F(SaveCalibration, AReadOnlyFolderIsToldAndTheOldFileStays) {
   ASSERT_EQ(problem(path_, 0.1), "none");
   fs::permissions(top_, fs::perms(0555));
   EXPECT_TRUE(holds_in_child([this] {
-    constexpr uid_t kNobody = 65534;  // root may write into every folder
+    constexpr uid_t kNobody = 65534;  // another user, because root may write into every folder
     if (::geteuid() == 0 && ::setuid(kNobody) != 0) return false;
     return problem(path_, 0.2) == path_ + ": cannot be written: Permission denied";
   }));
@@ -307,7 +307,7 @@ TEST(ChangesSince, TheSameStickHasNone) {
 TEST(ChangesSince, EachChangeHasBothNumbersAndWhatItMeans) {
   struct Row {
     void (*change)(CalibrationFile&);
-    const char* says;  // a part of it
+    const char* says;  // a part of the remark
   };
   for (const Row& row : {
            Row{[](CalibrationFile& f) { f.calibration.left.x.centre = 0.04; },
@@ -334,7 +334,7 @@ TEST(ChangesSince, EachChangeHasBothNumbersAndWhatItMeans) {
            {[](CalibrationFile& f) { f.measured[0]->circularity_error = 12.25; },
             "left stick: its circularity error is 12.2 %, 8.0 % in the file: the directions differ "
             "more in how far it reaches"},
-           // turned axes are the only remark
+           // A turned frame gives one remark and no others.
            {[](CalibrationFile& f) {
               f.calibration.left.frame = {RawDirection::plus_y, RawDirection::plus_x};
               f.calibration.left.x.centre = 0.5;
@@ -350,11 +350,11 @@ TEST(ChangesSince, EachChangeHasBothNumbersAndWhatItMeans) {
 }
 
 TEST(ChangesSince, WhatWasNotMeasuredTodayIsNotCompared) {
-  CalibrationFile now;  // every value differs
+  CalibrationFile now;  // a calibration in which every value differs
   EXPECT_EQ(changes_since(measured_file(), now), std::vector<std::string>());
   now.measured[0] = StickMeasured{};
   EXPECT_EQ(changes_since(measured_file(), now), std::vector<std::string>());
-  now.measured[0]->sigma = 0.002;  // it rested, but was not turned
+  now.measured[0]->sigma = 0.002;  // the stick rested, but was not turned
   now.calibration.left.x.centre = 0.3;
   EXPECT_EQ(changes_since(measured_file(), now).size(), 1u);
 }

@@ -23,7 +23,7 @@ namespace gaitpad {
 
 enum class FakeKind {
   sound,
-  always_ready,       // its descriptor is always ready, but there is nothing to read
+  always_ready,       // the descriptor is always ready, but there is nothing to read
   closed_descriptor,  // poll() reports POLLNVAL
 };
 
@@ -33,15 +33,15 @@ struct FakePad {
   FakeKind kind = FakeKind::sound;
   int failing_openings = 0;
   std::optional<FactorySticks> factory_sticks;
-  std::optional<std::int64_t> stamp_ns;  // of every report; the clock's if unset
+  std::optional<std::int64_t> stamp_ns;  // stamp of every report; the present time if unset
   std::atomic<int> openings{0}, closings{0};
   std::atomic<bool> keeps_closing{false};  // closing waits until this is false
   std::atomic<bool> keeps_opening{false};  // opening waits until this is false
   std::atomic<std::int64_t> lost{0};
   std::atomic<bool> is_raw{false};
   std::mutex mutex;
-  std::vector<Rumble> rumbles;  // under the mutex
-  int sockets[2] = {-1, -1};    // the pad's end, the device's end
+  std::vector<Rumble> rumbles;  // rumbles that the pad got, guarded by the mutex
+  int sockets[2] = {-1, -1};    // the pad's end and the device's end
 
   FakePad() { static_cast<void>(!::socketpair(AF_UNIX, SOCK_SEQPACKET, 0, sockets)); }
   ~FakePad() {
@@ -49,7 +49,7 @@ struct FakePad {
       if (fd >= 0) ::close(fd);
     }
   }
-  // Blocks while the reader is too slow. Returns false if unplugged.
+  // Sends a report; waits while the reader is too slow. Returns false if the pad is unplugged.
   bool send(const std::vector<std::uint8_t>& bytes) const {
     return ::send(sockets[0], bytes.data(), bytes.size(), MSG_NOSIGNAL) >= 0;
   }
@@ -105,7 +105,7 @@ class FakeDevice final : public Device {
   pollfd fd_;
 };
 
-enum : int { kHidraw, kEvdev, kUsb };  // positions in FakeBus::table()
+enum : int { kHidraw, kEvdev, kUsb };  // positions of the drivers in FakeBus::table()
 
 // The fake machine's sockets. Static, because a driver consists of two plain functions.
 class FakeBus {
@@ -119,7 +119,7 @@ class FakeBus {
   }
   int changes_fd() const { return changes_; }
 
-  // Drivers do not list the pad before show().
+  // Makes a pad, which drivers do not list before show().
   Pad make(int driver, const std::string& unique_id, const std::string& port) const {
     auto pad = std::make_shared<FakePad>();
     pad->listing.info = made_pad();
@@ -142,7 +142,7 @@ class FakeBus {
     show(driver, pad);
     return pad;
   }
-  // Sets the id late, like a kernel driver that asks the pad first.
+  // Sets the unique id later, as a kernel driver does that asks the pad first.
   void name_id(const Pad& pad, const std::string& unique_id) {
     {
       const std::lock_guard lock(mutex_);

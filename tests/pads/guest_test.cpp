@@ -25,8 +25,8 @@ std::unique_ptr<PadStream> stream_of(FakeBus& bus) {
   return value_of(PadStream::start(std::move(options)));
 }
 
-// A pad without an entry in any file, and a twin PlayStation 2 adapter that only SDL's library
-// knows.
+// Neither a pad without an entry in any file starts SDL, nor a twin PlayStation 2 adapter, whose
+// entry is only in SDL's library.
 TEST(Guest, SdlIsNotStartedForAPadsMapping) {
   DeviceInfo twin;
   twin.bus = BusType::usb;
@@ -60,7 +60,7 @@ TEST(Guest, AHostsOwnLibrariesRunBesideTwoStreams) {
     SDL_TLSCleanup();
   });
   const auto one = stream_of(bus);
-  const auto other = value_of(PadStream::start({}));  // with the machine's drivers
+  const auto other = value_of(PadStream::start({}));  // a second stream, with the machine's drivers
   EXPECT_TRUE(comes_true([&] { return one->front() != nullptr && rounds > 3; }));
   stop = true;
   host.join();

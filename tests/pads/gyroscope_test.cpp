@@ -1,4 +1,4 @@
-// Rates that are known are put into reports by the published layouts, byte by byte.
+// Puts known rates into reports by the published layouts, byte by byte.
 #include "pads/gyroscope.h"
 
 #include <gtest/gtest.h>
@@ -25,7 +25,7 @@ DeviceInfo pad(std::uint16_t vendor, std::uint16_t product, BusType bus = BusTyp
   return device;
 }
 
-// Counts of x, y, z at this byte.
+// Writes the counts of x, y, z at this byte.
 void put(Report& report, std::size_t at, std::array<int, 3> counts) {
   for (const int count : counts) {
     report.bytes[at++] = static_cast<std::uint8_t>(count & 0xff);
@@ -53,7 +53,7 @@ void expect_near(const TurnRates& found, const TurnRates& expected, double toler
   for (std::size_t i = 0; i < 3; ++i) EXPECT_NEAR(found[i], expected[i], tolerance) << i;
 }
 
-// 1000, -2000, 3000 counts of 2048 degrees a second in 32767.
+// Counts are 1000, -2000, 3000; 32767 counts are 2048 degrees a second.
 TEST(Gyroscope, SonysReportsHavePitchYawAndRoll) {
   constexpr std::array<int, 3> kCounts = {1000, -2000, 3000};
   const TurnRates expected = {62.502, -125.004, 187.506};
@@ -65,7 +65,8 @@ TEST(Gyroscope, SonysReportsHavePitchYawAndRoll) {
               expected, 1e-3);
 }
 
-// SDL hands on -y, z, -x; of the right Joy-Con y, -z, -x. 936 degrees a second in 13371 counts.
+// SDL converts to -y, z, -x, and for the right Joy-Con to y, -z, -x; 13371 counts are 936 degrees a
+// second.
 TEST(Gyroscope, SwitchPadsHaveThreeSamplesInAReport) {
   Report report = report_with(0x30, 64, 13 + 6, {1, 2, 3});
   put(report, 25 + 6, {4, 5, 6});
@@ -80,7 +81,7 @@ TEST(Gyroscope, SwitchPadsHaveThreeSamplesInAReport) {
   EXPECT_NEAR(meter.sample_rate_hz(), 200.0, 1.0) << "a report each 15 ms";
 }
 
-// Byte 12 of a pair's report is L or R; its gyroscope is the right one's.
+// Byte 12 of a pair's report is L or R; the pair's gyroscope is that of the right one.
 TEST(Gyroscope, APairOfJoyConsHasTheRightOnes) {
   Report left = report_with(0x30, 49, 13 + 6, {9, 9, 9});
   put(left, 37 + 6, {4000, 4000, 4000});
@@ -125,7 +126,7 @@ TEST(Gyroscope, OtherReportsDriversAndPadsHaveNone) {
   EXPECT_FALSE(GyroMeter().has_gyro());
 }
 
-// A second of this mean and standard deviation, in counts, 250 samples a second.
+// Plays a second of samples with this mean and standard deviation, in counts, 250 samples a second.
 void play(GyroMeter& meter, std::int64_t from_ms, std::array<double, 3> mean, double deviation,
           int milliseconds = 1000) {
   std::mt19937 random(7);
@@ -136,7 +137,7 @@ void play(GyroMeter& meter, std::int64_t from_ms, std::array<double, 3> mean, do
                            (1 + from_ms + t) * kMillisecond));
   }
 }
-constexpr double kCount = 2048.0 / 32767.0;  // degrees a second
+constexpr double kCount = 2048.0 / 32767.0;  // a count in degrees a second
 
 TEST(Gyroscope, RateBiasAndNoiseAreMeasuredWhileThePadLiesStill) {
   GyroMeter meter(pad(0x054c, 0x0ce6), {});
@@ -144,7 +145,7 @@ TEST(Gyroscope, RateBiasAndNoiseAreMeasuredWhileThePadLiesStill) {
   EXPECT_NEAR(meter.sample_rate_hz(), 250.0, 0.5);
   ASSERT_TRUE(meter.rest());
   EXPECT_NEAR(meter.rest()->duration_s, 4.0, 0.01);
-  // 1000 samples: the mean is known to 2 / sqrt(1000) counts, the deviation to 2.2 %.
+  // With 1000 samples the mean is known to 2 / sqrt(1000) counts, and the deviation to 2.2 %.
   expect_near(in_degrees(meter.rest()->bias_rad_s), {12.0 * kCount, -7.0 * kCount, 3.0 * kCount},
               4.0 * 2.0 * kCount / std::sqrt(1000.0));
   // Rounding to counts adds 1/12 to the variance.
@@ -154,9 +155,9 @@ TEST(Gyroscope, RateBiasAndNoiseAreMeasuredWhileThePadLiesStill) {
 
 TEST(Gyroscope, AHandIsNoRestAndALaterRestReplacesTheFirst) {
   GyroMeter meter(pad(0x054c, 0x0ce6), {});
-  play(meter, 0, {0.0, 0.0, 0.0}, 40.0, 3000);  // 2.5 degrees a second to and fro
+  play(meter, 0, {0.0, 0.0, 0.0}, 40.0, 3000);  // turns of 2.5 degrees a second to and fro
   EXPECT_FALSE(meter.rest());
-  play(meter, 3004, {400.0, 0.0, 0.0}, 1.0, 3000);  // 25 degrees a second: an even turn
+  play(meter, 3004, {400.0, 0.0, 0.0}, 1.0, 3000);  // an even turn of 25 degrees a second
   EXPECT_FALSE(meter.rest());
   play(meter, 6008, {16.0, 0.0, 0.0}, 1.0, 3000);
   ASSERT_TRUE(meter.rest());
@@ -167,7 +168,7 @@ TEST(Gyroscope, AHandIsNoRestAndALaterRestReplacesTheFirst) {
   EXPECT_NEAR(in_degrees(meter.rest()->bias_rad_s)[0], 2.0, 0.02);
 }
 
-// Recorded in a hand: a DualSense by USB sends 250 reports a second.
+// Recordings of pads in a hand; a DualSense on USB sends 250 reports a second.
 TEST(Gyroscope, RecordedPadsTellTheirRate) {
   GAITPAD_NEEDS(kPadRecordings);
   int recordings = 0;

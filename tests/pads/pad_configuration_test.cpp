@@ -40,8 +40,8 @@ class PadConfiguration : public testing::Test {
     const auto [device, calibration] = recorded_device(all, info, factory, remarks_);
     return pad_config(all, device.info, calibration, "live");
   }
-  // The configuration in a replay of the recording: through text, with the same files except
-  // --calibration.
+  // The configuration in a replay of the recording, which is written as text and read; the files
+  // are the same except --calibration.
   PadConfig replayed_pad(const PadFiles& all, const TraceDevice& device) const {
     Trace trace;
     trace.devices = {device};
@@ -164,7 +164,7 @@ TEST_F(PadConfiguration, AFileForAnotherDriverIsNotTaken) {
   EXPECT_EQ(replayed(files(), recorded(files(), info)).left.inner, 0.3);
 }
 
-// It may belong to another pad, which cannot be known.
+// The file may belong to another pad, which cannot be known.
 TEST_F(PadConfiguration, ADamagedFileOfTheUsersIsARemarkAndThePadPlaysOn) {
   const std::string damaged = write("user/a.toml", "[left]\ninner = 7\n");
   write("user/b.toml", "devices = ['1209:0001']\n[left]\ninner = 0.25\n");
@@ -175,7 +175,7 @@ TEST_F(PadConfiguration, ADamagedFileOfTheUsersIsARemarkAndThePadPlaysOn) {
                              "calibration");
 }
 
-// Other data of a calibration would only identify the pad's owner.
+// Other data in a calibration would only identify the pad's owner.
 TEST_F(PadConfiguration, ARecordingHoldsWhatSteersAndNothingElse) {
   write("user/a.toml",
         "name = 'mine'\nunique_id = 'A1'\nmeasured_on = '2026-11-21'\n[left.measured]\nsigma = "
@@ -193,14 +193,14 @@ constexpr const char* kSwapped =
 
 PadState decoded(const PadConfig& pad) {
   Report report = made_report(0xff, 0x80);
-  report.bytes[4] = 0x18;  // button 1
+  report.bytes[4] = 0x18;  // presses button 1
   PadState state;
   EXPECT_TRUE(decode(*pad.layout, report, state));
   return state;
 }
 
 TEST_F(PadConfiguration, AFilesMappingComesBeforeConfigPadsAndAReplayHasItToo) {
-  write("user/a.toml", "devices = ['*:*']\n");  // without one config/pads names the controls
+  write("user/a.toml", "devices = ['*:*']\n");  // without this file config/pads names the controls
   write("pads/a.toml", "[[pad]]\nvendor = 0x1209\n[pad.axes]\nright_x = '0001:0030'\n");
   EXPECT_EQ(decoded(replayed_pad(files(), recorded(files(), made_pad()))).axis[kRightX], 1.0f);
   write("user/a.toml", std::string("devices = ['*:*']\nmapping = '") + kSwapped + "'\n");
@@ -220,7 +220,7 @@ TEST_F(PadConfiguration, AFilesMappingComesBeforeConfigPadsAndAReplayHasItToo) {
     for (const PadConfig& pad : {*live, again}) {
       EXPECT_EQ(decoded(pad).axis[kRightX], 1.0f);
       EXPECT_LT(std::abs(decoded(pad).axis[kLeftX]), 0.01f);
-      EXPECT_FALSE(pressed(decoded(pad), kButtonA));  // it is the third button
+      EXPECT_FALSE(pressed(decoded(pad), kButtonA));  // button A is the third one in the file
       // The other keys of config/pads still apply.
       EXPECT_EQ(pad.streams, entry == own);
     }
@@ -312,12 +312,12 @@ TEST_F(PadConfiguration, TheUsersDataBaseNamesTheControlsOfLivePads) {
     EXPECT_EQ(recorded(files(), info).info.mapping, in_line) << driver;
   }
   EXPECT_TRUE(remarks_.empty());
-  // A mapping cannot express everything in config/pads.
+  // A mapping cannot express everything that config/pads can.
   const PadFiles mapped = files(write("map.toml", "[[pad]]\nvendor = 0x1209\n"));
   EXPECT_TRUE(recorded(mapped, made_pad()).info.mapping.empty());
 }
 
-// SDL has applied them: the driver's own line names the controls that SDL has named.
+// SDL has already applied such lines: the driver's own line names the controls that SDL has named.
 TEST_F(PadConfiguration, LinesOfTheDataBaseAndOfCalibrationsDoNotCountForTheDriverSdl) {
   const std::string guid = "03000000091200000100000000000000,Mine,";
   const Environment line("SDL_GAMECONTROLLERCONFIG", (guid + "leftx:a1,platform:Linux,").c_str());

@@ -25,7 +25,7 @@ class PadChoice : public testing::Test {
   std::vector<PadSighting> sightings(const PadSelector& selector = {}) {
     return value_of(pad_sightings({}, selector, Drivers::preferred, FakeBus::table()));
   }
-  // The nodes to open, each followed by a blank.
+  // The nodes that the finder would open, each followed by a blank.
   std::string chosen(const PadSelector& selector = {}) {
     auto pads = chosen_pads(sightings(selector), selector);
     if (!pads) return pads.error().message;
@@ -50,7 +50,7 @@ TEST_F(PadChoice, OnePadIsServedByTheFirstUsableDriver) {
   EXPECT_EQ(chosen(), "");
   EXPECT_EQ(chosen({"", "usb"}), "/dev/usb-p1 ");
   EXPECT_EQ(chosen({"/dev/usb-p1", ""}), "/dev/usb-p1 ");
-  see(kUsb, "B", "p2");  // no kernel driver has it
+  see(kUsb, "B", "p2");  // no kernel driver has this pad
   EXPECT_EQ(chosen(), "/dev/usb-p2 ");
 }
 
@@ -244,7 +244,7 @@ TEST_F(PadStreamTest, APadWhoseUniqueIdComesLateIsOpenedOnceAndWithIt) {
   const auto shown = std::chrono::steady_clock::now();
   bus_.show(kHidraw, pad);
   bus_.plug(kHidraw, "B", "port2");
-  expect(ReportKind::added, 0);  // the other one: both were seen
+  expect(ReportKind::added, 0);  // the other pad: the finder has seen both
   EXPECT_EQ(stream_->device(0).info.unique_id, "B");
   bus_.name_id(pad, "A");
   const bool is_in_time = std::chrono::steady_clock::now() - shown < 900ms;
@@ -345,7 +345,7 @@ TEST_F(PadStreamTest, APadIsOpenedThroughOneDriverAlone) {
   auto raw = bus_.make(kHidraw, "A", "port1");
   auto cooked = bus_.make(kEvdev, "A", "port1");
   start();
-  bus_.show(kEvdev, cooked);  // like on a real kernel, the preferred node appears later
+  bus_.show(kEvdev, cooked);  // as on a real kernel, the preferred node appears later
   bus_.show(kHidraw, raw);
   expect(ReportKind::added, 0);
   for (int i = 0; i < 3; ++i) bus_.tell();
@@ -428,14 +428,14 @@ TEST_F(PadStreamTest, AKernelsDriverIsDetachedOnlyWhereUsbIsNamed) {
   EXPECT_EQ(detach_asked({"", "hidraw"}), Detach::never);
 }
 
-// Packets that are not reports do not make another driver take the pad.
+// A pad that opens slowly does not delay other pads.
 TEST_F(PadStreamTest, APadThatOpensSlowlyKeepsNoOtherWaiting) {
   const auto slow = bus_.make(kHidraw, "A", "port1");
   slow->keeps_opening = true;
   bus_.show(kHidraw, slow);
   start();
   const auto quick = plugged("B", "port2", 0);
-  take_away(quick, 0);  // closing also continues
+  take_away(quick, 0);  // pads are closed meanwhile as well
   slow->keeps_opening = false;
   expect(ReportKind::added, 1);
   EXPECT_EQ(slow->openings, 1) << "it was begun once";
@@ -501,8 +501,8 @@ TEST_F(RecordingAsPad, IsAddedReportsEndsAndIsNotOpenedAgain) {
   EXPECT_EQ(stream_->counts().plugged, 1);
 }
 
-// A recording plays like its replay on every machine; without an embedded calibration it uses the
-// user's file.
+// A recording plays as its replay does on every machine; if it has no calibration, the user's file
+// is used.
 TEST_F(RecordingAsPad, KeepsItsOwnCalibrationElseHasTheUsers) {
   Trace trace = made_trace();
   for (const char* own : {"", "[left]\ninner = 0.21\n"}) {
@@ -515,7 +515,7 @@ TEST_F(RecordingAsPad, KeepsItsOwnCalibrationElseHasTheUsers) {
     if (*own != 0) {
       EXPECT_EQ(stream_->device(0).calibration, own);
     }
-    stream_.reset();  // a played file is read once
+    stream_.reset();  // starts anew, because a file is played once in a stream
   }
 }
 
@@ -565,7 +565,7 @@ TEST_F(PadStreamTest, ASinglePadMakesWayForThePairAndComesBackWithoutIt) {
   EXPECT_EQ(stream_->device(1).info.unique_id, "L+R");
   pads.pair->send_axes(9, 0);
   expect_x(1, 9);
-  // The right one is unplugged, and the pair with it.
+  // When the right one is unplugged, the pair is as well.
   bus_.unplug(pads.right);
   bus_.unplug(pads.pair);
   expect(ReportKind::removed, 1);
@@ -573,7 +573,7 @@ TEST_F(PadStreamTest, ASinglePadMakesWayForThePairAndComesBackWithoutIt) {
   expect(ReportKind::added, 0);
 }
 
-// Report 1 has the stick, but the pad sends only vendor data with the id 30.
+// A pad whose report 1 would have the stick, but which sends only vendor data with the id 30.
 FakeBus::Pad stickless(FakeBus& bus, int driver) {
   auto pad = bus.make(driver, "A", "port1");
   pad->listing.info.descriptor = {0x05, 0x01, 0x09, 0x05, 0xa1, 0x01, 0x85, 0x01, 0x15,

@@ -54,7 +54,7 @@ class PadStreamTest : public testing::Test {
     bus_.unplug(pad);
     expect(ReportKind::removed, device);
   }
-  // Plugs a pad in behind hidraw and expects its `added` report.
+  // Plugs in a pad that hidraw sees, and expects its `added` report.
   FakeBus::Pad plugged(const std::string& unique_id, const std::string& port, int device) {
     auto pad = bus_.plug(kHidraw, unique_id, port);
     expect(ReportKind::added, device);
@@ -66,7 +66,7 @@ class PadStreamTest : public testing::Test {
       return told_.find(part) != std::string::npos;
     });
   }
-  // A user folder with this calibration.
+  // Makes a user folder with this calibration.
   std::string user_folder(const std::string& text) const {
     own_.write("user/a.toml", text);
     return own_.at("user");

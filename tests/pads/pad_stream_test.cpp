@@ -87,7 +87,7 @@ TEST_F(PadStreamTest, AFullRingKeepsTheLastStateAndCountsTheRestExactly) {
   start_with_ring(4);
   constexpr int kSent = 1000;
   for (int i = 1; i <= kSent; ++i) ASSERT_TRUE(pad->send_axes(i % 251, i / 251));
-  // `added` and three reports fill the ring, the newest is kept, the others are lost.
+  // `added` and three reports fill the ring; the newest report waits, and the others are lost.
   EXPECT_TRUE(comes_true([&] { return stream_->counts().lost == kSent - 4; }));
   expect(ReportKind::added, 0);
   for (int i = 1; i <= 3; ++i) expect_x(0, i);
@@ -202,7 +202,7 @@ TEST_F(PadStreamTest, MotorsStopWhenTheirTimeIsOverAndAtTheEnd) {
   start();
   expect(ReportKind::added, 0);
   stream_->rumble(0, {30000, 10000}, 30ms);
-  stream_->rumble(9, {30000, 10000}, 30ms);  // no such device
+  stream_->rumble(9, {30000, 10000}, 30ms);  // device 9 does not exist
   EXPECT_TRUE(comes_true([&] { return pad->all_rumbles().size() == 2; }));
   EXPECT_EQ(pad->all_rumbles()[0].strong, 30000);
   EXPECT_EQ(pad->all_rumbles()[0].weak, 10000);

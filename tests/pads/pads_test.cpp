@@ -19,7 +19,7 @@ Pads one_pad(bool streams = false) {
   return Pads({config}, kRateHz);
 }
 
-// The stick after `ticks` ticks without a report.
+// The stick after this number of ticks without a report.
 Stick after_silence(Pads& pads, int ticks) {
   Stick stick;
   for (int i = 0; i < ticks; ++i) stick = pads.finish_tick();
@@ -52,7 +52,7 @@ TEST(Pads, RemovedIsNeutralAtOnceAndPluggedInAgainCountsOnceItWasNearItsCentre) 
   pads.take_report(made_report(kMiddle, kForward));
   pads.remove_pad(0);
   EXPECT_EQ(pads.finish_tick().left, vec2(0.0));
-  pads.take_report(made_report(kMiddle, kMiddle));  // while it is gone
+  pads.take_report(made_report(kMiddle, kMiddle));  // a report that comes while the pad is gone
   pads.remove_pad(0);
   pads.add_pad(0);
   pads.take_report(made_report(kMiddle, kForward));
@@ -105,7 +105,7 @@ void push(Pads& pads, std::uint16_t device, int from_y, int to_y) {
   }
 }
 
-// The second is a receiver, a virtual pad or the pad's twin: plugged in but never moved.
+// The second device is a receiver, a virtual pad or the pad's twin: plugged in but never moved.
 TEST(Pads, APadThatIsMovedDrivesThoughAnotherIsThereThatNeverReports) {
   Pads pads({made_pad_config(), made_pad_config()}, kRateHz);
   push(pads, 1, kMiddle, kForward);
@@ -116,7 +116,8 @@ TEST(Pads, APadThatIsMovedDrivesThoughAnotherIsThereThatNeverReports) {
 TEST(Pads, APadThatReportsAHeldStickAllTheTimeIsNotMoved) {
   Pads pads({made_pad_config(), made_pad_config()}, kRateHz);
   for (int i = 0; i < kRateHz; ++i) {
-    pads.take_report(made_report(i % 2, i % 3, 0));  // zeros and noise: no pad behind the adapter
+    // Zeros and noise, as an adapter without a pad sends them.
+    pads.take_report(made_report(i % 2, i % 3, 0));
     pads.finish_tick();
   }
   push(pads, 1, kMiddle, kForward);
@@ -135,7 +136,7 @@ TEST(Pads, NoiseOfARestingStickMovesNothing) {
 TEST(Pads, APadInUseKeepsTheSeatUntilItHasBeenUntouchedForFiveSeconds) {
   Pads pads({made_pad_config(), made_pad_config()}, kRateHz);
   push(pads, 0, kMiddle, kForward);
-  after_silence(pads, 60 * kRateHz);  // held, not untouched
+  after_silence(pads, 60 * kRateHz);  // the stick is held, which counts as touched
   push(pads, 1, kMiddle, kForward);
   EXPECT_EQ(pads.driving(), 0);
   push(pads, 1, kForward, kMiddle);
@@ -199,7 +200,7 @@ TEST(Pads, TheOldPadDrivesAgainIfNoneHasTakenOver) {
   Pads pads = two_pads(kForward);
   pads.remove_pad(0);
   pads.add_pad(0);
-  pads.take_report(made_report(kMiddle, kForward + 4, 1));  // still held
+  pads.take_report(made_report(kMiddle, kForward + 4, 1));  // the first pad is still held
   EXPECT_EQ(pads.driving(), 0);
   EXPECT_EQ(pads.finish_tick().left, vec2(0.0));
   pads.take_report(made_report(kMiddle, kMiddle, 0));
@@ -259,7 +260,7 @@ PadConfig made_keyboard() {
 }
 constexpr std::uint16_t kKeys = 0, kPad = 1;
 
-// The keyboard is there first and held to the right, the pad comes later and rests.
+// The keyboard is there first and held to the right; the pad comes later and rests.
 Pads keys_and_pad() {
   PadConfig pad = made_pad_config();
   pad.is_present = false;
@@ -294,7 +295,7 @@ TEST(Pads, BothSticksOfAFallbackCountWhileTheDrivingOneRestsExactly) {
   EXPECT_EQ(pads.finish_tick().left, vec2(0.0));
   EXPECT_GT(pads.finish_tick().right.x, 0.9);
   pads.take_report(made_report(0xff, kMiddle, kKeys));
-  pads.take_report(made_report(kMiddle, 0x60, kPad));  // just beyond the inner zone
+  pads.take_report(made_report(kMiddle, 0x60, kPad));  // a position just beyond the inner zone
   const Stick stick = pads.finish_tick();
   EXPECT_GT(stick.left.y, 0.0);
   EXPECT_EQ(stick.left.x, 0.0);
@@ -336,7 +337,7 @@ Report made_buttons(std::uint16_t pressed, std::uint16_t device = 0) {
   return report;
 }
 
-// The hat of made_pad() counts clockwise from 0, up; 8 is none.
+// A report with the hat of made_pad() in a direction: clockwise from 0, up; 8 is none.
 Report made_hat(int hat, int x = kMiddle, int y = kMiddle) {
   Report report = made_report(x, y);
   report.bytes[4] = static_cast<std::uint8_t>(hat);
@@ -376,7 +377,7 @@ TEST(Pads, AButtonTakesTheSeatToo) {
   pads.take_report(made_buttons(1, 1));
   EXPECT_EQ(pads.driving(), 1);
   Pads digital({made_pad_config(), made_pad_config()}, kRateHz);
-  digital.take_report(made_report(kMiddle, kForward, 1));  // its first report is the push
+  digital.take_report(made_report(kMiddle, kForward, 1));  // the pad's first report is the push
   EXPECT_EQ(digital.driving(), 1);
   EXPECT_GT(digital.finish_tick().left.y, 0.9);
 }
@@ -426,11 +427,12 @@ TEST(Pads, AFilteredStickIgnoresASingleReportAndIsNotBehindInSilence) {
   EXPECT_EQ(tick(kForward), vec2(0.0));
   EXPECT_EQ(tick(kMiddle), vec2(0.0));
   EXPECT_EQ(tick(kMiddle), vec2(0.0));
-  // A pad that reports changes only: the push holds, and no report follows it.
+  // The pad reports only changes: the push is held, and no report follows it.
   EXPECT_EQ(tick(kForward), vec2(0.0));
   EXPECT_EQ(after_silence(pads, 4).left, vec2(0.0));
-  EXPECT_GT(after_silence(pads, 1).left.y, 0.9);  // 20 ms
-  for (const int report_hz : {20, 60, 125}) {     // one report of a slow pad is filtered as well
+  EXPECT_GT(after_silence(pads, 1).left.y, 0.9);  // the push has lasted for 20 ms, so it counts
+  // A jump of one report is filtered at these report rates as well.
+  for (const int report_hz : {20, 60, 125}) {
     Pads slow({config}, kRateHz);
     for (int n = 0; n < 20; ++n) {
       slow.take_report(made_report(kMiddle, n == 15 ? kForward : kMiddle));
@@ -445,11 +447,11 @@ TEST(Pads, AWalkThatBeginsUntouchedIsCounted) {
   after_silence(pads, 3 * kRateHz);
   pads.take_report(made_report(kMiddle, kForward));
   pads.finish_tick();
-  pads.take_report(made_report(kMiddle, kMiddle));  // one report, 4 ms
+  pads.take_report(made_report(kMiddle, kMiddle));  // one report of a jump, 4 ms long
   after_silence(pads, kRateHz);
   EXPECT_EQ(pads.untouched(), 1);
   pads.take_report(made_report(kMiddle, kForward));
-  after_silence(pads, kRateHz);  // a push that is held
+  after_silence(pads, kRateHz);  // a push that is held is no jump
   EXPECT_EQ(pads.untouched(), 1);
 }
 

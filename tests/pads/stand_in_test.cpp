@@ -11,12 +11,12 @@ namespace {
 
 using Events = std::vector<VirtualPadEvent>;
 
-// An event node without a kernel: X and Y of 8 bits and a button.
+// Replaces an event node: X and Y of 8 bits and a button.
 struct Node {
   bool is_gone = false, is_grabbed = false, is_open = false;
   int grab_problem = 0;
   std::deque<EvdevState> packets;
-  std::vector<int> sent;  // codes of EV_FF
+  std::vector<int> sent;  // codes of EV_FF that were sent to the pad
 };
 class FakeNode final : public EventNode {
  public:
@@ -64,12 +64,12 @@ class FakeNode final : public EventNode {
   EvdevState state_;
 };
 
-// A virtual pad without a kernel.
+// Replaces a virtual pad in the kernel.
 struct Made {
   VirtualPadShape shape;
   Events events;
   int count = 0;
-  std::vector<ff_effect> uploads;  // next uploads of a program
+  std::vector<ff_effect> uploads;  // effects that a program uploads next
   std::vector<std::uint16_t> plays;
 };
 class FakeVirtualPad final : public VirtualPad {
@@ -136,7 +136,7 @@ TEST_F(StandInTest, LooksLikeThePadAndSendsItsCalibratedStick) {
   EXPECT_EQ(made.shape.version, 0x0111);
   EXPECT_EQ(made.shape.port, "usb-1/input0");
   EXPECT_EQ(made.shape.effects, (std::vector<std::uint16_t>{FF_RUMBLE, FF_GAIN}));
-  send(140, 128);  // a tenth: inside the zone
+  send(140, 128);  // a tenth of the way, which is inside the zone
   send(255, 128, true);
   send(255, 128, false);
   pad.serve();

@@ -9,7 +9,8 @@
 namespace gaitpad {
 namespace {
 
-// A pad whose left stick goes from its middle to the right and back, half a second each.
+// Writes a recording of a pad whose left stick goes from its middle to the right and back, half a
+// second each.
 std::string recording_of(const OwnFolder& folder, const std::string& name, const DeviceInfo& info) {
   TraceWriter writer;
   TraceDevice device;

@@ -44,7 +44,8 @@ TEST(Chain4, GoalsAreNear) {
 
 TEST(Chain4, RandomNumbersAreTheSameEverywhere) {
   Lcg random(2005);
-  // (2005 * 6364136223846793005 + 1442695040888963407 mod 2^64) >> 11, over 2^53; by Python.
+  // The expected number is (2005 * 6364136223846793005 + 1442695040888963407 mod 2^64) >> 11, over
+  // 2^53, computed by Python.
   EXPECT_EQ(random.between(0.0, 1.0), 7243978965043345.0 / 9007199254740992.0);
 }
 

@@ -32,7 +32,7 @@ TEST(Page, AStickFigureHasBothSolesAndTellsTheLegsApart) {
     soles += bone.parent >= joints || bone.joint >= joints;
   }
   EXPECT_EQ(left, right);
-  EXPECT_GE(left, 5);  // thigh, shank, foot and the sole's two lines
+  EXPECT_GE(left, 5);  // lines for thigh, shank and foot, and two for the sole
   EXPECT_EQ(soles, 4);
 }
 

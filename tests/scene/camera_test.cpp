@@ -1,4 +1,4 @@
-// The projection is derived a second time here, by similar triangles.
+// The projection is derived here a second time, by similar triangles.
 #include "scene/camera.h"
 
 #include <gtest/gtest.h>
@@ -71,7 +71,7 @@ TEST(Camera, StaysAboveTheFloorAndInItsDistancesWhateverIsAsked) {
   };
   orbit(camera, 0.0, -10.0);
   expect_bounds();
-  dolly(camera, 1e9);  // at this pitch a more distant eye would be below the floor
+  dolly(camera, 1e9);  // at this pitch an eye that is farther away would be below the floor
   expect_bounds();
   dolly(camera, 1e-9);
   expect_bounds();
@@ -95,7 +95,7 @@ TEST(Camera, StandsOnUnevenGround) {
   stand_on(camera, 2.0, 2.5);
   orbit(camera, 0.0, -10.0);
   EXPECT_NEAR(camera.eye_m().y, 2.6, 1e-9);
-  stand_on(camera, 2.0, 3.1);  // the eye is inside a slope
+  stand_on(camera, 2.0, 3.1);  // the ground is higher than the eye
   EXPECT_NEAR(camera.eye_m().y, 3.2, 1e-9);
   pan(camera, {0.0, -1e6}, 600.0);
   EXPECT_EQ(camera.target_m.y, 2.0);
@@ -131,7 +131,7 @@ TEST(Camera, FollowsEquallyAtAnyFrameRate) {
   const vec3 velocity(0.5, 0.0, 1.3);
   const vec3 slow = followed(velocity, 20), fast = followed(velocity, 480);
   EXPECT_LT(glm::distance(slow, fast), 1e-9);
-  // It does not lag behind a character that walks at constant velocity.
+  // The camera does not lag behind a character that walks at constant velocity.
   const vec3 expected = Camera{}.target_m + velocity * 2.0;
   EXPECT_LT(glm::distance(slow, expected), 2e-3);
 }
@@ -146,7 +146,7 @@ TEST(Camera, GlidesWhereThePlaceJumps) {
 }
 
 // Places in a row, at different heights, seen from all sides: each is in the picture with its
-// label, and from 2 % nearer at least one is not.
+// label; from 2 % nearer at least one is not.
 TEST(Camera, ItsFramingIsTheNearestThatShowsEverything) {
   const std::vector<vec3> places = {{-2.4, 0.0, 0.3}, {-2.4, 1.7, 0.3}, {0.0, 1.9, -0.4},
                                     {0.0, -0.2, 0.0}, {1.2, 1.1, 0.2},  {3.6, 0.4, 0.9}};
@@ -170,7 +170,8 @@ TEST(Camera, ItsFramingIsTheNearestThatShowsEverything) {
   }
 }
 
-// A panel opens, so the picture becomes narrower. No frame moves the camera by more than a tenth.
+// A panel opens, so the picture becomes narrower. The camera moves by less than a tenth in each
+// frame.
 TEST(Camera, GoesToAFramingSmoothlyAndKeepsWhatIsZoomed) {
   Camera camera;
   show(camera, {{0.0, 0.8, 0.0}, 8.0}, vec3(0.0));

@@ -35,7 +35,7 @@ TEST(SceneGround, ItsTrianglesLieOnTheGroundAndFaceUpOrOutOfRisers) {
     const vec3 a = place_of(mesh, i[0]), b = place_of(mesh, i[1]), c = place_of(mesh, i[2]);
     const vec3 face = glm::cross(b - a, c - a);
     const double area_m2 = 0.5 * glm::length(face);
-    if (area_m2 < 1e-9) continue;  // a riser exactly at a row
+    if (area_m2 < 1e-9) continue;  // a riser exactly at a row has faces without area
     EXPECT_GT(std::abs(glm::dot(face, normal_of(mesh, i[0]))) / (2.0 * area_m2), 0.98);
     const bool is_riser = std::abs(normal_of(mesh, i[0]).z) > 0.8;
     if (is_riser) {
@@ -50,7 +50,7 @@ TEST(SceneGround, ItsTrianglesLieOnTheGroundAndFaceUpOrOutOfRisers) {
   }
   EXPECT_LT(largest_gap_m, 0.002);
   EXPECT_NEAR(risers_m2 / (12.25 + 0.0), 4 * 0.17,
-              0.02);  // as wide as the mesh, without the far ones
+              0.02);  // four risers of 0.17 m; the others are outside of the mesh
 }
 
 TEST(SceneGround, VerticesStayWhereTheyAreWhenTheMeshMoves) {

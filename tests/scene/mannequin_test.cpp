@@ -1,4 +1,4 @@
-// A mannequin's measures are compared with people's and with the skeleton's; its position with
+// Compares a mannequin's measures with people's and with the skeleton's, and its position with
 // forward kinematics and with the walk's samples, which the drawing does not read.
 #include "scene/mannequin.h"
 
@@ -78,7 +78,8 @@ JointFrames standing_frames(const WalkModel& model) {
 void expect_plausible(const Mannequin& mannequin) {
   const double leg_m = mannequin.model->leg_length_m;
   EXPECT_GT(mannequin.bones.size(), 30u);
-  EXPECT_GT(mannequin.height_m, 1.55 * leg_m);  // 1.9 to 2.1 in people; some clips bend far forward
+  // People: 1.9 to 2.1 leg lengths; in some clips they bend far forward.
+  EXPECT_GT(mannequin.height_m, 1.55 * leg_m);
   EXPECT_LT(mannequin.height_m, 2.3 * leg_m);
   const JointFrames standing = standing_frames(*mannequin.model);
   const UpperBodyJoints& joints = mannequin.model->body.joints;
@@ -111,7 +112,7 @@ TEST(Mannequin, TheProceduralOneIsAPersonsSize) {
   EXPECT_EQ(skeleton.joints[joints.head].name, "Head");
   EXPECT_EQ(skeleton.joints[joints.arm[kLeftSide].elbow].name, "LeftForeArm");
   EXPECT_EQ(skeleton.joints[joints.arm[kRightSide].wrist].name, "RightHand");
-  // The skeleton itself has a joint at the top of the head.
+  // The skeleton has a joint at the top of the head.
   EXPECT_NEAR(mannequin.height_m, standing.position_m[skeleton.find("Head_End")].y, 0.05);
 }
 
@@ -152,9 +153,9 @@ std::vector<Spot> skin(const Mannequin& mannequin) {
   return spots;
 }
 
-// In fractions of the height, of adults: D: Drillis and Contini 1966, as in Winter 2009, figure 4.1
-// (breadths and lengths of segments); G: Gordon et al. 1989, mean of men's and women's means
-// (breadths, depths, and girths / pi).
+// Sizes of adults in fractions of their height. D: Drillis and Contini 1966, as in Winter 2009,
+// figure 4.1 (breadths and lengths of segments); G: Gordon et al. 1989, mean of men's and women's
+// means (breadths, depths, and girths / pi).
 TEST(Mannequin, TheProceduralOneHasAPersonsProportions) {
   const Mannequin mannequin = mannequin_of(model_of(procedural_gait()));
   const std::vector<Spot> spots = skin(mannequin);
@@ -181,7 +182,7 @@ TEST(Mannequin, TheProceduralOneHasAPersonsProportions) {
     }
     return (high - low) / height_m;
   };
-  // Breadths of slices at these heights.
+  // Breadths of the body in slices at these heights.
   const auto breadths = [&](const vec3& along, double from_m, double to_m, auto&& is_meant) {
     constexpr double kHalfSlice_m = 0.006;
     std::vector<double> all;
@@ -236,7 +237,7 @@ TEST(Mannequin, TheProceduralOneHasAPersonsProportions) {
   for (const Measure& m : measures) {
     EXPECT_NEAR(m.drawn, m.people, 0.07 * m.people) << m.name;
   }
-  // Not more bones than before.
+  // The number of bones did not grow.
   EXPECT_LE(mannequin.bones.size(), 39u);
 }
 
@@ -369,7 +370,7 @@ TEST(Interpolate, TurnsTheShorterWayAndMovesStraight) {
   before.local[0] = rotation_y(0.2);
   pose.local[0] = rotation_y(0.6);
   before.local[1] = rotation_x(-0.1);
-  pose.local[1] = -rotation_x(0.1);  // the same rotation by the other sign
+  pose.local[1] = -rotation_x(0.1);  // the same rotation as a quaternion with the other sign
   interpolate(before, pose, 0.5, shown);
   EXPECT_LT(glm::distance(shown.root_m, vec3(2.0, 2.0, 1.0)), 1e-12);
   EXPECT_NEAR(std::abs(glm::dot(shown.local[0], rotation_y(0.4))), 1.0, 1e-9);
@@ -386,7 +387,7 @@ double nearest_m(const std::vector<vec3>& places, const vec3& to) {
   return nearest;
 }
 
-// The samples have the ankles' places without any joint.
+// The samples hold the places of the ankles, without forward kinematics.
 TEST(StickFigure, ItsAnklesAreWhereTheSourceHasThem) {
   const GaitCycle cycle = procedural_gait();
   const vec3 place_m(4.0, 7.0, -2.0);

@@ -29,7 +29,7 @@ Capsule bone(const vec3& a, const vec3& b, double radius_m) {
   return bone(a, b, radius_m, radius_m);
 }
 
-// 0 .. 255
+// Brightness of a pixel, 0 .. 255.
 double brightness(const Pixels& p, double x, double y) {
   const int px = std::clamp(static_cast<int>(x), 0, p.width - 1);
   const int py = std::clamp(static_cast<int>(y), 0, p.height - 1);
@@ -80,7 +80,7 @@ class SceneTest : public testing::Test {
     return read_pixels(width, height);
   }
   vec3 place(const vec3& world_m) const { return projected(camera_, world_m, kWidth, kHeight); }
-  // Brightness of a world's place in `a` minus that in `b`, `right_px` beside it.
+  // Brightness of a place in picture `a` minus that in `b`, `right_px` pixels to the right of it.
   double brighter(const Pixels& a, const Pixels& b, const vec3& world_m, int right_px = 0) const {
     const vec3 p = place(world_m);
     return brightness(a, p.x + right_px, p.y) - brightness(b, p.x + right_px, p.y);
@@ -169,7 +169,7 @@ TEST_F(SceneTest, RisersAndTreadsHaveTwoTonesAndHigherGroundIsLighter) {
   }
 }
 
-// Humps and hollows of 6 cm, without the grid.
+// The ground has humps and hollows of 6 cm; drawn without the grid.
 TEST_F(SceneTest, RoughGroundLooksRough) {
   const auto terrain = std::make_shared<const Terrain>(
       value_of(load_terrain(kSourceFolder + "/config/terrain/rough.toml")));
@@ -207,7 +207,8 @@ TEST_F(SceneTest, AShadowFallsOnTheGroundThatIsThere) {
   auto terrain = std::make_shared<Terrain>();
   ASSERT_FALSE(add_section(*terrain, SlopeSection{10.0, 0.06, 5.0}));
   ASSERT_FALSE(add_section(*terrain, FlatSection{20.0}));
-  for (TerrainSection& s : terrain->sections) s.begin_m -= 20.0;  // level at 0.3 m around here
+  // The ground here is level at 0.3 m.
+  for (TerrainSection& s : terrain->sections) s.begin_m -= 20.0;
   content_.terrain = terrain;
   const Extent raised = shadow(0.3);
   EXPECT_NEAR(raised.pixels, level.pixels, 0.1 * level.pixels);
@@ -221,7 +222,8 @@ TEST_F(SceneTest, ABallInABallIsTheLargerOne) {
   const Extent ball = difference(empty, drawn(content_));
   content_.capsules = {bone(at, at + vec3(0.05, 0.0, 0.0), 0.2, 0.04)};
   const Extent both = difference(empty, drawn(content_));
-  EXPECT_NEAR(both.pixels, ball.pixels, 0.1 * ball.pixels);  // meshes that are rotated
+  // Capsules are meshes that are rotated, so the areas differ a little.
+  EXPECT_NEAR(both.pixels, ball.pixels, 0.1 * ball.pixels);
   EXPECT_NEAR(ball.right - ball.left, ball.bottom - ball.top, 2);
 }
 
@@ -266,7 +268,7 @@ TEST_F(SceneTest, AFootDarkensTheFloorRoundItAndALiftedFootDoesNot) {
     const Pixels without = drawn(content_);
     content_.has_shadows = true;
     const Pixels with = drawn(content_);
-    // Towards the light, where there is no shadow.
+    // The place is towards the light, where there is no shadow.
     return brighter(without, with, {0.0, 0.0, 0.042});
   };
   EXPECT_GT(darker_beside(0.03), 3.0);
@@ -320,14 +322,14 @@ TEST_F(SceneTest, AnotherSceneDrawsTheSameInAnotherContext) {
   EXPECT_EQ(difference(first, drawn(content_)).pixels, 0);
 }
 
-// Four samples per pixel give an edge more than two shades.
+// An edge has more than two shades with four samples per pixel.
 TEST_F(SceneTest, HighQualitySmoothsEdges) {
   camera_.yaw_rad = camera_.pitch_rad = 0.0;
   content_.has_grid = false;
   const vec3 at = camera_.target_m;
   content_.capsules = {{at - vec3(2.0, 0.0, 0.0), at + vec3(2.0, 0.3, 0.0), 0.1, 0.1, vec3(0.0),
                         1.0, 1.0, rgb(0xffffff)}};
-  const auto shades = [&] {  // of the upper edge, where it crosses a row of pixels
+  const auto shades = [&] {  // shades of the upper edge, where it crosses a row of pixels
     const Pixels pixels = drawn(content_);
     int between = 0;
     for (int x = 40; x < kWidth - 40; ++x) {
@@ -357,7 +359,7 @@ TEST_F(SceneTest, AShaderThatDoesNotCompileIsNamed) {
   EXPECT_NE(problem->message.find("nonsense"), std::string::npos);
 }
 
-// Lines are where the camera projects them: the grid's, trails, single lines.
+// Lines are where the camera projects them: lines of the grid, trails, single lines.
 
 TEST_F(SceneTest, GridLinesLieAtWholeMetresOfTheWorld) {
   look_down();
@@ -368,7 +370,8 @@ TEST_F(SceneTest, GridLinesLieAtWholeMetresOfTheWorld) {
     content_.has_grid = true;
     const Pixels with = drawn(content_);
     const auto line_at = [&](double x, double z) {
-      double most = 0.0;  // a line is a pixel or two wide
+      // The greatest difference near the place, because a line is one or two pixels wide.
+      double most = 0.0;
       for (const int off : {-1, 0, 1})
         most = std::max(most, brighter(with, without, {x, 0.0, z}, off));
       return most;
@@ -408,7 +411,7 @@ TEST_F(SceneTest, ALineIsAsWideAsItsPixelsTimesTheScale) {
     const Pixels without = drawn(content_);
     content_.lines = {{a, b, rgb(0xffffff), 4.0}};
     const Pixels with = drawn(content_);
-    double covered = 0.0;  // pixels of one row
+    double covered = 0.0;  // number of covered pixels in one row
     const int row = kHeight / 2;
     for (int x = 0; x < kWidth; ++x) covered += differs(with, without, x, row);
     EXPECT_NEAR(covered, 4.0 * scale, 1.1);
@@ -421,7 +424,8 @@ TEST_F(SceneTest, ALineThatPassesTheEyeIsCutThere) {
   content_.lines = {{camera_.target_m, behind, rgb(0xffffff), 3.0}};
   const Extent seen = difference(without, drawn(content_));
   EXPECT_GT(seen.pixels, 20);
-  EXPECT_NEAR(seen.bottom, kHeight / 2.0, 12.0);  // it rises from the middle to above the eye
+  // The line begins in the picture's middle and rises above the eye.
+  EXPECT_NEAR(seen.bottom, kHeight / 2.0, 12.0);
 }
 
 TEST_F(SceneTest, BodiesHideLinesBehindThem) {
@@ -441,8 +445,8 @@ FlatCapsule flat(const vec3& a, const vec3& b, double radius_a_m, double radius_
           glm::vec4(kRed.red, kRed.green, kRed.blue, 1.0f)};
 }
 
-// The same body near the ground, seen from the same side, is as bright on raised ground as on level
-// 0.
+// A body near the ground, seen from the same side, has the same brightness on raised ground as on
+// ground at height 0.
 TEST_F(SceneTest, ABodysShadeNearTheGroundIsThatOfItsHeightAboveTheGround) {
   const auto shade_at = [this](double ground_m, bool is_crowd) {
     auto terrain = std::make_shared<Terrain>();
@@ -530,7 +534,7 @@ TEST_F(SceneTest, OfTwoLayersEachIsHalfTransparentWhicheverIsInFront) {
     green.layer = 3 - layer;
     expect_mean(picture({red, green}), only_red, only_green);
   }
-  green.layer = 0;  // opaque, in front
+  green.layer = 0;  // an opaque body in front
   expect_mean(picture({red, green}), only_green, only_green);
 }
 

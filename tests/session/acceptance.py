@@ -59,19 +59,19 @@ def walk_at(x, y, end, start=0.5):
 
 
 def circle(x):
-    """A full turn at a constant stick, then on the spot, then a stop."""
+    """A stick for a full turn, then a turn on the spot, then a stop."""
     return {"stick": [(0.5, x, 0.7), (26, x, 0.0), (29, 0, 0)], "end": 31}
 
 
 def start_and_stop(forward=0.8):
-    """From rest, down, up, stop in flight, start again, full, stop."""
+    """A stick from rest: down, up, stop in flight, start again, full, stop."""
     stick = [(0.5, 0, forward), (4.0, 0, 0.4), (6.5, 0, forward), (9.1, 0, 0), (11.5, 0, forward), (13.0, 0, 1.0),
              (16.0, 0.5, 0.8), (18.0, -0.3, 0.6), (20.0, 0, 0.6), (22.3, 0, 0)]
     return {"stick": stick, "end": 25.0}
 
 
 def back_and_forth():
-    """Backward, then forward without a rest, a backward curve, a turn on the spot with a thumb's noise."""
+    """A stick backward, then forward without a rest, a backward curve, a turn on the spot with a thumb's noise."""
     stick = [(0.5, 0, 0.8), (3.0, 0, -0.8), (6.0, 0, 0.8), (7.3, 0, -1.0), (8.1, 0, 1.0), (8.5, 0.5, -0.1),
              (9.5, 0.5, -0.5), (11.0, -0.5, 0.05), (12.0, -0.5, -0.05), (13.0, 0, 0)]
     return {"stick": stick, "end": 15.0}
@@ -84,7 +84,7 @@ def style_changes():
 
 
 def gentle():
-    """Ramps, as a thumb makes them, instead of jumps."""
+    """The stick with ramps, as a thumb makes them, instead of jumps."""
     stick = ramp(0.5, 1.3, (0, 0), (0, 0.9)) + ramp(5, 6, (0, 0.9), (0.4, 0.5)) + ramp(9, 9.6, (0.4, 0.5), (0, 0))
     return {"stick": stick, "end": 12.0}
 
@@ -106,7 +106,7 @@ def wander(seed):
 
 
 def cases_of(motion, quick):
-    """Dicts: label, motion, ratio, style, stick timeline."""
+    """The cases as dicts: label, motion, ratio, style, stick timeline."""
     found = []
 
     def add(label, plan, ratio=1.0, style="even"):
@@ -170,7 +170,7 @@ NEAR = {*(f"default {rest}" for rest in (
 
 
 def part_of(cases, compared):
-    """This run's part of the cases and comparisons. The built-in motion's walks are always compared."""
+    """The part of the cases and comparisons for this run. The built-in motion's walks are always compared."""
     def is_run(label):
         return label in NEAR or slices.is_chosen(label, PARTS)
 
@@ -233,7 +233,7 @@ def run_case(job):
 
 # ---- comparisons -----------------------------------------------------------------------------
 def comparisons(motion, options):
-    """Jobs, each run in its own process: (label, kind, labels of the walks, options)."""
+    """The jobs, each of which runs in its own process: (label, kind, labels of the walks, options)."""
     pairs = [("mirror", "turn +0.5", "turn -0.5"), ("limp", "style even", "style limp_left"),
              ("hip", "style even", "style stiff_hip"), ("knee", "style even", "style stiff_knee")]
     if not options.quick:
@@ -254,7 +254,7 @@ def run_comparison(job):
         walks = [load({"label": name}, options.out) for name in names]
         if kind == "monotone":
             return label, [monotone_check(*walks)]
-        if kind == "raw":  # the default's own walk on shorter legs
+        if kind == "raw":  # the default style's own walk on shorter legs
             return label, judge.raw_checks(walks[1], read_bvh(os.path.join(walks[0].folder, "pose.bvh")))
         if kind == "mirror":
             return label, judge.mirror_checks(*walks)
@@ -268,7 +268,7 @@ def run_comparison(job):
 
 
 def monotone_check(even, *walks):
-    """RMS of the hip's change must grow as its weight falls."""
+    """Checks that the RMS of the hip's change grows as its weight falls."""
     rms = [judge.weight_figures(even, walk, 0)["rms"] for walk in walks]
     falls = sum(b <= a for a, b in zip(rms[:-1], rms[1:]))
     return Check("hip RMS not growing with the weight", falls, 0, "==", note=" ".join(f"{v:.2f}" for v in rms))
@@ -348,7 +348,7 @@ def run_motions(motions, options, processes=2):
         count = len(cases)
         cases, compared = part_of(cases, compared)
         print(f"{len(cases)} of {count} walks: {slices.text(PARTS)}")
-    cases.sort(key=lambda c: -c["end"])  # long ones first: the processes end together
+    cases.sort(key=lambda c: -c["end"])  # long ones first, so that the processes end at about the same time
     with multiprocessing.Pool(processes) as pool:
         results = pool.map(run_case, [(c, options) for c in cases], chunksize=1)
         if not options.only:

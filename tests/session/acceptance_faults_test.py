@@ -30,7 +30,7 @@ class Spot:
     def column(self, name, add=0.0, tick=slice(None), factor=1.0):
         self.col[name][tick] = self.col[name][tick] * factor + add
 
-    def slide(self, first, last):  # 0.3 mm sideways
+    def slide(self, first, last):  # 0.3 mm to the side
         self.bvh.data[first:last, 0] += np.linspace(0, 0.03, last - first)
 
     def told(self, name, add=0.0, factor=1.0):
@@ -127,7 +127,7 @@ def test_a_planted_fault_is_seen_by_its_check(sound, name):
     {**FILE_FAULTS, **CONTACT_FAULTS, **JOINT_FAULTS}[name](Spot(files))
     try:
         checks = judge.check_walk(files.load())
-    except (ValueError, IndexError):  # damaged beyond measuring counts as seen
+    except (ValueError, IndexError):  # files that cannot be measured count as seen
         return
     assert [c.ok for c in checks if c.name == name][:1] == [False]
 

@@ -14,7 +14,7 @@ namespace {
 // Walks until it is tired, then limps, rests when it is very tired, and walks again when rested.
 class Engine {
  public:
-  // The commands for its new mood; empty if the mood did not change.
+  // The commands when the engine's mood changes; empty if it stays.
   std::vector<std::string> thoughts(const Walker& walker) {
     const Mood mood = mood_of(walker);
     if (mood == mood_) return {};
@@ -57,7 +57,7 @@ TEST(AiEngine, DrivesByCommandsThatReplayWithoutIt) {
     }
     driven->step({});
   }
-  EXPECT_GE(recording.size(), 8u);  // it walked, limped and rested at least twice
+  EXPECT_GE(recording.size(), 8u);  // the character has walked, limped and rested at least twice
   EXPECT_EQ(driven->counts().bad_commands, 0);
   std::size_t next = 0;
   for (int tick = 0; tick < kTicks; ++tick) {

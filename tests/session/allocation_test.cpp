@@ -31,7 +31,8 @@ void freed(void* memory) {
 
 void* operator new(std::size_t size) { return counted_or_thrown(size); }
 void* operator new[](std::size_t size) { return counted_or_thrown(size); }
-// Also replaced: AddressSanitizer's nothrow new would not match the operators delete below.
+// The nothrow new is replaced as well: AddressSanitizer's would not match the operators delete
+// below.
 void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return counted(size); }
 void* operator new[](std::size_t size, const std::nothrow_t&) noexcept { return counted(size); }
 void operator delete(void* memory) noexcept { freed(memory); }

@@ -1,6 +1,6 @@
-// Bad values through every public function of the C++ library: none crashes, none reaches a pose,
+// Feeds bad values to every public function of the C++ library: none crashes, none reaches a pose,
 // each is refused by a sentence that names the field and its range, or counted. The C API has its
-// own (c_api/bad_values_test).
+// own test (c_api/bad_values_test).
 #include "tests/bad_values.h"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,8 @@
 namespace gaitpad {
 namespace {
 
-using Said = std::optional<std::string>;  // nothing: it was accepted
+// The sentence of the refusal; none: the value was accepted.
+using Said = std::optional<std::string>;
 
 template <class T>
 Said said_by(const Result<T>& result) {
@@ -44,7 +45,7 @@ Said said_by(const std::optional<Error>& problem) {
   return problem ? Said(problem->message) : Said();
 }
 
-int fed = 0;  // values so far
+int fed = 0;  // number of values fed so far
 
 // Sets one field after the other to each of its bad values. `call` must refuse it and name the
 // field and its range.
@@ -64,7 +65,7 @@ void feed(const char* function, const T& good, const std::vector<FedField<T>>& f
   }
 }
 
-// What has no range: texts, lists and pointers. Each must be refused, with these words.
+// A bad value without a range: a text, a list or a pointer. Each must be refused, with these words.
 struct BadCall {
   const char* says;
   std::function<Said()> call;
@@ -86,7 +87,7 @@ void feed(const std::vector<BadCall>& calls) {
   FedField<T> {                                                             \
 #member, [](T & t, double v) { t.member = static_cast<int>(v); }, range \
   }
-// Of an enumeration with values 0 .. last.
+// A field that is an enumeration with values 0 .. last.
 #define CHOICE(T, member, E, last)                                                               \
   FedField<T> {                                                                                  \
 #member, [](T & t, double v) { t.member = static_cast<E>(static_cast<std::uint8_t>(v)); }, { \
@@ -129,7 +130,7 @@ void feed_motions() {
   feed("gait_cycle()", good, fields, [](const M& m) { return said_by(gait_cycle(m)); });
   feed("cycle_on_skeleton()", good, fields,
        [](const M& m) { return said_by(cycle_on_skeleton(good_cycle(), m)); });
-  // Those without a Result find nothing.
+  // For functions without a Result, which find nothing instead of an error.
   for (const FedField<M>& field : fields) {
     for (const double value : field.bad) {
       M bad = good;
@@ -184,7 +185,7 @@ void feed_cycles() {
 }
 
 void feed_styles() {
-  // A StyleValues is numbers alone, all of which have a key.
+  // A StyleValues consists of numbers only, and each has a key.
   constexpr std::size_t kNumbers = sizeof(StyleValues) / sizeof(double);
   OwnFolder home;
   SimulationConfig config = made_config(1);
@@ -450,7 +451,7 @@ void feed_files() {
         {"layout",
          [&] { return said_by(check(GltfLayout{}, Skeleton{})) ? Said("layout") : Said(); }},
         {"has no joints", [] { return said_by(check(BvhLayout{}, Skeleton{})); }}});
-  // Empty texts and paths, and a path with a zero byte.
+  // Texts and paths that are empty, and a path with a zero byte.
   for (const std::string& none : {std::string(), folder.at("none"), std::string("a\0b", 3)}) {
     for (const Said& said :
          {said_by(load_motion(none)), said_by(load_motion_source(none)), said_by(read_bvh(none)),
@@ -609,7 +610,7 @@ void feed_solvers() {
 
 // --- Run time: functions that cannot fail --------------------------------------------------------
 
-// A walk in the middle of a step, which is fed and then walks on.
+// A walk in the middle of a step, which gets a bad value and then walks on.
 struct Walking {
   const WalkModel& model = good_model();
   GaitLimits limits = gait_limits(model);
@@ -622,8 +623,8 @@ struct Walking {
   }
 };
 
-// Each gets each bad value once, on a copy of one walk. The pose stays finite, the value is
-// counted, and the walk goes on: after half a second it is where it would be without.
+// Feeds each bad value to a copy of one walk. The pose stays finite, the value is counted, and the
+// walk goes on: after half a second it is where it would be without the value.
 struct Feed {
   const char* name;
   std::function<void(Walking&, double)> give;
@@ -635,7 +636,7 @@ void feed_walks() {
   unfed.walk(unfed.usual, 31);
   const std::vector<double> numbers = {kNaN, kInfinity, -kInfinity};
   const std::vector<double> places = bad_numbers(-kFarthest_m, kFarthest_m);
-  // Moves the walk, and walks for a tick.
+  // Moves the walk by `by`, then walks for a tick.
   const auto move = [](auto by) {
     return [by](Walking& w, double v) {
       move_walk(by(v), w.state, w.pose);
@@ -648,7 +649,7 @@ void feed_walks() {
       w.walk(w.usual, 1);
     };
   };
-  // Walks for a tick by a stick or after a capsule.
+  // Walks for a tick, by a stick or towards a capsule.
   const auto steer = [](auto stick) {
     return [stick](Walking& w, double v) { w.walk(gait_params(stick(v, w), {}, w.limits), 1); };
   };
@@ -695,7 +696,7 @@ void feed_walks() {
           << feed.name << " " << value;
     }
   }
-  // All numbers of the parameters, alone and in a crowd.
+  // Feed all numbers of the parameters to a single walk and to a crowd.
   auto crowd = value_of(Crowd::create(
       std::vector<CrowdMember>(5, {std::make_shared<const WalkModel>(good_model()), vec3(0.0)})));
   for (std::size_t k = 0; k < kParamsNumbers; ++k) {
@@ -740,7 +741,7 @@ void feed_walks() {
   }
 }
 
-// Functions that only compute: whatever comes of bad values is counted by the walk that gets it.
+// Functions that only compute accept bad values; the walk that gets the result counts it.
 void feed_values() {
   const GaitLimits limits = gait_limits(good_model());
   for (const double v : {kNaN, kInfinity, -kInfinity, 1e300, -1e300, 1e-310, 0.0, -1.0}) {

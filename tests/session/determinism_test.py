@@ -32,7 +32,7 @@ if not slices.ALL:
 # i386 is tested only with SSE2.
 FOREIGN = {"aarch64": (("aarch64-linux-gnu-g++", "g++-aarch64-linux-gnu"), ("qemu-aarch64-static", "qemu-user-static"), "-O2"),
            "i386": (("i686-linux-gnu-g++", "g++-i686-linux-gnu"), None, "-O2 -msse2 -mfpmath=sse -mstackrealign")}
-if slices.ALL:  # minutes
+if slices.ALL:  # these builds take minutes
     OTHERS |= {variant: (compiler[0], level) for variant, (compiler, _, level) in FOREIGN.items()}
 # The extension of each compiler's precompiled headers.
 PRECOMPILED = collections.defaultdict(lambda: "gch", {"clang++": "pch"})
@@ -61,7 +61,7 @@ def parts_of_ordinary(build):
     link = shlex.split(output_of("ninja", "-t", "commands", "pose_hash", folder=build).splitlines()[-1])
     link = [word for word in link if word not in (":", "&&")]
     link[link.index("-o") + 1] = "/dev/null"
-    taken = output_of(*link, "-Wl,--trace,--trace", folder=build).splitlines()  # twice: members of archives too
+    taken = output_of(*link, "-Wl,--trace,--trace", folder=build).splitlines()  # twice, for members of archives
     rows = {row["output"]: row for row in json.loads(output_of("ninja", "-t", "compdb", folder=build))
             if row["output"].endswith(".o")}
     found, main = [], None
@@ -107,7 +107,7 @@ def write_build_file(folder, build):
             header.write_text(text)
         with_compiler = f"  cxx = {compiler}\n  level = {level}\n  variant = {variant}"
         is_foreign = variant in FOREIGN
-        if is_foreign:  # it has no libraries of ours; what is wider than its registers is computed in parts
+        if is_foreign:  # without our libraries; wider numbers than its registers are computed in parts
             portable = re.sub(r" -D(FMT|TOML)_\S+| -I\S*/usr/\S+", "", flags)
             with_compiler += f"\n  flags = {portable} -DFMT_HEADER_ONLY -DTOML_HEADER_ONLY=1\n  libraries = -static"
         precompiled = f"{variant}/system.h.{PRECOMPILED[compiler]}"
@@ -132,7 +132,7 @@ def folder(program):
 
 
 def walk(binary, folder, *emulator, **environment):
-    """The pose hash of every tick, a line each."""
+    """The pose hash of every tick, one in a line."""
     return output_of(*emulator, binary, folder, folder=folder, env={**os.environ, **environment}).splitlines()
 
 

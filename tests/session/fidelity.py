@@ -51,8 +51,8 @@ D2_DEG, BUILT_IN_D2_DEG, CHANGES_D2_DEG = 0.7, 0.5, 1.3
 CHANGES = [(0.5, 0, 0.8), (4.0, 0, 0.4), (7.0, 0, 1.0), (10.1, 0, 0), (12.5, 0, 0.6), (15.0, 0, 0.9), (17.35, 0, 0)]
 CHANGES_S = 20.0
 PLANTED_MM = 0.01
-OWN_PACE = 0.01  # of the clip's speed, steps and time
-TOLD_PACE = 0.03  # of what its frames show
+OWN_PACE = 0.01  # allowed error of the clip's speed, steps and time, relative
+TOLD_PACE = 0.03  # allowed error of the gait that the frames show, relative
 
 
 # ---- a stride, of a source or of a walk ----------------------------------------------------------
@@ -66,13 +66,13 @@ class Stride:
         across = np.mean([position[:, legs[0][0]] - position[:, legs[1][0]]], axis=(0, 1))
         upright = np.mean([position[:, leg[0]] - position[:, leg[2]] for leg in legs], axis=(0, 1))
         axis = int(np.argmax(np.abs(upright)))
-        self.up = np.sign(upright[axis]) * np.eye(3)[axis]  # the file's: not every clip stands along y
+        self.up = np.sign(upright[axis]) * np.eye(3)[axis]  # not every clip stands along y
         self.left = across - (across @ self.up) * self.up
         self.left /= np.linalg.norm(self.left)
         self.forward = np.cross(self.left, self.up)
 
     def seen(self, joint, vector):
-        """World vectors (N, 3) in the joint's frame."""
+        """Vectors of the world (N, 3) in the joint's frame."""
         return np.einsum("fji,fj->fi", self.rotation[:, joint], vector)
 
     def bone(self, a, b):
@@ -115,7 +115,7 @@ def flexions(s, axes):
 
 
 def around(phase, curves, places):
-    """Periodic curves (N, C) at other phases."""
+    """Values of periodic curves (N, C) at other phases."""
     return np.stack([np.interp(places % 1.0, phase % 1.0, c, period=1.0) for c in curves.T], -1)
 
 
@@ -141,12 +141,12 @@ def maxima(curve, least=RIPPLE_DEG):
 
 
 def closed(curve):
-    """A captured stride does not end in its first pose: the difference is spread evenly over it."""
+    """Closes a captured stride, which does not end in its first pose: the difference is spread evenly over it."""
     return curve - np.linspace(0, 1, len(curve)) * (curve[-1] - curve[0])
 
 
 def vertical_acceleration(height, rate_hz, half_s, first, last):
-    """(least, greatest) m/s^2 of the parabola through all heights within half_s, about the samples first..last."""
+    """The (least, greatest) m/s^2 of the parabola through all heights within half_s, about the samples first..last."""
     half = max(1, round(half_s * rate_hz))
     t = np.arange(-half, half + 1) / rate_hz
     weights = 2 * np.linalg.pinv(np.stack([np.ones_like(t), t, t * t], -1))[2]
@@ -171,7 +171,7 @@ def foot_slide_mm(s):
 
 
 def compare(source, walk):
-    """Figures of a walk's stride compared with its source's."""
+    """The figures of a walk's stride compared with its source's."""
     axes = standing_axes(source)
     ours, theirs = flexions(walk, axes), flexions(source, axes)
     ours += 360 * np.round((theirs.mean(0) - ours.mean(0)) / 360)
@@ -193,7 +193,7 @@ def stride_of_track(track, legs, heel_m, first, frames, margin=0):
     """The whole frames of [first, first + frames], `margin` more at either end where the file has them; the place of
     the stride's first and last frame among them."""
     a, b = int(np.ceil(first - 1e-9)), int(np.floor(first + frames + 1e-9))
-    last = len(track.position) - 1  # a looping clip's stride may run over it
+    last = len(track.position) - 1  # in a looping clip the stride may exceed it
     low, high, b = max(0, a - margin), min(last, b + margin), min(last, b)
     part = slice(low, high + 1)
     chains = []
@@ -224,7 +224,7 @@ def stride_of_walk(w):
 
 
 def trimmed(s, a, b):
-    """Without the frames outside the stride, and without the frame that repeats the first."""
+    """The track without the frames outside the stride, and without the frame that repeats the first."""
     part = slice(a, b + 1 - (s.phase[b] > 1 - 1e-6 and s.phase[a] < 1e-6))
     return Stride(s.phase[part], s.seconds, s.position[part], s.rotation[part], s.pelvis, s.legs, s.heel_m)
 
@@ -243,14 +243,14 @@ def reason_of(done):
 
 
 def judge_clip(options, folder, path=None):
-    """Row of one clip (a dict), or {"refused": reason}."""
+    """The row of one clip (a dict), or {"refused": reason}."""
     started = time.time()
     name = pathlib.Path(path).name if path else "built-in"
     done = programs.run(options.program, "motion", path or "procedural", "--json", status=None)
     if done.returncode:
         return {"clip": name, "refused": reason_of(done)}
     told = json.loads(done.stdout)
-    gait = told["gait"] or {"own_stick": 0.8, "stride_s": 1.2}  # of what replay refuses
+    gait = told["gait"] or {"own_stick": 0.8, "stride_s": 1.2}  # the gait of clips that replay refuses
     done = replay(options, folder, path, [(0.5, 0, gait["own_stick"])], 4 + 24 * gait["stride_s"])
     if done.returncode:
         return {"clip": name, "refused": reason_of(done)}
@@ -299,7 +299,7 @@ def contacts(w):
 
 
 def change_checks(w):
-    """Figures of the walk's starts, stops and changes of stride."""
+    """The figures of the walk's starts, stops and changes of stride."""
     value, joint = sharpest_leg_joint(w, np.arange(w.ticks))
     checks = [judge.Check("second difference", value, CHANGES_D2_DEG, unit="deg/tick2", note=joint), *contacts(w),
               *(c for c in judge.file_checks(w) if c.name == "ik_failures")]
@@ -361,7 +361,7 @@ def short(row):
 
 
 def medians(rows):
-    """Checks of the median over the clips, without the built-in motion."""
+    """Checks the median over the clips, without the built-in motion."""
     clips = [r["rms_deg"] for r in rows if r["clip"] != "built-in"]
     return [judge.Check(f"median {j} RMS", float(v), b, unit="deg", note=f"{len(clips)} clips")
             for j, v, b in zip(JOINTS, np.median(clips, 0), MEDIAN_DEG)] if clips else []
@@ -401,7 +401,7 @@ def arguments(words=None):
 
 
 def run_all(options, say=lambda text: None):
-    """(rows judged, rows refused, checks of the medians)"""
+    """Runs all of them and returns (rows judged, rows refused, checks of the medians)."""
     rows, refused = [], []
     with tempfile.TemporaryDirectory() as scratch:
         out = (options.out or pathlib.Path(scratch)).resolve()
@@ -410,7 +410,7 @@ def run_all(options, say=lambda text: None):
             name = path.name if path else "built-in"
             try:
                 row = judge_clip(options, out / name, path)
-            except Exception as error:  # what cannot be measured is a failure of that clip, and the others are still judged
+            except Exception as error:  # a clip that cannot be measured has failed; the others are still judged
                 row = {"clip": name, "refused": f"CANNOT BE JUDGED: {type(error).__name__}: {error}", "failed": True}
             (refused if "refused" in row else rows).append(row)
             say(f"{row['clip'][:28]:28s} {row['refused']}" if "refused" in row else short(row))

@@ -50,7 +50,7 @@ def test_the_phase_shift_is_found(exact):
 @pytest.mark.parametrize("joint, bone", enumerate(["UpLeg", "Leg", "Foot"]))
 def test_five_degrees_are_five_degrees_in_that_joint_alone(exact, joint, bone, side):
     found = fidelity.compare(exact, stride_of(lambda files: add(files, (side + bone, "Xrotation"), 5)))
-    assert found["rms_deg"][joint] == pytest.approx(5, abs=0.4)  # less what the phase shift takes
+    assert found["rms_deg"][joint] == pytest.approx(5, abs=0.4)  # minus the part that the phase shift takes
     assert all(v < 0.8 for j, v in enumerate(found["rms_deg"]) if j != joint), found["rms_deg"]
 
 
@@ -146,7 +146,7 @@ def test_each_bound_breaks_alone(exact, figures, gait, names):
 def test_a_jerk_at_a_change_is_seen():
     assert all(c.ok is not False for c in fidelity.change_checks(Files().load()))
     files = Files()
-    files.channel(*RIGHT_KNEE)[200] += 1.1  # one tick before anything is steady
+    files.channel(*RIGHT_KNEE)[200] += 1.1  # one tick before the walk is steady
     broken = [c.name for c in fidelity.change_checks(files.load()) if c.ok is False]
     assert "at changes: second difference" in broken
 

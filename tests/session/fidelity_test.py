@@ -24,7 +24,7 @@ def assert_kept(row):
 
 
 def angles_zyx(local):
-    """(F, 3) degrees about Z, Y, X of rotations Z Y X."""
+    """The angles (F, 3) in degrees about Z, Y, X of rotations Z Y X."""
     return np.degrees(np.stack([np.arctan2(local[:, 1, 0], local[:, 0, 0]), np.arcsin(np.clip(-local[:, 2, 0], -1, 1)),
                                 np.arctan2(local[:, 2, 1], local[:, 2, 2])], -1))
 

@@ -78,7 +78,8 @@ TEST(Followers, KeepTheirPlacesWhileTheFirstWalksAndTurns) {
   for (int tick = 0; tick < 3000; ++tick) {
     simulation.step(made_tick(tick));
     if (tick % 60 != 0) continue;
-    EXPECT_GT(least_distance_m(simulation), 0.5) << tick;  // shoulders do not touch
+    // Metres; nearer members would touch at the shoulders.
+    EXPECT_GT(least_distance_m(simulation), 0.5) << tick;
     const Walker& first = simulation.walkers().front();
     for (int i = 0; i < 40; ++i) {
       const vec3 way_m = hips_m(simulation, i) - simulation.followers().start_m(i);

@@ -4,6 +4,7 @@
 namespace gaitpad {
 
 void begin_counting_heap_use();
-int heap_uses();  // allocations and frees since then; ends the counting
+// Number of allocations and frees since begin_counting_heap_use(); ends the counting.
+int heap_uses();
 
 }  // namespace gaitpad

@@ -14,8 +14,8 @@ TickSample sample(std::int64_t tick, Stage stage = Stage::idle, Side swing = kLe
   return s;
 }
 
-// From tick `tick` on: whole cycles of 40 ticks (roll right 5, flight left 15, roll left 5, flight
-// right 15), each beginning with the right foot's landing.
+// Adds whole cycles of 40 ticks from tick `tick` on: roll right 5, flight left 15, roll left 5,
+// flight right 15, each cycle beginning with the right foot's landing.
 std::int64_t add_cycles(History& history, std::int64_t tick, int cycles) {
   for (int c = 0; c < cycles; ++c) {
     for (int i = 0; i < 40; ++i) {
@@ -45,7 +45,8 @@ TEST(History, BeginsAnewWhereATickDoesNotFollow) {
   history.add(sample(7));
   ASSERT_EQ(history.size(), 1u);
   EXPECT_EQ(history[0].tick, 7);
-  history.add(sample(7));  // the same tick again does not follow the newest one
+  // The same tick does not follow the newest one, so the history begins anew.
+  history.add(sample(7));
   EXPECT_EQ(history.size(), 1u);
   TickSample other = sample(8);
   other.walker_count = 2;
@@ -79,7 +80,7 @@ TEST(History, ARestIsInNoCycle) {
   std::int64_t tick = add_cycles(history, add_rest(history, 0, 5), 3);
   tick = add_rest(history, tick, 30);
   add_cycles(history, tick, 1);
-  const History::Span two = history.newest_cycles(0, 2);  // the cycles before the rest
+  const History::Span two = history.newest_cycles(0, 2);  // the last two cycles before the rest
   EXPECT_EQ(two.begin, 5u);
   EXPECT_EQ(two.end, 85u);
 }

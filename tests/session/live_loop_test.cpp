@@ -81,7 +81,7 @@ TEST(TickClock, StandingStillIsNeitherLateNorSkipped) {
   clock.set_pace(0.0, 7, clock.due_ns(7));
   EXPECT_EQ(clock.due_ns(7), TickClock::kNever_ns);
   const std::int64_t now_ns = kStart_ns + 3600 * kSecond_ns;
-  clock.set_pace(1.0, 9, now_ns);  // two ticks ran while time stood still
+  clock.set_pace(1.0, 9, now_ns);  // two ticks ran while the clock stood still
   EXPECT_EQ(clock.due_ns(9), now_ns);
   EXPECT_EQ(clock.begin(9, now_ns), TickClock::Begin::on_time);
   EXPECT_EQ(clock.skipped_ns(), 0);
@@ -99,7 +99,8 @@ TEST(TickClock, TicksThatTakeTooLongAreNotAStandstill) {
   TickClock clock(100, kStart_ns);
   std::int64_t now_ns = kStart_ns;
   int set_forward = 0;
-  for (int tick = 0; tick < 400; ++tick, now_ns += 15'000'000) {  // a tick lasts 10 ms
+  // Ticks of 10 ms, calls every 15 ms.
+  for (int tick = 0; tick < 400; ++tick, now_ns += 15'000'000) {
     const TickClock::Begin begin = clock.begin(tick, now_ns);
     EXPECT_NE(begin, TickClock::Begin::after_standstill);
     set_forward += begin == TickClock::Begin::after_overload;
@@ -127,7 +128,8 @@ TEST(TimeHistogram, MedianOfOneValueIsThatValueWithinOnePercent) {
 
 TEST(TimeHistogram, HalfOfTheValuesLieBelowTheMedian) {
   const auto times = std::make_unique<TimeHistogram>();
-  for (int i = 1; i <= 1001; ++i) times->add((i * 7919 % 1001 + 1) * 1000);  // each value once
+  // The numbers 1 to 1001, once each.
+  for (int i = 1; i <= 1001; ++i) times->add((i * 7919 % 1001 + 1) * 1000);
   EXPECT_NEAR(times->median_us(), 501.0, 5.1);
   EXPECT_NEAR(times->percentile_us(0.99), 991.0, 10.0);
   EXPECT_NEAR(times->percentile_us(0.01), 11.0, 0.2);
@@ -147,7 +149,7 @@ TEST(TimeHistogram, ValuesOutsideTheRangeCountAtTheEnds) {
 // --- TickReports
 
 constexpr std::int64_t kNow_ns = std::int64_t{1} << 60;
-constexpr std::uint8_t kHatAtRest = 0x08, kFirstButton = 0x10;  // in made_pad()'s fifth byte
+constexpr std::uint8_t kHatAtRest = 0x08, kFirstButton = 0x10;  // values of made_pad()'s fifth byte
 
 // A pad on a real stream; its reports are gathered and taken as in the loop.
 class LiveTickReports : public testing::Test {
@@ -175,7 +177,8 @@ class LiveTickReports : public testing::Test {
     reports_->gather(kNow_ns);
     EXPECT_EQ(stream_->counts().reports, reports);
   }
-  std::vector<int> step() {  // X, or -kind, of each report that the tick uses
+  // Runs a tick and returns X of each report that it used, or -kind for other kinds.
+  std::vector<int> step() {
     std::vector<int> used;
     const auto reports = reports_->take_reports(kNow_ns);
     for (const Report& r : reports)
@@ -300,7 +303,7 @@ struct LoopParts {
   std::optional<Simulation> simulation;
   std::unique_ptr<Recording> recording;
   Script script;
-  // Receives the ticks for other programs.
+  // Receives the ticks that are streamed to other programs.
   std::unique_ptr<Latest<StreamedTick>> stream = std::make_unique<Latest<StreamedTick>>();
   std::unique_ptr<ForwardMail> forward = std::make_unique<ForwardMail>();
   std::unique_ptr<LiveLoop> loop;
@@ -357,11 +360,11 @@ TEST_F(LiveLoopTest, TheLoopThreadUsesNoHeap) {
   EXPECT_EQ(parts.forward->read(is_new).state.stick.left, parts.simulation->stick().left);
   EXPECT_TRUE(is_new);
   EXPECT_GT(parts.simulation->counts().reports, 100);
-  EXPECT_EQ(parts.simulation->counts().commands, 2);  // the script's and the one above
+  EXPECT_EQ(parts.simulation->counts().commands, 2);  // the command of the script and the one above
   EXPECT_GT(parts.simulation->walkers()[0].state.frame.steps[kRightSide], 0);
 }
 
-// A pad that is held forward and logs each command to its motors.
+// A pad that is held forward; it logs each command to its motors.
 struct MotorLog {
   std::mutex mutex;
   std::vector<std::pair<std::int64_t, Rumble>> calls;

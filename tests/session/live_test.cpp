@@ -19,7 +19,7 @@
 namespace gaitpad {
 namespace {
 
-// Sessions in real time; a recording replaces the pads. The tests wait for what takes time, and
+// Sessions run in real time; a recording replaces the pads. The tests wait for what takes time, and
 // judge rates only while the session could run, so that they pass on a busy machine.
 
 namespace fs = std::filesystem;
@@ -66,7 +66,8 @@ TEST_F(Live, MeasuresFromTheReportToTheFrameThatShowsIt) {
   const LiveStatus status = session->status();
   EXPECT_GE(status.frame_us_p50, 1000.0 * kDraw_ms);
   EXPECT_GE(status.frame_us_p99, status.frame_us_p50);
-  // A report waits for its tick, for the rest of a frame, and for a whole frame to be drawn.
+  // The longest way of a report: it waits for its tick, for the rest of a frame, and for a whole
+  // frame to be drawn.
   const double longest_us = static_cast<double>(longest_ns) / 1000.0;
   EXPECT_LE(status.frame_us_p99, 1.01 * (status.wait_us_max + status.tick_us_max + 2 * longest_us));
 }
@@ -121,7 +122,8 @@ TEST_F(Live, WithoutAPadItStandsAndNothingIsRecorded) {
   EXPECT_FALSE(fs::exists(options_.live.record));
 }
 
-// Under ThreadSanitizer: nothing that pads, loop, stream, recorder and viewer share is unguarded.
+// Under ThreadSanitizer it shows that everything that pads, loop, stream, recorder and viewer share
+// is guarded.
 TEST_F(Live, FourPadsAStreamAndARecordingRunAtOnce) {
   Trace trace;
   for (int i = 0; i < 4; ++i) {
@@ -137,7 +139,7 @@ TEST_F(Live, FourPadsAStreamAndARecordingRunAtOnce) {
   for (std::uint16_t i = 1; i < 4; ++i)
     add_event(trace, 1'000'000, made_plug(ReportKind::removed, i));
   ASSERT_TRUE(write_trace(trace, options_.pad.selector.pad));
-  options_.live.stream = "json://127.0.0.1:39599";  // nobody listens
+  options_.live.stream = "json://127.0.0.1:39599";  // an address where no program listens
   auto session = started();
   EXPECT_TRUE(comes_true([&] {
     bool is_new = false;
@@ -195,7 +197,7 @@ class LiveKeyboard : public Live {
   void SetUp() override {
     Live::SetUp();
     options_.live.keyboard = true;
-    options_.pad.selector.pad = "0001:fffe";  // no such pad exists
+    options_.pad.selector.pad = "0001:fffe";  // ids that no pad has
   }
   static double distance_m(LiveSession& session) {
     bool is_new = false;
@@ -333,8 +335,8 @@ class LivePace : public Live {
     }
     return ticks;
   }
-  // Some 200 ms in which it runs that many ticks a second: soon there are some, even on a busy
-  // machine.
+  // Waits about 200 ms and returns true if the session runs that number of ticks a second. It tries
+  // again, because a busy machine may disturb a measurement.
   static bool runs_at(const LiveSession& session, double rate_hz) {
     return comes_true([&] {
       const std::int64_t before = session.status().ticks, begin_ns = now_ns();
@@ -385,10 +387,10 @@ TEST_F(LivePace, StandingStillIsNotLatenessAndIsNotMadeUp) {
 TEST_F(LivePace, AStepIsOneTickAndWorksOnlyWhileStandingStill) {
   options_.live.record.clear();
   auto session = started();
-  session->step(100'000);  // has no effect while the session runs
+  session->step(100'000);  // a step has no effect while the session runs
   sleep_for(100);
   session->set_pace(0.0);
-  session->step(1);  // right after it, before the loop has seen either
+  session->step(1);  // another step at once, before the loop has seen the first one
   const std::int64_t still = ticks_when_still(*session);
   EXPECT_LT(still, 100'000);
   for (const int steps : {1, 4, 60}) {
@@ -409,7 +411,7 @@ TEST_F(LivePace, NotANumberAndNegativePacesStandStill) {
   for (const double pace : {-1.0, std::nan(""), 1e-12}) {
     session->set_pace(pace);
     const std::int64_t still = ticks_when_still(*session);
-    session->set_pace(1e300);  // the limit is 8
+    session->set_pace(1e300);  // the pace is limited to 8
     EXPECT_TRUE(comes_true([&] { return session->status().ticks > still; }));
   }
 }

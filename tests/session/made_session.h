@@ -45,7 +45,7 @@ inline void add_event(Trace& trace, std::int64_t time_us, const Report& report) 
   trace.events.push_back(event);
 }
 
-// made_pad() with the calibration of an unknown stick.
+// The configuration of made_pad(), with the calibration of an unknown stick.
 inline PadConfig made_pad_config() {
   PadConfig config;
   auto layout = pad_layout(made_pad(), {});
@@ -87,7 +87,7 @@ inline void step(Simulation& simulation, const std::vector<Report>& reports, int
   for (int i = 1; i < ticks; ++i) simulation.step({});
 }
 
-// A simulation after `ticks` ticks with the stick held at x, y from tick 0 on.
+// A simulation after `ticks` ticks in which the stick was held at x, y.
 inline Simulation walked(const SimulationConfig& config, int x, int y, int ticks) {
   Simulation simulation = made_simulation(config);
   step(simulation, {made_report(x, y)}, ticks);
@@ -123,7 +123,7 @@ inline SimulationConfig made_uneven_config(int walkers) {
   return config;
 }
 
-// The reports of one tick of a varied walk: standing, straight, curves, a style, changed values,
+// The reports of one tick of a varied session: standing, straight, curves, a style, changed values,
 // unplugging, a reset.
 inline std::vector<Report> made_tick(int tick) {
   constexpr int kPeriod = 3000;

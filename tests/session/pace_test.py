@@ -8,8 +8,8 @@ from support import judge
 from support.traces import EXACT_CALIBRATION, write_trace
 from support.walk import Walk
 
-OWN = 0.01  # as far off may speed, steps and time be: stages last whole ticks
-ADULT_STEP_M, ADULT_SPEED_M_S, ADULT_LEG_M = 0.7225, 1.5, 0.84  # at full stick
+OWN = 0.01  # allowed relative error of speed, steps and time, because stages last whole ticks
+ADULT_STEP_M, ADULT_SPEED_M_S, ADULT_LEG_M = 0.7225, 1.5, 0.84  # an adult's values at full stick
 
 
 class Paces:
@@ -30,7 +30,7 @@ class Paces:
         return path
 
     def out(self, trace, *options, motion=None):
-        """The folder of a replay."""
+        """Makes a replay and returns its folder."""
         self.number += 1
         folder = self.folder / f"out-{self.number}"
         self._run("replay", trace, "--out", folder, "--calibration", self.folder / "exact.toml",

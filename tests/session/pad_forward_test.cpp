@@ -12,7 +12,7 @@ TEST(PadForward, HasTheCalibratedStickAndTheButtons) {
   config.calibration.left.inner = 0.5;
   Pads pads({config}, 240);
   Report report = made_report(0xff, 0x80);
-  report.bytes[4] = 0x18;  // button 1
+  report.bytes[4] = 0x18;  // presses button 1
   ASSERT_TRUE(pads.take_report(report));
   const Stick stick = pads.finish_tick();
   const ForwardedTick tick = forwarded_tick(pads, stick);
@@ -20,7 +20,8 @@ TEST(PadForward, HasTheCalibratedStickAndTheButtons) {
   EXPECT_GT(tick.state.stick.left.x, 0.9);
   EXPECT_EQ(tick.state.buttons, pads.driving_state().buttons);
   EXPECT_NE(tick.state.buttons, 0u);
-  ASSERT_TRUE(pads.take_report(made_report(0xa0, 0x80)));  // a deflection of 0.25; the zone is 0.5
+  // A deflection of 0.25, inside the zone of 0.5.
+  ASSERT_TRUE(pads.take_report(made_report(0xa0, 0x80)));
   EXPECT_EQ(forwarded_tick(pads, pads.finish_tick()).state.stick.left, vec2(0.0));
 }
 
@@ -53,7 +54,7 @@ TEST(PadForward, ATickThatChangesNothingWakesNobody) {
   EXPECT_TRUE(is_same(tick, ForwardedTick{}));
   ForwardedTick moved = tick, pressed = tick;
   moved.state.stick.right.y = 1e-9;
-  pressed.presses[kButtonA] = 1;  // pressed and released
+  pressed.presses[kButtonA] = 1;  // the button was pressed and released
   EXPECT_FALSE(is_same(tick, moved));
   EXPECT_FALSE(is_same(tick, pressed));
 }

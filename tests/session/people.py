@@ -33,7 +33,7 @@ PEOPLE = {
     "ankle": (6, [-2.1, -5.6, -4.1, -0.2, 2.9, 5.2, 6.8, 8.0, 9.1, 10.2, 11.1, 11.8, 11.5, 8.4, -0.2, -13.8, -19.8, -14.7, -7.9,
                   -2.4, 1.1, 2.5, 1.8, 0.1, -1.1])}
 STICKS = (0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0)
-CADENCE, NEAR_CADENCE = (95, 124), 110  # a minute
+CADENCE, NEAR_CADENCE = (95, 124), 110  # range and goal, steps a minute
 FIRST_STEP, TURN_S, TURN_LANDINGS, TOE_MM = (1.05, 1.29), (1.4, 2.2), (1, 4), (11, 19)
 ARRIVED_DEG = 10
 
@@ -62,7 +62,7 @@ def ankle_angles(walk, side):
 
 
 def differences(walk, side=0):
-    """{joint: RMS degrees} of the last whole cycle of that leg."""
+    """The differences {joint: RMS degrees} of the last whole cycle of that leg."""
     a, b = walk.landings[side][-2:]
     own = {"hip": walk.hip_flexion(side), "knee": walk.knee_angles(side), "ankle": ankle_angles(walk, side)}
     places = a + (b - a) * np.arange(25) / 25
@@ -83,7 +83,7 @@ def toe_clearance_mm(walk, side=0):
 
 
 def u_turns(player):
-    """[(seconds, landings)] from different phases of the stride."""
+    """The U-turns as [(seconds, landings)] from different phases of the stride."""
     found = []
     for k in range(8):
         turn_s = 4.0 + 0.14 * k
@@ -100,7 +100,7 @@ def u_turns(player):
 
 
 def row(name, values, bounds, unit, where=""):
-    """The value that is farthest out of bounds, else the first."""
+    """A row with the value that is farthest out of bounds, else with the first value."""
     low, high = bounds
     outside = [v for v in values if not low <= v <= high]
     worst = max(values, key=lambda v: max(low - v, v - high)) if len(values) > 1 else values[0]

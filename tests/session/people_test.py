@@ -4,7 +4,7 @@ import pytest
 from session import people
 from session.transitions import Player
 
-STICK = 0.8  # a walk of about 110 steps a minute
+STICK = 0.8  # gives a walk of about 110 steps a minute
 
 
 @pytest.fixture(scope="module")

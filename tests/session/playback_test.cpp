@@ -19,7 +19,7 @@ constexpr int kRateHz = 240;
 const std::string kConfig = kSourceFolder + "/config";
 const std::string kRound = kConfig + "/traces/round.hid";
 
-// The paper's four styles on this recording.
+// A session with the paper's four styles on this recording.
 SessionSpec paper_cast(const std::string& trace, Damage damage = Damage::refuse) {
   SessionSpec spec;
   spec.config_folders = {kConfig};
@@ -66,7 +66,7 @@ std::uint64_t print_of(const TickSample& sample) {
   return hash.value();
 }
 
-// Hash of each tick's frame and sample in a run from beginning to end.
+// A run from beginning to end, and the hash of each tick's frame and sample.
 struct Straight {
   std::vector<std::uint64_t> frames, samples;
   std::uint64_t pose_hash = 0;
@@ -91,7 +91,8 @@ Straight straight_run(const std::string& path) {
 class PlaybackTest : public testing::Test {
  protected:
   void open(const std::string& path) { playback_ = value_of(Playback::open(paper_cast(path))); }
-  // Writes a session of `ticks` ticks with walking, commands, buttons and unplugging.
+  // Writes the recording of a session of `ticks` ticks with walking, commands, buttons and
+  // unplugging.
   std::string write_session(std::int64_t ticks, int rate_hz = kRateHz) {
     TraceWriter writer;
     TraceDevice device;
@@ -202,15 +203,15 @@ TEST_F(PlaybackTest, SamplesHaveNoGapsAndRestartAfterAJump) {
     reach(tick, 3);
     expect_up_to(tick);
   }
-  reach(2000, 100);  // back
+  reach(2000, 100);  // seeks back
   next = 2001 - Playback::kHistoryTicks;
   expect_up_to(2000);
-  reach(2000 + Playback::kHistoryTicks, 100);  // continues
+  reach(2000 + Playback::kHistoryTicks, 100);  // goes on without a seek
   expect_up_to(2000 + Playback::kHistoryTicks);
-  reach(8000, 100);  // forward, beyond all ticks seen so far
+  reach(8000, 100);  // seeks forward, beyond all ticks that were played so far
   next = 8001 - Playback::kHistoryTicks;
   expect_up_to(8000);
-  reach(100, 100);  // fewer ticks than the history are before it
+  reach(100, 100);  // seeks to a tick with fewer ticks before it than the history holds
   next = 0;
   expect_up_to(100);
   // A seek to an earlier tick interrupts one to a later tick: the history is complete.

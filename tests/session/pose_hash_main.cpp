@@ -1,6 +1,6 @@
 // For determinism_test.py: walks made-up sessions and prints the pose hash of every tick, so that
-// two builds can be compared. It computes only; the one file is a motion that it writes into the
-// given folder and reads back. The strides that the walks read are solved, not taken from a cache.
+// two builds can be compared. Its only file is a motion that it writes into the given folder and
+// reads back. The strides that the walks read are solved, not taken from a cache.
 #include <fmt/format.h>
 
 #include <cstdio>
@@ -63,7 +63,8 @@ Result<GaitCycle> cycle_through_file(const std::string& path) {
   return with_clean_strides(std::move(*cycle));
 }
 
-// 64 characters for a minute, at every lane width up to the widest of this build and processor.
+// Walks 64 characters for a minute, at every lane width up to the widest of this build and
+// processor.
 void walk_crowd() {
   for (const int lanes : {2, 4, 8}) {
     use_lanes(lanes);
@@ -91,8 +92,9 @@ int main(int argc, char** argv) {
   if (argc != 2) return fail("usage: pose_hash_main FOLDER");
   ::setenv("GAITPAD_CACHE", "off", 1);
   try {
-    std::locale::global(std::locale(""));  // a host program may do this, or call std::setlocale()
-  } catch (const std::runtime_error&) {    // the environment's locale may not be installed
+    // A host program may set a locale by this or by std::setlocale().
+    std::locale::global(std::locale(""));
+  } catch (const std::runtime_error&) {  // thrown if the environment's locale is not installed
   }
   if (std::getenv("GAITPAD_SAY_LOCALE") != nullptr) std::printf("locale: %.1f\n", 0.5);
   SimulationConfig config = made_config(4);

@@ -19,7 +19,7 @@ class RecordedSessionTest : public Live {
     fs::copy(kSourceFolder + "/config", folder_ / "config", fs::copy_options::recursive);
     options_.config_folders = {own_.at("config")};
   }
-  // Runs until the recording that replaces the pads ends.
+  // Runs until the recording that replaces the pads has ended.
   static void walk(LiveSession& session) {
     ASSERT_TRUE(comes_true([&] {
       session.advance(8);
@@ -73,7 +73,7 @@ TEST_F(RecordedSessionTest, AStyleSavedOnTheWayCountsFromItsTickOn) {
   mine.name = "mine";
   mine.hip_sway = 2.0;
   session->advance(40);
-  session->command("style mine");  // no style of this name yet
+  session->command("style mine");  // there is no style of this name yet
   sleep_for(50);
   session->advance(40);
   session->add_style(mine);
@@ -122,7 +122,7 @@ bool is_not_held(const std::string& cause) {
   return cause.ends_with(": the recording does not hold this file");
 }
 
-// Files that a recording names are looked for in the recording alone, never on the disk.
+// Files that a recording names are searched for in the recording alone, never on the disk.
 TEST_F(RecordedSessionTest, NoNameLeadsOutOfARecording) {
   const std::string secret = own_.write("own/secret.toml", "hip_sway = 1\n");
   Trace trace = two_pads_trace();

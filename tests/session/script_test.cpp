@@ -101,7 +101,8 @@ TEST(Script, EventsAreInTheOrderOfTheirTimes) {
   EXPECT_EQ(script->events[1].command, "style limp_left");
   EXPECT_EQ(script->events[2].command, "mark b");
   EXPECT_EQ(tick_of(script->events[1], 240), 600);
-  EXPECT_EQ(tick_of({2'500'001, "", ""}, 240), 601);  // the first tick that begins after it
+  // Tick 601 is the first that begins after the event.
+  EXPECT_EQ(tick_of({2'500'001, "", ""}, 240), 601);
   EXPECT_EQ(tick_of({0, "", ""}, 240), 0);
 }
 
@@ -126,7 +127,8 @@ class Scripted : public Live {
     Live::SetUp();
     options_.live.clock = SessionSpec::Live::Clock::by_hand;
     options_.live.keyboard = true;
-    options_.pad.selector.pad = "0001:fffe";  // no such pad exists: only the script drives the walk
+    // Ids that no pad has, so only the script drives the walk.
+    options_.pad.selector.pad = "0001:fffe";
   }
   std::string write(const std::string& name, const std::string& text) {
     return own_.write(name, text);
@@ -159,8 +161,8 @@ TEST_F(Scripted, EventsAreRecordedAndAReplayNeedsNoScript) {
   EXPECT_EQ(run.bad_commands, 0);
 }
 
-// Zones and fatigue follow from the state. The recording has the terrain but no commands for them;
-// a replay applies them once.
+// The terrain's zones and fatigue are computed from the state. The recording has the terrain but no
+// commands for them; a replay applies them once.
 TEST_F(Scripted, ZonesAndTiringActOnceInAReplay) {
   options_.walk.terrain =
       write("zones.toml", "[[zone]]\nfrom_m = 1\nto_m = 2.5\nstyle = \"limp_left_hip\"\n");
@@ -176,7 +178,7 @@ TEST_F(Scripted, ZonesAndTiringActOnceInAReplay) {
   const std::string text = text_in(options_.live.record);
   EXPECT_EQ(text.find("C: style"), std::string::npos);
   EXPECT_NE(text.find("set hip_bounce 0.5"), std::string::npos);
-  options_.walk.terrain = "flat";  // shows that the zone had an effect
+  options_.walk.terrain = "flat";  // flat ground has no zone: shows that the zone had an effect
   EXPECT_NE(replayed().pose_hash, live);
 }
 

@@ -40,7 +40,7 @@ TEST_F(SessionFrameTest, TheCastStandsBeforeTheFirstTick) {
     const WalkerFrame& w = frame_.walkers[i];
     EXPECT_EQ(w.presence, 0.0);
     EXPECT_EQ(w.walk.stage, Stage::idle);
-    // The heels are planted, so both points are the heel's present place.
+    // The heels are planted, so the points of lift and landing are the heel's present place.
     EXPECT_NEAR(glm::length(w.lift_m[kLeftSide] - w.walk.heel_m[kLeftSide]), 0.0, 1e-6);
     EXPECT_NEAR(w.landing_m.x, w.walk.heel_m[kLeftSide].x, 1e-6);
   }
@@ -86,11 +86,11 @@ TEST_F(SessionFrameTest, LiftAndLandingAreWhereTheHeelLeavesAndComesDown) {
   EXPECT_GT(landings, 6);
 }
 
-// A walk counts in coordinates of its own; a frame is in the world.
+// A walk counts in its own coordinates; a frame has world coordinates.
 TEST_F(SessionFrameTest, LiftAndLandingOfAMovedWalkAreInTheWorld) {
   start(1);
   step({made_report(0x60, 0x10)});
-  // No session moves its walkers yet: the test reaches into its own simulation.
+  // No session moves its walkers yet, so the test changes its own simulation.
   auto& walker = const_cast<Walker&>(simulation_->walkers().front());
   const Placement by{vec3(30.0, 0.0, -20.0), 1.2};
   for (int tick = 1; tick < 600; ++tick) step();

@@ -27,7 +27,7 @@ TEST(Simulation, AForwardStickWalksStraight) {
   EXPECT_EQ(frame.heading_rad, 0.0);
 }
 
-// Commanded by a camera that looks along +z, and by one that looks to the left.
+// The stick points for a camera that looks along +z, and for one that looks to the left.
 TEST(Simulation, AStickThatPointsLeadsThereWhereverTheCharacterFaces) {
   struct Case {
     int x, y;
@@ -60,7 +60,7 @@ TEST(Simulation, UnpluggingFinishesTheStepAndStands) {
   EXPECT_EQ(s.stick().left, vec2(0.0));
 }
 
-// A character with its own skeleton, in a T pose and 1.5 times as large, does the procedural walk.
+// A character with its own skeleton, in a T pose and 1.5 times as large, walks the procedural walk.
 TEST(Simulation, ACharacterWalksOnTheSkeletonThatItBrings) {
   SimulationConfig config = made_config(1);
   config.walkers[0].character = {};
@@ -138,7 +138,7 @@ TEST(Simulation, OneGroundForAllGrowsWithTheLongestFoot) {
 TEST(Simulation, CharactersStartOnTheGround) {
   SimulationConfig config = made_config(2);
   auto step_up = std::make_shared<Terrain>();
-  ASSERT_FALSE(add_section(*step_up, StairsSection{0.2, 2.0, 1}));  // edge at z = 0
+  ASSERT_FALSE(add_section(*step_up, StairsSection{0.2, 2.0, 1}));  // a step whose edge is at z = 0
   config.terrain = step_up;
   const Simulation s = made_simulation(config);
   for (const Walker& w : s.walkers()) EXPECT_EQ(w.start_m.y, 0.2);
@@ -189,8 +189,8 @@ TEST(Simulation, TheHashDiffersForOneStickCount) {
             walked(config, 0x80, 0x21, 400).pose_hash());
 }
 
-// Two pads are plugged in and out; the second one is held, rests and drives meanwhile. Also sends
-// bad reports and reports of a device that is not a pad.
+// The reports of a tick: two pads are plugged in and out; the second one is held, rests and drives
+// meanwhile. There are bad reports, and reports of a device that is not a pad.
 std::vector<Report> plugging_tick(int tick) {
   switch (tick) {
     case 30:
@@ -276,7 +276,7 @@ TEST(Simulation, RefusesNoCharacterAndTooMany) {
   EXPECT_FALSE(Simulation::create(crowd));
 }
 
-// commands at any time of a walk
+// Commands at any time of a walk.
 
 TEST(Simulation, AStyleCommandIsForAllOrForOneAndUnknownOnesAreCounted) {
   Simulation s = made_simulation(made_config(3));
@@ -312,7 +312,7 @@ TEST(Simulation, AGaitCommandOverridesAParameterUntilItIsReturnedToTheStick) {
   Simulation s = made_simulation(made_config(2));
   step(s, {made_command("gait 2 speed_m_s 1"), made_command("gait hip_sway 0.5")}, 1200);
   EXPECT_EQ(s.walkers()[0].state.frame.stage, Stage::idle);
-  // A stage lasts a whole number of ticks, and a cycle has only some hundred.
+  // Not exactly 1 m/s: a stage lasts a whole number of ticks, and a cycle has only some hundred.
   EXPECT_NEAR(s.walkers()[1].state.frame.speed_m_s, 1.0, 0.01);
   EXPECT_EQ(s.walkers()[0].params.hip_sway, 0.5);
   step(s, {made_command("gait 2 speed_m_s stick")}, 480);
@@ -374,7 +374,7 @@ TEST(Simulation, AnInvalidCommandChangesNothing) {
   }
 }
 
-// The command would lock the second walker's leg, so it is applied to none of them.
+// The command would lock the second walker's leg, so it is applied to neither of them.
 TEST(Simulation, ASetCommandAppliesToAllOrToNone) {
   Simulation s = made_simulation(made_config(3));
   step(s, {made_command("set 2 legs.weight.hip 0"), made_command("set 2 legs.weight.knee 0"),
@@ -411,7 +411,7 @@ std::string any_command(std::mt19937& random) {
 }
 
 // Sends a random command every quarter of a second and a random stick every two seconds; `check`
-// gets each walker of each tick.
+// gets each walker in each tick.
 template <class Check>
 void walk_at_random(IkMode mode, std::string (*command)(std::mt19937&), const Check& check,
                     unsigned seed = 11, int ticks = 12000) {
@@ -438,8 +438,7 @@ void walk_at_random(IkMode mode, std::string (*command)(std::mt19937&), const Ch
 }
 
 // Commands change parameters abruptly in mid-step, which a stick cannot do. A foot may lag by 0.15
-// m where one leg has to stop while the other takes its longest step, or where it has to turn at
-// once.
+// m where one leg has to stop while the other takes its longest step, or has to turn at once.
 TEST(Simulation, LegsFollowRandomGaitCommands) {
   walk_at_random(IkMode::robust, any_gait_command, [](const Walker& w) {
     EXPECT_GT(w.state.frame.pelvis_m.y, 0.45 * w.model->stand_m);
@@ -453,7 +452,8 @@ TEST(Simulation, LegsFollowRandomGaitCommands) {
 TEST(Simulation, RandomCommandsKeepThePoseValid) {
   for (const IkMode mode : {IkMode::robust, IkMode::paper}) {
     walk_at_random(mode, any_command, [](const Walker& w) {
-      EXPECT_GT(w.state.frame.pelvis_m.y, 0.3 * w.model->stand_m);  // with a bounce of 3
+      // Low, because a random style may bounce three times as far.
+      EXPECT_GT(w.state.frame.pelvis_m.y, 0.3 * w.model->stand_m);
       EXPECT_LT(w.state.frame.pelvis_m.y, 1.15 * w.model->stand_m);
       for (int j = 0; j < w.pose.joint_count; ++j)
         ASSERT_NEAR(glm::length(w.pose.local[j]), 1.0, 1e-9);
@@ -481,7 +481,7 @@ TEST(Simulation, AMarkDoesNothing) {
   EXPECT_EQ(marked.counts().bad_commands, 0);
 }
 
-// effects of the state itself: zones of the terrain, fatigue, blending
+// Effects that follow from the state: zones of the terrain, fatigue, blending.
 
 TerrainZone zone(double from_m, double to_m, const std::string& style) {
   TerrainZone zone;
@@ -489,8 +489,8 @@ TerrainZone zone(double from_m, double to_m, const std::string& style) {
   return zone;
 }
 
-// Zones with the style `limp`: z from 2 to 4 m at any x, and z from 6 to 8 m only where x is below
-// -0.5 m.
+// A session with the style `limp` in zones: z from 2 to 4 m at any x, and z from 6 to 8 m only
+// where x is above -0.5 m.
 SimulationConfig zoned(int walkers = 1) {
   SimulationConfig config = made_config(walkers);
   for (WalkerConfig& w : config.walkers) w.style = 0, w.character.leg_ratio = 1.0;
@@ -525,7 +525,8 @@ TEST(Zones, ApplyTheirStyleOnlyInside) {
 }
 
 TEST(Zones, ApplyToEachWalkerByItsOwnPlace) {
-  Simulation s = made_simulation(zoned(2));  // the second walker is at x = -1.2
+  // At x = -1.2 the second walker is outside of the second zone.
+  Simulation s = made_simulation(zoned(2));
   walk_to(s, 7.0);
   EXPECT_EQ(style_of(s, 0), "limp");
   EXPECT_EQ(style_of(s, 1), "even");
@@ -536,7 +537,8 @@ TEST(Zones, RestoreTheValuesSetBeforeThem) {
   s.take_report(made_command("set hip_sway 2"));
   walk_to(s, 3.0);
   EXPECT_EQ(s.walkers()[0].values.hip_sway, 1.0);
-  s.take_report(made_command("set hip_sway 0.5"));  // changes the zone's style
+  // Changes the style that the zone gave, and only that.
+  s.take_report(made_command("set hip_sway 0.5"));
   EXPECT_EQ(s.walkers()[0].values.hip_sway, 0.5);
   walk_to(s, 4.1);
   EXPECT_EQ(s.walkers()[0].values.hip_sway, 2.0);
@@ -550,7 +552,7 @@ TEST(Zones, AChosenStyleWinsAndStays) {
   EXPECT_EQ(style_of(s), "slow");
   walk_to(s, 4.2);
   EXPECT_EQ(style_of(s), "slow");
-  walk_to(s, 7.0);  // a different zone follows
+  walk_to(s, 7.0);  // walks on to the next zone
   EXPECT_EQ(style_of(s), "limp");
   walk_to(s, 8.2);
   EXPECT_EQ(style_of(s), "slow");
@@ -609,7 +611,7 @@ TEST(Zones, BlendOverTheTimeOfTheStyle) {
   walk_to(s, 4.02);
   const double length = s.walkers()[0].in_force.stride[kLeftSide].length;
   EXPECT_GT(length, 0.5);
-  EXPECT_LT(length, 1.0);  // the return is blended as well
+  EXPECT_LT(length, 1.0);  // the way back to the own style is blended as well
 }
 
 TEST(Tiring, SlowsAWalkWithDistanceAndRecoversAtRest) {
@@ -633,7 +635,7 @@ TEST(Tiring, SlowsAWalkWithDistanceAndRecoversAtRest) {
   EXPECT_LT(w.tired, 1e-9);
 }
 
-// RMS difference in degrees of the left leg's angles at the same ticks of the same walk.
+// RMS difference in degrees of the left leg's angles in two runs of a walk, tick by tick.
 double difference_deg(const std::vector<double>& a, const std::vector<double>& b) {
   double sum = 0.0;
   for (std::size_t i = 0; i < a.size(); ++i) sum += (a[i] - b[i]) * (a[i] - b[i]);

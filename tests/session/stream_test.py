@@ -15,7 +15,7 @@ from support.traces import write_trace
 
 NEAR_DEG, NEAR_M = 0.01, 1e-5
 SECONDS = 4
-MANY = 60 * SECONDS / 3  # of the frames: a busy machine misses some
+MANY = 60 * SECONDS / 3  # a third of the frames, because a busy machine misses some
 MIRROR = np.diag([-1.0, 1.0, 1.0])  # Unity's x grows to the right
 
 needs_oscdump = pytest.mark.skipif(not shutil.which("oscdump"), reason="there is no oscdump (package liblo-tools)")
@@ -28,7 +28,7 @@ def trace(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def played(run, trace, tmp_path_factory):
-    """(summary, folder of the recording's replay) of a session that streams there, with these further options."""
+    """Plays a session that streams there, with these options; returns (summary, folder of its recording's replay)."""
     def play(address, *options):
         folder = tmp_path_factory.mktemp("played")
         done = run("play", trace, "--no-window", "--no-rumble", "--record", folder / "session.hid", "--json", "--seconds",
@@ -41,7 +41,7 @@ def played(run, trace, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def json_stream(played):
-    """(datagrams, bones of the same replay, summary)"""
+    """The stream as (datagrams, bones of the replay, summary)."""
     with Receiver() as receiver:
         summary, folder = played(f"json://127.0.0.1:{receiver.port}")
     return receiver.frames(), ExportedBones(folder / "pose.glb"), summary

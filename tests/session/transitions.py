@@ -33,7 +33,7 @@ from support.walk import Walk
 
 RATE = 240
 THUMB_S = 0.06
-COARSE = 4  # ticks: 60 Hz
+COARSE = 4  # ticks in a step of 60 Hz
 MOMENTS = 12
 
 
@@ -69,7 +69,7 @@ class Player:
 
 # ---- one walk --------------------------------------------------------------------------------
 def at_60_hz(x):
-    """First and second derivative of (ticks, ...), the same length, 0 at the ends."""
+    """The first and second derivative of (ticks, ...), of the same length, 0 at the ends."""
     rate, bend = np.zeros_like(x), np.zeros_like(x)
     h = COARSE / RATE
     rate[COARSE:-COARSE] = (x[2 * COARSE:] - x[:-2 * COARSE]) / (2 * h)
@@ -89,7 +89,8 @@ def turned(rotation, since):
 
 
 def angular_acceleration(rotation):
-    """Degrees/s2 at 60 Hz, from the rotation vectors between neighbours four ticks apart."""
+    """The angular acceleration in degrees/s2 at 60 Hz, from the rotation vectors between neighbours four ticks apart.
+    """
     def vector(r):
         axis = np.stack([r[:, 2, 1] - r[:, 1, 2], r[:, 0, 2] - r[:, 2, 0], r[:, 1, 0] - r[:, 0, 1]], -1) / 2
         size = np.linalg.norm(axis, axis=-1, keepdims=True)
@@ -119,7 +120,7 @@ def chest_and_head(walk):
 
 
 def distance_of_lines(a0, a1, b0, b1):
-    """(ticks,) least distance of two segments, by points along both."""
+    """The least distance of two segments in each tick, by points along both."""
     shares = np.linspace(0, 1, 9)[:, None, None]
     a, b = a0 + (a1 - a0) * shares, b0 + (b1 - b0) * shares
     least = np.full(len(a0), np.inf)
@@ -130,7 +131,7 @@ def distance_of_lines(a0, a1, b0, b1):
 
 
 def apart(walk):
-    """Least distance of shins and of feet, millimetres."""
+    """The least distances of shins and of feet, millimetres."""
     shins = distance_of_lines(*(walk.position[:, j] for i in (0, 1) for j in (walk.knee[i], walk.ankle[i])))
     flat = [p * [1, 0, 1] for i in (0, 1) for p in (walk.heel_fk[i], walk.toe_fk[i])]
     feet = distance_of_lines(*flat)
@@ -139,7 +140,7 @@ def apart(walk):
 
 @dataclasses.dataclass
 class Steady:
-    """The same figures of the steady walk at this stick."""
+    """The figures of a change for the steady walk at this stick."""
     speed: float
     cycle_s: float
     fastest: float
@@ -167,7 +168,7 @@ def first_after(condition, since):
 
 
 def change(walk, since, until, steady):
-    """Figures of both starts and stops."""
+    """The figures of both starts and stops."""
     at = slice(since, until)
     z = along(walk)
     rate, bend = at_60_hz(z)
@@ -239,7 +240,7 @@ def turn_of(player, moves):
 
 
 def summary(row):
-    """Medians and worst of a motion's row, as the issue's table has them."""
+    """The medians and worst values of a motion's row."""
     s, stops = row["start"], row["stops"]
     of = lambda key: np.array([stop[key] for stop in stops], float)
     most = lambda key: max(s[key], of(key).max())

@@ -38,7 +38,7 @@ TEST_F(Undo, ASliderGoesBackForEachCharacterToItsOwnValue) {
   EXPECT_EQ(value(0, "left_leg.stride_length"), 1.2);
   step(2, undo_.undo());
   EXPECT_EQ(value(0, "left_leg.stride_length"), 1.0);
-  EXPECT_EQ(value(1, "left_leg.stride_length"), 0.5);  // the value of limp_left
+  EXPECT_EQ(value(1, "left_leg.stride_length"), 0.5);  // the style limp_left has this value
   step(2, undo_.redo());
   EXPECT_EQ(value(0, "left_leg.stride_length"), 1.2);
   EXPECT_EQ(value(1, "left_leg.stride_length"), 1.2);

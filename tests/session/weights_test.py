@@ -24,7 +24,7 @@ STAIRS = "".join(f'[[section]]\nkind = "{kind}"\n{more}\n' for kind, more in (
 # Stick, seconds, and whether there are stairs.
 ACTIONS = {"straight": ((0.0, 0.8), 9.0, False), "turn": ((0.35, 0.7), 11.0, False), "back": ((0.0, -0.6), 11.0, False),
            "up": ((0.0, 0.8), 26.0, True)}
-WALKING_S = 4.5  # from here on flat walks are steady
+WALKING_S = 4.5  # flat walks are steady from this time on
 NEARLY_LOCKED, STIFF = 0.1, 0.2
 
 
@@ -42,7 +42,7 @@ def styles():
 
 
 def walked(program, folder, made, stick, seconds, stairs=False, motion=None):
-    """A walk of each of these styles, by name."""
+    """Makes a walk of each of these styles; by name."""
     folder = pathlib.Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     trace = write_trace(folder / "stick.hid", ramp(0.5, 1.0, (0, 0), raw_stick(*stick)), end_s=seconds)
@@ -60,7 +60,7 @@ def walked(program, folder, made, stick, seconds, stairs=False, motion=None):
 
 # ---- figures of one walk ---------------------------------------------------------------------
 def windows(even, stairs):
-    """Ticks of each part of a walk, by name."""
+    """The ticks of each part of a walk, by name."""
     time_s, ground = even.col["time_s"], np.maximum(even.col["left_heel_ground_m"], even.col["right_heel_ground_m"])
     if not stairs:
         return {"": (time_s >= WALKING_S) & even.walking}
@@ -72,7 +72,7 @@ def windows(even, stairs):
 
 
 def flexion(walk, side):
-    """Degrees of the thigh in the pelvis' frame, about the line of the hips."""
+    """The flexion of the thigh in the pelvis' frame, about the line of the hips, degrees."""
     seen = lambda v: np.einsum("fji,fj->fi", walk.rotation[:, walk.pelvis], v)
     across = seen(walk.position[:, walk.hip[0]] - walk.position[:, walk.hip[1]])[0]
     across /= np.linalg.norm(across)
@@ -83,7 +83,7 @@ def flexion(walk, side):
 
 
 def rms_changes(even, other, mask, side):
-    """Root mean square of the change of hip, knee and ankle, as rotations, degrees."""
+    """The root mean square of the change of hip, knee and ankle, as rotations, degrees."""
     found = []
     for joint in (even.hip[side], even.knee[side], even.ankle[side]):
         turn = rotation_vectors(np.swapaxes(even.local[mask, joint], -1, -2) @ other.local[mask, joint])
@@ -141,7 +141,7 @@ LIMP = "[left_leg]\nstride_length = 0.5\nstride_speed = 1.3\nflight_height = 0.5
 
 
 def flight_figures(walk, side, mask):
-    """Median ticks of a foot's flights, and its heel's peak."""
+    """The median ticks of a foot's flights, and its heel's peak."""
     flies = (walk.col["stage"] == "flight") & (walk.col["swing"] == SIDES[side]) & mask
     edges = np.diff(np.concatenate([[0], flies.astype(int), [0]]))
     lasts = (np.nonzero(edges < 0)[0] - np.nonzero(edges > 0)[0])[1:-1]

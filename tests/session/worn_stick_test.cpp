@@ -37,7 +37,7 @@ StickCalibration calibrated(const MadeStick& stick) {
   return advice.calibration;
 }
 
-// The stick's reports for a true position, with noise and rounding.
+// Reports a stick's position with noise and rounding.
 class Reported {
  public:
   explicit Reported(const MadeStick& stick) : stick_(stick), random_(stick.seed + 100) {}
@@ -70,9 +70,9 @@ Simulation simulation_with(const StickCalibration& calibration) {
 
 struct Straightness {
   int strides = 0;
-  double drift_m = 0.0;    // sideways per stride, mean
-  double longest_m = 0.0;  // sideways, largest of a stride
-  double stride_m = 0.0;   // of the last stride
+  double drift_m = 0.0;    // mean sideways way of a stride
+  double longest_m = 0.0;  // largest sideways way of a stride
+  double stride_m = 0.0;   // length of the last stride
 };
 // Walks `ticks` ticks with one report each. A stride lasts from one strike of the left heel to the
 // next.
@@ -101,7 +101,7 @@ Straightness straightness(const StickCalibration& calibration, int ticks, const 
   return found;
 }
 
-constexpr std::uint32_t kSeeds = 5;  // the centre is off in a different direction for each
+constexpr std::uint32_t kSeeds = 5;  // seeds, each with a centre that is off in another direction
 
 TEST(WornStick, WalksStraightWithTheFullStride) {
   StickCalibration ideal;

@@ -21,7 +21,8 @@ struct Pad {
   PadLayout layout;
 };
 
-// An event node: X, Y, Z, Rz (two sticks), GAS and BRAKE (right and left trigger), a hat.
+// A pad with an event node: X, Y, Z, Rz (two sticks), GAS and BRAKE (right and left trigger), a
+// hat.
 Pad pad_of(std::int32_t min, std::int32_t max) {
   const EvdevAbilities abilities{{{0x00, min, max},
                                   {0x01, min, max},
@@ -67,8 +68,8 @@ TEST(CalibrationImport, FramesSayWhichAxisMovesAStick) {
   EXPECT_EQ(axes[kLeftX].axis, kLeftX);
 }
 
-// The map swaps codes 0 and 1, so the first correction belongs to Y.
-// As evemu-record writes a node, with these ranges.
+// The file that evemu-record writes for a node with these ranges. The map swaps codes 0 and 1, so
+// the first correction belongs to Y.
 std::string evemu(const std::string& ranges) {
   return "# EVEMU 1.3\nN: Node\nI: 0003 1209 0001 0111\nP: 00 00 00 00 00 00 00 00\n"
          "B: 00 0b 00 00 00 00 00 00 00\n" +
@@ -83,8 +84,8 @@ TEST(CalibrationImport, TriggersGetTheirEnds) {
   EXPECT_EQ(file.calibration.left_trigger.pressed, 1.0);
 }
 
-// The recording of a pad of hid-playstation also has the motion sensors: the same ids, other
-// ranges.
+// A file of libinput. The recording of a pad of hid-playstation also has the motion sensors: the
+// same ids, other ranges.
 const std::string kLibinput =
     "# libinput record\ndevices:\n"
     "- node: /dev/input/event6\n  evdev:\n    name: \"Node Motion Sensors\"\n"

@@ -47,8 +47,8 @@ TEST(StickPosition, OuterZoneHasLengthOne) {
   }
 }
 
-// The sideways zone shortens a full deflection by up to 3 %: the least of cos a and
-// (sin a - 0.11) / 0.89 together.
+// The sideways zone shortens a full deflection by up to 3 %: the smallest length of (cos a, (sin a
+// - 0.11) / 0.89).
 TEST(StickPosition, SidewaysZoneTakesAtMostThreePercentOfTheLength) {
   double shortest = 1.0;
   for (int i = 0; i < 3600; ++i) {
@@ -69,7 +69,8 @@ TEST(StickPosition, NearlyStraightIsExactlyStraightWithBothOnly) {
 TEST(StickPosition, ScaledLinearlyBetweenTheZones) {
   EXPECT_NEAR(stick_position(shaped(ZoneShape::both, 0.2, 0.8), {0.0, 0.5}).y, 0.5, 1e-15);
   EXPECT_NEAR(stick_position(shaped(ZoneShape::both, 0.2, 0.8), {0.0, 0.35}).y, 0.25, 1e-15);
-  // To the side both zones apply: radial gives 0.5, then sideways gives (0.5 - 0.11) / 0.89.
+  // To the side both zones apply: the radial zone gives 0.5, then the sideways zone gives (0.5 -
+  // 0.11) / 0.89.
   EXPECT_NEAR(stick_position(shaped(ZoneShape::both, 0.2, 0.8), {0.5, 0.0}).x, 0.39 / 0.89, 1e-15);
   EXPECT_NEAR(stick_position(shaped(ZoneShape::axial, 0.2, 0.8), {0.5, 0.35}).y, 0.25, 1e-15);
 }
@@ -90,8 +91,8 @@ TEST(StickPosition, ContinuousOverTheWholeGate) {
         vec2 before = stick_position(c, {-1.0, y});
         for (double x = -1.0; x <= 1.0; x += kStep) {
           const vec2 now = stick_position(c, {x, y});
-          // The slope is at most 3 (cubic) / 0.83 (span) / 0.89 (sideways), doubled for the
-          // direction.
+          // The slope is at most 3 (cubic) / 0.83 (range between the zones) / 0.89 (sideways),
+          // doubled for the change of direction.
           ASSERT_LE(glm::length(now - before), 8.0 * kStep) << x << " " << y;
           before = now;
         }
@@ -303,7 +304,7 @@ TEST(JumpFilter, AMovementIsOneReportLateAndCatchesUpInSilence) {
   Calibration c;
   c.left.filters_jumps = true;
   JumpFilter filter;
-  double before = 0.6;  // the first report counts at once
+  double before = 0.6;  // the filter passes the first report at once
   for (const double x : {0.6, 0.7, 0.8, 0.9, 1.0}) {
     filter.take(pad_at(x, 0.0, 0.0));
     EXPECT_EQ(filter.filtered(c, pad_at(x, 0.0, 0.0)).axis[kLeftX], static_cast<float>(before));

@@ -15,17 +15,17 @@ namespace {
 
 enum class Habit {
   none,
-  turns_fast,     // three turns a second
-  rests_briefly,  // 0.15 s
+  turns_fast,     // turns the stick three times a second
+  rests_briefly,  // lets the stick rest for only 0.15 s
   leads_back,     // the thumb leads the stick back to its rest
-  turns_first,    // rests come last
-  pushes_askew,   // by 35 degrees
+  turns_first,    // the rests are the session's last part
+  pushes_askew,   // pushes to directions that are off by 35 degrees
   never_turns,
   turns_half,
-  lets_a_sector_go,         // 80 degrees of the rim followed at 0.6
-  follows_the_rim_loosely,  // at 0.8
-  rests_a_thumb,            // at rest the stick moves by 3 %
-  holds_it_aside,           // by 0.12, at every rest
+  lets_a_sector_go,         // follows 80 degrees of the rim at 0.6 of its radius
+  follows_the_rim_loosely,  // follows the rim at 0.8 of its radius
+  rests_a_thumb,            // the thumb lies on the stick at rest and moves it by 3 %
+  holds_it_aside,           // holds the stick 0.12 off its centre at every rest
 };
 constexpr int kHabits = 12;
 
@@ -41,7 +41,7 @@ MadeStick stick_in_hand(int k) {
                  {{0.04, -0.03}, 0.002, 0.02, 0.95, Gate::circle, 125.0, 16, true},
                  {{-0.01, 0.02}, 0.004, 0.01, 0.98, Gate::circle, 1000.0, 12, false},
                  {{-0.03, 0.04}, 0.002, 0.02, 0.72, Gate::circle, 66.0, 12, false},
-                 {{0.06, -0.05}, 0.012, 0.08, 0.92, Gate::square, 125.0, 8, true}};  // worn
+                 {{0.06, -0.05}, 0.012, 0.08, 0.92, Gate::square, 125.0, 8, true}};  // a worn stick
   const auto& row = kSticks[k];
   MadeStick stick;
   stick.centre = row.centre;
@@ -56,7 +56,7 @@ MadeStick stick_in_hand(int k) {
   return stick;
 }
 
-// A session by this hand: six releases, turns, the four pushes.
+// A calibration session by this hand: six releases, turns, the four pushes.
 class CarelessHand {
  public:
   CarelessHand(const MadeStick& stick, Habit habit)
@@ -89,7 +89,7 @@ class CarelessHand {
     if (is_let_go) {
       moves_.release();
     } else {
-      const double side = static_cast<double>(stick_.seed);  // any
+      const double side = static_cast<double>(stick_.seed);  // any direction
       const vec2 aside =
           habit_ == Habit::holds_it_aside ? 0.12 * vec2(std::cos(side), std::sin(side)) : vec2(0.0);
       moves_.move(stick_.centre + aside, habit_ == Habit::leads_back ? 0.35 : 0.06);
@@ -110,7 +110,8 @@ class CarelessHand {
     for (int k = 0; k < reports; ++k) {
       const double angle = degrees_ * kDegree + 2.0 * kPi * turns * k / reports;
       double radius = radius_to;
-      const double off = std::fabs(wrapped(angle + 45.0 * kDegree)) / kDegree;  // back right
+      // Angle from the direction "back right".
+      const double off = std::fabs(wrapped(angle + 45.0 * kDegree)) / kDegree;
       if (habit_ == Habit::lets_a_sector_go) radius -= 0.4 * (1.0 - smoothstep(34.0, 46.0, off));
       radius *= gate_radius(stick_, angle);
       moves_.move(stick_.centre + radius * vec2(std::cos(angle), std::sin(angle)),
@@ -118,8 +119,8 @@ class CarelessHand {
     }
     rest(0.8);
   }
-  // A hand that touches the stick moves it: a drift of 1.2 % with time constant 2 s, or 3 % and 0.4
-  // s for a thumb that plays with it.
+  // Moves of a stick that is touched at rest: a drift of 1.2 % with time constant 2 s, or 3 % and
+  // 0.4 s for a thumb that plays with it.
   std::vector<vec2> shaken() {
     std::vector<vec2> path = moves_.path();
     const bool plays = habit_ == Habit::rests_a_thumb;

@@ -118,7 +118,8 @@ TEST(CalibrationGuide, ARepeatedStepForgetsWhatItHasSeen) {
   EXPECT_LE(hand.samples(), kept);
   EXPECT_NE(hand.text().find("0 of 48"), std::string::npos) << hand.text();
   hand.wait(0.1);
-  EXPECT_EQ(hand.guide.tracks().stick[0].size(), 2u);  // the part between them was dropped
+  // The reports between the two parts were dropped.
+  EXPECT_EQ(hand.guide.tracks().stick[0].size(), 2u);
 }
 
 TEST(CalibrationGuide, BackRestartsThePreviousStep) {
@@ -134,7 +135,7 @@ TEST(CalibrationGuide, BackRestartsThePreviousStep) {
   EXPECT_EQ(hand.guide.step(), GuideStep::turn);
   EXPECT_LE(hand.samples(), of_rest);
   hand.guide.back();
-  hand.guide.back();  // the first step has none before it
+  hand.guide.back();  // there is no step before the first one
   EXPECT_EQ(hand.guide.step(), GuideStep::rest);
   EXPECT_EQ(hand.samples(), 0u);
   EXPECT_EQ(hand.text(), "0 of 6 releases");
@@ -151,7 +152,7 @@ TEST(CalibrationGuide, SkippingKeepsWhatWasSeenUpToTheEnd) {
   hand.guide.skip();
   EXPECT_EQ(hand.guide.step(), GuideStep::done);
   hand.guide.skip();
-  hand.wait(1.0);  // it ignores further reports
+  hand.wait(1.0);  // the finished guide ignores further reports
   EXPECT_EQ(hand.samples(), 500u);
   hand.guide.back();
   EXPECT_EQ(hand.guide.step(), GuideStep::left);
@@ -170,13 +171,14 @@ TEST(CalibrationGuide, UnpluggingCutsTheTrackAndLosesNothing) {
   hand.guide.tick(hand.time_ns);
   EXPECT_EQ(hand.text(), before);
   hand.wait(1.0);
-  EXPECT_EQ(hand.text(), before);  // the push that was cut off is no release
+  // A push that was cut off by unplugging does not count as a release.
+  EXPECT_EQ(hand.text(), before);
   EXPECT_GT(hand.samples(), samples);
   EXPECT_EQ(hand.guide.tracks().stick[0].size(), 2u);
   hand.push(0, vec2(0, -1));
   hand.push(0, vec2(1, 0), 0.1, 2.7);
   EXPECT_EQ(hand.guide.step(), GuideStep::turn);
-  hand.guide.unplugged();  // between two steps
+  hand.guide.unplugged();  // unplugged between two steps
   hand.guide.skip();
   hand.wait(0.5);
   EXPECT_EQ(hand.guide.tracks().stick[0].size(), 3u);
@@ -237,11 +239,12 @@ TEST(FrameOfPushes, IsUnknownIfThePushesDoNotDetermineIt) {
   const std::vector<vec2> asked = {vec2(0, 1), vec2(1, 0), vec2(0, -1), vec2(-1, 0)};
   const auto frame = [&asked](std::vector<vec2> pushes) { return frame_of_pushes(pushes, asked); };
   EXPECT_FALSE(frame({}));
-  EXPECT_FALSE(frame({vec2(0, 1)}));                                       // one axis
-  EXPECT_FALSE(frame({vec2(0, 1), vec2(0, 1)}));                           // twice the same
-  EXPECT_FALSE(frame({vec2(0, 1), vec2(1, 0), vec2(0, 1)}));               // back is forward
-  EXPECT_FALSE(frame({vec2(0, 1), vec2(1, 0), vec2(0, -1), vec2(1, 0)}));  // left is right
-  EXPECT_FALSE(frame({vec2(0.7, 0.7), vec2(1, 0)}));                       // between two
+  EXPECT_FALSE(frame({vec2(0, 1)}));                          // only one axis
+  EXPECT_FALSE(frame({vec2(0, 1), vec2(0, 1)}));              // two to the same side
+  EXPECT_FALSE(frame({vec2(0, 1), vec2(1, 0), vec2(0, 1)}));  // back goes forward
+  // A push left that went right.
+  EXPECT_FALSE(frame({vec2(0, 1), vec2(1, 0), vec2(0, -1), vec2(1, 0)}));
+  EXPECT_FALSE(frame({vec2(0.7, 0.7), vec2(1, 0)}));  // between two axes
   EXPECT_FALSE(frame({vec2(NAN, 1), vec2(1, NAN)}));
   EXPECT_FALSE(frame({vec2(0, 0), vec2(0, 0)}));
 }
@@ -255,7 +258,7 @@ TEST(CalibrationGuide, NoiseAndSpikesDoNotCountAsReleases) {
   for (int i = 0; i < 4000; ++i) {
     hand.pass();
     if (random() % 100 != 0) continue;
-    hand.thumb[0] = vec2(1.0, 0.0);  // for one report
+    hand.thumb[0] = vec2(1.0, 0.0);  // a deflection of one report
     hand.pass();
     hand.thumb[0] = vec2(0.0);
   }
@@ -311,7 +314,7 @@ TEST(CalibrationGuide, AStickThatNeverStandsStillCanBeReleased) {
     const SinCos side = sin_cos(i * kPi / 3.0 + 0.2);
     hand.move(0, vec2(side.cos, side.sin), 0.1);
     for (int k = 0; k < 700; ++k) {
-      hand.thumb[0] = vec2(0.12 * std::sin(k * 0.025), 0.0);  // once a second
+      hand.thumb[0] = vec2(0.12 * std::sin(k * 0.025), 0.0);  // a movement at rest, once in 1.6 s
       hand.pass();
     }
   }
@@ -340,7 +343,7 @@ TEST(CalibrationGuide, SilenceCountsAsStandingStill) {
 TEST(CalibrationGuide, NamesTheHalfCircleThatWasNotTurned) {
   MadeHand hand(Controls::one_stick);
   hand.skip_to(GuideStep::turn);
-  for (int i = 0; i < 5; ++i) {  // to and fro from the right over the front to the left
+  for (int i = 0; i < 5; ++i) {  // moves to and fro between right and left, over the front
     hand.turn(0, 0.5, 0.9);
     for (double t = 0.5; t > 0.0; t -= 0.003) {
       const SinCos angle = sin_cos(t * 2.0 * kPi);
@@ -380,7 +383,7 @@ TEST(CalibrationGuide, APushMustBeHeldAndReleased) {
   MadeHand hand(Controls::one_stick);
   hand.wait(0.2);
   hand.skip_to(GuideStep::forward);
-  hand.push(0, vec2(0, 1), 0.05);  // a flick
+  hand.push(0, vec2(0, 1), 0.05);  // a push that is too short
   EXPECT_EQ(hand.guide.step(), GuideStep::forward);
   hand.move(0, vec2(0.0, 0.9), 0.1);
   hand.wait(0.15);
@@ -407,7 +410,7 @@ TEST(CalibrationGuide, AShortPushIsToldToBeHeldLonger) {
 TEST(CalibrationGuide, ATurnThatItsPushesGoBeyondIsAskedForOnceMore) {
   MadeHand hand(Controls::two_sticks);
   for (int side = 0; side < 2; ++side) hand.rest_step(side);
-  hand.turn(0, 3.0, 0.8 * hand.reach);  // along the rim, but not pressed to it
+  hand.turn(0, 3.0, 0.8 * hand.reach);  // along the rim, but at 0.8 of its radius
   hand.move(0, vec2(0.0), 0.05);
   hand.full_turns(1);
   const std::array<vec2, 4> sides = {vec2(0, 1), vec2(1, 0), vec2(0, -1), vec2(-1, 0)};
@@ -419,7 +422,7 @@ TEST(CalibrationGuide, ATurnThatItsPushesGoBeyondIsAskedForOnceMore) {
   EXPECT_TRUE(hand.text(1).starts_with("48 of 48")) << hand.text(1);
   hand.full_turns(0);
   hand.wait(0.1);
-  EXPECT_EQ(hand.guide.step(), GuideStep::done);  // the pushes stay
+  EXPECT_EQ(hand.guide.step(), GuideStep::done);  // the pushes that were made before count
 }
 
 TEST(CalibrationGuide, AStickThatRestsAsideIsLetGoMoreOften) {
@@ -441,7 +444,7 @@ TEST(CalibrationGuide, AStickThatRestsAsideIsLetGoMoreOften) {
 TEST(CalibrationGuide, WhatIsHeldWhenAStepBeginsDoesNotCountForIt) {
   MadeHand hand(Controls::one_stick);
   hand.skip_to(GuideStep::turn);
-  hand.turn(0, 2.5, 0.9);  // still at the rim when the step is over
+  hand.turn(0, 2.5, 0.9);  // the stick is still at the rim when the step is over
   ASSERT_EQ(hand.guide.step(), GuideStep::forward);
   hand.thumb[0] = vec2(0.9, 0.0);
   hand.wait(1.0);
@@ -466,7 +469,7 @@ TEST(CalibrationGuide, APushThatContradictsAnEarlierOneIsAskedForAgain) {
   MadeHand hand(Controls::one_stick);
   hand.wait(0.2);
   hand.skip_to(GuideStep::forward);
-  hand.push(0, vec2(1, 0));  // the hand's mistake: right
+  hand.push(0, vec2(1, 0));  // the user pushes to the right by mistake
   hand.push(0, vec2(1, 0));
   EXPECT_EQ(hand.guide.step(), GuideStep::right);
   EXPECT_EQ(hand.text(), "that contradicts \"push forward\": once more, or back to that step");
@@ -492,7 +495,7 @@ TEST(CalibrationGuide, SkippedPushesLeaveTheFrameOfTheLayout) {
   hand.guide.skip();
   hand.push(0, vec2(-1, 0));
   EXPECT_EQ(hand.guide.step(), GuideStep::done);
-  EXPECT_EQ(hand.guide.frame(0), kFrames[4]);  // two neighbours tell
+  EXPECT_EQ(hand.guide.frame(0), kFrames[4]);  // two pushes at right angles are enough
 }
 
 TEST(CalibrationGuide, ATriggerCountsFromWhereItRests) {
@@ -500,7 +503,7 @@ TEST(CalibrationGuide, ATriggerCountsFromWhereItRests) {
   hand.finger[0] = 0.2;
   hand.wait(0.5);
   hand.skip_to(GuideStep::triggers);
-  hand.press(0, 0.6);  // not far enough from 0.2
+  hand.press(0, 0.6);  // 0.6 is not far enough from 0.2
   EXPECT_EQ(hand.text(0), "waiting for it");
   hand.press(0, 0.8);
   EXPECT_EQ(hand.text(0), "seen");

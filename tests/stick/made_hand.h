@@ -15,7 +15,7 @@ namespace gaitpad {
 
 enum class Controls { one_stick, two_sticks, two_sticks_and_triggers };
 
-// Game pad with 16-bit axes: X Y, Z Rz, Brake Accelerator.
+// A descriptor of a game pad with 16-bit axes: X Y, Z Rz, Brake Accelerator.
 inline std::vector<std::uint8_t> descriptor_of(Controls controls) {
   std::vector<std::uint8_t> d = {0x05, 0x01, 0x09, 0x05, 0xa1, 0x01, 0x16, 0x01, 0x80, 0x26, 0xff,
                                  0x7f, 0x75, 0x10, 0x09, 0x30, 0x09, 0x31, 0x95, 0x02, 0x81, 0x02};
@@ -58,18 +58,18 @@ struct MadeHand {
 
   PadLayout layout;
   CalibrationGuide guide;
-  StickFrame frame;    // how the raw axes lie
-  vec2 centre{0.0};    // raw
-  double sigma = 0.0;  // raw
+  StickFrame frame;    // frame in which the pad reports its raw axes
+  vec2 centre{0.0};    // raw position at rest
+  double sigma = 0.0;  // noise of each report, raw
   double reach = 0.95;
   bool reports_changes_only = false;
   double period_s = 0.004;
   std::int64_t time_ns = 1'000'000'000;
   std::array<vec2, 2> thumb{vec2(0.0), vec2(0.0)};
-  std::array<double, 2> finger{};  // triggers 0..1
+  std::array<double, 2> finger{};  // positions of the triggers, 0..1
   std::mt19937 random{1};
   std::vector<std::uint8_t> last;
-  CalibrationGuide* copy = nullptr;  // also takes the reports, but no ticks
+  CalibrationGuide* copy = nullptr;  // a second guide, which takes the reports but no ticks
 
   std::int16_t word(double raw) {
     if (sigma > 0.0) raw += std::normal_distribution(0.0, sigma)(random);
@@ -96,7 +96,7 @@ struct MadeHand {
     guide.take_report(report);
     if (copy != nullptr) copy->take_report(report);
   }
-  // Lets one report period pass.
+  // Lets the time between two reports pass.
   void pass() {
     time_ns += std::llround(period_s * 1e9);
     const std::vector<std::uint8_t> bytes = report();
@@ -145,7 +145,7 @@ struct MadeHand {
     move(side, vec2(0.0), 0.05);
     wait(0.2);
   }
-  // Does all steps of the sticks.
+  // Does all steps of a pad with this number of sticks.
   void steps_of_sticks(int sticks) {
     for (int side = 0; side < sticks; ++side) rest_step(side);
     for (int side = 0; side < sticks; ++side) full_turns(side);

@@ -23,11 +23,11 @@ class Chance {
     return least + (most - least) * static_cast<double>(random_()) / 4294967296.0;
   }
   double uniform() { return within(0.0, 1.0); }
-  double normal() {  // Box and Muller
+  double normal() {  // a normally distributed number, by Box and Muller
     const double radius = std::sqrt(-2.0 * std::log(1.0 - uniform()));
     return radius * std::cos(2.0 * kPi * uniform());
   }
-  // y is drawn first with every compiler; the arguments of a call would be drawn in any order.
+  // Draws y first with every compiler; the arguments of a call would be evaluated in any order.
   vec2 normal_of_both() {
     const double y = normal();
     return {normal(), y};
@@ -42,34 +42,36 @@ class Chance {
   std::mt19937 random_;
 };
 
-enum class Gate { circle, square, ellipse };  // square: of half side `reach_x`, corners and all
+// Square: half its side is `reach_x`, and the stick reaches the corners.
+enum class Gate { circle, square, ellipse };
 
 // The true properties of a stick. Positions are raw fractions under the thumb (+x right, +y
 // forward); `frame` says how the pad reports them. Reports are clipped to -1..1.
 struct MadeStick {
   vec2 centre{0.0};
-  vec2 sigma{0.0};          // Gaussian, of each report
-  double hysteresis = 0.0;  // it rests half of this towards the side of the release
-  vec2 drift_per_s{0.0};    // of everything; `centre` is true in the middle of the time
-  double creep = 0.0;       // offset after a release, decays with time constant 0.3 s
-  double wander = 0.0;      // random walk of everything: standard deviation after one second
+  vec2 sigma{0.0};          // standard deviation of the Gaussian noise of each report
+  double hysteresis = 0.0;  // the stick rests half of this towards the side of the release
+  vec2 drift_per_s{0.0};    // drift of positions; `centre` is true half-way through
+  double creep = 0.0;       // offset after a release; it decays with time constant 0.3 s
+  double wander = 0.0;      // random walk of all positions: standard deviation after one second
   Gate gate = Gate::circle;
-  double reach_x = 1.0, reach_y = 1.0;      // of the gate about `centre`; circle: reach_x
-  int bits = 0;                             // of the logical range -1..1; 0: not quantised
+  double reach_x = 1.0, reach_y = 1.0;      // radii of the gate about `centre`; circle: reach_x
+  int bits = 0;                             // bits of a position in -1..1; 0: not quantised
   double rate_hz = 250.0, jitter_ms = 0.0;  // standard deviation of the intervals
-  double drop_chance = 0.0;                 // a report is lost
-  double spike_chance = 0.0;                // one to `spike_reports` reports show another place
+  double drop_chance = 0.0;                 // probability that a report is lost
+  double spike_chance = 0.0;                // probability of 1 to `spike_reports` wrong reports
   int spike_reports = 3;
-  // Faults. Times are drawn from the seed.
-  double roam = 0.0, roam_s = 1.0;  // moves untouched: standard deviation and time constant
-  double displaced = 0.0;           // rests this far off its home ...
+  // Faults. Their times are drawn from the seed.
+  double roam = 0.0, roam_s = 1.0;  // moves without a touch: standard deviation and time constant
+  double displaced = 0.0;           // distance from its usual rest ...
   int displaced_times = 0;          // ... after this number of the first 12 releases
-  int drop_outs = 0;                // the contact is lost: an axis shows its end
-  double drop_out_s = 0.04;         // each lasts 0.5 to 1.5 times this long
-  int freezes = 0;                  // an axis, or both, keep a value while the stick moves
+  int drop_outs = 0;                // number of lost contacts: an axis shows its end
+  double drop_out_s = 0.04;         // time of a drop-out, times 0.5 to 1.5
+  int freezes = 0;                  // number of times that one axis or both stand still
   double freeze_s = 0.2;
-  int frozen_axes = 1;                                          // bits: 1 x, 2 y
-  double weak_rad = 0.0, weak_width_rad = 0.0, weak_reach = 0;  // a sector that reaches less far
+  int frozen_axes = 1;  // bits: 1 x, 2 y
+  // Middle, width and reach of a sector that reaches less far.
+  double weak_rad = 0.0, weak_width_rad = 0.0, weak_reach = 0;
   StickFrame frame;  // raw axes swapped and inverted: in_frame(frame, raw) is the truth
   bool reports_changes_only = false;
   std::uint32_t seed = 1;
@@ -109,7 +111,7 @@ inline double true_circularity_error(const MadeStick& stick) {
   return 100.0 * std::sqrt(sum / bins);
 }
 
-// The positions of the stick, report by report, before noise, drift and rounding.
+// Makes the positions of the stick, report by report, before noise, drift and rounding.
 class MadeMoves {
  public:
   explicit MadeMoves(const MadeStick& stick) : stick_(stick), random_(stick.seed * 7919u + 1u) {
@@ -122,7 +124,7 @@ class MadeMoves {
   void hold(double seconds) {
     for (int n = reports(seconds); n > 0; --n) path_.push_back(at_);
   }
-  void rest(double seconds) {  // after release()
+  void rest(double seconds) {  // rests; call it after release()
     for (int k = 0, n = reports(seconds); k < n; ++k) {
       const double rest = creep_ * std::exp(-k / stick_.rate_hz / 0.3);
       path_.push_back(home_ + vec2(rest * std::cos(angle_), rest * std::sin(angle_)));
@@ -184,7 +186,8 @@ class MadeMoves {
   int releases_ = 0, displaced_ = 0;
   std::vector<vec2> path_;
   vec2 home_{0.0}, at_{0.0};
-  double angle_ = 0.0, creep_ = 0.0;  // of the last push, after the last release
+  // Direction of the last push; the remaining creep after the last release.
+  double angle_ = 0.0, creep_ = 0.0;
 };
 
 namespace made {
@@ -202,12 +205,12 @@ inline double quantised(double position, int bits) {
   return (std::round((clamped + 1.0) * half) - half) / half;
 }
 
-// An interval of reports of a path.
+// An interval of reports in a path.
 struct Stretch {
   std::size_t first = 0, last = 0;
 };
 
-// Intervals at random places that `fits` accepts, apart from each other; fewer if they do not fit.
+// Intervals at random places that `fits` accepts, without overlaps; fewer if there is no room.
 template <typename Fits>
 std::vector<Stretch> stretches(Chance& random, std::size_t size, double rate_hz, int count,
                                double least_s, double most_s, const Fits& fits) {
@@ -305,9 +308,9 @@ inline StickTrack reported(const MadeStick& stick, std::vector<vec2> path) {
   return track;
 }
 
-// Reports of a whole session: rest; `releases` pushes to the rim in different directions, each with
-// a rest of `rest_s` after it; `turns` full circles of 1.5 s and a release; pushes forward, right,
-// back and left, held for half a second, with a short rest after each.
+// Makes the reports of a whole session: rest; `releases` pushes to the rim in different directions,
+// each with a rest of `rest_s` after it; `turns` full circles of 1.5 s and a release; pushes
+// forward, right, back and left, held for half a second, with a short rest after each.
 inline StickTrack made_track(const MadeStick& stick, int releases = 8, double rest_s = 0.6,
                              double turns = 3.0) {
   MadeMoves moves(stick);
@@ -333,7 +336,8 @@ inline StickTrack made_track(const MadeStick& stick, int releases = 8, double re
   return reported(stick, moves.path());
 }
 
-// A guided session: 12 releases from random sides, the last rest longer; turns; the four pushes.
+// Makes a guided session: 12 releases from random sides, the last rest longer; turns; the four
+// pushes.
 inline StickTrack made_session(const MadeStick& stick) {
   MadeMoves moves(stick);
   Chance hand(stick.seed * 17u + 3u);
@@ -413,8 +417,8 @@ class Draw {
   MadeStick stick_;
 };
 
-// Allowed error of the centre: the largest of a step, 4 sigma / sqrt(resting reports), a quarter of
-// the hysteresis, and 1e-4, which is the resolution of a 14-bit stick.
+// Allowed error of the centre: the largest of a step of the range, 4 sigma / sqrt(resting reports),
+// a quarter of the hysteresis, and 1e-4, which is the resolution of a 14-bit stick.
 inline double centre_bound(const MadeStick& stick, const StickStatistics& s) {
   const double reports = std::max(s.rest_s * stick.rate_hz, 1.0);
   const double sigma = std::max(stick.sigma.x, stick.sigma.y);

@@ -17,8 +17,8 @@ double pushed(double time_s) {
   return u * u * u * (10.0 + u * (6.0 * u - 15.0));
 }
 
-// Counts for one second of a pad that reports every `report_ms` and measures every `value_ms`; the
-// stick is pushed twice and held in between.
+// Counts for one second of a pad that reports every `report_ms` and measures its stick every
+// `value_ms`; the stick is pushed twice and held in between.
 NewValueCount counted(int report_ms, int value_ms) {
   NewValueCount count;
   for (int ms = 0; ms < 1000; ms += report_ms) {

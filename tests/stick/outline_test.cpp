@@ -27,7 +27,7 @@ Ends true_ends(const MadeStick& stick) {
   return ends;
 }
 
-// The allowed error: 1 % or 2 sigma.
+// Expects an end within 1 % or 2 sigma of the truth.
 void expect_end(const std::optional<double>& found, double truth, double sigma) {
   ASSERT_TRUE(found);
   EXPECT_NEAR(*found, truth, std::max(0.01 * std::fabs(truth), 2.0 * sigma));
@@ -121,7 +121,7 @@ TEST(Outline, CircularityOfASquareGateTurnedQuicklyOnASlowPad) {
   }
 }
 
-// 20.5 % is what the formula gives for a full square: 48 bins, each with its greatest radius.
+// The formula gives 20.5 % for a full square: 48 bins, each with its greatest radius.
 TEST(Outline, FullSquareIsTwentyAndAHalfPercentByTheGreatestRadiusOfEachBin) {
   const MadeStick stick = made(kShapes[4], vec2(0.0), 0.0, 16, 1);
   EXPECT_NEAR(*circularity_error(outline_of(made_track(stick), stick)), 20.5, 0.3);

@@ -16,7 +16,7 @@
 namespace gaitpad {
 namespace {
 
-// Statistics of a good stick that was released and turned, in round numbers.
+// Statistics of a good stick that was released and turned; the numbers are round.
 StickStatistics measured() {
   StickStatistics s;
   s.samples = 5000;
@@ -95,7 +95,7 @@ TEST(StickAdvice, TheOuterZoneIsWithinTheShortestDirectionNoiseIncluded) {
   EXPECT_LT(advice.calibration.outer, 0.6 / 0.96);
   EXPECT_GT(advice.calibration.outer, 0.55 / 0.96);
   EXPECT_NEAR(advice.outer_zone, advice.calibration.outer * 0.96, 1e-12);
-  s.outline.radius[40] = 0.0;  // not seen
+  s.outline.radius[40] = 0.0;  // one direction was not seen
   EXPECT_GT(advice_for(s).calibration.outer, 0.9);
 }
 
@@ -123,11 +123,11 @@ TEST(StickAdvice, OneReleaseAssumesAHysteresisAndSaysSo) {
   EXPECT_NE(advice.reason.find("assumed"), std::string::npos) << advice.reason;
 }
 
-// The reason has the same number as picture and table: the reach of the worst direction, not of the
+// The reason has the same number as picture and table: the reach in the worst direction, not on the
 // side next to it.
 TEST(StickAdvice, TheReasonNamesTheWorstDirectionsReach) {
   StickStatistics s = measured();
-  s.max_x = 0.78;  // 0.76 from the centre
+  s.max_x = 0.78;  // the end is 0.76 from the centre
   for (const int k : {0, 1, 2, 190, 191}) s.outline.radius[static_cast<std::size_t>(k)] = 0.76;
   s.outline.radius[5] = 0.75;
   StickAdvice advice = advice_for(s);
@@ -136,7 +136,7 @@ TEST(StickAdvice, TheReasonNamesTheWorstDirectionsReach) {
             std::string::npos)
       << advice.reason;
   EXPECT_EQ(advice.reason.find("0.76"), std::string::npos) << advice.reason;
-  // The same for a good stick.
+  // A good stick again.
   s = measured();
   s.outline.radius[70] = 0.85;
   advice = advice_for(s);
@@ -195,7 +195,7 @@ constexpr Fault kFaults[] = {
        s.rest_s = 6.0;
      }},
     {"drifts", Verdict::worn,
-     [](StickStatistics& s) {  // a thumb may have lain on it
+     [](StickStatistics& s) {  // the thumb may have lain on the stick
        s.drift_per_s = 0.02;
        s.rest_s = 3.0;
      }},
@@ -240,7 +240,7 @@ TEST(StickAdvice, EachFaultHasItsVerdictAndIsNamed) {
 
 TEST(StickAdvice, NoiseJustAboveAStepIsNotWear) {
   StickStatistics s = measured();
-  s.step_x = s.step_y = 2.0 / 63.0;  // 6 bits
+  s.step_x = s.step_y = 2.0 / 63.0;  // the steps of 6 bits
   s.sigma = vec2(0.02, 0.02);
   EXPECT_EQ(advice_for(s).verdict, Verdict::good);
 }
@@ -369,7 +369,7 @@ TEST_F(RecordedSticks, RestNeverWalksWithTheZonesOfTheRecordingsThatTurn) {
 TEST_F(RecordedSticks, ATurnedStickReachesTheRimAllRoundAndTheOtherRests) {
   const auto sticks = recorded("dualsense_usb_left_stick.hid");
   ASSERT_GT(sticks.size(), 1000u);
-  double longest[4] = {};  // by quadrant
+  double longest[4] = {};  // the longest reach in each quadrant
   for (const Stick& s : sticks) {
     ASSERT_EQ(s.right, vec2(0.0));
     ASSERT_LE(glm::length(s.left), 1.0 + 4e-16);
@@ -393,7 +393,7 @@ TEST(StickAdvice, TheInnerZoneCoversDisplacedRests) {
   EXPECT_LT(0.93 * advice_for(s).calibration.inner, 0.1);
   s.displaced_by = 0.15;
   for (s.displaced = 1; s.displaced < 3; ++s.displaced)
-    EXPECT_GE(0.93 * advice_for(s).calibration.inner, 0.15);  // 0.93: to the nearest end
+    EXPECT_GE(0.93 * advice_for(s).calibration.inner, 0.15);  // 0.93: centre to nearest end
 }
 
 }  // namespace

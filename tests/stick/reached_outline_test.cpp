@@ -8,14 +8,14 @@
 namespace gaitpad {
 namespace {
 
-// Turned in frames of 10 degrees; the outline is that of gamepad testers: 0 % is a circle of radius
-// 1, a full square has 20.5 %, and after ten seconds nothing is left.
+// The stick is turned by 10 degrees a frame. The error is that of gamepad testers: 0 % for a circle
+// of radius 1, 20.5 % for a full square; after ten seconds nothing is left.
 TEST(ReachedOutline, HasTheErrorOfItsGateAndIsForgotten) {
   constexpr int kRate_hz = 240;
   const auto turned = [](auto gate) {
     ReachedOutline reached;
     vec2 before = gate(0.0);
-    for (int k = 0; k <= 144; ++k) {  // four turns
+    for (int k = 0; k <= 144; ++k) {  // four turns of 36 frames
       const vec2 now = gate(k * 10.0 * kDegree + (k / 36) * 2.5 * kDegree);
       reached.add(before, now, k, kRate_hz);
       before = now;

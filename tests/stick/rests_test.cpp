@@ -83,7 +83,7 @@ TEST(RestStatistics, DriftOfAStickThatOnlyRests) {
       MadeMoves moves(stick);
       moves.rest(8.0);
       const StickStatistics s = statistics_of(stick, reported(stick, moves.path()));
-      if (!s.drift_per_s && speed == 0.0) continue;  // a silent pad
+      if (!s.drift_per_s && speed == 0.0) continue;  // a pad that is silent at rest shows no drift
       ASSERT_TRUE(s.drift_per_s) << name_of(stick);
       EXPECT_NEAR(*s.drift_per_s, speed, 0.2 * speed) << name_of(stick);
     }
@@ -150,7 +150,7 @@ TEST(RestStatistics, CentreIsFoundForEveryWayOfHandling) {
        [](MadeMoves& moves, Draw&) {
          let_go_from(moves, 0.0, 1.0);
          let_go_from(moves, kPi, 1.0);
-         moves.push(0.0);  // a silent pad is not known to rest until it moves again
+         moves.push(0.0);  // until it moves again, a silent pad is not known to rest
        }},
   };
   for (const Handling& handling : handlings) {
@@ -190,7 +190,7 @@ TEST(RestStatistics, OneReleaseGivesNoHysteresis) {
   stick.bits = 10;
   MadeMoves moves(stick);
   moves.rest(5.0);
-  moves.move(stick.centre + vec2(0.05, 0.0), 0.1);  // touched, not moved
+  moves.move(stick.centre + vec2(0.05, 0.0), 0.1);  // the stick is touched, but not moved
   moves.hold(1.0);
   moves.move(stick.centre, 0.1);
   moves.hold(2.0);
@@ -234,7 +234,8 @@ TEST(RestStatistics, WanderHidesInNoReleaseHoweverSlowItIs) {
     for (const double roam_s : {1.0, 3.0, 5.0}) {
       stick.roam_s = roam_s;
       stick.roam = 0.06;
-      // A stick with this spread and time constant moves by at most 0.06 sqrt(2 / tau) in a second.
+      // A stick with this spread and time constant changes its position by at most 0.06 sqrt(2 /
+      // tau) in a second.
       const double wander = statistics_of(stick, made_session(stick)).wander;
       EXPECT_GT(wander, 0.4 * 0.06 * std::sqrt(2.0 / roam_s)) << seed << " " << roam_s;
       EXPECT_LT(wander, 2.5 * 0.06 * std::sqrt(2.0 / roam_s)) << seed << " " << roam_s;

@@ -79,7 +79,7 @@ TEST(StickStatistics, AHundredThousandSamplesTakeATenthOfASecondOrSo) {
     moves.turn(1.0);
   }
   const StickTrack track = reported(stick, moves.path());
-  // Processor time, independent of other load: 0.06 s without sanitizers.
+  // Measures processor time, which is independent of other load: 0.06 s without sanitizers.
   const std::clock_t begin = std::clock();
   statistics_of(stick, track);
   EXPECT_LT(static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC, 3.0);
@@ -177,7 +177,7 @@ TEST_F(RealStickStatistics, ATurnedStickRestsOnlyBeforeAndAfter) {
   ASSERT_TRUE(s.centre);
   EXPECT_NEAR(s.centre->x, (131.0 - 127.5) / 127.5, 0.5 / 127.5);
   EXPECT_NEAR(s.centre->y, -(128.0 - 127.5) / 127.5, 0.5 / 127.5);
-  EXPECT_NEAR(s.rest_s, 1.05, 0.1);  // it lies still for the first 1.1 s
+  EXPECT_NEAR(s.rest_s, 1.05, 0.1);  // the stick lies still for the first 1.1 s
   EXPECT_FALSE(s.hysteresis);
   EXPECT_GE(s.turns, 4);
   const PadTracks right = recorded("dualsense_usb_right_stick.hid");

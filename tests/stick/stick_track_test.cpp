@@ -14,14 +14,14 @@ using Bytes = std::vector<std::uint8_t>;
 // 2 the right stick's x, 3 its y.
 PadLayout split_pad() {
   DeviceInfo device;
-  device.descriptor = {0x05, 0x01, 0x09, 0x05, 0xa1, 0x01,                    // game pad
-                       0x85, 0x01, 0x09, 0x30, 0x09, 0x31, 0x15, 0x00, 0x26,  // id 1: X, Y
-                       0xff, 0x00, 0x75, 0x08, 0x95, 0x02, 0x81, 0x02,        // 0..255
+  device.descriptor = {0x05, 0x01, 0x09, 0x05, 0xa1, 0x01,                    // a game pad
+                       0x85, 0x01, 0x09, 0x30, 0x09, 0x31, 0x15, 0x00, 0x26,  // report 1: X, Y
+                       0xff, 0x00, 0x75, 0x08, 0x95, 0x02, 0x81, 0x02,        // range 0..255
                        0x05, 0x02, 0x09, 0xc5, 0x26, 0xff, 0x03, 0x75, 0x0a,  // Brake 0..1023
                        0x95, 0x01, 0x81, 0x02, 0x75, 0x06, 0x81, 0x03,        //
-                       0x85, 0x02, 0x05, 0x01, 0x09, 0x32, 0x26, 0xff, 0x00,  // id 2: Z
+                       0x85, 0x02, 0x05, 0x01, 0x09, 0x32, 0x26, 0xff, 0x00,  // report 2: Z
                        0x75, 0x08, 0x95, 0x01, 0x81, 0x02,                    //
-                       0x85, 0x03, 0x09, 0x35, 0x81, 0x02, 0xc0};             // id 3: Rz
+                       0x85, 0x03, 0x09, 0x35, 0x81, 0x02, 0xc0};             // report 3: Rz
   const auto pads = parse_pad_file(
       "[[pad]]\n[pad.axes]\nright_x = \"0001:0032\"\nright_y = \"0001:0035\"\n"
       "left_trigger = \"0002:00c5\"\nright_trigger = \"\"\n",
@@ -56,7 +56,8 @@ TEST(StickTrack, EachReportAddsToTheControlsInIt) {
   ASSERT_EQ(tracks.stick[0].size(), 1u);
   ASSERT_EQ(tracks.stick[0][0].size(), 2u);
   EXPECT_EQ(tracks.stick[0][0][0].time_ns, 10);
-  EXPECT_EQ(tracks.stick[0][0][0].raw, vec2(1.0, 1.0));  // y down in the report, forward here
+  // The report's y grows downwards, ours forward.
+  EXPECT_EQ(tracks.stick[0][0][0].raw, vec2(1.0, 1.0));
   EXPECT_EQ(tracks.stick[0][0][1].raw, vec2(-1.0, -1.0));
   ASSERT_EQ(tracks.trigger[0].size(), 1u);
   EXPECT_EQ(tracks.trigger[0][0][0].raw, 1.0);
@@ -150,7 +151,7 @@ TEST(ReportStatistics, StepIsMeasuredEvenIfTheFieldIsFiner) {
   const StickStatistics s =
       stick_statistics(std::vector<StickTrack>{made_track(stick)}, vec2(2.0 / 65535.0));
   EXPECT_NEAR(s.step_x, 2.0 / 255.0, 1e-9);
-  // One value alone has no step.
+  // A single value has no step.
   const StickTrack still(100, {0, {0.1, 0.1}});
   EXPECT_EQ(stick_statistics(std::vector<StickTrack>{still}, vec2(0.25, 0.125)).step_y, 0.125);
 }
@@ -177,7 +178,7 @@ TEST(ReportStatistics, SpikesAreCountedAndChangeNothingElse) {
     stick.spike_chance = 0.004;
     const StickTrack track = made_track(stick);
     const StickStatistics s = statistics_of(stick, track);
-    // Each lasts two reports on average.
+    // A spike lasts two reports on average.
     const double spikes = 0.004 * static_cast<double>(track.size());
     EXPECT_NEAR(static_cast<double>(s.jumps), spikes, 0.2 * spikes + 3.0 * std::sqrt(spikes))
         << name_of(stick);
@@ -231,7 +232,7 @@ TEST(ReportStatistics, JumpsOfSingleReportsAreToldFromLongerOnes) {
     for (const int reports : {1, 3}) {
       stick.spike_reports = reports;
       const StickStatistics s = statistics_of(stick, made_session(stick));
-      // Longer ones that stay at one place also count as drop-outs.
+      // Longer jumps that stay at one place also count as drop-outs.
       const std::int64_t longer = s.long_jumps + s.drop_outs;
       EXPECT_GT(s.jumps, 8) << name_of(stick);
       EXPECT_TRUE(reports == 1 ? longer <= 2 : longer >= 5) << longer << " " << name_of(stick);

@@ -23,7 +23,7 @@ namespace {
 
 // ---- The kinds
 
-// The required verdict or behaviour of the calibrated stick.
+// The requirement on a kind of stick: a verdict, or a behaviour of the calibrated stick.
 enum class Must {
   be_good,
   pass,
@@ -43,7 +43,7 @@ struct Kind {
   const char* name;
   Must must;
   void (*make)(Draw&, MadeStick&);
-  double least_hz = 25.0;  // lowest report rate that shows the fault and the whole rim
+  double least_hz = 25.0;  // lowest report rate at which the fault and the whole rim are visible
 };
 
 // The stick of the tables: 12 bits, 250 reports a second.
@@ -172,7 +172,7 @@ Report word_report(const vec2& raw) {
   return report;
 }
 
-// A minute in which the stick is let go six times and left alone for ten seconds each.
+// A minute in which the stick is released six times and left alone for ten seconds each.
 StickTrack untouched_track(MadeStick stick) {
   stick.seed += 1000;
   stick.freezes = 0;
@@ -195,7 +195,8 @@ struct Untouched {
   double walking_s = 0.0;
 };
 Untouched untouched(MadeStick stick, const StickCalibration& calibration) {
-  stick.drift_per_s = vec2(0.0);  // it would be calibrated again now and then
+  // Without drift: a drifting stick would be calibrated again now and then.
+  stick.drift_per_s = vec2(0.0);
   const StickTrack track = untouched_track(stick);
   Untouched found;
   const bool stays = std::none_of(track.begin(), track.end(), [&](const StickSample& sample) {
@@ -218,7 +219,7 @@ Untouched untouched(MadeStick stick, const StickCalibration& calibration) {
   return found;
 }
 
-// The least output of all directions when the stick is pushed to its gate.
+// The smallest output of all directions when the stick is pushed to its gate.
 double full_deflection(const MadeStick& stick, const StickCalibration& calibration) {
   double least = 1.0;
   for (int degrees = 0; degrees < 720; ++degrees) {
@@ -249,15 +250,15 @@ void add_errors(const MadeStick& stick, const StickStatistics& s, Errors& errors
         std::fabs(stick.centre.y - *s.min_y - gate_radius(stick, -0.5 * kPi)));
 }
 
-// The behaviour of a stick with the calibration of a sound stick of its size: the truth for the
-// verdict.
+// The behaviour of a stick under the calibration of a sound stick of its size: the verdict is
+// compared with it.
 enum class Truth { sound, walks, misses, jumps, slow };
 constexpr const char* kTruthNames[] = {"nothing", "walks untouched", "misses a direction", "jumps",
                                        "reports too slowly to tell"};
 constexpr std::size_t kTruths = std::size(kTruthNames);
 
 Truth truth_of(const MadeStick& stick) {
-  constexpr double kSoundZone = 0.1;  // raw
+  constexpr double kSoundZone = 0.1;  // radius of a sound stick's inner zone, raw
   if (stick.rate_hz < 22.5) return Truth::slow;
   if (stick.drop_outs > 2 || stick.freezes > 2 || stick.spike_chance > 0.0) return Truth::jumps;
   if (stick.weak_width_rad > 0.0) return Truth::misses;

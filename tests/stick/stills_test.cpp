@@ -66,8 +66,8 @@ TEST(Stills, TheRestAfterEachReleaseIsFound) {
       for (const Still& rest : found.rests) {
         bool is_inside = false;
         for (const auto& [from_s, to_s] : truth) {
-          // The rest of a pad that is silent at rest lasts until the movement shows: one code, or
-          // one report interval.
+          // The rest of a pad that is silent at rest lasts until the movement shows: after one
+          // code, or one report interval.
           const double late_s = 2.0 / stick.rate_hz + 0.02;
           is_inside |= seconds(rest.begin_ns) > from_s && seconds(rest.end_ns) < to_s + late_s;
         }
@@ -88,7 +88,7 @@ TEST(Stills, AHeldPushIsAPushAndNotARest) {
       moves.release();
       moves.rest(0.6);
     }
-    for (int k = 0; k < 3; ++k) {  // half way, for long
+    for (int k = 0; k < 3; ++k) {  // rests half way for a long time
       moves.push(1.0, 0.2, 0.5);
       moves.hold(4.0);
       moves.release();
@@ -108,7 +108,8 @@ TEST(Stills, AHeldPushIsAPushAndNotARest) {
 
 TEST(Stills, AStickThatWasNeverTouchedRestsAllTheTime) {
   for (const MadeStick& stick : every_kind()) {
-    if (stick.reports_changes_only && stick.sigma.x == 0.0) continue;  // one report is not enough
+    // One report is not enough to see a rest.
+    if (stick.reports_changes_only && stick.sigma.x == 0.0) continue;
     MadeMoves moves(stick);
     moves.rest(3.0);
     const Stills found = stills_of(stick, moves);
@@ -119,7 +120,7 @@ TEST(Stills, AStickThatWasNeverTouchedRestsAllTheTime) {
 }
 
 TEST(Stills, AMeanIsWeightedByTimeNotByReports) {
-  // A pad that is silent at rest stands at 0.01 for a second and at 0.014 for three seconds.
+  // A pad that is silent at rest is at 0.01 for a second and at 0.014 for three seconds.
   const StickTrack track = {{0, {0.01, 0.0}},
                             {1'000'000'000, {0.014, 0.0}},
                             {2'500'000'000, {0.014, 0.01}},
@@ -152,7 +153,7 @@ TEST(Stills, InvalidSamplesDoNotCrash) {
   const StickTrack wild = {{kLast, {0.0, 0.0}},  {kFirst, {0.0, 0.0}}, {0, {nan, 0.0}},
                            {kFirst, {0.0, 1e9}}, {kLast, {-inf, 0.1}}, {kLast, {0.1, 0.1}}};
   stills(std::vector<StickTrack>{wild, wild});
-  // Many samples with the same time.
+  // Many samples have the same time.
   stills(std::vector<StickTrack>{StickTrack(1000, {7, {0.1, 0.1}})});
 }
 

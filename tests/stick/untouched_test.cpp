@@ -14,7 +14,7 @@ StickCalibration sound_calibration() {
   return c;
 }
 
-// Number of warnings that a stick moved untouched.
+// Number of warnings that the stick moved by itself.
 int warnings(const StickTrack& track) {
   const StickCalibration c = sound_calibration();
   UntouchedWatch watch;
@@ -47,7 +47,7 @@ TEST(Untouched, AHandIsNeverTakenForIt) {
           moves.hold(0.4);
           moves.release();
           moves.rest(1.5);
-          moves.push(seconds, seconds, 0.3);  // a slow walk
+          moves.push(seconds, seconds, 0.3);  // a push of 0.3, as for a slow walk
           moves.hold(0.4);
           moves.release();
         }

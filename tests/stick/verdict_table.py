@@ -12,7 +12,7 @@ BEGIN, END = "<!-- begin: verdict_table.py -->\n", "<!-- end: verdict_table.py -
 
 
 def main():
-    sticks = sys.argv[2] if len(sys.argv) > 2 else "112"  # 2,016 sticks
+    sticks = sys.argv[2] if len(sys.argv) > 2 else "112"  # gives 2,016 sticks
     # Exit status 1: some stick was not judged as it must be; the tables say how many.
     tables = subprocess.run([sys.argv[1], sticks], check=False, text=True, stdout=subprocess.PIPE).stdout
     before, rest = PAGE.read_text().split(BEGIN)

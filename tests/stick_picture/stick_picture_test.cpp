@@ -26,7 +26,7 @@ namespace fs = std::filesystem;
 using Rgb = std::array<int, 3>;
 
 constexpr Rgb kVermilion = {213, 94, 0}, kBlue = {0, 114, 178};
-constexpr Rgb kInnerZone = {191, 231, 220};  // a quarter of the green on white
+constexpr Rgb kInnerZone = {191, 231, 220};  // the zone's colour: a quarter of the green on white
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 struct Picture {
@@ -51,7 +51,7 @@ Picture read_png(const std::string& path) {
   return {std::move(surface), width, height};
 }
 
-// Pixels of nearly that colour in a column of the page, above the legends.
+// The pixels of nearly one colour in a column of the page, above the legends.
 struct Found {
   int count = 0, left = 100000, right = -1, top = 100000, bottom = -1;
   double x() const { return (left + right) / 2.0; }
@@ -127,7 +127,8 @@ TEST_F(StickPictureFile, TheOutlineStandsWhereItWasMeasured) {
   EXPECT_NEAR(small.x() - big.x(), 0.2 * scale, 1.5);
   EXPECT_NEAR(small.y() - big.y(), 0.3 * scale, 1.5) << "back is down";
 
-  for (std::size_t i = 49; i < 144; ++i) made.statistics.outline.radius[i] = 0.0;  // left half
+  // Changes the left half only.
+  for (std::size_t i = 49; i < 144; ++i) made.statistics.outline.radius[i] = 0.0;
   const Found half = find(drawn(made), kVermilion, 0, kRawEnd, 12);
   EXPECT_NEAR(half.width(), 0.4 * scale, 2.5) << "a hole stays open";
   EXPECT_NEAR(half.height(), 0.8 * scale, 2.5);
@@ -142,7 +143,8 @@ TEST_F(StickPictureFile, TheInnerZoneIsFourQuartersOfEllipses) {
   made.advice.calibration.y = {-0.5, -0.1, 0.8};
   made.advice.calibration.inner = 0.5;
   const Found zone = find(drawn(made), kInnerZone, 0, kRawEnd, 4);
-  // The inner half of its edge, 1.5 pixels wide, covers it; grid lines cross it.
+  // The inner half of the zone's edge, 1.5 pixels wide, covers the zone's colour; grid lines cross
+  // it.
   const double area = std::numbers::pi / 4.0 * (1.0 + 0.6) * (0.4 + 0.9) * 0.25 * scale * scale;
   EXPECT_NEAR(zone.count, area, 0.08 * area);
   EXPECT_NEAR(zone.width(), 0.5 * 1.6 * scale, 4.0);
@@ -172,7 +174,7 @@ TEST_F(StickPictureFile, TheTrackIsDrawnWhereTheStickWas) {
   made.statistics.outline = {};
   made.advice.calibration.inner = 0.0;
   made.tracks.resize(1);
-  // Often along one line, so that its thin blue adds up; NaN interrupts it.
+  // The track runs often along one line, so that its thin blue adds up; NaN interrupts it.
   for (int k = 0; k < 60; ++k) {
     for (int i = -50; i <= 50; ++i) {
       made.tracks[0].push_back({0, {(k % 2 == 0 ? i : -i) / 100.0, 0.4}});
@@ -212,7 +214,7 @@ TEST_F(StickPictureFile, AnUnwritableFileIsOneSentenceAndTheOldOneStays) {
   EXPECT_EQ(own.entries(), 1) << "nothing is left behind";
 }
 
-// Impossible names and numbers, and no data at all.
+// Draws names and numbers that are invalid, and no data at all.
 TEST_F(StickPictureFile, OddValuesAreDrawnAroundNotThrough) {
   Made odd;
   odd.statistics.centre = vec2(kNan, 1e300);
@@ -236,7 +238,7 @@ TEST_F(StickPictureFile, OddValuesAreDrawnAroundNotThrough) {
   EXPECT_EQ(read_png(path).width, 1500);
 }
 
-// Half an hour at 1 kHz, never at rest.
+// A track of half an hour at 1 kHz, never at rest.
 TEST_F(StickPictureFile, ALongTrackIsThinnedOut) {
   Made made;
   made.tracks.resize(1);

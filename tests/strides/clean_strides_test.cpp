@@ -40,13 +40,13 @@ LegPose pose_in(const GaitCycle& cycle, const StrideCell& cell, int side) {
                   0.0);
 }
 
-// A table at one of its samples: there the spline weighs three knots.
+// The cell of a table at one of its samples, where the spline weighs three knots.
 StrideCell sample_of(const StrideTable& table, int i) {
   const auto knot = [&](int k) { return table.knot[(k + kCycleSamples) % kCycleSamples]; };
   return mixed(mixed(knot(i - 1), knot(i + 1), 1.0 / 6, 1.0 / 6), knot(i), 1.0, 4.0 / 6);
 }
 
-// Phases of a foot's own cycle, which begins at its strike.
+// Phases at which a foot stands, in its own cycle, which begins at its strike.
 struct Stance {
   double own, roll, support;
 };
@@ -155,7 +155,7 @@ TEST(StrideFamily, ItsSplinesGoThroughTheSamplesThatTheyAreMadeFor) {
   for (int i = 0; i < kCycleSamples; ++i) {
     auto* number = reinterpret_cast<double*>(&samples[i]);
     for (std::size_t n = 0; n < sizeof(StrideCell) / sizeof(double); ++n)
-      number[n] = std::sin(1.0 + i * i + 3.0 * n);  // as rough as possible
+      number[n] = std::sin(1.0 + i * i + 3.0 * n);  // as rough as a table can be
   }
   std::vector<StrideTable> tables(kStrideRatios);
   for (StrideTable& table : tables) table.knot = knots_through(samples);
@@ -182,7 +182,7 @@ TEST_P(StrideFamilyOf, GrowsWithItsRatioAndIsReadAtItsOwnRatiosAsItStands) {
 }
 
 TEST_P(StrideFamilyOf, IsReadWithoutKinks) {
-  // Slopes from both sides, in phase and in ratio, at and between the tables.
+  // Compares slopes from both sides, in phase and in ratio, at and between the tables.
   constexpr double kStep = 1e-6;
   const auto slopes_agree = [](const std::function<vec3(double)>& curve, double at) {
     const vec3 before = (curve(at) - curve(at - kStep)) / kStep,
@@ -250,7 +250,8 @@ TEST(StrideFamily, IsSymmetricWhereTheDataAre) {
       const StrideCell a = sample_of(table, i), b = sample_of(table, i + kHalf);
       EXPECT_LT(glm::distance(a.pelvis_m, mirrored(b.pelvis_m)), 1e-9);
       EXPECT_NEAR(a.pelvis_yaw_rad, -b.pelvis_yaw_rad, 1e-9);
-      EXPECT_LT(glm::distance(a.pelvis_tilt, -mirrored(b.pelvis_tilt)), 1e-9);  // an axial vector
+      // The tilt is an axial vector, so its mirror image changes sign.
+      EXPECT_LT(glm::distance(a.pelvis_tilt, -mirrored(b.pelvis_tilt)), 1e-9);
       for (const int side : kSides) {
         const StrideFoot &foot = a.foot[side], &other = b.foot[1 - side];
         EXPECT_LT(glm::distance(foot.heel_m, mirrored(other.heel_m)), 1e-9);

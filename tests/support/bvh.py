@@ -4,8 +4,8 @@ import numpy as np
 
 
 class Bvh:
-    """names, parents, offsets (J, 3); End Sites are joints named PARENT_End without channels.
-    channels[j] is a list of names, first[j] the column where they begin, data is (F, C)."""
+    """A BVH file: names, parents, offsets (J, 3). End Sites are joints named PARENT_End without channels. channels[j]
+    is a list of names, first[j] the column where they begin, data is (F, C)."""
 
     def __init__(self):
         self.names, self.parents, self.offsets = [], [], []
@@ -19,7 +19,7 @@ class Bvh:
         return [i for i, p in enumerate(self.parents) if p == joint]
 
     def ancestors(self, joint):
-        """From the joint itself up to the root."""
+        """The joints from this one up to the root."""
         chain = []
         while joint >= 0:
             chain.append(joint)
@@ -87,7 +87,7 @@ def read_bvh(path):
 
 
 def write_bvh(bvh, path, digits=6):
-    """Writes back what read_bvh gave (for tests and planted faults)."""
+    """Writes what read_bvh returned (for tests and planted faults)."""
     out = ["HIERARCHY"]
 
     def node(j, depth):
@@ -113,7 +113,7 @@ def write_bvh(bvh, path, digits=6):
 
 
 def axis_matrices(axis, degrees):
-    """(F, 3, 3) rotations about X, Y or Z."""
+    """The matrices (F, 3, 3) of rotations about X, Y or Z."""
     c, s = np.cos(np.radians(degrees)), np.sin(np.radians(degrees))
     matrices = np.zeros((len(c), 3, 3))
     i, j, k = {"X": (0, 1, 2), "Y": (1, 2, 0), "Z": (2, 0, 1)}[axis]
@@ -124,7 +124,7 @@ def axis_matrices(axis, degrees):
 
 
 def local_rotations(bvh):
-    """(F, J, 3, 3): product of the rotation channels in file order."""
+    """The product of the rotation channels in file order, (F, J, 3, 3)."""
     frames = len(bvh.data)
     local = np.tile(np.eye(3), (frames, len(bvh.names), 1, 1))
     for j, channels in enumerate(bvh.channels):
@@ -135,7 +135,8 @@ def local_rotations(bvh):
 
 
 def translations(bvh):
-    """(F, J, 3): OFFSET, replaced by position channels where a joint has them."""
+    """The places of joints relative to their parents (F, J, 3): OFFSET, or the position channels of a joint that has
+    them."""
     offsets = np.tile(bvh.offsets, (len(bvh.data), 1, 1))
     for j, channels in enumerate(bvh.channels):
         for c, name in enumerate(channels):
@@ -145,7 +146,8 @@ def translations(bvh):
 
 
 def forward_kinematics(parents, offsets, local, order=None):
-    """World positions (F, J, 3) and rotations (F, J, 3, 3). order: parents before children, if the joints are not so."""
+    """World positions (F, J, 3) and rotations (F, J, 3, 3). order: parents before children, if the joints are in
+    another order."""
     position, rotation = offsets.copy(), local.copy()
     for j in order or range(len(parents)):
         p = parents[j]
@@ -156,7 +158,7 @@ def forward_kinematics(parents, offsets, local, order=None):
 
 
 def rotation_vectors(matrices):
-    """Logarithm of (..., 3, 3) in degrees; good up to about 179 degrees."""
+    """The logarithm of matrices (..., 3, 3) in degrees; accurate up to about 179 degrees."""
     vee = 0.5 * np.stack([matrices[..., 2, 1] - matrices[..., 1, 2],
                           matrices[..., 0, 2] - matrices[..., 2, 0],
                           matrices[..., 1, 0] - matrices[..., 0, 1]], axis=-1)
@@ -168,12 +170,12 @@ def rotation_vectors(matrices):
 
 
 def angle_between(a, b):
-    """Degrees between rotations (..., 3, 3)."""
+    """Degrees between two rotations (..., 3, 3)."""
     return np.linalg.norm(rotation_vectors(np.swapaxes(a, -1, -2) @ b), axis=-1)
 
 
 def quaternions(matrices):
-    """(F, ..., 4) as w, x, y, z; neighbours along axis 0 in one hemisphere."""
+    """Quaternions w, x, y, z (F, ..., 4); neighbours along axis 0 are in one hemisphere."""
     m = matrices
     diagonal = np.stack([m[..., 0, 0], m[..., 1, 1], m[..., 2, 2]], axis=-1)
     trace = diagonal.sum(-1)
@@ -196,7 +198,7 @@ def quaternions(matrices):
 
 
 def matrices_of(q):
-    """Inverse of quaternions(); normalises."""
+    """The inverse of quaternions(); normalises."""
     q = q / np.linalg.norm(q, axis=-1, keepdims=True)
     w, x, y, z = np.moveaxis(q, -1, 0)
     rows = [[1 - 2 * (y * y + z * z), 2 * (x * y - w * z), 2 * (x * z + w * y)],
@@ -206,7 +208,7 @@ def matrices_of(q):
 
 
 def second_differences(local):
-    """(F, J) degrees per tick^2: change of the one-tick rotation vector; ends are 0."""
+    """Changes of the one-tick rotation vector, (F, J) degrees per tick^2; the ends are 0."""
     steps = rotation_vectors(np.swapaxes(local[:-1], -1, -2) @ local[1:])
     result = np.zeros(local.shape[:2])
     result[1:-1] = np.linalg.norm(steps[1:] - steps[:-1], axis=-1)

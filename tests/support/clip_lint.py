@@ -19,7 +19,7 @@ from support.glb import Glb, world
 
 SIDES = ("left", "right")
 CLOSURE_DEG, SEAM_TIMES, SPEED_PERCENT, SLIDE_MM = 1.0, 1.05, 1.0, 1.0  # bounds of a clip
-UNSTEADY_SHARE = 0.4  # of the clip: the loop is cut after it
+UNSTEADY_SHARE = 0.4  # share of the clip that is not steady; the loop is taken after it
 MOST_STRIDES = 4
 
 
@@ -30,13 +30,13 @@ def columns_of(path):
 
 
 def angle_deg(a, b):
-    """Between quaternions x y z w."""
+    """Degrees between two quaternions x y z w."""
     dot = np.abs(np.sum(a * b, axis=-1)) / (np.linalg.norm(a, axis=-1) * np.linalg.norm(b, axis=-1))
     return np.degrees(2 * np.arccos(np.clip(dot, 0, 1)))
 
 
 def velocity(a, b):
-    """(3,) degrees a frame of the turn from quaternion a to b."""
+    """The turn from quaternion a to b as a vector (3,), degrees a frame."""
     a, b = a / np.linalg.norm(a), b / np.linalg.norm(b)
     conjugate = np.array([-a[0], -a[1], -a[2], a[3]])
     x1, y1, z1, w1 = b
@@ -68,14 +68,14 @@ class Clip:
             self.track[side, "toe"] = self.position[:, toe]
 
     def plants(self, side):
-        """First frames in which the heel is planted, the later part of the clip."""
+        """The first frames in which the heel is planted, in the later part of the clip."""
         planted = self.planted[side, "heel"]
         starts = np.nonzero(planted[1:] & ~planted[:-1])[0] + 1
         return starts[starts > UNSTEADY_SHARE * len(planted)]
 
     @functools.cached_property
     def loop(self):
-        """(first frame, frame behind the last)"""
+        """The loop as (first frame, frame after the last)."""
         plants = self.plants("right")
         pose = lambda i: np.stack([keys[i] for keys in self.turns.values()])
         loops = [(a, b) for n in range(1, MOST_STRIDES + 1) for a, b in zip(plants, plants[n:])]
@@ -87,7 +87,7 @@ class Clip:
         return max(angle_deg(keys[a], keys[b]) for keys in self.turns.values())
 
     def seam_times(self):
-        """The jump over the seam over the largest inside; the worst joint that moves at all."""
+        """The jump over the seam divided by the largest jump inside, of the worst joint that moves at all."""
         a, b = self.loop
         worst = 0.0
         for keys in self.turns.values():
@@ -95,7 +95,7 @@ class Clip:
             rates_on = [*rates, velocity(keys[b], keys[b + 1])]
             inside = max(np.linalg.norm(q - p) for p, q in zip(rates_on, rates_on[1:]))
             seam = np.linalg.norm(rates[0] - rates[-1])
-            if seam * self.rate_hz > 1.0:  # deg/s: less is invisible
+            if seam * self.rate_hz > 1.0:  # deg/s; a smaller jump is invisible
                 worst = max(worst, seam / max(inside, 1e-9))
         return worst
 
@@ -131,7 +131,7 @@ CHECKS = {  # name: (figure of a clip, unit, the most that is allowed)
 
 
 def lint(clip):
-    """{name: figure}"""
+    """The figures of a clip, by name."""
     return {name: float(figure(clip)) for name, (figure, _, _) in CHECKS.items()}
 
 

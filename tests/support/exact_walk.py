@@ -19,7 +19,8 @@ TOE_REST = 0.02
 
 
 def faults_mark(*judges):
-    """A judge's own faults are planted in a seventh of the runs, and always for thirty commits after the judge changed."""
+    """Marks tests that plant faults for a judge: they run in a seventh of the runs, and always for thirty commits
+    after the judge changed."""
     judges = {f"tests/{name}.py" for name in judges + ("support/walk", "support/bvh", "support/exact_walk")}
     changed = subprocess.run(["git", "-C", ROOT, "diff", "--name-only", "HEAD~30"], capture_output=True, text=True, check=False)
     is_due = slices.is_chosen(min(judges), 7) or changed.returncode != 0 or judges & set(changed.stdout.split())
@@ -42,14 +43,14 @@ def schedule(plan, strides):
 
 
 def rotate_x(vector, angle):
-    """(N, 3): fixed vector turned about x by angles (rad)."""
+    """A fixed vector turned about x by angles (rad), (N, 3)."""
     x, y, z = vector
     return np.stack([np.full_like(angle, x), y * np.cos(angle) - z * np.sin(angle),
                      y * np.sin(angle) + z * np.cos(angle)], -1)
 
 
 class Maker:
-    """Feet first (heel place and pitch), hips evenly, then the exact planar leg."""
+    """Makes the walk: first the feet (heel place and pitch), then evenly moving hips, then the exact planar leg."""
 
     def __init__(self, plan, strides=18):
         self.plan, self.order = plan, schedule(plan, strides)
@@ -65,7 +66,7 @@ class Maker:
 
     def _feet(self):
         plan, k = self.plan, 0
-        heel_z, pitch = np.zeros(2), np.zeros(2)  # where the feet stand and end the stage before
+        heel_z, pitch = np.zeros(2), np.zeros(2)  # places and pitches of the feet at the end of the stage before
         for number, (stage, side, n) in enumerate(self.order):
             part, t = slice(k, k + n), (np.arange(n) + 1) / n
             self.stage[part], self.swing[part] = stage, "none" if side is None else SIDES[side]
@@ -82,12 +83,12 @@ class Maker:
         flat = np.stack([np.zeros(n), np.zeros(n), np.full(n, heel_z[foot])], -1)
         if stage == "idle" or (stage == "roll" and number < 2 and foot == side):
             self.heel[foot, part] = flat
-        elif stage == "roll" and foot == side:  # heel planted, toe drops
+        elif stage == "roll" and foot == side:  # the heel is planted and the toe drops
             self.pitch[foot, part] = pitch[foot] * (1 - smooth(t / 0.95))
             self.heel[foot, part] = flat
         elif stage == "flight" and foot == side:
             self._fly(foot, part, t, heel_z, pitch)
-        else:  # toe planted, heel rises
+        else:  # the toe is planted and the heel rises
             low, high = (0.0, 0.20) if stage == "flight" else (pitch[foot], 0.45)
             angle = low + (high - low) * smooth((t - 0.5) * 2 if stage == "flight" else t)
             self.pitch[foot, part] = angle
@@ -105,7 +106,7 @@ class Maker:
         self.pitch[foot, part] = pitch[foot] + (-0.25 - pitch[foot]) * smooth(t) + bump
 
     def _hips(self):
-        """Between the feet: even speed, reached smoothly within the first half second."""
+        """Moves the hips between the feet at an even speed, reached smoothly within the first half second."""
         cycle = 2 * self.plan["roll"] + sum(self.plan["flight"])
         speed = sum(self.plan["length"]) / cycle
         k = np.arange(self.ticks) - 60
@@ -114,13 +115,13 @@ class Maker:
         self.root[:, 2] = -0.05 + 0.2 * self.plan["length"][0] + speed * (60 + np.cumsum(smooth(k / 120)))
 
     def leg_angles(self, foot):
-        """Hip, knee, ankle, toe rotation about x in radians."""
+        """The rotations of hip, knee, ankle and toe about x in radians."""
         hip = self.root + [0, 0, 0]
         ankle = self.heel[foot] - rotate_x(HEEL, self.pitch[foot])
         reach = ankle - hip
         distance = np.hypot(reach[:, 1], reach[:, 2])
         bend = np.arccos(np.clip((THIGH ** 2 + SHANK ** 2 - distance ** 2) / (2 * THIGH * SHANK), -1, 1))
-        line = np.arctan2(-reach[:, 2], -reach[:, 1])  # rotation about x that carries -y there
+        line = np.arctan2(-reach[:, 2], -reach[:, 1])  # rotation about x that turns -y to the line
         knee = np.pi - bend
         thigh = line - knee / 2
         return thigh, knee, self.pitch[foot] - thigh - knee, -np.maximum(self.pitch[foot], 0)

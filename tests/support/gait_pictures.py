@@ -4,7 +4,7 @@ from matplotlib.collections import LineCollection
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
-INK, GREY, BLUE, RED = "#1f2328", "#8c959f", "#0969da", "#cf222e"  # left is blue, right is red
+INK, GREY, BLUE, RED = "#1f2328", "#8c959f", "#0969da", "#cf222e"  # the left leg is blue, the right one red
 SHEET_PHASES, PLACE_M, ASIDE_M = 8, 1.9, 0.75
 
 
@@ -48,13 +48,14 @@ def rms_text(row):
 
 
 def bones(stride, parents, phase):
-    """[(2 x 2 line seen from the walker's right, which leg or None)], the pelvis above 0, at the frame nearest to phase."""
+    """Bones as [(2 x 2 line seen from the walker's right, leg or None)], the pelvis above 0, at the frame nearest to
+    phase."""
     def above(joint):
         return [] if joint < 0 else [joint] + above(parents[joint])
     k = int(np.argmin(np.abs((stride.phase - phase + 0.5) % 1.0 - 0.5)))
     p = stride.position[k]
     flat = np.stack([(p - p[stride.pelvis]) @ stride.forward, p @ stride.up], -1)
-    hidden = above(stride.pelvis)  # a root on the floor
+    hidden = above(stride.pelvis)  # the joints above the pelvis of a skeleton whose root is on the floor
     found = []
     for joint, parent in enumerate(parents):
         if parent >= 0 and joint not in hidden:

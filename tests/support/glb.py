@@ -31,7 +31,7 @@ class Glb:
                 self.parents[child] = i
 
     def values(self, index):
-        """(count, width) of an accessor."""
+        """The values of an accessor, (count, width)."""
         accessor = self.json["accessors"][index]
         view = self.json["bufferViews"][accessor["bufferView"]]
         width, kind = WIDTHS[accessor["type"]], COMPONENTS[accessor["componentType"]]
@@ -40,7 +40,7 @@ class Glb:
         return flat.reshape(accessor["count"], width)
 
     def tracks(self):
-        """times (F,), translations and rotations by node."""
+        """The times (F,), and the translations and rotations by node."""
         animation = self.json["animations"][0]
         found, times = {"translation": {}, "rotation": {}}, None
         for channel in animation["channels"]:
@@ -53,7 +53,7 @@ class Glb:
 
 
 def world(glb, frames, translations, rotations):
-    """Joint positions (F, N, 3) and rotations (F, N, 3, 3); without tracks the nodes' own."""
+    """Joint positions (F, N, 3) and rotations (F, N, 3, 3); without tracks those of the nodes."""
     count = len(glb.nodes)
     offsets, local = np.zeros((frames, count, 3)), np.zeros((frames, count, 3, 3))
     for i, node in enumerate(glb.nodes):

@@ -5,12 +5,12 @@ from support import traces
 
 
 class Hand:
-    """Its pad's class says in data() what the pad reports while the sticks are at `place` (x right, y forward, -1..1)
-    and the triggers are pulled or not."""
+    """A hand at a pad. The pad's class says in data() what the pad reports while the sticks are at `place` (x right, y
+    forward, -1..1) and the triggers are pulled or not."""
 
     rate_hz = 100
     releases_a_turn = 7
-    thumb_s = 0.06  # from one place to another
+    thumb_s = 0.06  # time that a thumb takes from one place to another
     release_s, turn_s, after_turns_s, push_s, trigger_s = (0.1, 0.68), 0.9, 0.2, (0.4, 0.3), (0.4, 0.2)
 
     def __init__(self):
@@ -30,7 +30,7 @@ class Hand:
             self.hold(1 / self.rate_hz)
 
     def push(self, angle, held_s, rest_s):
-        """The movement there counts as held time, the movement back as rest."""
+        """Pushes the stick. The movement there counts as held time, the movement back as rest."""
         self.go(math.cos(angle), math.sin(angle))
         self.hold(held_s - self.thumb_s)
         self.go(0.0, 0.0)

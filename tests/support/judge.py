@@ -52,14 +52,15 @@ def worst(values, default=0.0):
 
 
 def runs(mask):
-    """(from, to) of each run of True, `to` exclusive."""
+    """The runs of True as (from, to), `to` exclusive."""
     edge = np.diff(np.concatenate([[0], np.asarray(mask, dtype=int), [0]]))
     return list(zip(np.nonzero(edge == 1)[0], np.nonzero(edge == -1)[0]))
 
 
 # ---- the files themselves --------------------------------------------------------------------
 def file_checks(w):
-    """Header, rows against frames, FK of the pose against the columns, Euler triples nearest."""
+    """Checks the header, the rows against the frames, the columns against the pose by FK, and that Euler triples are
+    the nearest."""
     numbers = np.stack([v for v in w.col.values() if v.dtype.kind == "f"], -1)
     k = np.arange(w.ticks)
     checks = [
@@ -84,7 +85,7 @@ def file_checks(w):
 
 
 def _counts(w):
-    """summary.json against the rows."""
+    """Checks summary.json against the rows."""
     checks = []
     for i, side in enumerate(SIDES):
         told = int(w.summary[f"steps_{side}"])
@@ -99,7 +100,7 @@ def _counts(w):
 
 
 def _far_triples(bvh):
-    """Triples (a, b, c) whose equal (a+180, 180-b, c+180) lies nearer to the frame before."""
+    """Triples (a, b, c) whose equal (a+180, 180-b, c+180) is nearer to the frame before."""
     count = 0
     for j, channels in enumerate(bvh.channels):
         columns = [bvh.first[j] + c for c, n in enumerate(channels) if n.lower().endswith("rotation")]
@@ -133,7 +134,7 @@ def contact_checks(w):
 
 
 def _lowest(w, name, tracks, rests):
-    """How far the lower of two points sinks below its rest height, and where."""
+    """The depth by which the lower of two points sinks below its rest height, and where."""
     sunk = np.stack([r - t[:, 1] for t, r in zip(tracks, rests)], -1)
     k, side = np.unravel_index(int(np.argmax(sunk)), sunk.shape)
     note = f"{SIDES[side]}, tick {k}, {w.col['stage'][k]} {w.col['swing'][k]}"
@@ -186,7 +187,7 @@ def _order_check(stage, swing):
 
 # ---- steps, speed, drift ---------------------------------------------------------------------
 def realised_steps(w, side):
-    """(tick, metres) of each landing of that foot: from the last place of the standing heel."""
+    """Each landing of that foot as (tick, metres), measured from the last place of the standing heel."""
     result = []
     standing = 1 - side
     planted = np.nonzero(w.col[f"{SIDES[standing]}_heel_planted"])[0]
@@ -236,7 +237,7 @@ def speed_checks(w):
 
 
 def repeat_check(w):
-    """Strides 10 and 200 (or the last) of the longest unchanged part, at equal phase, every joint."""
+    """Compares strides 10 and 200 (or the last) of the longest unchanged part, at equal phase, in every joint."""
     marks = [0] + list(w.change_ticks) + [w.ticks]
     a, b = max(zip(marks[:-1], marks[1:]), key=lambda p: p[1] - p[0])
     beats = [k for k in w.landings[1] if a <= k < b]
@@ -251,7 +252,7 @@ def repeat_check(w):
 
 
 def _stride_pose(w, a, b):
-    """(101, J, 3, 3) local rotations over one stride, root seen from the heading."""
+    """The local rotations (101, J, 3, 3) over one stride, with the root seen from the heading."""
     local = w.local[a:b + 1].copy()
     frame = np.stack([w.leftward, np.tile([0.0, 1.0, 0.0], (w.ticks, 1)), w.forward], -1)[a:b + 1]
     local[:, 0] = np.swapaxes(frame, -1, -2) @ local[:, 0]
@@ -264,14 +265,14 @@ def _stride_pose(w, a, b):
 
 # ---- turning ---------------------------------------------------------------------------------
 def fit_circle(points):
-    """Least-squares centre and radius of (N, 2)."""
+    """The least-squares centre and radius of points (N, 2)."""
     a = np.column_stack([2 * points, np.ones(len(points))])
     x, z, c = np.linalg.lstsq(a, (points ** 2).sum(-1), rcond=None)[0]
     return np.array([x, z]), float(np.sqrt(c + x * x + z * z))
 
 
 def circle_checks(w):
-    """Landings at constant stick in a turn: on one circle, meeting themselves after 360 degrees."""
+    """Checks landings at constant stick in a turn: they are on one circle, and meet after 360 degrees."""
     mask = w.steady & ~w.straight
     checks = []
     for side in range(2):
@@ -291,7 +292,7 @@ def circle_checks(w):
 
 
 def _closing(points, centre, heading):
-    """Largest distance between a landing and where the walk stands at that heading a turn later."""
+    """The largest distance of a landing from the landing at that heading a turn later."""
     radius = np.linalg.norm(points - centre, axis=-1)
     angle = np.unwrap(np.arctan2(points[:, 0] - centre[0], points[:, 1] - centre[1]))
     sign = np.sign(heading[-1] - heading[0])
@@ -306,7 +307,7 @@ def _closing(points, centre, heading):
 
 # ---- how it looks ----------------------------------------------------------------------------
 def look_checks(w):
-    """The knees' range, and that a foot strikes with its heel."""
+    """Checks the knees' range, and that a foot strikes with its heel."""
     both = np.stack([w.knee_angles(i) for i in range(2)], -1)
     note = lambda at: f"{SIDES[at % 2]}, tick {at // 2}, {w.col['stage'][at // 2]} {w.col['swing'][at // 2]}"
     checks = [Check("smallest knee angle", both.min(), 1.0, ">=", unit="deg", note=note(int(both.argmin()))),
@@ -318,7 +319,8 @@ def look_checks(w):
 
 # ---- second differences of joint rotations: legs against fixed bounds, the rest against the capture
 def leg_checks(w):
-    """Degrees per tick^2 at 240 Hz. Rotation vector of one tick's turn, so frame and wrap play no part."""
+    """Second differences in degrees per tick^2 at 240 Hz, of the rotation vector of one tick's turn, so that frames
+    and wraps do not matter."""
     d2 = w.second_differences
     bound, kind = _leg_bounds(w)
     checks = []
@@ -334,7 +336,8 @@ def leg_checks(w):
 
 
 def _leg_bounds(w):
-    """Per tick: 0.5 steady default, 1.0 steady captured, 1.2 changes, 5 captured and faster than the limit."""
+    """The bound in each tick: 0.5 steady default, 1.0 steady captured, 1.2 changes, 5 captured and faster than the
+    limit."""
     bound = np.where(w.steady, 0.5, 1.2)
     if w.captured():
         limit = FAST_M_S * np.sqrt(w.leg_length / FAST_LEG_M)
@@ -361,7 +364,8 @@ def upper_joints(w):
 
 
 def upper_checks(w, source=None):
-    """At most 0.2 over the captured curve's own. Without a source the walk's own harmonics stand for it."""
+    """Checks that they exceed the captured curve's own by at most 0.2. Without a source the walk's own harmonics
+    replace it."""
     joints = upper_joints(w)
     cycles = w.cycles(1, w.steady)
     d2 = w.second_differences
@@ -396,7 +400,8 @@ def _source_quaternions(source, names):
 
 
 def _source_second_differences(w, source, joints, cycle):
-    """Cubic spline through the captured frames that this cycle came from, sampled at the cycle's pace."""
+    """The second differences of a cubic spline through the captured frames of this cycle, sampled at the cycle's pace.
+    """
     names = [w.bvh.names[j] for j in joints]
     if any(n not in source.names for n in names):
         return None, ""
@@ -476,7 +481,7 @@ def mirror_checks(w, twin):
 
 
 def _first_foot_check(w):
-    """The first flying foot follows the turn's sign."""
+    """Checks that the first flying foot follows the turn's sign."""
     flight = np.nonzero(w.col["stage"] == "flight")[0]
     turned = np.nonzero(w.col["stick_x"] != 0)[0]
     if not len(flight) or not len(turned) or turned[0] > flight[0]:
@@ -492,7 +497,7 @@ def _mean_step(w, side):
 
 
 def _flights(w, side):
-    """(ticks, heel peak in metres) of each steady flight of that foot."""
+    """Each steady flight of that foot as (ticks, heel peak in metres)."""
     mask = (w.col["stage"] == "flight") & (w.col["swing"] == SIDES[side])
     found = [(b - a, w.heel_fk[side][a:b, 1].max()) for a, b in runs(mask)
              if w.steady[a:b].all() and b < w.ticks]
@@ -500,7 +505,8 @@ def _flights(w, side):
 
 
 def limp_checks(even, limp, side=0):
-    """The paper's left limp: stride -50 %, speed +30 %, height -50 % at the same stick, of the motion's own steps."""
+    """Checks the paper's left limp: stride -50 %, speed +30 %, height -50 % at the same stick, of the motion's own
+    steps."""
     own, other = _mean_step(limp, side), _mean_step(limp, 1 - side)
     uneven = _mean_step(even, side) / _mean_step(even, 1 - side)
     plain, limped = _flights(even, side), _flights(limp, side)
@@ -515,8 +521,8 @@ def limp_checks(even, limp, side=0):
 
 # ---- weights ---------------------------------------------------------------------------------
 def weight_figures(even, other, side):
-    """Over steady walking: RMS of the change of hip and knee, extremes of the hip's (degrees), places of lifting toe and
-    landing heel (mm)."""
+    """Figures over steady walking: RMS of the change of hip and knee, extremes of the hip's (degrees), places of
+    lifting toe and landing heel (mm)."""
     n = min(even.ticks, other.ticks)
     mask = even.steady[:n] & other.steady[:n]
     a, b = even.hip_flexion(side)[:n][mask], other.hip_flexion(side)[:n][mask]
@@ -573,8 +579,8 @@ def _contacts(heel, toe, leg):
 
 
 def raw_checks(w, source):
-    """The same frames on this character's bones, nothing adapted: how far a foot slides while the
-    source's own foot stands. Root as in the file (scaled by the legs' ratio in the second figure)."""
+    """Measures the source's frames on this character's bones without any adaptation: how far a foot slides while the
+    source's own foot stands. The root moves as in the file (scaled by the legs' ratio in the second figure)."""
     scale = float(w.summary["metres_per_unit"])
     local = local_rotations(source)
     true, turned = forward_kinematics(source.parents, translations(source) * scale, local)

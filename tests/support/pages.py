@@ -10,7 +10,7 @@ LOOSE = ("CMakeLists.txt", "CMakePresets.json", ".clang-format", ".clang-tidy")
 BINARY = {".png", ".gif", ".bvh", ".hid", ".pyc"}
 SOURCE_FILE = re.compile(r"(?<![\w./~$-])[\w.*-][\w./*-]*\.(?:cpp|h|c|py|sh|toml|md|gd|txt|json|hid|png)(?!\w)")
 ELSEWHERE = re.compile(r"(?<!\w)(?:~|\$\w+)?/[\w./*$~-]+")  # paths on the reader's machine: ~/.config, /dev, /etc
-PLACEHOLDER = re.compile(r"[A-Z]+|vvvv|pppp")  # placeholders: NAME, FILE
+PLACEHOLDER = re.compile(r"[A-Z]+|vvvv|pppp")  # placeholders such as NAME, FILE
 
 # Comments by language; quoted text is kept, because pages also name keys and messages.
 QUOTED = r'"(?:\\.|[^"\\\n])*"|' + r"'(?:\\.|[^'\\\n])*'"
@@ -21,7 +21,7 @@ COMMENTS = {
 
 
 def spans_of(text):
-    """(text in backticks, its line or table row), outside blocks of code."""
+    """The texts in backticks outside of blocks of code, as (text, its line or table row)."""
     text = re.sub(r"^```.*?^```", "", text, flags=re.S | re.M)
     for block in re.split(r"\n(?=[|\-*]|\d+\. |\n)|\n\n", text):
         for span in re.findall(r"`([^`]+)`", block):
@@ -53,7 +53,7 @@ class Sources:
 
     @functools.lru_cache(maxsize=None)
     def files_named(self, name, room=None):
-        """Files that a page may mean by that name: a path from the root, from the room, or the end of a path."""
+        """The files that a page may mean by that name: a path from the root, from the room, or the end of a path."""
         pattern = re.compile(re.escape(name.rstrip("/")).replace(r"\*", "[^/]*"))
         if room and "/" not in name and name.endswith((".cpp", ".h")):
             return [p for p in self.paths if p.startswith(room) and pattern.fullmatch(p.rsplit("/", 1)[1])]
@@ -139,7 +139,8 @@ class Judge:
         return word in words or bool(is_start) and any(w.startswith(word) for w in words)
 
     def fault_of_place(self, function, block, room):
-        """A table row that names sources and functions says where the functions are."""
+        """The fault of a table row that names sources and functions, if the functions are elsewhere; None if there is
+        none."""
         if not block.startswith("|"):
             return
         files = [p for span in re.findall(r"`([^`]+)`", block) for p in self.sources.files_named(span, room)
@@ -149,7 +150,7 @@ class Judge:
             yield f"no {function}() in the files of its row"
 
     def is_made(self, name):
-        """Files that the program writes or reads: its sources contain their names."""
+        """True for files that the program writes or reads: its sources contain their names."""
         return "/" not in name and any(
             f'{name}"' in text or f'{pathlib.Path(name).stem}"' in text for p, text in self.sources.text.items()
             if p.startswith(("src/", "tools/", "drivers/")))

@@ -4,5 +4,5 @@ import numpy as np
 
 
 def pixels(path):
-    """(rows, columns, 3) of 0..255."""
+    """The pixels (rows, columns, 3) of 0..255."""
     return np.round(matplotlib.image.imread(path)[:, :, :3] * 255).astype(int)

@@ -12,7 +12,7 @@ ROUND = ROOT / "config/traces/round.hid"
 
 
 def has_sanitizers(program):
-    """A program with sanitizers is slower, and AddressSanitizer delays the reuse of freed memory."""
+    """True for a program with sanitizers: it is slower, and AddressSanitizer delays the reuse of freed memory."""
     return b"__asan_init" in program.read_bytes()
 
 
@@ -46,7 +46,7 @@ def refuse(program, *arguments, says=(), status=1, **options):
 
 @contextlib.contextmanager
 def started(program, *arguments, **options):
-    """Runs beside the test and is killed, if it still runs, when the block ends."""
+    """Runs a program beside the test and kills it, if it still runs, when the block ends."""
     with subprocess.Popen([program, *map(str, arguments)], text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE,
                           **{"stdin": subprocess.DEVNULL, **options}) as process:
         try:
@@ -79,7 +79,7 @@ def wait_until_works(process, seconds=0.5):
 
 
 def end_by(process, *signals, status=0):
-    """(stdout, stderr) of a started program that ends by these signals."""
+    """Ends a started program by these signals and returns (stdout, stderr)."""
     for number in signals:
         process.send_signal(number)
     out, errors = process.communicate(timeout=60)

@@ -8,7 +8,8 @@ from support import bvh as bvhs
 
 
 class Track:
-    """names, parents; position (F, J, 3) in metres, rotation (F, J, 3, 3), both in the file's world; rate_hz."""
+    """A motion: names, parents; position (F, J, 3) in metres, rotation (F, J, 3, 3), both in the file's world;
+    rate_hz."""
 
     def __init__(self, names, parents, moves_m, local, rate_hz, order=None):
         self.names, self.parents, self.rate_hz = list(names), list(parents), float(rate_hz)
@@ -34,7 +35,7 @@ def read_source(path, metres_per_unit, rate_hz):
 
 # ---- Acclaim -----------------------------------------------------------------------------------
 def skeleton_of(amc):
-    """The .asf of the same name, else of the name without its last part (walk_01.amc: walk.asf)."""
+    """The .asf with the same name, else with the name without its last part (walk_01.amc: walk.asf)."""
     amc = pathlib.Path(amc)
     for stem in (amc.stem, amc.stem.rpartition("_")[0]):
         if stem and (amc.parent / f"{stem}.asf").exists():
@@ -43,7 +44,7 @@ def skeleton_of(amc):
 
 
 def read_asf(path):
-    """(bones by name, parent by name, scale of angles to degrees, order of the root's channels)"""
+    """Reads (bones by name, parent by name, scale of angles to degrees, order of the root's channels)."""
     bones, parents, section, bone, in_degrees, root = {}, {}, "", None, True, []
     for line in pathlib.Path(path).read_text(errors="replace").splitlines():
         words = line.split("#")[0].split()
@@ -74,7 +75,7 @@ def read_asf(path):
 
 
 def turns(letters, degrees):
-    """(F, 3, 3): rotations about fixed axes, the first letter first. degrees: (F, letters)."""
+    """The rotations (F, 3, 3) about fixed axes, the first letter first. degrees: (F, letters)."""
     matrix = np.tile(np.eye(3), (len(degrees), 1, 1))
     for i, letter in enumerate(letters):
         matrix = bvhs.axis_matrices(letter.upper(), degrees[:, i]) @ matrix
@@ -115,7 +116,7 @@ def read_acclaim(asf, amc):
 
 
 def order_of(parents):
-    """Joints, parents first."""
+    """The joints, parents first."""
     def depth(j):
         return 0 if j < 0 else 1 + depth(parents[j])
     return sorted(range(len(parents)), key=lambda j: depth(j))
@@ -131,7 +132,7 @@ CURVES = {
     "tilt": (9.76, (0, 0), (1.16, -.04), (0, 0), (.28, .27), (0, 0), (-.10, .15)),
     "list": (0, (1.85, 2.12), (0, 0), (-1.19, .22)),
     "turn": (0, (3.74, 2.10), (0, 0), (.34, -.37))}
-BUILT_IN_RATE_HZ, BUILT_IN_FRAMES = 120.0, 134  # of one stride
+BUILT_IN_RATE_HZ, BUILT_IN_FRAMES = 120.0, 134  # of a single stride
 TRACK_M, TOE_REST_M, TOE_END_REST_M = 0.05, 0.02, 0.01
 MIRROR = np.diag([-1.0, 1.0, 1.0])
 
@@ -152,7 +153,7 @@ def smoothstep(a, b, x):
 
 
 def _pelvis(phase, leg_m):
-    """Place without its height, rotation."""
+    """The pelvis' place without its height, and its rotation."""
     place = np.zeros((len(phase), 3))
     place[:, 0] = -0.032 * leg_m * np.sin(2 * np.pi * (phase - 0.1))
     place[:, 2] = -0.005 * np.cos(4 * np.pi * phase) - 0.004 * np.sin(4 * np.pi * phase)

@@ -19,21 +19,21 @@ def descriptor(bits):
 
 
 class Stick:
-    """Positions are raw fractions, +x right, +y forward. `path` is where a thumb puts it, in reach: -1..1."""
+    """A stick. Positions are raw fractions, +x right, +y forward. `path` is where a thumb puts it, in reach: -1..1."""
 
     def __init__(self, centre=(0.0, 0.0), reach=(1.0, 1.0), sigma=0.0, hysteresis=0.0, drift=(0.0, 0.0), seed=1):
         self.centre, self.reach, self.sigma, self.hysteresis, self.drift = centre, reach, sigma, hysteresis, drift
         self.random = random.Random(seed)
 
     def position(self, time_s, place, side):
-        """`side`: where it was let go from, unit vector; matters at rest only."""
+        """The position. `side`: unit vector to where it was released; it matters at rest only."""
         rest = [self.hysteresis / 2 * s if place == (0, 0) else 0.0 for s in side]
         return [self.centre[i] + self.reach[i] * place[i] + rest[i] + self.drift[i] * time_s +
                 self.random.gauss(0, self.sigma) for i in range(2)]
 
 
 def thumb(turns=3, releases=8, rest_s=0.6, rate_hz=250, pushes=(FORWARD, RIGHT, BACK, LEFT)):
-    """(time, place, side) of a thumb that rests, lets go from all sides, turns, pushes and holds, and rests."""
+    """A thumb as (time, place, side): it rests, releases from all sides, turns, pushes and holds, and rests."""
     steps, time = [], 0.0
 
     def stay(seconds, place, side):
@@ -83,7 +83,7 @@ def counts(value, bits):
 
 
 def trace_text(left, right, steps, bits=16, serial="", swap=lambda x, y: (x, y), name="made pad", product=0x0002):
-    """`swap`: from the housing's x right, y forward to what the pad reports as such (left stick)."""
+    """The trace. `swap`: from the housing's x right, y forward to what the pad reports as such (left stick)."""
     text = traces.device(descriptor(bits), name, ids=f"3 1209 {product:04x}", physical="made", unique=serial)
     for time, place, side in steps:
         axes = [*swap(*left.position(time, place, side)), *right.position(time, place, side)]

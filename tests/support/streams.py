@@ -80,7 +80,7 @@ class OscDump:
     """liblo's own receiver, `oscdump`, for one port."""
 
     def __init__(self, port):
-        self._output = tempfile.TemporaryFile("w+")  # a full pipe would block it
+        self._output = tempfile.TemporaryFile("w+")  # a file, because a full pipe would block it
         self._process = subprocess.Popen(["oscdump", "-L", str(port)], stdout=self._output)
 
     def __enter__(self):

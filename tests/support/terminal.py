@@ -44,7 +44,7 @@ class Terminal:
         while True:
             try:
                 data = os.read(self._master, 4096)
-            except OSError:  # the other end is closed
+            except OSError:  # the other end of the terminal is closed
                 return
             with self._more:
                 self.text += data.decode(errors="replace")
@@ -72,7 +72,7 @@ class Terminal:
                 self._more.wait(0.05)
 
     def wait_end(self, seconds=20.0):
-        """Exit status."""
+        """Waits for the end and returns the exit status."""
         status = self.process.wait(seconds)
         with self._more:
             self._read_all()

@@ -1,7 +1,7 @@
 """A folder of `gaitpad selftest`, checked again: its recording must still show each control that the person saw."""
 import json
 
-SHOWN = 0.6  # of an axis, all the way is 1
+SHOWN = 0.6  # share of an axis' way that counts as shown
 
 
 def shows(row, name):

@@ -69,7 +69,8 @@ def stick_report(x, y):
 
 
 def trace_text(stick, commands=(), end_s=None, rate_hz=RATE_HZ, comment="synthetic"):
-    """stick: list of (time_s, raw x, raw y); a neutral report stands at time 0. commands: (time_s, text)."""
+    """The text of a trace. stick: list of (time_s, raw x, raw y); a neutral report is at time 0. commands: (time_s,
+    text)."""
     stick = list(stick)
     if not stick or stick[0][0] > 0:
         stick = [(0.0, 0.0, 0.0)] + stick
@@ -87,7 +88,7 @@ def write_trace(path, *timeline, **options):
 
 
 def ramp(start_s, end_s, start, end, step_s=0.01):
-    """A stick moved evenly from one raw position to another: list of (time, x, y)."""
+    """A stick that is moved evenly from one raw position to another, as a list of (time, x, y)."""
     count = max(1, round((end_s - start_s) / step_s))
     mix = lambda i, a, b: a + (b - a) * i / count
     return [(mix(i, start_s, end_s), mix(i, start[0], end[0]), mix(i, start[1], end[1])) for i in range(count + 1)]
@@ -95,13 +96,13 @@ def ramp(start_s, end_s, start, end, step_s=0.01):
 
 # ---- what a trace holds ----------------------------------------------------------------------
 def lines(path, letters):
-    """(letter, rest) of the lines with these letters."""
+    """The lines with these letters, as (letter, rest)."""
     text = pathlib.Path(path).read_text(errors="replace")
     return [(line[0], line[3:]) for line in text.splitlines() if line[1:2] == ":" and line[0] in letters]
 
 
 def reports(path):
-    """(time_s, bytes) of each report."""
+    """The reports, as (time_s, bytes)."""
     words = [rest.split() for _, rest in lines(path, "E")]
     return [(float(w[0]), bytes.fromhex("".join(w[2:]))) for w in words]
 
@@ -113,7 +114,7 @@ def trace_changes(path):
 
 
 def beginning(path, seconds):
-    """The trace up to that time, without its end."""
+    """The trace up to that time, without its end line."""
     kept = [line for line in pathlib.Path(path).read_text().splitlines(keepends=True)
             if line[:2] not in ("E:", "C:", "Q:") or float(line.split()[1]) < seconds]
     return "".join(kept)

@@ -9,4 +9,4 @@ KEYBOARDS = [("31e3:1312", [XBOX_360, PLAIN, KEYBOARD, PLAIN]), ("20d6:ffff", [K
 PADS = [("045e:028e", [XBOX_360, "ff5d03", "ff5d02", "fffd13"]), ("24c6:543a", [XBOX_360]), ("1209:0360", [XBOX_360]),
         ("045e:02ea", [XBOX_ONE, XBOX_ONE, XBOX_ONE]), ("054c:0ce6", ["010100", "010200", "010200", PLAIN]),
         ("057e:2009", [PLAIN]), ("20d6:a711", [PLAIN]), ("0f0d:00c1", [PLAIN])]
-STEAM = ("28de:1142", [KEYBOARD, PLAIN, PLAIN, PLAIN, PLAIN])  # named, with a keyboard of its own
+STEAM = ("28de:1142", [KEYBOARD, PLAIN, PLAIN, PLAIN, PLAIN])  # named by the rules, with its own keyboard

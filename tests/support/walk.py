@@ -14,7 +14,7 @@ COLUMNS = (
     "right_toe_planted,left_heel_x_m,left_heel_y_m,left_heel_z_m,left_toe_x_m,left_toe_y_m,left_toe_z_m,"
     "right_heel_x_m,right_heel_y_m,right_heel_z_m,right_toe_x_m,right_toe_y_m,right_toe_z_m,"
     "left_ik_iterations,right_ik_iterations,left_ik_error_m,right_ik_error_m").split(",")
-SETTLE_S = 3.0  # this long after a change of stick or style, the walk counts as steady
+SETTLE_S = 3.0  # time after a change of stick or style from which the walk counts as steady
 
 
 STAGES, SWINGS = np.array(["idle", "flight", "roll"]), np.array(["none", "left", "right"])
@@ -67,7 +67,7 @@ class Walk:
         self.pelvis = next(j for j in chains[0] if j in chains[1])
         self.hip, self.knee, self.ankle, self.toe, self.toe_end = [], [], list(ankles), [], []
         for side, chain in zip(SIDES, chains):
-            chain = chain[:chain.index(self.pelvis)]  # ankle up to the joint below the pelvis
+            chain = chain[:chain.index(self.pelvis)]  # from the ankle up to the joint below the pelvis
             hip, knee = self._hip_and_knee(chain)
             self.hip.append(hip)
             self.knee.append(knee)
@@ -88,7 +88,7 @@ class Walk:
         return found
 
     def _hip_and_knee(self, chain):
-        """The pair whose two bones add up to leg_length_m and are most alike."""
+        """The pair of joints whose two bones add up to leg_length_m and are most alike."""
         p, best = self.position[0], None
         for k in range(1, len(chain)):
             for h in range(k + 1, len(chain)):
@@ -147,11 +147,11 @@ class Walk:
 
     @functools.cached_property
     def second_differences(self):
-        """(ticks, joints) degrees per tick^2 at 240 Hz."""
+        """The second differences (ticks, joints), degrees per tick^2 at 240 Hz."""
         return bvhs.second_differences(self.local) * (self.rate / 240.0) ** 2
 
     def cycles(self, side, mask):
-        """(from, to) of neighbouring landings of one foot between which the mask is true."""
+        """The cycles as (from, to): neighbouring landings of one foot between which the mask is true."""
         marks = self.landings[side]
         return [(a, b) for a, b in zip(marks[:-1], marks[1:]) if mask[a:b + 1].all()]
 
@@ -159,7 +159,7 @@ class Walk:
         return "procedural" not in str(self.summary["motion"]).lower()
 
     def knee_angles(self, side):
-        """Degrees between thigh and shank, negative if the knee is behind the hip-ankle line."""
+        """The angles between thigh and shank in degrees, negative if the knee is behind the hip-ankle line."""
         hip, knee, ankle = (self.position[:, j] for j in (self.hip[side], self.knee[side], self.ankle[side]))
         thigh, shank = knee - hip, ankle - knee
         size = np.linalg.norm(np.cross(thigh, shank), axis=-1)
@@ -168,6 +168,6 @@ class Walk:
         return np.where(np.sum(front * thigh, -1) < 0, -angle, angle)
 
     def hip_flexion(self, side):
-        """Degrees of the thigh against the vertical in the plane of the heading, forward positive."""
+        """The angles of the thigh against the vertical in the plane of the heading in degrees, forward positive."""
         thigh = self.position[:, self.knee[side]] - self.position[:, self.hip[side]]
         return np.degrees(np.arctan2(np.sum(thigh * self.forward, -1), -thigh[:, 1]))

@@ -12,7 +12,7 @@ REST = bytes(8) + bytes([0x08, 0x00])
 
 
 def pressed(button):
-    """Button 1..12 of the made pad, from bit 4 of the ninth byte on."""
+    """A report with button 1..12 of the made pad pressed, from bit 4 of the ninth byte on."""
     bits = 0x08 | 1 << (3 + button)
     return bytes(8) + bits.to_bytes(2, "little")
 
@@ -31,7 +31,8 @@ def checkout(tmp_path):
 
 @pytest.fixture
 def folder(tmp_path):
-    """Button 2 was asked for as `a` and seen, `left_y+` too, and button 6 was asked for as `guide`."""
+    """A folder in which button 2 was asked for as `a` and seen, `left_y+` as well, and button 6 was asked for as
+    `guide`."""
     path = tmp_path / "tested"
     path.mkdir()
     lines = [traces.device(traces.DESCRIPTOR, "Made | pad", ids="3 1209 0002")]

@@ -31,7 +31,7 @@ def imported():
 
 
 # A stranger of half the size: other names, arms hanging at 45 degrees, one knee bent, facing along +x + y.
-FACING = math.radians(135)  # from -y, as imported figures face, about z
+FACING = math.radians(135)  # counted about z from -y, as imported figures face
 MADE = {"root": (None, (0, 0, 0), (0, 0, 0.1)), "pelvis": ("root", (0, 0, 0.5), (0, 0, 0.55)),
         "abdomen": ("pelvis", (0, 0, 0.55), (0, 0, 0.7)), "head": ("abdomen", (0, 0, 0.8), (0, 0, 0.9))}
 for side, sign in (("L", 1), ("R", -1)):
@@ -58,7 +58,7 @@ def made():
 
 
 def directions(puppet):
-    """Directions of its limbs in the armature's frame: x to its left, y up, z forward."""
+    """The directions of its limbs in the armature's frame: x to its left, y up, z forward."""
     bpy.context.view_layer.update()
     back = mathutils.Matrix.Rotation(-FACING, 3, "Z")
     found = {}

@@ -75,7 +75,7 @@ class Bone:
 
 
 def bones_of(tree, parent=None):
-    """From nested dictionaries, parents first."""
+    """The bones of nested dictionaries, parents first."""
     for name, below in tree.items():
         bone = Bone(name, parent)
         yield bone
@@ -111,7 +111,7 @@ OPTIONS = ("--style", "limp_left", "--character", "child", *(("--motion", CLIP) 
 
 
 def streamed(run, folder, *options):
-    """Datagrams of a session, and the export of its recording's replay."""
+    """The datagrams of a session, and the export of its recording's replay."""
     trace = write_trace(folder / "walk.hid", [(0.2, 0.4, 0.9)], (), 9)
     with Receiver() as receiver:
         run("play", trace, "--no-window", "--record", folder / "session.hid", "--seconds", 2.5, *options,
@@ -145,7 +145,7 @@ def test_blender_walks_as_the_exported_walk_does(run, tmp_path):
     assert len(start["bones"]) >= 19 and {"Hips", "Spine", "Head", "LeftFoot", "RightHand"} <= start["bones"].keys()
     assert max(max(row["degrees"].values()) for row in posed) < NEAR_DEG
     assert max(max(row["degrees"].values()) for row in recorded) < NEAR_DEG
-    assert max(row["hips_gap_m"] for row in posed) < 5e-4  # Blender counts in single precision
+    assert max(row["hips_gap_m"] for row in posed) < 5e-4  # Blender computes in single precision
     assert rows[-1] == {"stored": True}, "the map of the bones, in a .blend file"
     frames = [json.loads(datagram) for datagram in datagrams]
     assert [row["tick"] for row in posed] == [frame["tick"] for frame in frames]

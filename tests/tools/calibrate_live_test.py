@@ -17,7 +17,7 @@ CENTRE = {"left": (0.05, -0.03), "right": (-0.04, 0.06)}
 
 
 class MadeHand(Hand):
-    """On the 16-bit test pad."""
+    """A hand at the 16-bit test pad."""
 
     def data(self):
         noise = 0.002 * math.sin(len(self.lines) * 2.4)
@@ -70,7 +70,7 @@ def files(tmp_path):
 
 @pytest.fixture
 def written(run, round_trace, environment, files):
-    """A calibration is there already: the file that the tool itself would write."""
+    """A calibration that exists already: the file that the tool itself would write."""
     run("calibrate", "--trace", round_trace, env=environment)
     assert len(files()) == 1
     return files()

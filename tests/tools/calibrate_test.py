@@ -21,14 +21,14 @@ SERIAL = "AA:BB:01"
 
 
 class Turning(Stick):
-    """One that is turned along its rim all the time."""
+    """A stick that is turned along its rim all the time."""
 
     def position(self, time, place, side):
         return math.cos(9 * time), math.sin(9 * time)
 
 
 class User:
-    """A user with an own folder, recordings of a pad and calibrations."""
+    """A user with a folder, recordings of a pad and calibrations."""
 
     def __init__(self, run, folder):
         self._run, self.folder, self.own = run, folder, folder / "config/gaitpad/calibration"
@@ -116,7 +116,7 @@ def test_what_was_not_seen_is_neither_printed_nor_stored(user):
 
 def test_both_sticks_of_a_pad_report_at_one_rate(user):
     """A pad reports only changes, every 8 ms; the right stick rests while the left one moves."""
-    sticks = user.calibrated("--trace", ROUND, status=1)["sticks"]  # its left stick is not turned round
+    sticks = user.calibrated("--trace", ROUND, status=1)["sticks"]  # its left stick is not turned
     assert sticks["left"]["rate_hz"] == pytest.approx(125, abs=1)
     for key in ("rate_hz", "jitter_ms", "gaps"):
         assert sticks["left"][key] == sticks["right"][key], key
@@ -152,7 +152,7 @@ def test_a_stick_that_was_not_seen_keeps_its_calibration(user):
         assert "the left stick is unknown: its calibration stays as it was" in done.stderr
         after = user.table()
         assert after["right"]["y"]["centre"] == pytest.approx(centre, abs=0.001)
-        assert after["left"] == before  # `measured` too
+        assert after["left"] == before  # `measured` stays as well
 
 
 def test_play_and_record_use_it_and_the_recording_carries_it(user):
@@ -261,7 +261,7 @@ def test_imports_a_whole_data_base_without_a_pad(user):
 
 
 def test_eight_imports_at_once_lose_nothing(user, started):
-    """Each reads the user's file, adds its 92 pads and writes it: 736 in the end."""
+    """Eight imports read the user's file, add 92 pads each and write it: 736 in the end."""
     guid = "0300000009120000{:02x}{:02x}000010010000,Pad {},a:b0,platform:Linux,\n"
     for k in range(8):
         (user.folder / f"{k}.txt").write_text("".join(guid.format(n, k, n) for n in range(92)))

@@ -158,7 +158,7 @@ def replayed(run, trace, motion, out):
 
 
 def hash_until(run, trace, tick):
-    """A recording of only the first ticks, with an end."""
+    """The hash of a recording of only the first ticks, with an end line."""
     cut = trace.with_name("cut.hid")
     lines = [line for line in trace.read_text().splitlines() if not line.startswith("Q:")]
     cut.write_text("\n".join(lines) + f"\nQ: {6.0:013.6f} {tick}\n")
@@ -305,7 +305,7 @@ def test_a_lost_expectation_is_a_failure_if_it_is_asked_for(run, tmp_path):
 
 # ---- renewing --------------------------------------------------------------------------------
 def test_styles_of_the_users_folder_are_checked_only_if_they_are_asked_for(run, tmp_path):
-    """One with a bundled name, a damaged one, and one with a name of its own that the recording asks for."""
+    """One style with a bundled name, a damaged one, and one with its own name that the recording asks for."""
     trace = write_trace(tmp_path / "old.hid", [(0.2, *raw_stick(0, 0.8))], [(0.5, "style limp_left"), (1.0, "style mine")],
                         end_s=2.0)
     run("check", "--update", trace)

@@ -28,7 +28,7 @@ def prefix(program, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def expected(run, tmp_path_factory):
-    """Recordings with expectations."""
+    """Makes recordings with expectations."""
     folder = tmp_path_factory.mktemp("expected")
     for i in range(4):
         write_trace(folder / f"walk{i}.hid", [(0.2, *raw_stick(0, 0.5 + 0.1 * i)), (0.6, 0, 0)], end_s=1)
@@ -38,7 +38,7 @@ def expected(run, tmp_path_factory):
 
 @pytest.fixture
 def walks(expected, tmp_path):
-    """The folder that holds them as `walks`."""
+    """The folder that contains them as `walks`."""
     shutil.copytree(expected, tmp_path / "walks")
     return tmp_path
 
@@ -65,7 +65,7 @@ EVERY = [f"walks/walk{i}.hid" for i in range(4)]
 
 
 def test_the_hosted_workflow(shell, walks):
-    """Each job's command with its variables; the service itself is not here."""
+    """Runs each job's command with its variables; the service itself is not here."""
     text = block("yaml", "jobs:")
     shards = [n.strip() for n in re.search(r"shard: \[(.*)\]", text)[1].split(",")]
     total = re.search(r"GAITPAD_SHARD_TOTAL: (\d+)", text)[1]

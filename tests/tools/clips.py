@@ -36,7 +36,7 @@ def exported(program, folder, stick, options):
 
 
 def rows(found):
-    """For tools/measured.py: each check with its worst clip."""
+    """The rows for tools/measured.py: each check with its worst clip."""
     for name, (_, unit, allowed) in CHECKS.items():
         value, where = max((figures[name], clip) for clip, figures in found.items())
         failed = sum(name in faults(figures) for figures in found.values())

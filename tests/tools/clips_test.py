@@ -34,7 +34,7 @@ def bend(clip, degrees):
 
 
 def share(clip):
-    """Elapsed share of the loop, 0 to 1."""
+    """The elapsed share of the loop, 0 to 1."""
     a, b = clip.loop
     return np.linspace(0, 1, b - a + 1)
 
@@ -44,7 +44,7 @@ def break_the_loop(clip):
 
 
 def jerk_at_the_seam(clip):
-    """A parabola: smooth within the loop and unchanged at both ends, where its velocity reverses."""
+    """A parabola that is smooth within the loop and 0 at both ends, where its velocity reverses."""
     bend(clip, 160 * share(clip) * (1 - share(clip)))
 
 

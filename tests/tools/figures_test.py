@@ -23,7 +23,7 @@ LIMIT_S = 30.0
 
 
 def columns_of(path):
-    """Name -> numbers; words stay words."""
+    """The columns, name -> numbers; words stay words."""
     with open(path, newline="", encoding="utf-8") as file:
         rows = list(csv.reader(file))
     found = {}
@@ -37,7 +37,7 @@ def columns_of(path):
 
 
 def colours_of(path):
-    """(width, height, pixels of each colour in every seventh row) of a PNG of 8-bit RGB."""
+    """The size and colours of a PNG of 8-bit RGB: (width, height, pixels of each colour in every seventh row)."""
     assert path.read_bytes()[24:26] == b"\x08\x02", "8 bits, RGB"
     picture = pixels(path)
     colours, counts = np.unique(picture[::7].reshape(-1, 3), axis=0, return_counts=True)
@@ -106,7 +106,7 @@ def judged(claim):
     value, bound = claim["value"], claim["bound"]
     if ".." in bound:
         low, high = map(float, bound.split(" .. "))
-        return low - 1e-4 * abs(low) <= value <= high + 1e-4 * abs(high)  # six digits are printed
+        return low - 1e-4 * abs(low) <= value <= high + 1e-4 * abs(high)  # numbers are printed with six digits
     sign, limit = bound.split()
     limit = float(limit)
     return {"<=": value <= limit, "<": value < limit, ">=": value >= limit, ">": value > limit,

@@ -88,7 +88,7 @@ def test_the_skin_fits_its_joints_in_the_rest_pose(exported):
 
 def test_the_file_is_written_only_where_it_is_asked_for(run, trace, exported, tmp_path):
     assert sorted(os.listdir(exported())) == ["frames.csv", "pose.bvh", "pose.glb", "summary.json"]
-    run("replay", trace, "--gltf", status=2)  # it needs --out
+    run("replay", trace, "--gltf", status=2)  # the option needs --out
     run("replay", trace, "--out", tmp_path / "plain")
     assert sorted(os.listdir(tmp_path / "plain")) == ["frames.csv", "pose.bvh", "summary.json"]
 
@@ -132,7 +132,7 @@ def test_khronos_validator_sees_a_quaternion_that_is_none(exported, tmp_path):
 
 
 def root_of(path, time_s):
-    """In Blender's axes: x the same, y back, z up."""
+    """The root's place in Blender's axes: x the same, y back, z up."""
     with open(path, newline="") as file:
         row = next(row for row in csv.DictReader(file) if abs(float(row["time_s"]) - time_s) < 1e-6)
     x, y, z = (float(row[f"root_{axis}_m"]) for axis in "xyz")

@@ -62,7 +62,7 @@ def test_the_skeleton_stands_as_the_stream_says(tmp_path):
         bones = rows[frame["tick"]]
         expected = world_rotations(frame["bones"], frame["root"])
         for bone, turn in expected.items():
-            if bone in bones:  # a figure without collar bones
+            if bone in bones:  # a figure may have no collar bones
                 seen = matrices_of(np.roll(np.array(bones[bone][3:]), 1))
                 assert float(angle_between(seen, turn)) < 0.05, (bone, frame["tick"])
         hips_m = np.array(frame["root"][:3]) + [0, frame["bones"]["Hips"][1], 0]

@@ -33,7 +33,7 @@ def end_of(angles):
 
 @pytest.fixture
 def chain(tmp_path):
-    """The path of a chain with this text."""
+    """Writes a chain with this text and returns its path."""
     def write(text=CHAIN):
         (tmp_path / "chain.toml").write_text(text)
         return tmp_path / "chain.toml"

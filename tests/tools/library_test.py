@@ -60,7 +60,7 @@ def test_each_installed_header_compiles_alone(installed, tmp_path):
 
 @pytest.mark.parametrize("define", ["GLM_FORCE_QUAT_DATA_WXYZ", "GLM_FORCE_CTOR_INIT"])
 def test_a_program_that_sets_glm_up_otherwise_is_told_so(define):
-    """Its rotations would have their parts in another order, or not be plain data."""
+    """With another set-up of GLM rotations would have their parts in another order, or not be plain data."""
     command = ["g++", "-std=c++20", "-fsyntax-only", f"-I{ROOT}/src/include", "-include", "gaitpad/math.h", "-x", "c++", "/dev/null"]
     assert subprocess.run(command, check=False).returncode == 0
     done = subprocess.run([*command, f"-D{define}"], capture_output=True, text=True, check=False)
@@ -85,8 +85,8 @@ def test_minimal_walk_refuses_a_missing_motion_in_one_sentence(examples):
 
 def test_own_ground_keeps_planted_feet_in_place(examples):
     words = call(examples / "own_ground").split()
-    assert float(words[2]) < 0.1 and float(words[5]) < 0.1, words  # millimetres along and off the ground
-    assert words[10] == "0", words  # poses that are not finite
+    assert float(words[2]) < 0.1 and float(words[5]) < 0.1, words  # mm of slide and off the ground
+    assert words[10] == "0", words  # number of poses that are not finite
 
 
 @pytest.mark.parametrize("standard", ["c++20", "c++2b"])

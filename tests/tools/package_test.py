@@ -79,7 +79,7 @@ def test_pages_have_the_texts_of_help(pages, run, commands):
         page = " ".join(pages[f"gaitpad-{command}"].split())
         help_text = run(command, "--help").stdout
         description = " ".join(help_text.split("\n\n")[0].partition("Usage:")[0].split())
-        assert description.rstrip(".") in page, command  # in NAME as it is, in DESCRIPTION as a sentence
+        assert description.rstrip(".") in page, command  # the same text in NAME and, as a sentence, in DESCRIPTION
         options = help_text.partition("Options:")[2].partition("\n\n")[0]
         for name in re.findall(r"^  (?:-\w,)?(--[\w-]+)", options, flags=re.M):
             assert re.search(re.escape(name) + r"\b", page), f"{command}: {name}"
@@ -146,7 +146,7 @@ def test_bash_completes_files_and_folders(complete):
 
 
 def test_pads_that_are_plugged_are_offered(complete, run):
-    """The same nodes as `pads` lists through evdev; on a machine without pads none."""
+    """The same nodes are offered as `pads` lists through evdev; on a machine without pads none."""
     import json
     nodes = {pad["path"] for pad in json.loads(run("pads", "--json").stdout)
              if pathlib.Path(pad["path"]).name.startswith("event")}
@@ -155,7 +155,7 @@ def test_pads_that_are_plugged_are_offered(complete, run):
 
 
 def test_zsh_completes(prefix, tmp_path):
-    """The function itself, with zsh's own two that it calls replaced by ones that print."""
+    """The function is called itself; zsh's own two functions that it calls are replaced by ones that print."""
     if not shutil.which("zsh"):
         pytest.skip("zsh is not installed")
     script = next(prefix.glob("share/zsh/*/_gaitpad"))

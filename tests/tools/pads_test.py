@@ -16,7 +16,7 @@ def pads(run):
 
 def test_every_row_has_the_keys_of_the_contract(pads):
     for row in pads:
-        if set(row) == {"driver", "problem"}:  # built without its library
+        if set(row) == {"driver", "problem"}:  # the driver was built without its library
             assert "built without" in row["problem"]
             continue
         assert list(row) == list(KEYS)

@@ -92,7 +92,7 @@ def test_what_is_wrong_with_a_command_is_said_and_fails(run):
 def test_text_for_people(run):
     done = run("play", ROUND, "--no-window", "--seconds", "1")
     assert re.search(r"pose hash [0-9a-f]{16}", done.stdout)
-    assert "\033" not in done.stderr  # no terminal, no line that is rewritten
+    assert "\033" not in done.stderr  # without a terminal no line is rewritten
 
 
 @pytest.mark.parametrize("signals", [["SIGHUP"], ["SIGINT", "SIGINT", "SIGTERM"]], ids="-".join)

@@ -23,7 +23,7 @@ def lines_of(*command):
 
 @pytest.fixture(scope="module")
 def here(program):
-    """Of the ordinary build: without the walk of a file, too, as where only the core is compiled."""
+    """The hashes of the ordinary build: also without the walk of a file, as where only the core is compiled."""
     lines = lines_of(program.parent / "tests/core_hash")
     return {"libc++": lines, "core": lines[:lines.index(next(li for li in lines if li.startswith("strides of a file")))]}
 

@@ -36,7 +36,7 @@ def test_has_the_same_reports_descriptor_and_times_and_replays(run, trace, out):
     assert (told["reports"], told["lost"]) == (len(reports(trace)), 0)
     assert (told["vendor"], told["product"]) == (0x1209, 0x0001)
     mine, theirs = ([time_s for time_s, _ in reports(path)] for path in (out, trace))
-    for a, b in list(zip(mine, theirs))[1:]:  # a busy machine is late with the first
+    for a, b in list(zip(mine, theirs))[1:]:  # the first reports may be late on a busy machine
         assert mine[-1] - a == pytest.approx(theirs[-1] - b, abs=0.0015)
     run("replay", out)
     run("decode", out)
@@ -63,7 +63,7 @@ def test_a_signal_and_seconds_leave_a_complete_file(run, started, out):
 def test_a_full_disk_ends_it_and_leaves_what_was_written(program, run, out):
     command = f'ulimit -f 2; exec "{program}" record "{ROUND}" --out "{out}" --seconds 60'
     done = subprocess.run(["sh", "-c", command], stdin=subprocess.DEVNULL, capture_output=True, text=True, check=False,
-                          timeout=50)  # it ends long before its 60 seconds
+                          timeout=50)  # the command ends long before its 60 seconds
     assert (done.returncode, done.stdout) == (1, "")
     assert done.stderr == f"gaitpad record: {out}.part: cannot be written: File too large\n"
     run("replay", f"{out}.part")
@@ -90,7 +90,7 @@ def test_monitor_prints_an_object_a_second_with_rate_and_latency(run):
                 "axes", "sticks", "triggers", "buttons", "battery", "gyro"} <= set(row)
         assert row["name"] == "Example Walk Pad"
     assert max(row["rate_hz"] for row in rows) > 15
-    assert rows[-1]["sticks"]["left"][1] > 0.5  # forward, from the second second on
+    assert rows[-1]["sticks"]["left"][1] > 0.5  # the stick is pushed forward from the second second on
 
 
 def dualsense_at_rest(path, seconds=3):
@@ -130,7 +130,7 @@ def test_a_given_calibration_is_used_and_the_recording_holds_it(run, tmp_path, o
     done = run("monitor", ROUND, "--seconds", "3.5", "--json", "--calibration", path)
     assert 'calibration "turned"' in done.stderr
     last = json.loads(done.stdout.splitlines()[-1])
-    assert last["sticks"]["left"][1] < -0.5  # the thumb goes forward
+    assert last["sticks"]["left"][1] < -0.5  # the thumb has pushed the stick forward
     run("record", ROUND, "--out", out, "--seconds", "0.5", "--calibration", path)
     held = [rest for _, rest in lines(out, "K")]
     for line in ('name = "turned"', 'forward = "-y"', "released = 0.25"):
@@ -151,7 +151,7 @@ def test_a_filter_of_the_calibration_is_in_the_recording(run, tmp_path, trace, o
 
 
 def test_monitor_warns_of_a_stick_that_moves_untouched(run, tmp_path):
-    creeping = ramp(1.5, 3.0, (0.0, 0.15), (0.0, 0.21))  # 0.04 a second
+    creeping = ramp(1.5, 3.0, (0.0, 0.15), (0.0, 0.21))  # a drift of 0.04 a second
     untouched = write_trace(tmp_path / "untouched.hid", creeping)
     pushed = write_trace(tmp_path / "pushed.hid", ramp(1.5, 2.0, (0.0, 0.0), (0.0, 1.0)) + [(3.0, 0.0, 1.0)])
     done = run("monitor", untouched, "--seconds", "3.2", "--json")

@@ -41,7 +41,7 @@ class Made:
         return self._run("replay", self.write("made.hid", trace_text), "--out", self.out, *options, **more)
 
     def replay(self, trace_text, *options):
-        """Rows of frames.csv and the summary."""
+        """The rows of frames.csv, and the summary."""
         self.run(trace_text, *options)
         with open(self.out / "frames.csv", newline="") as file:
             rows = list(csv.DictReader(file))
@@ -66,7 +66,7 @@ def test_columns_rows_and_poses_are_those_of_the_contract(made):
     rows, summary = made.replay(WALK)
     lines = (made.out / "frames.csv").read_text().splitlines()
     columns = [*COLUMNS, "left_heel_ground_m", "left_toe_ground_m", "right_heel_ground_m", "right_toe_ground_m"]
-    assert lines[0].split(",")[:len(columns)] == columns  # later ones may follow
+    assert lines[0].split(",")[:len(columns)] == columns  # further columns may follow
     assert len(rows) == 7 * RATE_HZ
     assert summary["ticks"] == 7 * RATE_HZ
     assert re.search("^[0-9a-f]{16}$", summary["pose_hash"])
@@ -94,7 +94,7 @@ def test_further_characters_have_numbered_files_and_one_hash(made):
     summaries = [json.loads((made.out / f"summary{n}.json").read_text()) for n in ("", "-2", "-3")]
     assert len({s["pose_hash"] for s in summaries}) == 1
     assert summaries[1]["leg_length_m"] < summaries[0]["leg_length_m"]
-    assert summaries[2]["leg_length_m"] == summaries[1]["leg_length_m"]  # the last repeats
+    assert summaries[2]["leg_length_m"] == summaries[1]["leg_length_m"]  # the last one repeats
     assert (made.out / "pose-3.bvh").exists() and (made.out / "frames-3.csv").exists()
 
 
@@ -340,9 +340,9 @@ def test_a_link_in_the_way_is_not_followed(program, made):
 
 
 def has_begun(process, out):
-    """It has written to a file there, which has no name yet."""
+    """True if the program has begun to write a file there, which has no name yet."""
     for fd in pathlib.Path(f"/proc/{process.pid}/fd").iterdir():
-        with contextlib.suppress(FileNotFoundError):  # it was closed meanwhile
+        with contextlib.suppress(FileNotFoundError):  # the file was closed meanwhile
             if os.readlink(fd).startswith(str(out)) and fd.stat().st_size > 100_000:
                 return True
     return False
@@ -365,7 +365,7 @@ def test_a_killed_replay_leaves_nothing_and_what_earlier_ones_left_is_removed(st
         process.kill()
         process.wait()
     assert list(out.iterdir()) == []
-    (out / f".pose.bvh.{process.pid}.0123456789abcdef").touch()  # where files cannot be without a name
+    (out / f".pose.bvh.{process.pid}.0123456789abcdef").touch()  # a named temporary file
     run("replay", ROUND, "--out", out, "--fps", 60)
     assert sorted(p.name for p in out.iterdir()) == ["frames.csv", "pose.bvh", "summary.json"]
 
@@ -443,7 +443,7 @@ def test_a_recorded_session_replays_without_its_options(run, tmp_path):
 
 # ---- what hostile use found ------------------------------------------------------------------
 def test_large_files_are_refused_before_they_are_read(program, refuse, tmp_path):
-    """600 MB of holes, with 200 MB of memory (AddressSanitizer itself needs more)."""
+    """A file of 600 MB of holes, with 200 MB of memory (AddressSanitizer itself needs more)."""
     small = lambda: resource.setrlimit(resource.RLIMIT_AS, (200 << 20, 200 << 20))
     limits = {} if has_sanitizers(program) else {"preexec_fn": small}
     for name, option in (("large.bvh", ["--motion"]), ("large.toml", ["--style"]), ("large.hid", [])):
@@ -455,7 +455,7 @@ def test_large_files_are_refused_before_they_are_read(program, refuse, tmp_path)
 
 
 def test_skipped_damage_asks_for_no_hours_of_work(made, refuse):
-    """A hundred gaps of ten minutes, and a damaged line."""
+    """A recording with a hundred gaps of ten minutes, and a damaged line."""
     text = HEADER + "".join(report(599 * i) for i in range(100)) + "E: damaged\n"
     made.refuse(text, "--lenient", says=["made.hid: lasts 16.4", "longer than 1;", "--max-hours"])
     made.refuse(HEADER + "".join(report(599 * i) for i in range(10)) + "E: damaged\n", "--lenient", says="longer than 1;")

@@ -9,7 +9,7 @@ from support.program import ROOT
 
 sys.path.append(str(ROOT / "tools" / "rig"))
 with warnings.catch_warnings():
-    warnings.simplefilter("ignore", pytest.PytestUnknownMarkWarning)  # marks of the rig's own conftest.py
+    warnings.simplefilter("ignore", pytest.PytestUnknownMarkWarning)  # marks are defined in the rig's own conftest.py
     from cells import chosen
     from more_kinds import MORE
     from test_bluetooth import HALF
@@ -17,7 +17,7 @@ with warnings.catch_warnings():
     from test_matrix import DRIVERS
     from test_rumble import PACKETS
 
-SLICES = 2520  # numbers that tools/slice.sh makes of a commit's hash
+SLICES = 2520  # the numbers that tools/slice.sh can make of a commit's hash
 TABLES = {"matrix": DRIVERS, "more_kinds": {name: kind.drivers for name, kind in MORE.items()},
           "rumble": {kind: DRIVERS[kind] for kind in PACKETS}, "bluetooth": dict.fromkeys(HALF, ("hidraw", "evdev", "sdl")),
           "calibrate": CALIBRATED}

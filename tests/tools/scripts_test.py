@@ -11,7 +11,7 @@ NOBODY = 65534
 
 
 def folders(root, command=(), **environment):
-    """(build, out, remarks) as tools/folders.sh sets them."""
+    """The settings (build, out, remarks) of tools/folders.sh."""
     script = f'set -eu; root={root}; source {ROOT}/tools/folders.sh; echo "$build"; echo "$out"'
     done = subprocess.run([*command, "bash", "-c", script], capture_output=True, text=True, check=True,
                           env={"PATH": os.environ["PATH"], "HOME": "/home/me", **environment})

@@ -17,7 +17,7 @@ FORBIDDEN = re.compile("[\x00-\x09\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u2028-\u2
 
 @pytest.fixture
 def said(program, tmp_path):
-    """Runs it, and returns what it printed on both outputs, which is harmless."""
+    """Runs the program and returns its text on both outputs, after checking that it is harmless."""
     def say(*arguments):
         done = subprocess.run([os.fsencode(a) for a in (program, *arguments)], capture_output=True, check=False, cwd=tmp_path,
                               timeout=60, stdin=subprocess.DEVNULL)

@@ -50,7 +50,7 @@ def environment(display=None):
 
 
 class Window:
-    """The program on a display of the tests' own."""
+    """The program on the tests' own display."""
 
     def __init__(self, program, run, started, folder):
         self._run, self._started, self._taken = run, started, {}
@@ -66,7 +66,7 @@ class Window:
         return self._started(*arguments, env=environment(display or self.display))
 
     def picture(self, name, *options, frames=EARLY):
-        """Once each: the same options give the same picture."""
+        """Draws each picture once: the same options give the same picture."""
         if name not in self._taken:
             path = self.pictures / f"{name}.png"
             self.run("play", self.trace, "--frames", frames, "--screenshot", path, *options, display=self.display)
@@ -81,7 +81,7 @@ def window(program, run, started, tmp_path_factory):
     window.display.end()
 
 
-SCENE_ROWS = slice(46, 628)  # between the bars, at scale 1
+SCENE_ROWS = slice(46, 628)  # rows between the bars, at scale 1
 
 
 @functools.cache
@@ -131,7 +131,8 @@ def test_from_the_side_they_walk_one_behind_the_other(window):
 
 
 def test_a_crowd_is_seen_behind_them(window):
-    """The camera stands farther off, so the first is a quarter as large; with twenty behind there is more to see."""
+    """The camera is farther away, so the first character is a quarter as large; with twenty behind it there is more to
+    see."""
     options = (*BARE, "--style", "even", "--camera", "0,20")
     empty, full = window.picture("alone", *options), window.picture("crowd", *options, "--crowd", "20")
 
@@ -149,7 +150,7 @@ def test_panels_keep_their_place_and_their_text(window):
     assert panels.std() > 8.0 and len(np.unique(panels.reshape(-1, 3), axis=0)) > 300
 
     def plain_columns(first, last):
-        """Columns along which nothing is drawn but one colour: the edge of a panel, which no text crosses."""
+        """Columns in which only one colour is drawn: the edge of a panel, which no text crosses."""
         part = panels[60:height - 110, first:last]
         return [i for i in range(part.shape[1]) if (np.ptp(part[:, i], axis=0) <= 2).all()]
     assert plain_columns(60, 330) and plain_columns(960, width - 60)
@@ -171,7 +172,7 @@ def test_clean_pictures_have_no_bars(window):
     bars, clean = window.picture("bare_early", *BARE), window.picture("clean", *BARE, "--clean")
     dark = [np.abs(p[:40] - np.array([0x16, 0x19, 0x1F])).max(axis=2) < 6 for p in (bars, clean)]  # the tool bar's colour
     assert dark[0].mean() > 0.5 and dark[1].mean() < 0.1
-    assert np.ptp(clean[-40:], axis=(0, 1)).max() < 120  # no time line either
+    assert np.ptp(clean[-40:], axis=(0, 1)).max() < 120  # there is no time line either
 
 
 def test_a_signal_ends_it_in_good_order(window, tmp_path):
@@ -237,7 +238,7 @@ def test_wrong_usage_is_2(refuse, arguments):
     refuse(*arguments.split(), status=2, env=environment())
 
 
-MOST_MIB = 250e6 / 2**20  # of a program that makes pictures of any number of frames
+MOST_MIB = 250e6 / 2**20  # most memory of a program that makes pictures of any number of frames
 
 
 def peak_mib(program, *arguments):

@@ -147,7 +147,7 @@ TEST(Controls, BothSetsOfKeysWalkAndADiagonalIsNoLonger) {
   for (const SDL_Keycode code : {SDLK_w, SDLK_RIGHT}) controls.handle_event(key(code), {});
   EXPECT_NEAR(controls.walk().x, std::sqrt(0.5), 1e-12);
   EXPECT_NEAR(controls.walk().y, std::sqrt(0.5), 1e-12);
-  controls.handle_event(key(SDLK_UP), {});  // both keys of a direction count as one
+  controls.handle_event(key(SDLK_UP), {});  // two keys of one direction have the effect of one
   EXPECT_NEAR(glm::length(controls.walk()), 1.0, 1e-12);
 }
 
@@ -172,7 +172,7 @@ TEST(Controls, ADragOrbitsWithAnotherButtonOrShiftItPans) {
     controls.handle_event(button(SDL_MOUSEBUTTONDOWN, number, 100, 100), {});
     controls.handle_event(motion(130, 90), {});
     controls.handle_event(button(SDL_MOUSEBUTTONUP, number, 130, 90), {});
-    controls.handle_event(motion(200, 200), {});  // after the release: no effect
+    controls.handle_event(motion(200, 200), {});  // after the release the pointer has no effect
     return controls.take_requests();
   };
   EXPECT_EQ(dragged(SDL_BUTTON_LEFT, false).orbit_px, vec2(30, -10));
@@ -210,7 +210,7 @@ TEST(Controls, TheWheelGoesNearerAndBackToWhereItWas) {
   EXPECT_NEAR(nearer * controls.take_requests().dolly, 1.0, 1e-12);
 }
 
-// On a QWERTZ keyboard Y is at the place of QWERTY's Z; the engraved letter counts.
+// On a QWERTZ keyboard Y is at the place of QWERTY's Z; the letter printed on the key counts.
 TEST(Controls, KeysAreTakenByWhatIsEngravedOnThem) {
   SDL_Event event = {};
   event.type = SDL_KEYDOWN;
@@ -254,9 +254,11 @@ TEST(ButtonPresses, EachPressAsksOnceWhetherTheFramesSawItOrNot) {
     if (info.button < 0) continue;
     ButtonPresses presses;
     std::vector<Action> wanted;
-    presses.add_new_presses(pressed_times(info.button, 7), wanted);  // before the window opened
+    // These presses came before the window opened.
+    presses.add_new_presses(pressed_times(info.button, 7), wanted);
     EXPECT_TRUE(wanted.empty());
-    presses.add_new_presses(pressed_times(info.button, 9), wanted);  // twice between two frames
+    // Two presses between two frames.
+    presses.add_new_presses(pressed_times(info.button, 9), wanted);
     EXPECT_EQ(wanted, (std::vector{info.action, info.action})) << info.name;
     wanted.clear();
     presses.add_new_presses(pressed_times(info.button, 9), wanted);

@@ -42,14 +42,15 @@ TEST_F(Walking, TrailsOfBothFeetGrowUpToWhatIsRemembered) {
   const double after_one_s = length_m(content_.trails[0]);
   run(240);
   fill();
-  EXPECT_GT(length_m(content_.trails[0]), after_one_s + 0.5);  // 1.2 m/s
+  EXPECT_GT(length_m(content_.trails[0]), after_one_s + 0.5);  // the walk has 1.2 m/s
   run(1200);
   fill();
   const double after_seven_s = length_m(content_.trails[0]);
   run(240);
   fill();
   EXPECT_NEAR(length_m(content_.trails[0]), after_seven_s, 0.7);
-  EXPECT_LT(after_seven_s, 1.2 * 3.0 * 1.6);  // three seconds of a foot that also rises
+  // The length of a trail of three seconds, of a foot that also rises.
+  EXPECT_LT(after_seven_s, 1.2 * 3.0 * 1.6);
 }
 
 TEST_F(Walking, PointsOfATrailStayWhereTheyAre) {
@@ -105,7 +106,7 @@ TEST_F(Walking, TwoThatAreOverlaidStandInOnePlaceHalfTransparent) {
     return sum;
   };
   EXPECT_GT(glm::distance(middle_m(0), middle_m(2)), 1.0);
-  state_.overlaid = {2, 0};  // the first marked one keeps its place
+  state_.overlaid = {2, 0};  // the first of both marked characters keeps its place
   fill();
   ASSERT_EQ(content_.capsules.size(), apart.size());
   EXPECT_LT(glm::distance(middle_m(0), middle_m(2)), 0.15);
@@ -113,7 +114,7 @@ TEST_F(Walking, TwoThatAreOverlaidStandInOnePlaceHalfTransparent) {
     EXPECT_EQ(content_.capsules[i].layer, i < bones ? 2 : i < 2 * bones ? 0 : 1);
     if (i >= bones) EXPECT_EQ(content_.capsules[i].a_m, apart[i].a_m);
   }
-  EXPECT_EQ(content_.trails.size(), 4u);  // of the characters on their paths
+  EXPECT_EQ(content_.trails.size(), 4u);  // trails of the characters on their paths
   // The first bone is the pelvis, from hip to hip. Both face the same way.
   const auto turned_rad = [](const Capsule& pelvis) {
     return std::atan2(pelvis.b_m.z - pelvis.a_m.z, pelvis.b_m.x - pelvis.a_m.x);
@@ -121,7 +122,7 @@ TEST_F(Walking, TwoThatAreOverlaidStandInOnePlaceHalfTransparent) {
   const double there_rad = turned_rad(apart[2 * bones]);
   EXPECT_GT(std::abs(std::remainder(turned_rad(apart[0]) - there_rad, 2.0 * kPi)), 0.5);
   EXPECT_LT(std::abs(std::remainder(turned_rad(content_.capsules[0]) - there_rad, 2.0 * kPi)), 0.3);
-  state_.overlaid = {0, 7};  // no such character
+  state_.overlaid = {0, 7};  // character 7 does not exist
   fill();
   EXPECT_EQ(content_.capsules[0].layer, 0);
 }
@@ -178,7 +179,7 @@ TEST_F(Walking, ACrowdStandsBehindTheWalkers) {
   run(300);
   fill();
   ASSERT_EQ(cast.crowd.size(), 30u);
-  ASSERT_EQ(content_.crowd_shades.size(), 90u);  // two feet and a body each
+  ASSERT_EQ(content_.crowd_shades.size(), 90u);  // shades of two feet and a body for each member
   EXPECT_GT(content_.crowd.size(), 30u * 14);
   const vec3 first = simulation->walkers().front().pose.root_m;
   double lowest_m = 1.0, highest_m = 0.0;
@@ -269,7 +270,7 @@ TEST_F(Walking, OnEveryTerrainTheFeetAreDrawnWhereTheyAreExported) {
     };
     const std::array standing = {reach_m(kLeftSide), reach_m(kRightSide)};
     double lowest_m = 0.0, highest_m = 0.0, most_m = 0.0;
-    for (int i = 0; i < 460; ++i) {  // 27 m: the whole length of each terrain except the course
+    for (int i = 0; i < 460; ++i) {  // 27 m, the whole length of each terrain except the course
       run(12);
       fill();
       for (const Side side : {kLeftSide, kRightSide}) {

@@ -1,4 +1,4 @@
-// Begins of frames on a display that takes one frame at each refresh.
+// Tests when frames begin, on a display that takes one frame at each refresh.
 #include "view/frame_clock.h"
 
 #include <gtest/gtest.h>
@@ -22,7 +22,7 @@ struct Display {
 
 struct Seen {
   std::int64_t worst_age_ns = 0;  // age of a frame's state when the display takes it
-  int missed = 0;                 // refreshes without a new frame
+  int missed = 0;                 // number of refreshes without a new frame
 };
 
 // Draws `frames` frames; `work` gives the time of each. Frames before the pacer has measured the

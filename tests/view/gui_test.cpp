@@ -61,7 +61,7 @@ TEST_F(FontTest, TheUsersOwnFontComesFirst) {
 }
 
 TEST_F(FontTest, TypeGrowsAsFarAsItsScale) {
-  EXPECT_EQ(load_fonts(6.4).body->FontSize, std::round(14.5 * 6.4));  // scale 4, type at 160 %
+  EXPECT_EQ(load_fonts(6.4).body->FontSize, std::round(14.5 * 6.4));  // scale 4 and type at 160 %
 }
 
 TEST_F(FontTest, StyleIsScaledFromItsBeginningEachTime) {

@@ -1,4 +1,4 @@
-// A surface in memory for tests that draw. Without OpenGL they are skipped, with the reason.
+// A surface in memory for tests that draw. Without OpenGL these tests are skipped, with the reason.
 #pragma once
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// The requests of panels, and the limits of what they draw.
+// Tests the requests of panels, and the limits of what they draw.
 #include "view/panels.h"
 
 #include <fmt/format.h>
@@ -20,7 +20,7 @@ namespace {
 
 using Commands = std::vector<std::string>;
 
-// True for a letter; the atlas stores lines and surfaces in rectangles of their own.
+// True for a vertex of a letter; the atlas stores lines and surfaces in other rectangles.
 bool is_letter(const ImDrawVert& v) {
   ImFontAtlas& atlas = *ImGui::GetIO().Fonts;
   for (const int place : {atlas.PackIdLines, atlas.PackIdMouseCursors}) {
@@ -45,7 +45,7 @@ void expect_inside(const ImDrawList& list, const UiItem& area, const UiItem* pan
 
 class PanelTest : public UiTest {
  protected:
-  // Checks every list that is drawn in an area of ui_items().
+  // Checks every draw list of an area in ui_items().
   void expect_all_inside(int panels) {
     int seen = 0;
     const ImDrawData* data = ImGui::GetDrawData();
@@ -107,7 +107,7 @@ TEST_F(PanelTest, ASliderSendsEachNewValueOnceForTheChosenCharacter) {
   EXPECT_EQ(first.commands[0].rfind("gait 2 speed_m_s ", 0), 0u) << first.commands[0];
   EXPECT_NEAR(last_number(first.commands[0]), 0.5 * (range.min + range.max), 0.02);
   EXPECT_LE(first.commands[0].size(), std::string("gait 2 speed_m_s 0.75").size());
-  EXPECT_TRUE(draw().commands.empty());  // the mouse does not move
+  EXPECT_TRUE(draw().commands.empty());  // the mouse does not move, so no command is sent
   EXPECT_EQ(move_to("slider speed_m_s", 1.0).commands.size(), 1u);
   EXPECT_TRUE(move_to("slider speed_m_s", 1.0).commands.empty());
   EXPECT_TRUE(release().commands.empty());
@@ -127,7 +127,7 @@ TEST_F(PanelTest, ASliderStaysWhereItWasLetGoUntilTheSessionFollows) {
   press_at("slider hip_bounce", 1.0 / 3.0);
   move_to("slider hip_bounce", 0.75);
   release();
-  draw();  // the session has not run yet
+  draw();  // the session has not run since the change
   ASSERT_EQ(state.memory.pending.size(), 1u);
   const double asked = state.memory.pending[0].value;
   step(2, {"gait hip_bounce " + std::to_string(asked)});
@@ -182,8 +182,7 @@ TEST_F(PanelTest, EveryStyleKeyOfOneSideAndOfTheWholeHasASlider) {
   for (const StyleKey& key : style_keys()) {
     const std::string table = key.name.substr(0, key.name.find('.'));
     if (table == "legs" || table == "arms" || table == "hands")
-      continue;  // the sides have keys of
-                 // their own
+      continue;  // such a row has one key for each side
     EXPECT_NE(find("style slider " + key.name), nullptr) << key.name;
     ++seen;
   }
@@ -224,7 +223,7 @@ TEST_F(PanelTest, AStyleIsSavedUnderANameThatFitsAFile) {
   open(1280, 1200, 1.0);
   walk();
   show(Panel::style);
-  EXPECT_EQ(find("save style"), nullptr);  // nothing to save without a name
+  EXPECT_EQ(find("save style"), nullptr);  // without a name nothing can be saved
   click("style name");
   for (const char c : std::string("../my walk_2")) {
     ImGui::GetIO().AddInputCharacter(static_cast<unsigned>(c));
@@ -253,7 +252,7 @@ TEST_F(PanelTest, TheChosenCharacterIsOneOrAll) {
   EXPECT_EQ(state.walker, 2);
   click("walker all");
   EXPECT_EQ(state.walker, -1);
-  state.walker = 9;  // from an earlier session
+  state.walker = 9;  // a number from an earlier session
   draw();
   EXPECT_EQ(state.walker, -1);
 }
@@ -318,7 +317,7 @@ TEST_F(PanelTest, HeelsArePlottedAboveTheGroundBelowThemAsTheFileHasThem) {
   EXPECT_GT(highest_m, 0.9) << "it was on the stairs";
 }
 
-// With all selected, no panel shows the first one's value as if it were common.
+// With all characters selected, no panel shows the first one's value as if it were common to all.
 TEST_F(PanelTest, WhereTheSelectedDifferTheirValuesAreShownAsMixed) {
   open(1280, 3200, 1.0);
   walk();
@@ -336,8 +335,8 @@ TEST_F(PanelTest, WhereTheSelectedDifferTheirValuesAreShownAsMixed) {
   ASSERT_EQ(out.commands.size(), 1u);
   EXPECT_TRUE(out.commands[0].starts_with("set left_leg.stride_length ")) << out.commands[0];
   release();
-  step(120);  // the dragged value was not applied
-  // Each returns to the value of its own style.
+  step(120);  // the session has not applied the dragged value
+  // Each character returns to the value of its own style.
   step(2, {"set left_leg.stride_length 1.25"});
   draw();
   EXPECT_TRUE(is_drawn("L 1.25"));
@@ -371,7 +370,8 @@ constexpr Look kLooks[] = {
     {2.0, 2560, 1440, ThemeName::dark, true}, {2.0, 1280, 720, ThemeName::light, false},
     {1.0, 320, 200, ThemeName::dark, true}};
 
-// A picture would not tell, because the scissor cuts what leaves a panel; the draw list tells.
+// Reads the draw list: a picture would show nothing, because the scissor cuts off what leaves a
+// panel.
 TEST_F(PanelTest, NothingLeavesItsPanel) {
   const std::string pad = pad_name;
   for (const Look& look : kLooks) {

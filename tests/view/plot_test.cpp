@@ -29,7 +29,7 @@ TEST(ThinOut, ThinnedOutALineStaysWithinTheTolerance) {
 TEST(ThinOut, UprightStretchesOfALineStay) {
   std::vector<ImVec2> line = {{0, 0}, {1, 0}, {1, 9}, {1, -9}, {1, 5}, {2, 0}, {3, 0}, {4, 0}};
   thin_out(line, 0.1f);
-  EXPECT_EQ(line.size(), 7u);  // without {3, 0}
+  EXPECT_EQ(line.size(), 7u);  // all points except {3, 0}
   EXPECT_EQ(line[2].y, 9.0f);
   EXPECT_EQ(line[3].y, -9.0f);
 }

@@ -74,7 +74,7 @@ TEST(Surface, AWindowThatIsMadeLargerHasMorePixels) {
   EXPECT_EQ(at(drawn_corner(500, 300), 499, 0), (Rgb{0, 0, 255}));
 }
 
-// As in the program: the driver starts and reads SDL's joysticks on its own thread, at any time
+// As in the program, the driver starts and reads SDL's joysticks on its own thread, at any time
 // after the window was opened, and they outlive the window.
 TEST(Surface, JoysticksOnAnotherThreadOutliveTheWindow) {
   {

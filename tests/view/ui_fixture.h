@@ -41,7 +41,7 @@ class UiTest : public WalkingTest {
     context_ = nullptr;
   }
 
-  // The paper's four styles, walking.
+  // Starts a session with the paper's four styles, and lets it walk.
   void walk() {
     start({"even", "stiff_hip", "stiff_knee", "limp_left"});
     step(1200, {"gait speed_m_s 1.2"});
@@ -79,7 +79,7 @@ class UiTest : public WalkingTest {
   static ImVec2 middle(const UiItem& item) {
     return {(item.min.x + item.max.x) / 2.0f, (item.min.y + item.max.y) / 2.0f};
   }
-  // Moves there, presses and releases; returns the requests of all these frames.
+  // Moves the mouse there, presses and releases; returns the requests of all these frames.
   UiOutput click_at(const ImVec2& place) {
     UiOutput all;
     ImGuiIO& io = ImGui::GetIO();

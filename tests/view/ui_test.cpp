@@ -202,7 +202,7 @@ TEST_F(UiTest, ATooltipComesWhileThePointerRests) {
   EXPECT_GT(ImGui::GetDrawData()->CmdListsCount, before);
 }
 
-// 800 x 500, 1280 x 720 and 1920 x 1080, with each size of type.
+// Checks windows of 800 x 500, 1280 x 720 and 1920 x 1080 pixels, with each size of type.
 TEST_F(UiTest, NoTextIsCutOff) {
   for (const ImVec2& size : {ImVec2{800, 500}, ImVec2{1280, 720}, ImVec2{1920, 1080}}) {
     for (const bool is_playback : {false, true}) {
@@ -315,7 +315,7 @@ TEST_F(UiTest, NamesAboveHeadsStayInTheSceneAndApart) {
   for (const ImDrawVert& vertex : list->VtxBuffer) {
     EXPECT_GE(vertex.pos.x, static_cast<float>(v.x) - 1.5f);
     EXPECT_LE(vertex.pos.x, static_cast<float>(v.x + v.width) + 1.5f);
-    if (vertex.pos.y < 150.0f || vertex.pos.y > 400.0f) continue;  // labels in the corners
+    if (vertex.pos.y < 150.0f || vertex.pos.y > 400.0f) continue;  // skips labels in the corners
     top = std::min(top, vertex.pos.y);
     bottom = std::max(bottom, vertex.pos.y);
   }

@@ -1,4 +1,4 @@
-// A scripted user of the window: presses, clicks and waits, one step a frame. The window is in
+// Tests the window by a script of presses, clicks and waits, one step a frame. The window is in
 // memory (SDL's offscreen driver).
 
 #include "view/window.h"
@@ -153,7 +153,7 @@ class Script {
     if (next_ != waiting_for_) since_ = now;
     waiting_for_ = next_;
     while (next_ < steps_.size() && steps_[next_].act(glance)) {
-      if (steps_[next_++].what.empty()) return;  // a wait that is over takes no frame
+      if (steps_[next_++].what.empty()) return;  // a wait whose condition is met takes no frame
     }
     if (next_ == waiting_for_ && now - since_ > std::chrono::seconds(120)) {
       std::string said;
@@ -196,7 +196,7 @@ class Script {
   ImVec2 at_{0, 0};
 };
 
-// Four characters in a window of 960 x 540, in a folder of their own; without the machine's pads.
+// Four characters in a window of 960 x 540, in a temporary folder, without the machine's pads.
 class Window : public testing::Test {
  protected:
   void SetUp() override {
@@ -210,7 +210,7 @@ class Window : public testing::Test {
     options_.session.walk.styles = {"even", "stiff_hip", "stiff_knee", "limp_left"};
     options_.session.pad.selector.pad = "no pad of this machine";
     options_.scale = 1.0;
-    options_.width = 960;  // fewer pixels are drawn faster
+    options_.width = 960;  // a small window, because fewer pixels are drawn faster
     options_.height = 540;
   }
   void TearDown() override {
@@ -255,7 +255,7 @@ double forward_m(const Glance& glance) { return glance.session.walkers[0].walk.p
 
 bool runs(const Glance& glance) { return glance.session.tick > 0; }
 
-// Presses keys of actions; `pressed` holds the pressed ones.
+// Presses the keys of actions; `pressed` holds the actions whose keys were pressed.
 class ActionScript : public Script {
  public:
   using Condition = std::function<bool(const Glance&)>;
@@ -279,7 +279,7 @@ class ActionScript : public Script {
   }
   void turn(Action action, const Condition& is_on) { turn(action, action, is_on); }
 
-  std::set<Action> pressed = {Action::quit};  // in the next test
+  std::set<Action> pressed = {Action::quit};  // quit is tested in the next test
 
  private:
   bool was_on_ = false;
@@ -294,8 +294,7 @@ TEST_F(Window, EveryActionsKeyDoesWhatTheTableSays) {
   std::int64_t tick = 0;
   double yaw_rad = 0.0;
   script.turn(Action::pause, [](const Glance& g) { return g.pace == 0.0; });
-  script.expect(Action::step,
-                [](const Glance& g) { return g.pace == 0.0; });  // the action pauses first
+  script.expect(Action::step, [](const Glance& g) { return g.pace == 0.0; });  // pauses first
   script.wait(3);
   script.then([&](const Glance& g) { tick = g.session.tick; });
   script.expect(Action::step, [&](const Glance& g) { return g.session.tick == tick + 1; });
@@ -308,7 +307,8 @@ TEST_F(Window, EveryActionsKeyDoesWhatTheTableSays) {
   script.release(SDLK_w);
   script.expect(Action::reset, [](const Glance& g) { return std::abs(forward_m(g)) < 0.02; });
 
-  std::vector<std::string> styles = options_.session.walk.styles;  // then those of config/, by name
+  // The session's styles, then those of config/ by name.
+  std::vector<std::string> styles = options_.session.walk.styles;
   for (const std::string& path : config_files(options_.session.config_folders, "styles")) {
     if (std::ranges::count(styles, config_name(path)) == 0) styles.push_back(config_name(path));
   }
@@ -323,7 +323,7 @@ TEST_F(Window, EveryActionsKeyDoesWhatTheTableSays) {
   script.expect(Action::next_style, walk_in(8));
   script.expect(Action::style_1, walk_in(0));
   script.expect(Action::previous_style,
-                walk_in(styles.size() - 1));  // the last one is before the first
+                walk_in(styles.size() - 1));  // the last style, which precedes the first one
   script.expect(Action::undo, walk_in(0));
   script.expect(Action::redo, walk_in(styles.size() - 1));
   script.turn(Action::stick,
@@ -355,7 +355,7 @@ TEST_F(Window, EveryActionsKeyDoesWhatTheTableSays) {
               [](const Glance& g) { return !g.ui.memory.focus.empty(); });
   script.turn(Action::help, [](const Glance& g) { return g.ui.is_help_open; });
   script.turn(Action::help, Action::back, [](const Glance& g) { return g.ui.is_help_open; });
-  // A window in memory shows no change.
+  // A window in memory shows no full screen, so the key is only pressed twice.
   for (int i = 0; i < 2; ++i) script.press_key_of(Action::fullscreen);
   run(script);
   for (const ActionInfo& info : actions())
@@ -413,8 +413,8 @@ TEST_F(Window, TheMouseTurnsMovesAndNearsTheCamera) {
   run(script);
 }
 
-// Frames of 1/60 s; only the last is drawn. Four characters walk; panels open one after the other,
-// the selection changes, names and the source are switched. One second after each change all
+// Frames last 1/60 s; only the last is drawn. Four characters walk; panels open one after the
+// other, the selection changes, names and the source are switched. One second after each change all
 // characters are visible beside the panels from head to foot, and no frame before jumps.
 TEST_F(Window, EverybodyIsInSightWhateverIsOpenAtEverySize) {
   struct Size {
@@ -492,7 +492,7 @@ TEST_F(Window, ASessionAndItsRecordingAreTheSamePoses) {
   Script script;
   script.press(SDLK_w);
   script.until("they walk", [](const Glance& g) { return forward_m(g) > 0.5; });
-  script.tap(SDLK_TAB);  // only the first character
+  script.tap(SDLK_TAB);  // selects the first character
   script.tap(SDLK_4);
   script.until("it limps", [](const Glance& g) { return style_of(g, 0) == "limp_left"; });
   script.click("slider flight_left", 0.8f);
@@ -559,7 +559,8 @@ TEST_F(Window, KeysReachWhatTheMouseReaches) {
   script.wait(2);
   script.type("mine");
   script.wait(2);
-  script.press(SDLK_RETURN);  // Dear ImGui sees only keys that are down during a frame
+  // Held for a frame, because Dear ImGui sees only keys that are down during a frame.
+  script.press(SDLK_RETURN);
   script.wait(2);
   script.release(SDLK_RETURN);
   script.until("it is saved", [](const Glance& g) { return says(g, "saved as"); });
@@ -577,7 +578,7 @@ TEST_F(Window, AStyleCanBeExaggerated) {
   Script script;
   script.until("it runs", runs);
   script.tap(SDLK_TAB);
-  script.tap(SDLK_TAB);  // the second character, stiff_hip
+  script.tap(SDLK_TAB);  // selects the second character, stiff_hip
   script.tap(SDLK_RETURN);
   script.reach("exaggerate");
   script.tap(SDLK_RIGHT);
@@ -593,7 +594,7 @@ TEST_F(Window, AStyleCanBeExaggerated) {
     }
     return deviating > 0;
   });
-  script.then([](const Glance& g) {  // no other character
+  script.then([](const Glance& g) {  // no other character has changed
     EXPECT_EQ(g.session.walkers[2].style,
               g.cast.style_values[static_cast<std::size_t>(g.session.walkers[2].style_index)]);
   });
@@ -616,14 +617,14 @@ TEST_F(Window, TwoCharactersAreMarkedForAnOverlayAndAThirdReplacesOne) {
   expect({0, 2});
   script.click("overlay 1");
   expect({2});
-  script.tap(SDLK_m);  // other characters walk there
+  script.tap(SDLK_m);  // restarts on the next terrain, with new characters
   expect({});
   run(script);
 }
 
 bool points(const Glance& g) { return g.session.stick_means == StickMeans::points; }
 
-// True if the first character's heading is the camera's, turned to the left by `left_rad`.
+// True if the first character walks along the camera's heading, turned to the left by `left_rad`.
 bool goes_along(const Glance& g, double left_rad) {
   const vec3 seen = g.camera.target_m - g.camera.eye_m();
   const double along_rad = std::atan2(seen.x, seen.z) + left_rad;
@@ -660,7 +661,8 @@ TEST_F(Window, AStickThatPointsIsSeenFromTheCameraAndReplaysWithoutOne) {
   replayed.replay.trace = options_.session.live.record;
   EXPECT_EQ(value_of(replay(replayed)).summary.pose_hash, result.summary.pose_hash);
   EXPECT_EQ(result.summary.bad_commands, 0);
-  // A drag of two frames turns the camera: at most 20 directions a second, and none after it rests.
+  // A drag of two frames turns the camera: there are at most 20 directions a second, and none after
+  // it has stopped.
   const Trace trace = value_of(read_trace(replayed.replay.trace));
   std::vector<std::int64_t> aims;
   for (const TraceEvent& event : trace.events) {
@@ -677,7 +679,7 @@ TEST_F(Window, AStickThatPointsDoesSoOnTheNextGround) {
   options_.session.walk.stick = StickMeans::points;
   Script script;
   script.until("it points", points);
-  script.tap(SDLK_m);  // begins a new session
+  script.tap(SDLK_m);  // begins a new session on another terrain
   script.until("it points on the next ground, too",
                [](const Glance& g) { return g.cast.terrain->name == "rough" && points(g); });
   script.tap(SDLK_k);
@@ -689,8 +691,8 @@ TEST_F(Window, AStickThatPointsDoesSoOnTheNextGround) {
   run(script);
 }
 
-// Recordings go to a folder of their own. A recording begins a session in the styles of the
-// previous one; when it ends, the session continues.
+// Recordings go to a separate folder. A recording begins a session in the styles of the previous
+// one; when it ends, the session continues.
 TEST_F(Window, TheSessionGoesOnWhenItsRecordingEnds) {
   options_.record_folder = (folder_ / "takes").string();
   Script script;
@@ -790,9 +792,9 @@ TEST_F(Window, LayoutIsRememberedButNotWhatWasAskedForOnce) {
   run(again);
 }
 
-// Files in the window: opened, dropped, typed, played, calibrated, and made into pictures.
+// Files in the window are opened, dropped, typed, played, calibrated, and made into pictures.
 
-// A motion file: the walk of the bundled recording, as replay exports it.
+// Exports the walk of the bundled recording as a motion file, as replay does.
 std::string exported_walk(const fs::path& folder, const SessionSpec& session,
                           const std::string& trace) {
   SessionSpec spec;
@@ -871,7 +873,7 @@ TEST_F(WindowFiles, APlaybackIsPausedSteppedSoughtAndTakesNoStyles) {
   script.tap(SDLK_PERIOD);
   script.until("one tick on", [&](const Glance& g) { return g.session.tick == tick + 1; });
   script.click("timeline", 0.5f);
-  script.until("half-way", [](const Glance& g) {  // of 4800 ticks
+  script.until("half-way", [](const Glance& g) {  // half-way through 4800 ticks
     return std::abs(static_cast<double>(g.session.tick) - 2400.0) < 120.0;
   });
   script.tap(SDLK_3);
@@ -915,7 +917,7 @@ TEST_F(WindowFiles, TheBrowserOpensWhatIsTypedOrClicked) {
   EXPECT_EQ(text_in(options_.recent_file), (folder_ / "walks/limp.hid").string() + "\n");
 }
 
-// Appends `count` reports of six bytes: X, Y, Z, Rz and two more.
+// Appends `count` reports of six bytes to a recording: X, Y, Z, Rz and two more.
 void add_reports(std::string& text, int& ms, const std::array<int, 6>& bytes, int count,
                  int every_ms) {
   for (int i = 0; i < count; ++i, ms += every_ms) {
@@ -951,7 +953,7 @@ std::string thumb_trace() {
   return text;
 }
 
-// The user pushes the left stick, which is Z and Rz on this pad, upside down.
+// A recording in which the user pushes the left stick, which is Z and Rz on this pad, upside down.
 std::string odd_pad_trace() {
   std::string text =
       "D: 0\nN: Odd Pad\nP: made/0\nI: 3 1209 0077\nR: 30 05 01 09 05 a1 01 15 00 26 ff 00 75 08 "
@@ -988,7 +990,7 @@ TEST_F(WindowFiles, ControlsThatAreWrongAreAskedForAndKept) {
   script.until("it runs", runs);
   script.tap(SDLK_F8);
   script.click("calibration map");
-  script.click("map keep");  // appears when the left stick is known
+  script.click("map keep");  // the button appears when the left stick is known
   script.until("it is kept", [](const Glance& g) { return says(g, "2 controls are kept in"); });
   script.until("it runs again",
                [](const Glance& g) { return !g.is_calibrating && g.session.tick > 0; });
@@ -1019,7 +1021,7 @@ TEST_F(WindowFiles, ACalibrationIsMeasuredShownSavedAndInForce) {
   const auto file = load_calibration_file(found->path().string());
   ASSERT_TRUE(file) << file.error().message;
   EXPECT_EQ(file->name, "Thumb Pad");
-  // 0x80 and 0x81 alternate; in fractions of half of 0 .. 255.
+  // At rest 0x80 and 0x81 alternate; the numbers are fractions of half of 0 .. 255.
   EXPECT_NEAR(file->calibration.left.x.centre, (128.5 - 127.5) / 127.5, 0.004);
 }
 
@@ -1048,7 +1050,8 @@ TEST_F(WindowFiles, TheGuideOfACalibrationFitsInASmallWindow) {
   for (const char* name : {"calibration of the left stick", "calibration of the right stick"}) {
     const UiItem stick = found(name);
     EXPECT_LE(stick.max.y, buttons_y) << name;
-    EXPECT_GE(stick.max.y - stick.min.y, 55.0f) << name;  // its name, its bar, a line of text
+    // Room for its name, its bar and a line of text.
+    EXPECT_GE(stick.max.y - stick.min.y, 55.0f) << name;
   }
   for (const auto& [name, width] :
        {std::pair("calibration map", 140.0f), {"calibration test", 100.0f}}) {
@@ -1072,7 +1075,7 @@ TEST_F(WindowFiles, ACalibrationIsGivenUp) {
 }
 
 TEST_F(WindowFiles, ASavedStyleKeepsItsNameAndIsUsedAtOnceAndInTheNextSession) {
-  options_.height = 640;  // makes the slider visible
+  options_.height = 640;  // high enough for the slider to be visible
   options_.are_panels_given = true;
   options_.panels = {Panel::style};
   Script script;
@@ -1090,13 +1093,14 @@ TEST_F(WindowFiles, ASavedStyleKeepsItsNameAndIsUsedAtOnceAndInTheNextSession) {
                [](const Glance& g) { return style_of(g, 0) == "my walk"; });
   script.tap(SDLK_TAB);
   script.until("the second one is chosen", [](const Glance& g) { return g.ui.walker == 1; });
-  script.tap(SDLK_b);  // the last style, which is new, precedes the first
+  script.tap(SDLK_b);  // goes to the last style, which is new and precedes the first
   script.wait(2);
   script.tap(SDLK_b);
   script.until("so does another", [](const Glance& g) {
     return style_of(g, 1) == "my walk" && g.session.walkers[1].style.fatigue > 0.5;
   });
-  script.drop(make("x.toml", "fatigue = 0\nhip_sway = 1\n"));  // starts another session
+  // A dropped style starts another session.
+  script.drop(make("x.toml", "fatigue = 0\nhip_sway = 1\n"));
   script.until("it is known",
                [](const Glance& g) { return std::ranges::count(g.cast.styles, "my walk") == 1; });
   const WindowResult result = run(script);
@@ -1108,7 +1112,8 @@ TEST_F(WindowFiles, PicturesAreTheSameEveryTime) {
   options_.panels = {Panel::pad, Panel::loop};
   options_.frames = 20;
   options_.screenshot = own_.at("still.png");
-  for (const std::string& trace : {round_, std::string()}) {  // or a live session, by hand
+  // Pictures of a recording, or of a live session that ends by hand.
+  for (const std::string& trace : {round_, std::string()}) {
     options_.session.replay.trace = trace;
     std::array<std::string, 2> pictures;
     std::array<std::uint64_t, 2> hashes{};

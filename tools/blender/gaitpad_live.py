@@ -20,8 +20,8 @@ bl_info = {"name": "gaitpad live", "author": "gaitpad", "version": (0, 1, 0), "b
            "description": "Walks an armature by the poses that gaitpad streams"}
 
 PORT = 39540
-MOST_AT_ONCE = 256  # datagrams: Blender draws between two looks, and a flood must not keep it from that
-MOST_M = 1e4  # a place farther away is no walk
+MOST_AT_ONCE = 256  # datagrams taken at once, because a flood must not keep Blender from drawing
+MOST_M = 1e4  # farther places are refused: no walk goes there
 # gaitpad's bones: a bone stands behind the one that carries it; where that is not mapped, the one above it does.
 PARENTS = {"Hips": None, "Spine": "Hips", "Chest": "Spine", "UpperChest": "Chest", "Neck": "UpperChest", "Head": "Neck"}
 for _side in ("Left", "Right"):
@@ -50,12 +50,12 @@ SIDES = {"l": "Left", "left": "Left", "lft": "Left", "r": "Right", "right": "Rig
 
 
 def name_words(name):
-    """In lower case: "CC_Base_L_ToeBase" gives cc base l toe base, "LHipJoint" l hip joint."""
+    """The words of a name in lower case: "CC_Base_L_ToeBase" gives cc base l toe base, "LHipJoint" l hip joint."""
     return [word.lower() for word in re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+", name.rpartition(":")[2])]
 
 
 def joined(word):
-    """"lfoot", "rightelbow": a side and a part in one word."""
+    """Splits one word that has a side and a part: "lfoot", "rightelbow"."""
     for n in (5, 4, 1):
         if SIDES.get(word[:n]) and PART_WORDS.get(word[n:]):
             return SIDES[word[:n]], PART_WORDS[word[n:]]
@@ -63,7 +63,7 @@ def joined(word):
 
 
 def named_joint(name):
-    """(side, part) that a bone's name says; (None, None): nothing."""
+    """The side and part that a bone's name says; (None, None) if it says nothing."""
     words = name_words(name)
     for word in words:
         if word in NECK_WORDS:
@@ -76,7 +76,7 @@ def named_joint(name):
     for word in words:
         side = side or SIDES.get(word)
         said = PART_WORDS.get(word)
-        if part is None or said == "toe":  # the outer word counts: "FootToes"
+        if part is None or said == "toe":  # of several words the outer one counts: "FootToes"
             part = said or part
     if "arm" in words and part not in LEG_PARTS:
         part = "elbow" if {*words} & {"fore", "low", "lower", "lo"} else "upper_arm"
@@ -90,12 +90,13 @@ def named_joint(name):
 
 
 def guessed_bones(bones):
-    """gaitpad's bones -> names of these (bpy.types.Bone, parents before children); what is not found is left out."""
+    """Maps gaitpad's bones to names of these (bpy.types.Bone, parents before children); bones that are not found are
+    left out."""
     named = {bone.name: named_joint(bone.name) for bone in bones}
     found = {}
 
     def above(bone, side, *parts):
-        """The nearest bone above of one of these parts; of the first part that there is."""
+        """The nearest bone above this one that is one of these parts; the first part that exists is taken."""
         for part in parts:
             for other in bone.parent_recursive:
                 if named[other.name] == (side, part):
@@ -118,7 +119,7 @@ def guessed_bones(bones):
             upper = above(lower, side, "upper_arm", "shoulder")
             if upper is None:
                 continue
-            hand = None  # the lowest bone of that name: above it such a bone turns the forearm
+            hand = None  # the lowest bone of that name: a bone of that name above it turns the forearm
             for bone in bones:
                 if named[bone.name] == (side, "wrist") and is_below(bone, hand or lower):
                     hand = bone
@@ -127,7 +128,7 @@ def guessed_bones(bones):
             break
 
     def common(a, b):
-        """The lowest bone that carries both."""
+        """The lowest bone that carries both bones."""
         path = [a, *a.parent_recursive]
         return next((bone for bone in [b, *b.parent_recursive] if bone in path), None)
 
@@ -147,7 +148,7 @@ def guessed_bones(bones):
 
 
 def path_below(top, bone):
-    """From below `top` down to `bone`."""
+    """The bones from below `top` down to `bone`."""
     path = []
     while bone is not None and bone != top:
         path.insert(0, bone)
@@ -156,7 +157,7 @@ def path_below(top, bone):
 
 
 def spine_bones(spine):
-    """Those of a spine that are gaitpad's Spine, Chest and UpperChest."""
+    """The bones of a spine that are gaitpad's Spine, Chest and UpperChest."""
     n = len(spine)
     return spine if n < 3 else [spine[0], spine[n // 2], spine[-1]]
 
@@ -190,7 +191,7 @@ class Puppet:
         self.t_pose = {name: self._turn(name) @ self.axes.transposed() @ rest[bone].matrix_local.to_3x3().normalized()
                        for name, bone in self.bones.items()}
         self.hips_m = self.axes.col[1].dot(self.head["Hips"])
-        self.last = {}  # rotations, so that neighbouring key frames go the short way round
+        self.last = {}  # the last rotations, so that neighbouring key frames turn along the shorter arc
 
     @property
     def armature(self):
@@ -209,7 +210,7 @@ class Puppet:
         return Matrix((left, up, left.cross(up))).transposed()
 
     def _end(self, name):
-        """Where the bone ends: at the next of its limb, else at its own tail."""
+        """The place where the bone ends: at the next bone of its limb, else at its own tail."""
         if name not in self.bones:
             return self.head["Hips"]
         following = {"UpperLeg": "LowerLeg", "LowerLeg": "Foot", "Foot": "Toes", "UpperArm": "LowerArm", "LowerArm": "Hand"}
@@ -217,7 +218,7 @@ class Puppet:
         return self.head.get(side + following[name.removeprefix(side)], self.tail[name])
 
     def _turn(self, name):
-        """What turns the resting bone to where it is in a T pose, in gaitpad's axes."""
+        """The rotation from the resting bone to its place in a T pose, in gaitpad's axes."""
         def line(of):
             return self.axes.transposed() @ (self._end(of) - self.head[of])
 
@@ -234,8 +235,8 @@ class Puppet:
         return Matrix.Identity(3)
 
     def put(self, frame):
-        """Puts one object of the stream on the armature."""
-        world = {}  # rotations of gaitpad's bones, counted from the T pose
+        """Applies one object of the stream to the armature."""
+        world = {}  # rotations of gaitpad's bones, relative to the T pose
         root = frame["root"]
         root_turn = to_quaternion(root)
         for name, bone in frame["bones"].items():
@@ -283,7 +284,7 @@ class Puppet:
 
 
 def sound_frame(data):
-    """The object in a datagram of the stream; None: it is somebody else's, or damaged."""
+    """The object in a datagram of the stream; None if it is another program's, or damaged."""
     try:
         frame = json.loads(data)
         is_known = all(isinstance(name, str) for name in frame["bones"])
@@ -296,12 +297,12 @@ def sound_frame(data):
 
 
 def is_number(value):
-    """Not true, nor a whole number too long for a float; NaN fails both comparisons."""
+    """True for a number; not for True, nor for a whole number too large for a float; NaN fails both comparisons."""
     return type(value) in (int, float) and -1e9 < value < 1e9
 
 
 def is_place(place):
-    """A place and a quaternion."""
+    """True for a place and a quaternion."""
     return isinstance(place, list) and len(place) == 7 and all(map(is_number, place)) and \
         all(abs(m) < MOST_M for m in place[:3]) and 0.5 < sum(part * part for part in place[3:]) < 2.0
 
@@ -312,7 +313,7 @@ def to_quaternion(place):
 
 
 class Listener:
-    """Receives the stream for one armature. Port 0: any free one, `port` tells which."""
+    """Receives the stream for one armature. Port 0: any free one; `port` tells which one."""
 
     def __init__(self, armature, bones, port, host="127.0.0.1"):
         self.puppet = Puppet(armature, bones)
@@ -326,19 +327,19 @@ class Listener:
             self.socket.close()
             raise
         self.port = self.socket.getsockname()[1]
-        self.malformed = 0  # datagrams that were skipped
+        self.malformed = 0  # number of datagrams that were skipped
         self.record(None)
 
     def close(self):
         self.socket.close()
 
     def record(self, first_frame):
-        """From now on each pose is kept, the next one at this frame. None: no longer."""
+        """From now on each pose is kept as a key frame, the next one at this frame. None: poses are no longer kept."""
         self.first_frame = first_frame
-        self.first_s = None  # the stream's time there
+        self.first_s = None  # time of the stream at that frame
 
     def waiting(self):
-        """The objects that have come since the last call, at most MOST_AT_ONCE."""
+        """The objects that have arrived since the last call, at most MOST_AT_ONCE."""
         frames = []
         for _ in range(MOST_AT_ONCE):
             try:
@@ -346,7 +347,7 @@ class Listener:
             except BlockingIOError:
                 break
             except OSError:
-                continue  # what an earlier datagram of ours met
+                continue  # an error that an earlier datagram of ours has caused
             frame = sound_frame(data)
             if frame is None:
                 self.malformed += 1
@@ -355,7 +356,7 @@ class Listener:
         return frames
 
     def take(self, scene):
-        """Puts what has come on the armature: while it records every pose, else the newest. How many came."""
+        """Applies the poses that have arrived: while it records every pose, else the newest. Returns their number."""
         frames = self.waiting()
         is_recording = self.first_frame is not None
         for frame in frames if is_recording else frames[-1:]:
@@ -368,7 +369,7 @@ class Listener:
         return len(frames)
 
 
-LISTENERS = {}  # by the armature's name
+LISTENERS = {}  # the listeners, by their armature's name
 
 
 def take_all():

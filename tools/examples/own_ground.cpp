@@ -7,7 +7,7 @@
 
 #include <cstdio>
 using namespace gaitpad;
-static Motion bones(double leg_m) {  // standing: +x left, +y up, +z ahead
+static Motion bones(double leg_m) {  // a skeleton's rest pose: +x left, +y up, +z ahead
   Motion body;
   auto& joints = body.skeleton.joints;
   joints.push_back({"Hips", -1});
@@ -22,7 +22,8 @@ static Motion bones(double leg_m) {  // standing: +x left, +y up, +z ahead
   body.frames = {{vec3(0.0, leg_m, 0.0), std::vector<quat>(joints.size(), kIdentity), {}}};
   return body;
 }
-static Ground ask(const void*, double x_m, double z_m) noexcept {  // waves of 2.5 pi, two slopes
+// Waves 2.5 pi m long in both directions.
+static Ground ask(const void*, double x_m, double z_m) noexcept {
   return {0.2 * sin_cos(0.8 * x_m).sin + 0.15 * sin_cos(0.8 * z_m).sin, kUp, 0};
 }
 int main() {

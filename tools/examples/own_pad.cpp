@@ -12,11 +12,11 @@ namespace {
 // A game pad with X and Y of 8 bits and eight buttons. Its reports have three bytes and no id.
 const std::vector<std::uint8_t> kDescriptor = {
     0x05, 0x01, 0x09, 0x05, 0xa1, 0x01,              // Generic Desktop, Game Pad, Application
-    0x09, 0x30, 0x09, 0x31,                          // X, Y
-    0x15, 0x00, 0x26, 0xff, 0x00,                    // 0 to 255
+    0x09, 0x30, 0x09, 0x31,                          // usages X, Y
+    0x15, 0x00, 0x26, 0xff, 0x00,                    // range 0 to 255
     0x75, 0x08, 0x95, 0x02, 0x81, 0x02,              // 8 bits, two of them, Input
-    0x05, 0x09, 0x19, 0x01, 0x29, 0x08,              // Button 1 to 8
-    0x25, 0x01, 0x75, 0x01, 0x95, 0x08, 0x81, 0x02,  // 0 or 1, 1 bit, eight of them, Input
+    0x05, 0x09, 0x19, 0x01, 0x29, 0x08,              // Buttons 1 to 8
+    0x25, 0x01, 0x75, 0x01, 0x95, 0x08, 0x81, 0x02,  // range 0 to 1, 1 bit, eight of them, Input
     0xc0};
 
 }  // namespace
@@ -33,7 +33,7 @@ int main() {
 
   const std::vector<std::vector<std::uint8_t>> reports = {
       {0x80, 0x80, 0x00}, {0x80, 0x00, 0x01}, {0xff, 0x80, 0x00}, {0xc0, 0x20, 0x02}, {0x80}};
-  const gaitpad::Calibration calibration;  // the default zones of an unknown stick
+  const gaitpad::Calibration calibration;  // has the default zones of an unknown stick
   gaitpad::PadState state;
   int refused = 0;
   std::puts("x,y,buttons");
@@ -41,7 +41,7 @@ int main() {
     gaitpad::Report report;
     report.size = static_cast<std::uint16_t>(bytes.size());
     std::copy(bytes.begin(), bytes.end(), report.bytes.begin());
-    if (!gaitpad::decode(*layout, report, state)) {  // too short, or no report of this device
+    if (!gaitpad::decode(*layout, report, state)) {  // too short, or not of this device
       ++refused;
       continue;
     }

@@ -20,7 +20,7 @@ constexpr int kWidth = 960, kHeight = 540;
 constexpr double kPixels_per_m = 200.0;
 
 struct Options {
-  int frames = -1;  // none: until the window is closed
+  int frames = -1;  // number of frames to draw; -1: until the window is closed
   gaitpad::vec2 stick{0.0};
   const char* picture = nullptr;
 };
@@ -31,7 +31,7 @@ gaitpad::vec2 stick_of_keys() {
                        keys[SDL_SCANCODE_UP] - keys[SDL_SCANCODE_DOWN]);
 }
 
-// -1 .. 1, y forward; a small round dead zone, since this game calibrates nothing.
+// The pad's stick, -1 .. 1, y forward. A small round dead zone replaces a calibration.
 gaitpad::vec2 stick_of_pad(SDL_GameController* pad) {
   const gaitpad::vec2 raw(SDL_GameControllerGetAxis(pad, SDL_CONTROLLER_AXIS_LEFTX) / 32767.0,
                           -SDL_GameControllerGetAxis(pad, SDL_CONTROLLER_AXIS_LEFTY) / 32767.0);
@@ -39,7 +39,7 @@ gaitpad::vec2 stick_of_pad(SDL_GameController* pad) {
   return length < 0.2 ? gaitpad::vec2(0.0) : raw * (std::min(1.0, (length - 0.2) / 0.75) / length);
 }
 
-// The skeleton from the side; the camera goes along with the hips.
+// Draws the skeleton from the side. The camera moves with the hips.
 void draw(SDL_Renderer* renderer, const gaitpad::Skeleton& skeleton, const gaitpad::Pose& pose) {
   gaitpad::JointFrames world;
   gaitpad::forward_kinematics(skeleton, pose, world);

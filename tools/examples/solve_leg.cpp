@@ -27,8 +27,9 @@ gaitpad::IkChain leg(double hip_weight) {
 }  // namespace
 
 int main() {
-  const gaitpad::vec3 heel_m(0.0, -0.08, -0.05);  // in the foot's frame
-  const gaitpad::vec3 goal_m(0.05, -0.75, 0.25);  // from the hip: ahead of it and a little aside
+  const gaitpad::vec3 heel_m(0.0, -0.08, -0.05);  // the heel in the foot's frame
+  // The goal, seen from the hip: in front of it and a little to the side.
+  const gaitpad::vec3 goal_m(0.05, -0.75, 0.25);
   bool all_reached = true;
   for (const double hip_weight : {1.0, 0.2}) {
     gaitpad::IkAngles angles_rad = {-0.2, 0.0, 0.0, 0.4, 0.0};

@@ -25,7 +25,7 @@ void check_command(std::string_view line) {
   if (!command) return;
   if (!std::isfinite(command->value) || command->walker < 0) std::abort();
   if (!problem && command->walker > kCharacters) std::abort();
-  // A name is a part of the text: it stays valid while the text exists.
+  // The name is a part of the text, so it stays valid while the text exists.
   const char* name = command->name.data();
   const bool is_inside =
       name >= line.data() && name + command->name.size() <= line.data() + line.size();

@@ -27,7 +27,8 @@ using namespace gaitpad;
 constexpr int kRate_hz = 240;
 enum Choice : std::uint8_t { kIsNode = 1, kStreams = 2, kIsFallback = 4, kIsUnplugged = 8 };
 
-// Six bytes per axis: its code, its bounds (16 bits, shifted by the code's high bits); then keys.
+// An evdev node's axes and keys. Six bytes for each axis: its code, its bounds (16 bits, shifted by
+// the code's high bits); then the keys.
 std::vector<std::uint8_t> node_descriptor(std::span<const std::uint8_t> bytes) {
   EvdevAbilities node;
   while (bytes.size() >= 6 && bytes[0] != 0xff) {

@@ -18,7 +18,8 @@
 
 namespace gaitpad {
 
-// Replaces the cache's files: the strides are solved once per run.
+// Replaces the function that names the cache's folder: without a cache the strides are solved once
+// per run.
 std::string stride_cache_folder() { return {}; }
 Result<GaitCycle> cached_clean_strides(GaitCycle cycle, const std::string&) {
   return with_clean_strides(std::move(cycle));

@@ -48,7 +48,7 @@ void check_json(const StreamedFrame& frame) {
   if (sent["bones"].size() != frame.bones->size() || sent["root"].size() != 7) std::abort();
 }
 
-// A bundle's head, then messages, each behind its length (OSC 1.0).
+// Checks that a bundle has its head and then messages, each after its length (OSC 1.0).
 void check_bundle([[maybe_unused]] std::string& datagram) {
 #ifdef GAITPAD_HAS_OSC
   constexpr std::size_t kHead = 16, kLength = 4;
@@ -88,7 +88,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     humanoid.bones.push_back({.name = kBones[i % 4]});
     bones.push_back(next_bone(rest));
   }
-  // Equal names would be one key of the JSON's object.
+  // Equal names would be one key of the JSON object, so at most four bones are named.
   humanoid.bones.resize(std::min<std::size_t>(bones.size(), 4));
   bones.resize(humanoid.bones.size());
   const StreamedFrame frame{

@@ -20,7 +20,8 @@ void check_ground(const Terrain& terrain) {
       const Ground ground = ground_at(terrain, x_m, z_m);
       if (!std::isfinite(ground.height_m)) std::abort();
       if (!(std::fabs(glm::length(ground.normal) - 1.0) < 1e-9)) std::abort();
-      if (!(ground.normal.y > 0.85)) std::abort();  // 0.6 is the steepest grade
+      // Y of the normal on a slope of 0.6, the steepest that is allowed, is 0.857.
+      if (!(ground.normal.y > 0.85)) std::abort();
     }
     const Stretch piece = piece_at(terrain, z_m);
     if (!(piece.from_m <= z_m && z_m <= piece.to_m)) std::abort();

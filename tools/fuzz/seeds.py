@@ -29,7 +29,7 @@ def write_pads(out):
 
 
 def write_session(out):
-    """A recording with embedded files: a text, bytes, one that was saved while it ran."""
+    """Writes a recording with embedded files: a text, bytes, and one that was saved while it ran."""
     pad = next(iter(sorted((ROOT / "tests/data/pads").glob("*.hid")))).read_text()
     lines = [line for line in pad.splitlines() if line[:2] in ("R:", "N:", "I:", "E:")]
     head = ("V: 2 rate_hz=240\nO: pace own\nO: style styles/even.toml\nO: terrain g.toml\nO: crowd 2\n"
@@ -40,7 +40,7 @@ def write_session(out):
 
 
 def leg(side, x):
-    """Hip, knee, ankle, toe of a leg 0.8 m long, in centimetres."""
+    """A leg 0.8 m long: hip, knee, ankle and toe, in centimetres."""
     places = (("UpLeg", f"{x} -2 0"), ("Leg", "0 -40 0"), ("Foot", "0 -40 0"), ("ToeBase", "0 -8 12"))
     opened = "".join(f"JOINT {side}{name}\n{{\nOFFSET {place}\nCHANNELS 3 Zrotation Xrotation Yrotation\n"
                      for name, place in places)
@@ -48,7 +48,7 @@ def leg(side, x):
 
 
 def write_walk(out):
-    """Legs that swing against each other while the root travels."""
+    """Writes a walk: legs that swing against each other while the root travels."""
     frames = []
     for k in range(40):
         swing = [30 * math.sin(0.35 * k + phase) for phase in (0, math.pi)]
@@ -66,7 +66,7 @@ def bone(name, direction, dof):
 
 
 def write_acclaim(out):
-    """A body of two legs, at rest and in two frames."""
+    """Writes a body of two legs, at rest and in two frames."""
     bones, tree, frame = "", "root lhip rhip\n", ["root 0 17 0 0 0 0"]
     for side, x in (("l", 1), ("r", -1)):
         bones += bone(side + "hip", f"{x} 0 0", "") + bone(side + "femur", "0 -1 0", "dof rx ry rz\nlimits (-1 2)\n(-inf inf)\n")
@@ -114,7 +114,7 @@ def write_calibrations(out):
 
 
 def write_imports(out):
-    """One of each kind that is imported."""
+    """Writes one file of each kind that is imported."""
     texts = {
         "evemu": "# EVEMU 1.3\nI: 0003 1209 0001 0111\nA: 00 15 240 0 15 0\nA: 01 10 235 0 10 0\n",
         "libinput": "# libinput record\ndevices:\n- node: /dev/input/event5\n  evdev:\n    id: [3, 4617, 1, 273]\n"
@@ -172,7 +172,7 @@ def write_streams(out):
 
 
 def write_forwards(out):
-    """fuzz_forward's inputs from recordings, and two nodes of evdev."""
+    """Writes fuzz_forward's inputs from recordings, and two nodes of evdev."""
     for path in sorted((ROOT / "tests/data/pads").glob("*.hid"))[::3]:
         text = path.read_text()
         descriptor = bytes_behind(lines_of(text, "R")[0], 2)

@@ -39,8 +39,8 @@ std::string plot_problem(const std::string& path) {
   return path.ends_with(".png") ? "" : "the picture is a PNG: its name ends with .png";
 }
 
-// A character's time over the size of its crowd, for each width, with bare playback as horizontal
-// lines.
+// Plots the time of a character over the size of its crowd, for each width, with bare playback as
+// horizontal lines.
 std::optional<Error> write_plot(const std::string& path, const std::vector<BenchRow>& rows,
                                 const std::string& processor) {
   constexpr std::array kColours = {colour::kBlue, colour::kGreen, colour::kOrange, colour::kPurple};

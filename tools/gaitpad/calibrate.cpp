@@ -42,7 +42,7 @@ struct CalibrateArguments {
 
 constexpr const char* kUnknown = " not known";
 
-// A label, one value or those of x and y, and their source.
+// Prints a row: a label, one value or those of x and y, and their source.
 void print_row(const char* what, const std::string& value, const std::string& from) {
   say("  {:<18}  {:<20}  {}\n", what, value, from);
 }
@@ -222,7 +222,7 @@ void print_analysis(const DeviceInfo& device, const PadAnalysis& analysis) {
   say("\nPositions and lengths are raw: fractions of half the axis' range, from its middle.\n");
 }
 
-// The keys of interface.md, and further ones.
+// The analysis as JSON.
 nlohmann::ordered_json analysis_json(const DeviceInfo& device, const PadAnalysis& analysis) {
   nlohmann::ordered_json sticks = nlohmann::ordered_json::object();
   nlohmann::ordered_json triggers = nlohmann::ordered_json::object();
@@ -287,7 +287,7 @@ Result<GuidedPad> named_pad(const CalibrateArguments& arguments, const PadFiles&
   return pad;
 }
 
-// Writes to the target; `-` is standard output. Returns the exit status.
+// Writes the file to the target; `-` is standard output. Returns the exit status.
 int print_or_save(const std::string& target, const CalibrationFile& file,
                   const std::vector<std::string>& comments) {
   if (target == "-") {
@@ -334,7 +334,8 @@ int import_calibration(const CalibrateArguments& arguments, const PadFiles& file
   CalibrationFile file = calibration_for(pad->info, pad->has_factory_sticks);
   auto target = calibration_target(arguments.out, file);
   if (!target) return fail(kCalibrateCommand, target.error().message);
-  const auto lock = FolderLock::wait(*target);  // the file is changed, not replaced
+  // The file is changed, so no other program may change it meanwhile.
+  const auto lock = FolderLock::wait(*target);
   if (!lock) return fail(kCalibrateCommand, lock.error().message);
   std::vector<std::string> remarks;
   take_what_holds(files, pad->info, *target, file, remarks);
@@ -349,7 +350,7 @@ int import_calibration(const CalibrateArguments& arguments, const PadFiles& file
   return print_or_save(*target, file, {"Imported from " + printable(origin)});
 }
 
-// --export-sdl, for the same pad.
+// Runs --export-sdl, for the pad of the recordings or the requested one. Returns the exit status.
 int export_sdl(const CalibrateArguments& arguments, const PadFiles& files) {
   auto pad = named_pad(arguments, files);
   if (!pad) return fail(kCalibrateCommand, pad.error().message);
@@ -366,14 +367,14 @@ int export_sdl(const CalibrateArguments& arguments, const PadFiles& files) {
 
 struct ComparedFiles {
   std::array<CalibrationFile, 2> file;
-  std::array<std::string, 2> names;                    // of the files, without folders
-  std::array<std::vector<ComparedNumber>, 2> numbers;  // left, right
+  std::array<std::string, 2> names;                    // names of the two files, without folders
+  std::array<std::vector<ComparedNumber>, 2> numbers;  // numbers of the left and the right stick
 };
 
 #ifdef GAITPAD_HAS_WINDOW
 std::optional<Error> draw(const CalibrateArguments& arguments, const GuidedPad& pad,
                           const PadAnalysis& analysis) {
-  // The date of a recording is unknown.
+  // A recording does not say its date, so the picture has none.
   const std::string date = arguments.traces.empty() ? ", " + today() : "";
   std::vector<StickPicture> pictures;
   constexpr const char* kTitles[] = {"Left stick", "Right stick"};
@@ -453,7 +454,7 @@ std::optional<Error> problem_beforehand(const CalibrateArguments& arguments) {
   }
   if (arguments.out == "-") return std::nullopt;
   if (!arguments.out.empty()) return saving_problem(arguments.out);
-  // The pad is not known yet.
+  // The device's own file is not known before the pad is; any name tells whether there is a folder.
   const auto any = calibration_target("", CalibrationFile());
   return any ? saving_problem(std::filesystem::path(*any).replace_filename("*.toml"))
              : std::optional(any.error());
@@ -496,8 +497,8 @@ int check(const CalibrateArguments& arguments, const GuidedPad& pad, const PadAn
   return fail(kCalibrateCommand, "no stick was seen at rest with hands off: nothing to compare");
 }
 
-// Prints the result and writes the file. If `asked` is not null, a user is at the terminal: asks
-// first.
+// Prints the result and writes the file. If `asked` is not null, a user is at the terminal and is
+// asked first.
 int keep(const CalibrateArguments& arguments, const PadFiles& files, const GuidedPad& pad,
          const PadAnalysis& analysis, RunEnd* asked) {
   CalibrationFile file = calibration_for(pad.info, pad.has_factory_sticks);

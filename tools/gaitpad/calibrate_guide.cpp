@@ -36,14 +36,17 @@ class GuideScreen {
   bool has_help_ = false;
   std::int64_t shown_ns_ = 0;
   GuideStep shown_step_ = GuideStep::done;
-  // Without a terminal: the last printed line of each control, then of the plug.
+  // Without a terminal: the text of each control, and then of the plug, as it was printed last.
   GuideStep printed_step_ = GuideStep::done;
   std::vector<std::string> printed_;
 };
 
-constexpr std::int64_t kGuideRewriteNs = 50'000'000;  // in place
-constexpr std::int64_t kPrintNs = 500'000'000;        // line below line
-constexpr std::size_t kBarWidth = 55;                 // a narrower screen has no space for bars
+// Period of the guide that is rewritten in place.
+constexpr std::int64_t kGuideRewriteNs = 50'000'000;
+constexpr std::int64_t kPrintNs = 500'000'000;  // period of lines that are printed below each
+                                                // other
+constexpr std::size_t kBarWidth = 55;           // columns that a bar needs; a narrower screen
+                                                // shows no bars
 constexpr int kBarCells = 10;
 
 constexpr const char* kUnplugged = "UNPLUGGED: plug it in again, it goes on from here.";
@@ -174,7 +177,7 @@ Next obey(char key, CalibrationGuide& guide, GuideScreen& screen) {
   return Next::go_on;
 }
 
-// Before a pad has come only q has an effect.
+// Carries out a key. Before a pad has come only q has an effect.
 Next obey_keys(TerminalKeys& keys, CalibrationGuide* guide, GuideScreen& screen) {
   while (const std::optional<char> key = keys.take_key()) {
     if (guide && guide->step() == GuideStep::done) return Next::go_on;
@@ -184,10 +187,11 @@ Next obey_keys(TerminalKeys& keys, CalibrationGuide* guide, GuideScreen& screen)
   return keys.is_at_end() ? Next::give_up : Next::go_on;
 }
 
-// True: the guide is finished. False: the user gave up.
+// Runs the guide to its end. True: it is finished. False: the user gave up.
 Result<bool> run_guide(GuidedCalibration& calibration, const PadSelector& selector, RunEnd& end) {
   GuideScreen screen;
-  TerminalKeys keys;  // destroyed before the stream, which may take long to close
+  // Declared last, so that it is destroyed before the stream, which may take long to close.
+  TerminalKeys keys;
   MissingPad missing(kCalibrateCommand, selector);
   while (!end.is_reached()) {
     const bool was_there = calibration.guide() != nullptr;
@@ -196,7 +200,7 @@ Result<bool> run_guide(GuidedCalibration& calibration, const PadSelector& select
     print_remarks(kCalibrateCommand, calibration.take_remarks(), &screen.line());
     missing.look(calibration.plugged(), screen.line());
     if (guide && !was_there) {
-      if (guide->steps().size() <= 1)  // only the step `done`
+      if (guide->steps().size() <= 1)  // the only step is `done`
         return Error{name_of(calibration.pad()) + ": has no stick to calibrate"};
       print_remarks(kCalibrateCommand, driver_remarks(calibration.pad()), &screen.line());
     }

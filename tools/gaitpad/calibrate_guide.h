@@ -23,8 +23,8 @@ Result<std::optional<GuidedPad>> guided_pad(const PadFiles& files, const PadSele
 // A remark if the driver may show other values than the pad sends; else empty.
 std::vector<std::string> driver_remarks(const DeviceInfo& info);
 
-// Asks and waits. True at Enter; false at q, Ctrl-C, SIGTERM and the end of input. Keys pressed
-// before the question are ignored.
+// Asks the question and waits. True at Enter; false at q, Ctrl-C, SIGTERM and the end of input.
+// Keys pressed before the question are ignored.
 bool confirmed(const std::string& question, RunEnd& end);
 
 }  // namespace gaitpad

@@ -24,7 +24,7 @@ namespace gaitpad {
 namespace {
 
 constexpr const char* kCheckCommand = "check";
-constexpr int kWrongUsage = 2;  // exit status
+constexpr int kWrongUsage = 2;  // exit status for a wrong --shard
 constexpr int kMaxJobs = 1024;
 
 struct CheckArguments {
@@ -68,7 +68,8 @@ std::string joints_plot_problem(const std::string&) { return missing_window(); }
 
 // --- the command
 
-// Printed last, so that it is seen. Returns the exit status.
+// Names recordings without an expectation. Printed last, so that it is noticed. Returns the exit
+// status.
 int tell_of_left_out(const CheckArguments& arguments, const std::vector<std::string>& without) {
   if (without.empty()) return 0;
   std::string text = fmt::format("recordings without an expectation, left out: {}", without.size());

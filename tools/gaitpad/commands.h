@@ -29,7 +29,8 @@ void add_list(CLI::App& app, int& status);
 void add_map(CLI::App& app, int& status);
 void add_check(CLI::App& app, int& status);
 
-// For shells and packages, from the commands of `app`; no help lists them.
+// Prints completions for shells and packages, from the commands of `app`; no help lists this
+// function's command.
 void print_completions(const CLI::App& app, std::vector<std::string> words);
 std::optional<Error> write_manual(const CLI::App& app, const std::string& folder);
 

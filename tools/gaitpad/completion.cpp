@@ -30,19 +30,20 @@ class Candidates {
     if (!word.starts_with(prefix_) || !seen_.insert(word).second) return;
     lines_.push_back(lead_ + printable(word) + "\t" + printable(description));
   }
-  // `:files`, `:folders`.
+  // Adds `:files` or `:folders`, so that the shell adds those.
   void add_from_shell(const char* kind) { lines_.emplace_back(kind); }
   void print() const {
     for (const std::string& line : lines_) fmt::print("{}\n", line);
   }
 
  private:
-  std::string prefix_, lead_;  // `lead_` precedes the completed part: `--style=`
+  // Prefix of the word to complete, and the text before it in the word: `--style=`.
+  std::string prefix_, lead_;
   std::set<std::string> seen_;
   Words lines_;
 };
 
-// Files of configuration that options take by name, with their folders.
+// Folders of configuration whose files options take by name, by the option's type.
 constexpr std::pair<std::string_view, const char*> kNamed[] = {{"--style", "styles"},
                                                                {"--character", "characters"},
                                                                {"--terrain", "terrain"},
@@ -61,7 +62,7 @@ void add_pads(Candidates& candidates) {
   }
 }
 
-// The type's name contains a set of values: `TEXT:{own,adult}`.
+// Adds the values of the option if its type lists them: `TEXT:{own,adult}`.
 bool add_set(const CLI::Option& option, Candidates& candidates) {
   const std::string type = option.get_type_name();
   const std::size_t begin = type.find('{'), end = type.find('}');
@@ -138,7 +139,7 @@ void add_commands(const CLI::App& app, Candidates& candidates) {
 
 void print_completions(const CLI::App& app, Words words) {
   if (words.empty()) words.emplace_back();
-  // bash splits `--style=limp`.
+  // bash passes `--style=limp` as several words.
   std::string prefix = words.back(), lead;
   words.pop_back();
   if (prefix == "=") prefix.clear();

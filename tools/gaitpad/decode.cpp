@@ -27,7 +27,7 @@ namespace {
 
 enum class OutputForm { text, json };
 
-// A device with everything that decoding needs. `state` is that after its last report.
+// A device and everything that decoding needs. `state` is the state after its last report.
 struct DecodedDevice {
   TraceDevice source;
   PadLayout layout;
@@ -72,14 +72,15 @@ ordered_json descriptor_json(const DecodedDevice& device) {
           {"fields", std::move(fields)}};
 }
 
-// Neighbouring fields that differ only in their position form one row.
+// True if two fields differ only in their position; such neighbours are printed as one row.
 bool continues(const Field& a, const Field& b) {
   return a.kind == b.kind && a.report_id == b.report_id && a.usage == b.usage &&
          a.bit_size == b.bit_size && a.logical_min == b.logical_min &&
          a.logical_max == b.logical_max && a.is_array == b.is_array;
 }
 
-// Values by usage: of a repeated usage the first field; of an array 1 for each usage that it names.
+// The values by usage. A repeated usage has the value of its first field; each usage that an array
+// names has 1.
 ordered_json values_json(const ReportDescriptor& descriptor, const Report& report,
                          std::uint8_t id) {
   ordered_json values = ordered_json::object();
@@ -173,7 +174,7 @@ void print_descriptor(const DecodedDevice& device, OutputForm form) {
   }
 }
 
-// Also decodes the report. False: the device cannot send this report.
+// Prints a report and decodes it. False: the device cannot send this report.
 bool print_report(DecodedDevice& device, const Report& report, OutputForm form) {
   const bool is_good = decode(device.layout, report, device.state);
   if (form == OutputForm::json) {
@@ -210,7 +211,8 @@ Result<std::vector<DecodedDevice>> devices_of(const Trace& trace, const PadOverr
   return devices;
 }
 
-// A report is good if the device's descriptor, or its replacement, can hold it.
+// Prints the reports of a recording. A report is good if the device's descriptor, or its
+// replacement, can hold it.
 void print_reports(const DecodeArguments& arguments, const Trace& trace,
                    std::vector<DecodedDevice>& devices) {
   long bad = 0;
@@ -248,7 +250,7 @@ int run_trace(const DecodeArguments& arguments, const PadOverrides& overrides) {
   return 0;
 }
 
-// A device with that node, pad or not; else the device that play would choose.
+// The device with that node, pad or not; if none has it, the device that play would choose.
 Result<PadSighting> sighting_of(const PadFiles& files, const PadSelector& selector) {
   auto sightings = pad_sightings(files, selector, Drivers::preferred);
   if (!sightings) return sightings.error();
@@ -263,7 +265,8 @@ Result<PadSighting> sighting_of(const PadFiles& files, const PadSelector& select
   const auto matching = matching_pads(*sightings, selector);
   const bool is_told = matching && !matching->empty() && !matching->front().problem.empty();
   if (is_told)
-    return matching->front();  // opening it gives the reason, and its descriptor may be readable
+    return matching->front();  // opening the device will report the reason, and its descriptor may
+                               // be readable
   return Error{
       fmt::format("{}: no driver sees such a device; gaitpad pads lists them", selector.pad)};
 }
@@ -285,14 +288,14 @@ void print_live(Device& device, DecodedDevice& decoded, OutputForm form, RunEnd&
       print_report(decoded, report, form);
       continue;
     }
-    if (std::fflush(stdout) != 0) return;  // main reports it
+    if (std::fflush(stdout) != 0) return;  // main reports the failed write
     end.wait(std::chrono::milliseconds(200), device.poll_fds());
   }
 }
 
-// Decoded like a recording of the device.
+// Makes a device that is decoded in the same way as a recording of it.
 Result<DecodedDevice> decoded_device(const DeviceInfo& info, const PadFiles& files) {
-  std::vector<std::string> ignored;  // of calibrations, which decoding does not use
+  std::vector<std::string> ignored;  // errors in calibrations, which decoding does not use
   TraceDevice recorded = recorded_device(files, info, std::nullopt, ignored).device;
   auto layout = pad_layout(recorded.info, files.overrides);
   if (!layout) return Error{fmt::format("{}: {}", info.name, layout.error().message)};

@@ -65,7 +65,7 @@ class Forward {
   const PadFiles files_;
   StandIn stand_in_;
   std::set<std::string> told_;
-  bool is_first_look_ = true;  // then a name that matches several pads is an error
+  bool is_first_look_ = true;  // at the first look a name that fits several pads is an error
 };
 
 // Takes the first pad that matches and can be grabbed.
@@ -129,7 +129,7 @@ std::optional<Error> Forward::run(RunEnd& end, HotplugMonitor& changes) {
 
 // --- as a user's service
 
-// The arguments of `gaitpad` that start the same with any current folder.
+// The arguments of `gaitpad` for a unit: they have the same effect in any current folder.
 std::vector<std::string> unit_arguments(const ForwardArguments& arguments) {
   std::vector<std::string> words = {kForwardCommand};
   if (!arguments.pad.empty()) words.push_back(arguments.pad);

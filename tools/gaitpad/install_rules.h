@@ -1,4 +1,4 @@
-// Installs udev rules: doctor and forward.
+// Installs udev rules, for doctor and forward.
 #pragma once
 #include <string>
 #include <string_view>

@@ -32,7 +32,7 @@ struct Entry {
   std::string name, path, summary;
 };
 
-// Recordings are listed by their path, all others by their name.
+// The entries of a kind. Recordings are listed by their path, all others by their name.
 std::vector<Entry> entries_of(const Kind& kind, const std::vector<std::string>& folders) {
   std::vector<Entry> entries;
   for (const std::string& path : config_files(folders, std::string(kind.folder), kind.ending)) {

@@ -26,9 +26,9 @@ namespace {
 
 constexpr int kFailed = 1, kWrongUsage = 2;
 
-// If the caller closed a standard descriptor, a pad or a recording would get its number, and output
-// for the terminal would be written there. Open it here in the wrong direction, so that using it
-// fails as on a closed one.
+// Opens standard descriptors that the caller has closed. Otherwise a pad or a recording would get
+// such a number, and output for the terminal would be written into it. They are opened in the wrong
+// direction, so that using them fails as on closed ones.
 void hold_standard_descriptors() {
   for (int fd = 0; fd <= 2; ++fd) {
     if (::fcntl(fd, F_GETFD) < 0)
@@ -38,7 +38,7 @@ void hold_standard_descriptors() {
 
 struct Example {
   const char* command;
-  const char* lines;  // each begins with the command
+  const char* lines;  // example command lines, each beginning with the command
 };
 constexpr Example kExamples[] = {
     {"play",
@@ -180,7 +180,7 @@ int main(int argc, char** argv) {
   gaitpad::add_list(app, status);
   gaitpad::add_map(app, status);
   add_examples(app);
-  // Set last: commands added later would inherit it.
+  // Set the footer last: commands that are added later would inherit it.
   app.footer(
       "gaitpad help COMMAND says more. Exit status: 0 done, 1 failed, 2 wrong usage, 128 and the\n"
       "signal's number for work that Ctrl-C cut off.\n"
@@ -204,7 +204,8 @@ int main(int argc, char** argv) {
     } catch (const std::system_error&) {
       is_written = false;
     }
-  } catch (const std::system_error& error) {  // for example fmt::print on a full disk
+    // An exception of a command, for example by fmt::print on a full disk.
+  } catch (const std::system_error& error) {
     if (error.code() == std::errc::resource_unavailable_try_again) {
       gaitpad::warn(fmt::format("gaitpad: no thread can be started: {}\n", error.code().message()));
       return kFailed;

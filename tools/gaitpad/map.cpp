@@ -25,7 +25,7 @@ bool ask(MappingDialog& mapping, const PadSelector& selector, RunEnd& end) {
   StatusLine line(2);
   MissingPad missing(kMapCommand, selector);
   bool is_pad_told = false;
-  const char* told = nullptr;  // the prompt that was printed last
+  const char* told = nullptr;  // the prompt that was printed last; null: none
   std::size_t found = 0;
   while (!mapping.is_done() && !mapping.has_ended() && !end.is_reached()) {
     mapping.look(kMapWait);

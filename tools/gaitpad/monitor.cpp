@@ -37,7 +37,7 @@ std::string calibration_remark(const TraceDevice& device) {
                      name.empty() ? "without a name" : name);
 }
 
-// Rates while a stick moved, since the pad was plugged in.
+// Rates of new positions while a stick moved, since the pad was plugged in.
 ordered_json movement_json(const NewValueCount& new_values) {
   const auto rate = new_values.rate();
   if (!rate) return nullptr;
@@ -122,7 +122,8 @@ std::string movement_text(const NewValueCount& new_values) {
   return fmt::format("{:>5.0f} {:>3.0f} %", rate->new_value_hz, 100.0 * rate->repeats());
 }
 
-// Samples a second; pitch, yaw and roll while the pad lay still, and their noise.
+// The gyroscope's samples a second; its pitch, yaw and roll while the pad lay still, and their
+// noise.
 std::string gyro_text(const GyroMeter& gyro) {
   if (gyro.sample_rate_hz() == 0.0) return "";
   std::string text = fmt::format(", gyro {:.0f} Hz", gyro.sample_rate_hz());
@@ -210,7 +211,7 @@ class Display {
         print_json_line(
             pad_json(index, pad, stream, static_cast<double>(time_ns - start_ns_) / 1e9));
       } else {
-        constexpr std::size_t kWhole = 1000;  // one line for each pad
+        constexpr std::size_t kWhole = 1000;  // columns; wide enough for one line for each pad
         std::vector<std::string> lines;
         if (!std::exchange(has_header_, true)) add_lines(kHeader, kWhole, lines);
         add_lines(pad_text(index, pad, stream), kWhole, lines);
@@ -252,7 +253,7 @@ int run(const MonitorArguments& arguments) {
                     &display.line());
     }
     display.show(pads, **stream);
-    if (std::fflush(stdout) != 0) break;  // main reports it
+    if (std::fflush(stdout) != 0) break;  // main reports the failed write
   }
   display.finish(pads, **stream);
   missing.finish((*stream)->counts().plugged, display.line());

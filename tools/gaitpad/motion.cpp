@@ -63,7 +63,7 @@ ordered_json paper_json(const std::optional<Swing>& swing) {
   return {{"lift_frame", swing->lift}, {"peak_frame", swing->peak}, {"land_frame", swing->land}};
 }
 
-// The stride that the walk uses.
+// The stride that the walk uses, as JSON.
 ordered_json gait_json(const Result<GaitCycle>& cycle) {
   if (!cycle) return nullptr;
   const auto stick = own_stick(*cycle);
@@ -83,7 +83,7 @@ ordered_json motion_json(const Motion& motion, const Result<GaitCycle>& cycle) {
   out["frame_rate_hz"] = 1.0 / motion.frame_time_s;
   out["frames"] = motion.frames.size();
   out["joints"] = joint_names(motion);
-  // In a motion on the spot the feet have no flight.
+  // True if the motion walks on the spot: then the feet have no flight.
   const bool stays = !cycle && cycle.error().message.find("walks on the spot") != std::string::npos;
   for (const Side side : {kLeftSide, kRightSide}) {
     const char* name = kSideNames[side];
@@ -128,7 +128,7 @@ std::string stick_text(const GaitCycle& cycle) {
 
 std::string gait_text(const Result<GaitCycle>& cycle) {
   if (!cycle) return "none, " + cycle.error().message;
-  // + 0.0: a turn that rounds to 0 has no sign.
+  // Adding 0.0 turns -0 into 0, so that a turn that rounds to 0 has no sign.
   const double turn_deg = std::round(10.0 * cycle->turn_rad / kDegree) / 10.0 + 0.0;
   return fmt::format(
       "{:.1f} frames from frame {:.1f} on: {:.2f} s, steps {:.2f} m left and {:.2f} m right, "

@@ -15,9 +15,11 @@ namespace gaitpad {
 namespace {
 
 constexpr double kLeastSeconds = 0.001, kMostSeconds = 1e6;
-constexpr std::int64_t kPatienceNs = 2'500'000'000;  // opening a pad may take two seconds
+// Wait until a missing pad is reported; opening a pad may take two seconds.
+constexpr std::int64_t kPatienceNs = 2'500'000'000;
 
-// Leaves out drivers without a library: a recording is chosen by PAD.
+// The names of the drivers for --driver. A driver without its library is left out, as is the driver
+// of recordings, which are chosen by PAD.
 std::vector<std::string> driver_names() {
   std::vector<std::string> names;
   for (const DriverEntry& entry : drivers()) {
@@ -26,7 +28,8 @@ std::vector<std::string> driver_names() {
   return names;
 }
 
-// Asks the system, because another thread uses the drivers.
+// The names of the pads that the system knows. The drivers are not asked, because another thread
+// uses them.
 std::vector<std::string> pads_of_system() {
   std::vector<std::string> pads;
   for (const SystemNode& node : system_nodes("input")) {
@@ -128,7 +131,7 @@ void add_session_options(CLI::App& command, SessionSpec& spec, const std::string
                      "motion, FILE|NAME (.bvh, .amc, .toml); without it the built-in walk");
   add_pace_option(command, walk.pace);
   command.add_option("--character", walk.characters, "a build, FILE|NAME; once for each character")
-      ->allow_extra_args(false)  // the next word but one may be PAD
+      ->allow_extra_args(false)  // one value for each --character: the word after it may be PAD
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command
       .add_option("--style", walk.styles,

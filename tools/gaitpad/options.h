@@ -24,14 +24,16 @@ std::string config_problem();
 // --- the pad, and the time
 
 void add_driver_option(CLI::App& command, PadSelector& selector);
-void add_pad_options(CLI::App& command, PadSelector& selector);  // PAD and --driver
+void add_pad_options(CLI::App& command, PadSelector& selector);  // Adds PAD and --driver.
 // True if a certain pad is asked for, not just any.
 bool is_choosy(const PadSelector& selector);
 void add_seconds_option(CLI::App& command, double& seconds);
-void add_max_hours_option(CLI::App& command, std::optional<double>& hours);  // of a recording
-void add_user_styles_option(CLI::App& command, bool& user_styles);           // of a replay
+// Adds --max-hours, for commands that read recordings.
+void add_max_hours_option(CLI::App& command, std::optional<double>& hours);
+// Adds --user-styles, for commands that replay.
+void add_user_styles_option(CLI::App& command, bool& user_styles);
 
-// Reads --map and --calibration (empty: none), and the pad files of config/.
+// Reads the files of --map and --calibration (empty: none), and the pad files of config/.
 Result<PadFiles> pad_files(const std::string& map, const std::string& calibration);
 
 // Tells the user once that no pad has come, after some time or at the end of the command, and lists
@@ -55,17 +57,18 @@ class MissingPad {
 
 // --- a session, for play and replay
 
-// --pace own|adult, for all commands with --motion.
+// Adds --pace own|adult, for all commands with --motion.
 void add_pace_option(CLI::App& command, std::optional<Pace>& pace);
-// Also sets the folders of configuration. `default_rate` is for the help.
+// Adds the options of a session and sets the folders of configuration. `default_rate` is for the
+// help.
 void add_session_options(CLI::App& command, SessionSpec& spec, const std::string& default_rate);
 
 // --- optional parts of this build
 
-// Sentences that name the missing part and the option of CMake that builds it.
+// Sentences that name the missing part of the program and the option of CMake that builds it.
 std::string missing_window();
 std::string missing_bench();
-// Adds a command that fails with this sentence, whatever its options.
+// Adds a command that fails with this sentence, whatever its options are.
 void add_missing_command(CLI::App& app, int& status, const std::string& name,
                          const std::string& description, const std::string& sentence);
 

@@ -52,7 +52,7 @@ std::string bus_name(BusType bus) {
   return fmt::format("{:04x}", static_cast<unsigned>(bus));
 }
 
-// Usages of the application collections: `0001:0005`. Empty if the descriptor is not known yet.
+// The usages of the application collections: `0001:0005`. Empty if the descriptor is not known yet.
 std::vector<std::string> usages_of(const DeviceInfo& info) {
   std::vector<std::string> usages;
   const auto descriptor = parse_descriptor(info.descriptor);

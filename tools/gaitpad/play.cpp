@@ -26,13 +26,14 @@ namespace {
 using nlohmann::ordered_json;
 
 constexpr const char* kPlayCommand = "play";
-constexpr std::chrono::milliseconds kLook{50};  // between two looks at a session without a window
+// Time between two status lines of a session without a window.
+constexpr std::chrono::milliseconds kLook{50};
 
 struct PlayArguments {
   SessionSpec spec;
   WindowArguments window;
   double seconds = 0.0;
-  std::string report_times;  // file; empty: none
+  std::string report_times;  // path of the file for --report-times; empty: none
   bool no_window = false, no_rumble = false, json = false, takes_commands = false;
 };
 
@@ -128,7 +129,7 @@ void add_status(const LiveStatus& status, ordered_json& summary) {
   summary["streamed"] = status.streamed;
 }
 
-// 1 if the requested pad never came or a command was invalid.
+// The exit status: 1 if the requested pad never came or a command was invalid.
 int status_of(const PlayArguments& arguments, const LiveStatus& status, const RunSummary& run) {
   const bool is_alone = is_choosy(arguments.spec.pad.selector) && status.pads.plugged == 0;
   const std::int64_t wrong = run.bad_commands + status.pads.commands_left_out;
@@ -166,7 +167,7 @@ int run_without_window(const PlayArguments& arguments) {
   return status_of(arguments, status, *run);
 }
 
-// Pictures of a recording show its exact walk, independent of the clock.
+// True for pictures of a recording: they show its exact walk, independent of the clock.
 bool is_playback(const PlayArguments& arguments) {
   return makes_pictures(arguments.window) && is_recording(arguments.spec.pad.selector.pad);
 }
@@ -192,10 +193,11 @@ WindowOptions options_of_window(const PlayArguments& arguments, InputLines& inpu
   return options;
 }
 
-// Initialised before main(), after the libraries are loaded: start of the time to the first frame.
+// The program's start, from which the time to the first frame counts. Initialised before main(),
+// after the libraries are loaded.
 const std::int64_t kStarted_ns = now_ns();
 
-// The keys that are known for a playback in the window.
+// The summary of a playback in the window, with the keys that are known for it.
 ordered_json playback_json(const RunSummary& run, std::size_t walker) {
   return {{"ticks", run.ticks},
           {"rate_hz", run.rate_hz},

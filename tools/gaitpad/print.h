@@ -35,7 +35,7 @@ void print_table(const std::vector<TableRow>& table);
 void warn(std::string_view text);
 // Prints `gaitpad COMMAND: SENTENCE` on standard error and returns the exit status 1.
 int fail(std::string_view command, const std::string& sentence);
-// The same for each remark, without an exit status. Each sentence is made printable(), because it
+// Prints `gaitpad COMMAND: REMARK` for each remark. Each sentence is made printable(), because it
 // may quote names of devices and files. Clears `line` first.
 void print_remarks(std::string_view command, const std::vector<std::string>& remarks,
                    StatusLine* line = nullptr);
@@ -50,13 +50,13 @@ void print_summaries_json(const std::vector<nlohmann::ordered_json>& summaries);
 std::vector<std::string> button_names(const PadState& state);
 nlohmann::ordered_json axes_json(const PadState& state);
 
-// `SOURCE: 120 reports, 480 ticks ...`
+// Prints the session in one line: `SOURCE: 120 reports, 480 ticks ...`.
 void print_session(const std::string& source, const RunSummary& run);
-// Results of one character. The style in which it walked is printed only for replays.
+// Prints the results of one character. The style in which it walked is printed only for replays.
 enum class Way { shown, left_out };
 void print_character(const RunSummary& run, std::size_t walker, Way way);
 
-// Null if the pad does not report its battery.
+// The battery as JSON; null if the pad does not report it.
 nlohmann::ordered_json battery_json(const std::optional<Battery>& battery);
 
 }  // namespace gaitpad

@@ -15,7 +15,8 @@
 namespace gaitpad {
 namespace {
 
-constexpr std::chrono::milliseconds kRecordWait{20};  // longest sleep until the end is noticed
+// Longest sleep between two looks for the recording's end.
+constexpr std::chrono::milliseconds kRecordWait{20};
 
 struct RecordArguments {
   PadSelector selector;
@@ -24,7 +25,7 @@ struct RecordArguments {
   bool as_json = false;
 };
 
-// Result of the recording. The device is the first that came.
+// The result of the recording. The device is the first pad that came.
 struct Recorded {
   std::uint16_t device = kNoDevice;
   std::int64_t reports = 0, unplugged = 0;
@@ -112,7 +113,7 @@ int run(const RecordArguments& arguments) {
   const auto remarks = (*recording)->finish(0, std::max(recorded.last_ns, now_ns()));
   if (!remarks) return fail("record", remarks.error().message);
   print_remarks("record", *remarks);
-  if (recorded.device == kNoDevice) return 1;  // the remarks say so
+  if (recorded.device == kNoDevice) return 1;  // no pad came, as the remarks say
   print_result(arguments, recorded, **stream, (*stream)->counts().lost + (*recording)->lost());
   return 0;
 }

@@ -19,8 +19,10 @@
 namespace gaitpad {
 namespace {
 
-constexpr int kMaxCrowdFiles = 256;  // each opens three files
-constexpr double kLong_s = 5.0;      // a longer replay prints its speed
+// Most members of a crowd that get files; each opens three.
+constexpr int kMaxCrowdFiles = 256;
+// The speed of a replay is printed if the replay took longer than this.
+constexpr double kLong_s = 5.0;
 
 struct ReplayArguments {
   SessionSpec spec;

@@ -23,8 +23,10 @@
 namespace gaitpad {
 namespace {
 
-constexpr std::int64_t kBinding_ns = 5'000'000'000;  // longest wait for the kernel's driver
-constexpr std::int64_t kNear_ns = 2'000'000;         // it sleeps exactly within this time
+// Longest wait until the kernel's driver has begun.
+constexpr std::int64_t kBinding_ns = 5'000'000'000;
+// During the last 2 ms before an event the program only sleeps, so that it wakes on time.
+constexpr std::int64_t kNear_ns = 2'000'000;
 
 // Virtual devices with the recorded descriptors and ids.
 class UhidDevices {
@@ -69,7 +71,7 @@ class UhidDevices {
   std::vector<std::optional<UhidDevice>> devices_;
 };
 
-// False: the user ended it earlier.
+// Waits until that time. False: the user ended it earlier.
 bool wait_until(std::int64_t time_ns, RunEnd& end, UhidDevices* devices = nullptr) {
   while (!end.is_reached()) {
     const std::int64_t left_ns = time_ns - now_ns();
@@ -88,8 +90,8 @@ bool wait_until(std::int64_t time_ns, RunEnd& end, UhidDevices* devices = nullpt
 
 std::int64_t nanoseconds(double seconds) { return static_cast<std::int64_t>(seconds * 1e9); }
 
-// Returns the number of played reports. Waits at the end, so that readers of the device see the
-// last reports before it is removed.
+// Plays to uhid and returns the number of played reports. Waits at the end, so that readers of the
+// device see the last reports before it is removed.
 Result<std::int64_t> play_to_uhid(const Trace& trace, double delay_s, RunEnd& end) {
   UhidDevices devices(trace.devices);
   for (std::size_t i = 0; i < trace.devices.size(); ++i) {
@@ -103,7 +105,7 @@ Result<std::int64_t> play_to_uhid(const Trace& trace, double delay_s, RunEnd& en
   std::int64_t reports = 0;
   Report report;
   for (const TraceEvent& event : trace.events) {
-    if (event.device == kNoDevice) continue;  // a command to gaitpad
+    if (event.device == kNoDevice) continue;  // the event is a command to gaitpad, not a report
     const std::int64_t time_ns = (event.time_us - trace.events.front().time_us) * 1000;
     if (!wait_until(start_ns + time_ns, end, &devices)) break;
     copy_report(trace, event, report);
@@ -114,7 +116,7 @@ Result<std::int64_t> play_to_uhid(const Trace& trace, double delay_s, RunEnd& en
   return reports;
 }
 
-// Plays tick by tick, as `play --forward` does.
+// Plays to uinput, tick by tick as `play --forward` does.
 Result<std::int64_t> play_to_uinput(const SessionSpec& spec, Trace trace, double delay_s,
                                     RunEnd& end) {
   const int rate_hz = replay_rate_hz(trace, spec.rate_hz);

@@ -24,30 +24,31 @@ struct FiguresArguments {
   bool as_json = false;
 };
 
-struct CrowdCurve {  // of `bench --plot`
+struct CrowdCurve {  // a curve of `bench --plot`
   std::string name;
   unsigned colour = 0;
   bool is_dashed = false;
-  std::vector<std::pair<double, double>> points;  // characters, ns a character and tick
+  // Number of characters, and ns for a character in a tick.
+  std::vector<std::pair<double, double>> points;
 };
 
 struct WindowModule {
-  const char* version = nullptr;  // the program's
+  const char* version = nullptr;  // version of the program that the module was built with
   Result<WindowResult> (*run_window)(const WindowOptions& options) = nullptr;
   std::optional<Error> (*write_stick_picture)(const std::string& path, const std::string& heading,
                                               std::span<const StickPicture> sticks) = nullptr;
   std::optional<Error> (*write_comparison)(const std::string& path, const std::string& heading,
                                            std::span<const ComparedStick> sticks) = nullptr;
-  // Both curves of a joint in which `check` found a difference.
+  // Draws both curves of a joint in which `check` found a difference.
   std::optional<Error> (*draw_curves)(const JointCurves& curves, const std::string& title,
                                       const std::string& path) = nullptr;
   std::optional<Error> (*draw_crowd)(const std::vector<CrowdCurve>& curves,
                                      const std::string& processor,
                                      const std::string& path) = nullptr;
-  int (*run_figures)(const FiguresArguments& arguments) = nullptr;  // returns the exit status
+  int (*run_figures)(const FiguresArguments& arguments) = nullptr;  // Returns the exit status.
 };
 
-// Loaded at the first call. Error: the module is missing, damaged or of another version.
+// Loads the module at the first call. Error: the module is missing, damaged or of another version.
 Result<const WindowModule*> window_module();
 
 }  // namespace gaitpad

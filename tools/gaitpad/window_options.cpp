@@ -108,7 +108,7 @@ WindowOptions window_options(const WindowArguments& arguments, bool has_end) {
   options.calibration_folder = user_calibration_folder();
   if (const char* home = std::getenv("HOME"); home != nullptr && *home == '/')
     options.record_folder = std::string(home) + "/gaitpad";
-  // A video driver that the user chose for SDL is used.
+  // A video driver that the user has chosen for SDL is kept.
   const char* driver = std::getenv("SDL_VIDEODRIVER");
   options.is_hidden =
       makes_pictures(arguments) && has_end && (driver == nullptr || *driver == '\0');

@@ -18,7 +18,7 @@ struct WindowArguments {
   double scale = 0.0;
   bool is_clean = false;
 };
-// Returns the options that were added, for further rules.
+// Adds the options and returns them, for further rules.
 std::vector<CLI::Option*> add_window_options(CLI::App& command, WindowArguments& arguments);
 
 bool makes_pictures(const WindowArguments& arguments);

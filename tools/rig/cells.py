@@ -12,7 +12,7 @@ from support import slices
 
 
 def chosen(drivers_of, number):
-    """{kind: driver} of that slice: drawn at random until every driver occurs."""
+    """The driver of each kind in that slice: drawn at random until every driver occurs."""
     every, chance = {driver for drivers in drivers_of.values() for driver in drivers}, random.Random(number)
     while True:
         row = {kind: chance.choice(drivers) for kind, drivers in drivers_of.items()}
@@ -30,5 +30,5 @@ def case(name, is_chosen):
 
 
 def some(names, parts):
-    """One in `parts` of the list runs in this slice."""
+    """The entries of the list that run in this slice: one in `parts`."""
     return [case(name, slices.is_chosen(name, parts)) for name in names]

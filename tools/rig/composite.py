@@ -15,7 +15,7 @@ from support.usb_interfaces import KEYBOARD, MOUSE
 
 _GADGET = pathlib.Path("/sys/kernel/config/usb_gadget/composite")
 _MOUNT = "/run/rig/composite"
-_SETUP = 4  # FUNCTIONFS_SETUP
+_SETUP = 4  # the event FUNCTIONFS_SETUP
 _FULL_AND_HIGH_SPEED = 3
 _DESCRIPTORS, _STRINGS = 3, 2  # magic numbers of FunctionFS
 _KEYS = bytes.fromhex("05010906a1010507 19e029e715002501 7501950881020507 190029651500256575089506 8100c0")
@@ -29,7 +29,7 @@ def _descriptor(interface):
 
 
 def _usb_descriptors(interfaces, interval):
-    """And how many they are."""
+    """The descriptors of the interfaces, and their number."""
     parts = []
     for number, interface in enumerate(interfaces):
         parts.append(struct.pack("9B", 9, 4, number, 0, 1, *bytes.fromhex(interface), 0))
@@ -42,7 +42,7 @@ def _usb_descriptors(interfaces, interval):
 def _drivers_of_models(on):
     """hid-playstation and similar drivers drop a device that does not answer; without them hid-generic serves it."""
     models = ["hid_playstation", "hid_sony", "hid_nintendo", "hid_steam", "hid_logitech_dj", "hid_logitech_hidpp"]
-    file = pathlib.Path("/etc/modprobe.d/rig.conf")  # in this folder, because udevd notices its changes
+    file = pathlib.Path("/etc/modprobe.d/rig.conf")  # written to this folder, because udevd notices its changes
     if on:
         file.unlink()
     else:
@@ -90,7 +90,7 @@ class Composite(Nodes):
             _drivers_of_models(on=True)
 
     def _answer(self):
-        """Answers requests for report descriptors; stalls all others."""
+        """Answers requests for report descriptors; stalls all other requests."""
         while True:
             event = os.read(self._control, 12)
             kind, request, value, index, length = struct.unpack("<BBHHH4x", event)
@@ -101,7 +101,7 @@ class Composite(Nodes):
                 if data:
                     os.write(self._control, data[:length])
                 elif kind & 0x80:
-                    os.read(self._control, 0)  # against the direction: stalls
+                    os.read(self._control, 0)  # a transfer against the direction stalls
                 else:
                     os.read(self._control, length)
             except OSError:
@@ -109,8 +109,8 @@ class Composite(Nodes):
 
     @property
     def usb_path(self):
-        """Its folder in /sys, once it has interfaces."""
-        found = glob.glob(self.sysfs + "/usb*/*-1/*-1:1.0")  # pathlib's raises when a folder goes while it looks
+        """The device's folder in /sys, as soon as it has interfaces."""
+        found = glob.glob(self.sysfs + "/usb*/*-1/*-1:1.0")  # pathlib's glob raises when a folder vanishes
         return pathlib.Path(found[0]).parent if found else None
 
     def interface_of(self, node):

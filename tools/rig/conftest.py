@@ -28,7 +28,7 @@ PASSED, FAILED, SKIPPED = 0, 1, 77
 WORDS = {PASSED: "ok  ", FAILED: "FAIL", SKIPPED: "SKIP"}
 counts = dict.fromkeys(WORDS, 0)
 parts_s, parts_busy_s = collections.Counter(), collections.Counter()  # seconds by file
-shown = 0  # remarks so far
+shown = 0  # number of remarks shown so far
 
 
 def pytest_addoption(parser):
@@ -42,7 +42,7 @@ def pytest_configure(config):
     config.addinivalue_line("markers", "long: only by rig.sh --long")
     config.addinivalue_line("markers", "other_slice: not in this run's part of a table")
     if not config.option.collectonly:
-        config.pluginmanager.unregister(name="terminalreporter")  # the lines below stand in its place
+        config.pluginmanager.unregister(name="terminalreporter")  # the hooks below print instead of it
 
 
 def name_of(item):
@@ -75,7 +75,7 @@ def run_child(item, log):
     file = os.open(log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o644)
     os.dup2(file, 1)
     os.dup2(file, 2)
-    sys.stdout.reconfigure(line_buffering=True)  # keep the output of a test that is killed
+    sys.stdout.reconfigure(line_buffering=True)  # keeps the output of a test that is killed
     status = FAILED
     try:
         reports = runtestprotocol(item, log=False, nextitem=None)
@@ -100,13 +100,13 @@ def end_session(child):
 
 
 def busy_s():
-    """Seconds that the guest's processor has worked: what the emulator costs its host."""
+    """Seconds that the guest's processor has worked, which is what the emulator costs its host."""
     user, nice, system, _, _, irq, softirq = map(int, pathlib.Path("/proc/stat").read_text().split(maxsplit=8)[1:8])
     return (user + nice + system + irq + softirq) / os.sysconf("SC_CLK_TCK")
 
 
 def run_test(item, log):
-    """(status, seconds)"""
+    """The test's result as (status, seconds)."""
     start = time.monotonic()
     mark = item.get_closest_marker("timeout")
     limit_s = PATIENCE * (mark.args[0] if mark else 60)

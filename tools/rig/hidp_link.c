@@ -21,7 +21,7 @@ enum { kScanBoth = 3, kMaxPacket = 1024, kMaxDescriptor = 4096 };
 #define HCI_SET_SCAN _IOW('H', 221, int)
 #define HIDP_CONNECTION_ADD _IOW('H', 200, int)
 
-struct address {  // sockaddr_l2; numbers little-endian
+struct address {  // a sockaddr_l2; its numbers are little-endian
   uint16_t family, psm;
   uint8_t bdaddr[6];
   uint16_t cid;
@@ -97,7 +97,7 @@ static size_t bytes_of(const char* hex, uint8_t* bytes, size_t most) {
   return size;
 }
 
-// Returns false if the host dropped the link.
+// Prints a packet from the host. False: the host has dropped the link.
 static int print_packet(int channel, char letter) {
   uint8_t bytes[kMaxPacket];
   const ssize_t size = recv(channel, bytes, sizeof bytes, 0);
@@ -130,7 +130,7 @@ int main(int count, char** arguments) {
   snprintf(request.name, sizeof request.name, "%s", arguments[6]);
   const int hidp = socket(kBluetooth, SOCK_RAW, kHidp);
   if (hidp < 0 || ioctl(hidp, HIDP_CONNECTION_ADD, &request) != 0) die("HIDPCONNADD");
-  close(control.host);  // the kernel keeps them
+  close(control.host);  // the kernel keeps both channels open
   close(interrupt.host);
   printf("ready ");
   for (int i = 5; i >= 0; --i) printf("%02x%s", pad.bdaddr[i], i > 0 ? ":" : "\n");

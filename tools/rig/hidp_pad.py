@@ -18,7 +18,7 @@ GET_REPORT, SET_REPORT, DATA_FEATURE, DATA_INPUT, DATA_OUTPUT, DONE, REFUSED = 0
 
 @contextlib.contextmanager
 def bluetooth(pads=1):
-    """Virtual controllers for the PC and this number of pads."""
+    """Makes virtual controllers for the PC and this number of pads."""
     subprocess.run(["modprobe", "-a", *MODULES], check=True)
     with subprocess.Popen(["btvirt", f"-l{2 * pads}"], stdout=subprocess.DEVNULL) as virtual:
         try:
@@ -53,7 +53,7 @@ def _flash(address, size):
 
 
 def _switch_answer(number):
-    """number: 1 left Joy-Con, 2 right one, 3 Pro Controller."""
+    """The answer of a Switch pad. number: 1 left Joy-Con, 2 right one, 3 Pro Controller."""
     def answer(pad, out):
         if out[0] != 0x01 or len(out) < 11:
             return None
@@ -99,7 +99,7 @@ KINDS = UHID_KINDS | {
 
 
 class HidpPad(HidPad):
-    """The pad of that index, from 0, of those that bluetooth() has controllers for."""
+    """The pad with that index, from 0, for which bluetooth() has made a controller."""
 
     def __init__(self, kind, index=0):
         super().__init__(KINDS[kind])
@@ -107,7 +107,7 @@ class HidpPad(HidPad):
         assert self.kind.bus == BUS_BLUETOOTH
 
     def _open(self):
-        version = 0x0001 if self.kind.ids[0] == 0x057e else 0x0100  # as the pads of Nintendo and Sony say; SDL looks at it
+        version = 0x0001 if self.kind.ids[0] == 0x057e else 0x0100  # as Nintendo's and Sony's pads; SDL reads it
         ids = ["%04x" % number for number in (*self.kind.ids, version)]
         self._link = subprocess.Popen([LINK, str(2 * self.index), str(2 * self.index + 1), *ids, self.kind.name, self.kind.descriptor.hex()],
                                       stdin=subprocess.PIPE, stdout=subprocess.PIPE, bufsize=0)
@@ -119,7 +119,7 @@ class HidpPad(HidPad):
         self._rest = b""
 
     def _close(self):
-        """Both channels are closed, as when a pad is switched off."""
+        """Closes both channels, as when a pad is switched off."""
         self._link.stdin.close()
         self._link.wait(10)
         self._link.stdout.close()

@@ -58,7 +58,7 @@ std::string node_of(const char* subsystem, int vendor, int product) {
   return {};
 }
 
-// The generic pad's report begins with x and y.
+// Reads a node by poll() and read() alone. The generic pad's report begins with x and y.
 std::vector<Reading> read_bare_hidraw(int fd, std::size_t count) {
   std::vector<Reading> readings;
   readings.reserve(count);
@@ -94,7 +94,7 @@ std::vector<Reading> read_bare_evdev(int fd, std::size_t count) {
 
 int byte_of(float axis) { return static_cast<int>(std::lround((axis + 1.0f) * 127.5f)); }
 
-// Reads like the I/O thread.
+// Reads a driver's device as the I/O thread does.
 std::vector<Reading> read_device(Device& device, const PadLayout& layout, std::size_t count) {
   std::vector<Reading> readings;
   readings.reserve(count);
@@ -109,7 +109,7 @@ std::vector<Reading> read_device(Device& device, const PadLayout& layout, std::s
     while ((status = device.read(*report)) == Device::Status::report) {
       const std::int64_t time_ns = newest_ns = now_ns();
       if (!decode(layout, *report, state)) continue;
-      // Decoded y grows forward, the byte backwards.
+      // Decoded y grows forward, the report's byte backwards.
       readings.push_back(
           {time_ns, byte_of(state.axis[kLeftX]) + 256 * byte_of(-state.axis[kLeftY])});
     }

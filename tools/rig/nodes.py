@@ -15,14 +15,14 @@ FF_RUMBLE = 0x50
 ABS = {"X": 0, "Y": 1, "Z": 2, "RX": 3, "RY": 4, "RZ": 5, "THROTTLE": 6, "RUDDER": 7, "GAS": 9, "BRAKE": 10, "HAT0X": 16, "HAT0Y": 17}
 
 _EVENT = struct.Struct("llHHi")
-_EFFECT = struct.Struct("=HhHHHHH2xHH28x")  # ff_effect with ff_rumble_effect, 48 bytes
+_EFFECT = struct.Struct("=HhHHHHH2xHH28x")  # an ff_effect with ff_rumble_effect, 48 bytes
 
 Event = collections.namedtuple("Event", "ns type code value")
 AbsInfo = collections.namedtuple("AbsInfo", "value min max fuzz flat resolution")
 
 
 def ioctl_number(direction, letter, number, size):
-    """As _IOC of the kernel: direction 1 write, 2 read."""
+    """The number that the kernel's _IOC gives: direction 1 write, 2 read."""
     return direction << 30 | size << 16 | ord(letter) << 8 | number
 
 
@@ -40,7 +40,7 @@ class Node:
         os.close(self.fd)
 
     def read(self, seconds=2.0, size=4096):
-        """One read's bytes; empty after `seconds` without any; OSError when the pad is gone."""
+        """The bytes of one read; empty after `seconds` without any. OSError when the pad is gone."""
         if not select.select([self.fd], [], [], seconds)[0]:
             return b""
         try:
@@ -70,7 +70,7 @@ class HidrawNode(Node):
 
 
 class EventNode(Node):
-    """With the kernel's CLOCK_MONOTONIC stamps."""
+    """An event node whose events have stamps of CLOCK_MONOTONIC."""
 
     def __init__(self, path):
         super().__init__(path)
@@ -86,7 +86,7 @@ class EventNode(Node):
         return AbsInfo(*struct.unpack("6i", info))
 
     def keys(self):
-        """Codes of the keys that are down."""
+        """The codes of the pressed keys."""
         bits = int.from_bytes(fcntl.ioctl(self.fd, ioctl_number(2, "E", 0x18, 96), bytes(96)), "little")
         return {code for code in range(8 * 96) if bits >> code & 1}
 
@@ -104,7 +104,7 @@ class EventNode(Node):
             self.events(0.05)
 
     def rumble(self, strong, weak, length_ms):
-        """Uploads and plays FF_RUMBLE; the effect's number."""
+        """Uploads and plays FF_RUMBLE; returns the effect's number."""
         effect = _EFFECT.pack(FF_RUMBLE, -1, 0, 0, 0, length_ms, 0, strong, weak)
         effect = fcntl.ioctl(self.fd, ioctl_number(1, "E", 0x80, _EFFECT.size), effect)
         number = _EFFECT.unpack(effect)[1]

@@ -16,7 +16,7 @@ import sys
 import tempfile
 import time
 
-COMMANDS = ("replay", "decode")  # none of them opens a device
+COMMANDS = ("replay", "decode")  # commands that open no device
 GUEST = pathlib.Path("/results")
 LOOK_S = 0.02
 
@@ -27,7 +27,8 @@ def put(path, content):
 
 
 def ask(command, columns=(), seconds=60):
-    """With `columns` of frames.csv the replay writes its files, and the output is that table."""
+    """Runs the command outside. With `columns` of frames.csv the replay writes its files, and the output is that
+    table."""
     question = GUEST / ".outside" / f"{time.monotonic_ns()}.ask"
     answer = question.with_suffix(".answer")
     put(question, {"command": [str(word) for word in command], "columns": list(columns), "seconds": seconds})

@@ -28,7 +28,7 @@ static _Noreturn void* out_thread(void* unused) {
   struct packet out, reply;
   for (;;) {
     const ssize_t size = read(endpoints.out, out.bytes, sizeof out.bytes);
-    if (size <= 0) {  // unplugged
+    if (size <= 0) {  // the device was unplugged
       usleep(2000);
       continue;
     }
@@ -48,14 +48,15 @@ static size_t copy(uint8_t* to, const void* from, size_t size) {
   return size;
 }
 
-// The answer to an IN request: its size, 0 to stall.
+// Writes the answer to an IN request and returns its size; 0 stalls the request.
 static size_t control_reply(const struct usb_ctrlrequest* request, uint8_t* reply) {
   const uint8_t high = (uint8_t)(request->wValue >> 8), id = (uint8_t)request->wValue;
   const size_t descriptor_size = pad.kind.descriptor_size;
   if (descriptor_size == 0) return 0;
   if (request->bRequestType == 0x81 && request->bRequest == 6 && high == 0x22)
     return copy(reply, pad.kind.descriptor, descriptor_size);
-  if (request->bRequestType != 0xa1 || request->bRequest != 1) return 0;  // GET_REPORT
+  // Only GET_REPORT has an answer.
+  if (request->bRequestType != 0xa1 || request->bRequest != 1) return 0;
   pthread_mutex_lock(&pad_mutex);
   size_t size = 0;
   // Without report ids the requested id is 0.
@@ -75,7 +76,7 @@ static void answer_setup(const struct usb_ctrlrequest* request) {
     if (reply_size < size) size = reply_size;
     log_line("setup", now_ns(), size != 0 ? "" : "stalled ", (const uint8_t*)request,
              sizeof *request);
-    // Reading where the host expects an answer stalls the request.
+    // A transfer in the wrong direction stalls the request.
     if (size != 0 ? write(endpoints.control, data, size) < 0 : read(endpoints.control, data, 0) < 0)
       return;
   } else {
@@ -92,7 +93,7 @@ static _Noreturn void* control_thread(void* unused) {
   (void)unused;
   struct usb_functionfs_event event;
   for (;;) {
-    // A read that waits holds the lock which unplugging needs since Linux 6.12.
+    // Wait by poll(): a read that waits would hold the lock that unplugging needs since Linux 6.12.
     struct pollfd wait = {endpoints.control, POLLIN, 0};
     if (poll(&wait, 1, -1) != 1 || !(wait.revents & POLLIN)) {
       usleep(1000);
@@ -108,7 +109,7 @@ static _Noreturn void* control_thread(void* unused) {
   }
 }
 
-// Returns false for `quit`.
+// Carries out a command. False: it was `quit`.
 static bool obey(char* line) {
   char word[16] = "", whole[64];
   int used = 0;
@@ -118,7 +119,8 @@ static bool obey(char* line) {
     plug_gadget(port, word[0] == 'p');
     return true;
   }
-  snprintf(whole, sizeof whole, "done %.50s", line);  // the command may cut its text into words
+  // Copied first, because the command may cut its text into words.
+  snprintf(whole, sizeof whole, "done %.50s", line);
   pthread_mutex_lock(&pad_mutex);
   const bool done = sender_command(word, line + used);
   wake_sender();
@@ -134,7 +136,7 @@ static void obey_commands(const char* folder) {
   snprintf(path, sizeof path, "%s/fifo", folder);
   unlink(path);
   if (mkfifo(path, 0600) != 0) die(path);
-  const int fifo = open(path, O_RDWR);  // also open for writing, so it never ends
+  const int fifo = open(path, O_RDWR);  // opened for writing as well, so that it has no end of file
   note("ready", pad.kind.name);
   for (;;) {
     struct pollfd wait = {fifo, POLLIN, 0};
@@ -157,8 +159,8 @@ static void obey_commands(const char* folder) {
   }
 }
 
-// The kind with the trace's ids, or a plain HID pad; with the trace's descriptor if the class is
-// HID.
+// The kind with the trace's ids, or else a plain HID pad; if its class is HID, it gets the trace's
+// descriptor.
 static struct pad_kind trace_kind(void) {
   const struct pad_kind* known = find_kind_by_id(trace.vendor, trace.product);
   struct pad_kind kind = known ? *known : *find_kind("generic");
@@ -166,7 +168,7 @@ static struct pad_kind trace_kind(void) {
   kind.product = trace.name;
   kind.vendor = trace.vendor;
   kind.product_id = trace.product;
-  kind.stream_rate_hz = 0;  // the trace is the stream
+  kind.stream_rate_hz = 0;  // reports come from the trace alone
   if (kind.descriptor_size != 0) {
     kind.descriptor = trace.descriptor;
     kind.descriptor_size = trace.descriptor_size;
@@ -220,5 +222,5 @@ int main(int count, char** arguments) {
   obey_commands(folder);
   plug_gadget(port, false);
   flush_log();
-  _exit(0);  // threads may still be in the kernel
+  _exit(0);  // without the usual cleanup: threads may still be in the kernel
 }

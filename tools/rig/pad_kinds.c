@@ -5,7 +5,7 @@
 
 #include <string.h>
 
-// Pieces of descriptors.
+// Shorthands for items of descriptors.
 #define PAGE(id) 0x05, id
 #define USAGE(id) 0x09, id
 #define REPORT_ID(id) 0x85, id
@@ -16,12 +16,12 @@
 #define OUTPUT 0x91
 #define FEATURE 0xb1
 #define GAMEPAD PAGE(0x01), USAGE(0x05), 0xa1, 0x01
-#define STICKS USAGE(0x30), USAGE(0x31), USAGE(0x32), USAGE(0x35)  // X Y Z Rz
+#define STICKS USAGE(0x30), USAGE(0x31), USAGE(0x32), USAGE(0x35)  // usages X Y Z Rz
 #define VENDOR_PAGE 0x06, 0x00, 0xff
 #define ZERO_TO_255 0x15, 0, 0x26, 0xff, 0
 #define BUTTONS(count) \
   PAGE(0x09), 0x19, 1, 0x29, count, 0x15, 0, 0x25, 1, FIELDS(1, count, INPUT, 2)
-// 0..7 clockwise from the top in steps of 45 degrees; other values: released.
+// A hat: 0..7 clockwise from the top in steps of 45 degrees; other values mean released.
 #define HAT                                                                      \
   PAGE(0x01), USAGE(0x39), 0x15, 0, 0x25, 7, 0x35, 0, 0x46, 0x3b, 1, 0x65, 0x14, \
       FIELDS(4, 1, INPUT, 0x42), 0x65, 0, 0x45, 0
@@ -41,7 +41,7 @@ static size_t motion_calibration(uint8_t id, size_t size, uint8_t* reply) {
   return size;
 }
 
-// The MAC after the report id, least significant byte first.
+// The MAC address after the report id, least significant byte first.
 static size_t mac_report(const struct pad* pad, uint8_t id, size_t size, uint8_t* reply) {
   memset(reply, 0, size);
   reply[0] = id;
@@ -86,7 +86,7 @@ static size_t ds4_feature(const struct pad* pad, uint8_t id, uint8_t* reply) {
       return mac_report(pad, id, 16, reply);
     case 0x81:
       return mac_report(pad, id, 7, reply);
-    case 0xa3: {  // firmware
+    case 0xa3: {  // firmware's date and version
       memset(reply, 0, 49);
       reply[0] = id;
       memcpy(reply + 1, "Jan  1 2020\0\0\0\0\00012:00:00", 24);
@@ -124,7 +124,7 @@ static size_t dualsense_feature(const struct pad* pad, uint8_t id, uint8_t* repl
     case 0x20:
       memset(reply, 0, 64);
       reply[0] = id;
-      reply[24] = 0x14, reply[28] = 0x01;  // hardware, firmware
+      reply[24] = 0x14, reply[28] = 0x01;  // versions of hardware and firmware
       reply[44] = 0x24, reply[45] = 0x02;  // update 2.36: the newer vibration flag
       return 64;
     default:
@@ -177,9 +177,10 @@ static void switch_subcommand(struct pad* pad, const struct packet* out, struct 
     memcpy(r + 15, (const uint8_t[]){0x03, 0x48, 0x03, 0x02}, 4);
     memcpy(r + 19, pad->mac, 6);
     r[25] = r[26] = 1;
-  } else if (command == 0x03) {  // input mode: 30 streams, 3f reports changes in another format
+    // Sets the input mode: 30 streams, 3f reports changes in another format.
+  } else if (command == 0x03) {
     pad->awake = data[0] == 0x30;
-  } else if (command == 0x10) {  // read flash
+  } else if (command == 0x10) {  // reads flash memory
     const uint32_t address =
         data[0] | data[1] << 8 | (uint32_t)data[2] << 16 | (uint32_t)data[3] << 24;
     r[13] = 0x90;
@@ -194,7 +195,7 @@ static bool switch_answer(struct pad* pad, const struct packet* out, struct pack
   reply->size = 64;
   if (out->bytes[0] == 0x80) {
     const uint8_t command = out->bytes[1];
-    if (command == 0x04) pad->awake = true;  // stay on USB; no reply
+    if (command == 0x04) pad->awake = true;  // keeps using USB; has no reply
     if (command == 0x05) pad->awake = false;
     reply->bytes[0] = 0x81;
     reply->bytes[1] = command;

@@ -24,7 +24,7 @@ static double stream_rate_hz;
 static int64_t next_stream_ns, sent_count;
 static struct {
   int64_t next_ns, period_ns, left, number, late;
-  unsigned at;  // byte of the number's lowest eight bits
+  unsigned at;  // place of the number's lowest byte in the report
 } burst;
 static struct {
   bool running;
@@ -51,7 +51,8 @@ static bool burst_packet(int64_t now, struct packet* packet, int64_t* next_ns) {
   if (burst.left == 0 || !due(burst.next_ns, now, next_ns)) return false;
   if (now - burst.next_ns > burst.period_ns) {
     ++burst.late;
-    burst.next_ns = now;  // late reports are not made up for: a pad never exceeds its rate
+    // Reports that are late are not sent faster later: a pad never exceeds its rate.
+    burst.next_ns = now;
   }
   burst.next_ns += burst.period_ns;
   write_bits(&pad->state, (struct field){"", (uint16_t)(8 * burst.at), 32},
@@ -93,7 +94,7 @@ static bool state_packet(int64_t now, struct packet* packet, int64_t* next_ns) {
   return true;
 }
 
-// The packet to send now, or the time to check again. With pad_mutex.
+// The packet to send now; if there is none, the time to check again. With pad_mutex.
 static bool next_packet(struct packet* packet, int64_t* next_ns) {
   const int64_t now = now_ns();
   *next_ns = now + INT64_C(1000000000);
@@ -120,7 +121,7 @@ static void send_packet(const struct packet* packet) {
   } else {
     log_line("unsent", before_ns, number, packet->bytes, packet->size);
     if (errno == ESHUTDOWN || errno == ENODEV)
-      usleep(1000);  // unplugged: ep0's event is on its way
+      usleep(1000);  // the device was unplugged: the control endpoint's event comes soon
   }
 }
 
@@ -130,7 +131,7 @@ static _Noreturn void* in_thread(void* unused) {
   pthread_mutex_lock(&pad_mutex);
   for (;;) {
     int64_t next_ns;
-    if (stall && enabled) {  // the wrong direction halts the endpoint
+    if (stall && enabled) {  // a transfer in the wrong direction halts the endpoint
       stall = false;
       pthread_mutex_unlock(&pad_mutex);
       const ssize_t result = read(endpoint, packet.bytes, 1);

@@ -7,13 +7,14 @@
 #include "pad_kinds.h"
 #include "pad_trace.h"
 
-// Guards everything here and `pad`. "With pad_mutex": call the function with it locked.
+// Guards everything here and `pad`. Functions marked "with pad_mutex" have to be called with it
+// locked.
 extern pthread_mutex_t pad_mutex;
 
 // Starts the thread. `pad` is set up; nothing is sent before `sender_enable`. `trace` is what
 // `play` plays when it names no file, and is replaced by the file that it names.
 void start_sender(struct pad* pad, int in_endpoint, struct trace* trace);
-// The host has configured the device, or it is gone.
+// Tells the thread that the host has configured the device (on), or that it is gone (off).
 void sender_enable(bool on);
 // Queues a reply. With pad_mutex.
 void enqueue(const struct packet* packet);

@@ -37,7 +37,8 @@ bool read_trace(const char* path, struct trace* trace) {
   memset(trace, 0, sizeof *trace);
   snprintf(trace->path, sizeof trace->path, "%s", path);
   static char line[4 * kMaxDescriptor];
-  int device = -1, first = -1;  // in a file of several devices the first one is played
+  // The line's device, and the file's first one, whose reports are played.
+  int device = -1, first = -1;
   while (fgets(line, sizeof line, file)) {
     unsigned vendor, product;
     int used = 0;

@@ -48,7 +48,8 @@ static size_t put(uint8_t* to, const void* from, size_t size) {
   return size;
 }
 
-// Interface, HID class descriptor (not for vendor classes), IN and OUT endpoints of one speed.
+// Writes the descriptors for one speed: the interface, the HID class descriptor (not for vendor
+// classes), IN and OUT endpoints.
 static size_t put_speed(const struct pad_kind* kind, uint8_t* to, uint8_t interval) {
   const uint8_t* type = kind->interface_class;
   const uint8_t interface[] = {9, 4, 0, 0, 2, type[0], type[1], type[2], 0};
@@ -71,7 +72,7 @@ static size_t put_speed(const struct pad_kind* kind, uint8_t* to, uint8_t interv
 
 static void describe(const struct pad_kind* kind, int control) {
   const uint32_t count = kind->descriptor_size != 0 ? 4 : 3;
-  uint8_t high_interval = 4;  // high speed counts 2^(n-1) eighths of a millisecond
+  uint8_t high_interval = 4;  // at high speed the number n means 2^(n-1) eighths of a millisecond
   for (unsigned ms = kind->interval_ms; ms > 1; ms /= 2) ++high_interval;
   uint8_t text[256];
   uint32_t head[] = {FUNCTIONFS_DESCRIPTORS_MAGIC_V2, 0,
@@ -112,7 +113,7 @@ struct endpoints make_gadget(const struct pad_kind* kind, int index, const char*
 
   snprintf(mount_point, sizeof mount_point, "%s/ffs", folder);
   mkdir(mount_point, 0755);
-  umount2(mount_point, MNT_DETACH);  // of a daemon that was killed
+  umount2(mount_point, MNT_DETACH);  // unmounts what a killed daemon has left
   if (mount(strchr(function, '.') + 1, mount_point, "functionfs", 0, NULL) != 0) die("functionfs");
   struct endpoints endpoints;
   endpoints.control = open_endpoint(mount_point, "ep0");

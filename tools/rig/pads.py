@@ -9,14 +9,14 @@ import time
 
 ROOT = os.environ.get("RIG_ROOT") or os.path.realpath(os.path.join(os.path.dirname(__file__), "../.."))
 GADGET = os.path.join(ROOT, "build/rig/pad_gadget")
-LONG = os.environ.get("RIG_LONG") == "1"  # run with the long floods and counts
-PATIENCE = 6  # factor on time limits of a free machine: a busy host gives the guest a fraction of it
+LONG = os.environ.get("RIG_LONG") == "1"  # True for a run with the long floods and counts
+PATIENCE = 6  # factor on time limits of a free machine, because a busy host gives the guest a fraction of it
 KERNEL = tuple(int(part) for part in os.uname().release.split(".")[:2])
 
 KINDS = ("generic", "ds4", "dualsense", "switch", "xbox360", "xboxone")
-# How many hidraw and event nodes a bound driver makes.
+# the numbers of hidraw and event nodes that a bound driver makes
 NODES = {"generic": (1, 1), "ds4": (1, 3), "dualsense": (1, 3), "switch": (1, 2), "xbox360": (0, 1),
-         "xboxone": (0, 1), "gamecube": (1, 0)}  # no usage of the adapter's is the kernel's idea of a pad
+         "xboxone": (0, 1), "gamecube": (1, 0)}  # the kernel does not recognise the adapter's usages as a pad
 
 Sent = collections.namedtuple("Sent", "ns number data")  # ns: CLOCK_MONOTONIC before the write
 Packet = collections.namedtuple("Packet", "ns data")
@@ -62,7 +62,7 @@ class Nodes:
         inside = self.sysfs.removeprefix("/sys/") + "/"
         with contextlib.suppress(FileNotFoundError):  # no device of this class has been there yet
             for name in os.listdir(links):
-                with contextlib.suppress(FileNotFoundError):  # it is going away
+                with contextlib.suppress(FileNotFoundError):  # the device is being removed
                     if name.startswith(prefix) and inside in os.readlink(f"{links}/{name}"):
                         found.append(name)
         return sorted(found, key=lambda name: int(name[len(prefix):]))
@@ -162,7 +162,7 @@ class Pad(Nodes):
                 if len(line) > 3]
 
     def out_packets(self, since_ns=0):
-        """The packets that arrived at the OUT endpoint."""
+        """The packets that have arrived at the OUT endpoint."""
         return [Packet(int(line[1]), bytes.fromhex(line[2])) for line in self.lines("out")
                 if int(line[1]) >= since_ns]
 
@@ -202,24 +202,24 @@ class Pad(Nodes):
             settle()
 
     def set(self, **fields):
-        """lx ly rx ry lt rt hat buttons a b x y, in the device's own units."""
+        """Sets fields of the state in the device's own units: lx ly rx ry lt rt hat buttons a b x y."""
         self._done("set " + " ".join(f"{name}={int(value)}" for name, value in fields.items()))
 
     def move(self, **fields):
-        """Moves like a thumb, in about 60 ms: `ly=(from, to)`."""
+        """Moves a stick like a thumb, in about 60 ms: `ly=(from, to)`."""
         for part in (1 / 3, 2 / 3, 1.0):
             self.set(**{name: round(start + (end - start) * part) for name, (start, end) in fields.items()})
 
     def report(self, data):
-        """The whole state; counters excepted it is sent as it is."""
+        """Sends the whole state; except for counters it is sent unchanged."""
         self._done("report " + bytes(data).hex())
 
     def raw(self, data):
-        """One packet of any length and content."""
+        """Sends one packet of any length and content."""
         self._done("raw " + bytes(data).hex())
 
     def stream(self, rate_hz):
-        """0: a report at each change only."""
+        """Sets the rate of reports; 0: a report at each change only."""
         self._done(f"stream {rate_hz}")
 
     def silence(self, on=True):
@@ -229,36 +229,36 @@ class Pad(Nodes):
         self._done("stall")
 
     def burst(self, rate_hz, seconds, at):
-        """Numbered reports, the 32-bit number little-endian from byte `at`; returns at once."""
+        """Sends numbered reports, the 32-bit number little-endian from byte `at`; returns at once."""
         self._bursts_ended = len(self.lines("burst_end"))
         self._done(f"burst {rate_hz} {seconds} {at}")
 
     def wait_burst(self, seconds=120.0):
-        """(reports sent, how many were more than a period late) of the last burst."""
+        """Waits for the last burst to end; returns (reports sent, number of those more than a period late)."""
         end = wait_for(lambda: self.lines("burst_end")[self._bursts_ended:], seconds, "the burst's end")[-1]
         return int(end[2]), int(end[3])
 
     def play(self, trace=""):
-        """A recording's reports at its own times; returns at once. Empty: that of the constructor."""
+        """Plays a recording's reports at its own times; returns at once. Empty: the constructor's recording."""
         self._done(f"play {trace}")
 
     def wait_play(self, seconds=120.0):
         wait_for(lambda: self.lines("play_end"), seconds, "the trace's end")
 
     def flash(self, address, data):
-        """Writes into a Switch pad's flash, 0x8010..0x803f (the user's calibration)."""
+        """Writes into a Switch pad's flash memory, 0x8010..0x803f (the user's calibration)."""
         self._done(f"flash {address:x} {bytes(data).hex()}")
 
     # --- where it is
 
     @property
     def usb(self):
-        """Its /dev/bus/usb node."""
+        """Path of the pad's /dev/bus/usb node."""
         for folder in glob.glob(self.sysfs + "/usb*/[0-9]*-1"):
             try:
                 with open(folder + "/busnum") as bus, open(folder + "/devnum") as device:
                     return f"/dev/bus/usb/{int(bus.read()):03}/{int(device.read()):03}"
-            except OSError:  # it is going away
+            except OSError:  # the device is being removed
                 pass
         return None
 

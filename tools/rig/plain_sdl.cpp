@@ -16,7 +16,7 @@ long long now_ns() {
   return now.tv_sec * 1'000'000'000LL + now.tv_nsec;
 }
 
-// 0..255 as SDL scales an axis without dead zone.
+// An axis's value as a byte 0..255, as SDL scales an axis without dead zone.
 int byte_of(int value) { return (value + 32768) / 257; }
 
 SDL_Joystick* opened(unsigned vendor, unsigned product) {
@@ -42,7 +42,7 @@ int main(int argc, char** argv) {
   std::fflush(stdout);
   std::vector<std::pair<long long, int>> readings;
   SDL_Event event;
-  // Two axes of one report are two events: the second one completes it.
+  // The two axes of one report come as two events: the second one completes the report.
   while (readings.size() < count && SDL_WaitEventTimeout(&event, 1000) == 1) {
     if (event.type != SDL_JOYAXISMOTION) continue;
     const int x = byte_of(SDL_JoystickGetAxis(pad, 0)), y = byte_of(SDL_JoystickGetAxis(pad, 1));

@@ -43,8 +43,8 @@ def run(*command, seconds=60, columns=()):
 
 
 def record(*arguments, reports=1, user=()):
-    """The lines of a `gaitpad record` that ran, by the command `user` as another user, until it had that number of
-    reports: a busy host may take long to open the pad."""
+    """The lines of a `gaitpad record` by the command `user` as another user; it runs until it has that number of
+    reports, because a busy host may take long to open the pad."""
     path = "/tmp/recorded.hid"
 
     def lines():
@@ -68,7 +68,7 @@ def record(*arguments, reports=1, user=()):
 
 
 class Terminal(terminal.Terminal):
-    """With the guest's patience."""
+    """A terminal with the guest's patience."""
 
     def wait_for(self, pattern, seconds=20.0, since=0):
         return super().wait_for(pattern, PATIENCE * seconds, since)
@@ -83,14 +83,14 @@ class Session:
 
     def __init__(self, *arguments, name="session", awaited=1):
         self.path = f"/results/{name}.hid"
-        self.awaited = awaited  # pads to wait for
+        self.awaited = awaited  # number of pads to wait for
         self._read, self._lines = 0, collections.defaultdict(list)
         self._command = [PROGRAM, "play", *map(str, arguments), "--no-window", "--json", "--record", self.path]
 
     def __enter__(self):
         print("$", *self._command, flush=True)
         with contextlib.suppress(FileNotFoundError):
-            os.unlink(self.path)  # an earlier session's file, which lines() would mistake for this one's
+            os.unlink(self.path)  # an earlier session's file, which lines() would read instead of this session's
         self.process = subprocess.Popen(self._command, stdout=subprocess.PIPE, text=True)
         try:
             wait_for(lambda: self.lines("V:") and self.plugged() >= self.awaited or self.process.poll() is not None, 60,
@@ -115,7 +115,7 @@ class Session:
         assert self.summary["pose_hash"] == self.replayed["pose_hash"], "the replay differs from the session"
 
     def lines(self, start=""):
-        """Lines of the recording so far, all or those that begin with these two characters."""
+        """The lines of the recording so far: all, or those that begin with these two characters."""
         path = self.path if os.path.exists(self.path) else self.path + ".part"
         with contextlib.suppress(FileNotFoundError), open(path, "rb") as file:
             file.seek(self._read)  # read only new lines, because a test asks many times a second
@@ -143,8 +143,7 @@ class Session:
             wait_for(lambda: len(self.lines("E:")) > before, 10, f"a report of {state}")
 
     def wait_quiet(self, seconds=0.5):
-        """Waits until no report has come for that time, so that everything sent is in the recording even on a busy
-        host."""
+        """Waits until no report has come for that time, so that the recording holds all reports even on a busy host."""
         before = -1
         while before != (before := len(self.lines("E:"))):
             time.sleep(seconds)
@@ -156,22 +155,22 @@ class Session:
         wait_for(lambda: self.unplugged() >= count, seconds, f"unplugging number {count} in the recording")
 
     def handles(self):
-        """Open file descriptors of the program."""
+        """The program's number of open file descriptors."""
         return len(os.listdir(f"/proc/{self.process.pid}/fd"))
 
     def decoded(self):
-        """Every report of the recording as `gaitpad decode` gives it."""
+        """Every report of the recording as `gaitpad decode` prints it."""
         rows = map(json.loads, run("gaitpad", "decode", self.path, "--json", seconds=300).stdout.splitlines())
         return [row for row in rows if "axes" in row]
 
     def frames(self):
-        """The replay's ticks, of frames.csv: a list of dictionaries of texts."""
+        """The replay's ticks from frames.csv: a list of dictionaries of texts."""
         text = run("gaitpad", "replay", self.path, columns=("stage", "stick_x", "stick_y"), seconds=300).stdout
         return list(csv.DictReader(text.splitlines()))
 
 
 def tick_times_ns(lines):
-    """A function from a tick's number to its due time by CLOCK_MONOTONIC."""
+    """A function that returns the due time of a tick by CLOCK_MONOTONIC."""
     rate_hz, starts = 240, []
     for line in lines:
         if found := re.match(r"V: \d rate_hz=(\d+)", line):

@@ -15,19 +15,19 @@ from session import IDS, PROGRAM, Session, Terminal, record, remark
 from support.hands import Hand
 
 RATE_HZ = 100
-COUNT = 1 / 127.5  # of an 8-bit axis, raw
-FIRST_BYTE = {"generic": 0, "dualsense": 1}  # of lx ly rx ry lt rt
+COUNT = 1 / 127.5  # a count of an 8-bit axis, raw
+FIRST_BYTE = {"generic": 0, "dualsense": 1}  # first byte of lx ly rx ry lt rt
 
 # In counts: where the sticks rest, how far they go; the noise is one count to either side.
 CENTRES = {"left": (138, 120), "right": (121, 134)}
 REACHES = {"left": 108, "right": 100}
 # From the hand's (right, forward) to counts (y grows towards the player).
 AS_IT_SHOULD_BE = lambda x, y: (x, -y)
-TURNED = lambda x, y: (-y, -x)  # a quarter to the left: right goes forward, forward to the left
+TURNED = lambda x, y: (-y, -x)  # a quarter turn to the left: right becomes forward, forward becomes left
 
 
 class PadHand(Hand):
-    """At a virtual pad."""
+    """A hand at a virtual pad."""
 
     rate_hz = RATE_HZ
     release_s, turn_s, after_turns_s, push_s, trigger_s = (0.15, 0.8), 1.2, 0.3, (0.5, 0.4), (0.5, 0.4)
@@ -36,7 +36,7 @@ class PadHand(Hand):
         super().__init__()
         self.pad, self.mounted = pad, mounted
         self.random = random.Random(1)
-        pad.set(a=0)  # a report of a pad at rest
+        pad.set(a=0)  # sends a report of the pad at rest
         self.base = bytearray(wait_for(pad.sent, 5, "the pad's report")[-1].data)
 
     def counts(self, stick):
@@ -50,7 +50,7 @@ class PadHand(Hand):
         return self.base
 
     def do(self):
-        """The pad plays it."""
+        """The pad plays the movement."""
         path = tempfile.mktemp(suffix=".hid")
         with open(path, "w") as file:
             file.writelines(self.lines)
@@ -64,7 +64,7 @@ def calibrate(kind, driver):
 
 
 def guide_through(pad, driver, mounted):
-    """All steps, with an unplugging after three releases."""
+    """Does all steps, with an unplugging after three releases."""
     with calibrate(pad.kind, driver) as terminal:
         terminal.wait_for("Step 1 of 7: rest", 30)
         if driver == "evdev":
@@ -73,7 +73,7 @@ def guide_through(pad, driver, mounted):
         hand.hold(0.5)
         hand.releases(0, 3)
         hand.do()
-        terminal.wait_for("3 of 10 releases", 10)  # the left one rests so far off that more are asked
+        terminal.wait_for("3 of 10 releases", 10)  # the left stick rests so far off that more releases are asked for
         pad.unplug()
         terminal.wait_for("UNPLUGGED", 10)
         pad.plug()
@@ -109,7 +109,8 @@ def files():
 
 
 def check_axis(axis, centre, reach, what):
-    """`centre`, `reach`: raw. The noise has a sigma of 0.71 counts and moves the rim by one."""
+    """Checks an axis; `centre` and `reach` are raw. The noise has a sigma of 0.71 counts and moves the rim by one
+    count."""
     assert abs(axis["centre"] - centre) < COUNT, (what, axis, centre)
     assert abs(axis["min"] - (centre - reach)) < 1.5 * COUNT, (what, axis, centre - reach)
     assert abs(axis["max"] - (centre + reach)) < 1.5 * COUNT, (what, axis, centre + reach)

@@ -24,10 +24,10 @@ from test_matrix import NAMES, VALUES, expected_stick
 
 # A session with sanitizers takes most of the guest's one core.
 TIMES = 50 if LONG else 2 if HAS_SANITIZERS else 5
-OPENINGS = 50 if LONG else 2  # where nothing changes from one to the next
+OPENINGS = 50 if LONG else 2  # number of openings for tests in which they do not differ
 NOBODY = 65534
-NEUTRAL_S = 1.0 if HAS_SANITIZERS else 0.15  # median, on USB
-OVER_BARE_S = 0.05  # where the host holds the guest back: behind a bare poll() for the same unplugging
+NEUTRAL_S = 1.0 if HAS_SANITIZERS else 0.15  # limit of the median until the stick is neutral, on USB
+OVER_BARE_S = 0.05  # allowed after a bare poll() that sees the same, for a slow host
 RULES = "/etc/udev/rules.d/60-gaitpad.rules"
 
 
@@ -38,14 +38,14 @@ def push_forward(pad):
 
 
 def neutral_in_time(frames, ticks, seconds=0.1):
-    """After each of these ticks the stick is neutral within that number of seconds."""
+    """Checks that after each of these ticks the stick is neutral within that number of seconds."""
     for tick in ticks:
         after = frames[min(len(frames) - 1, tick + round(seconds / TICK_S) + 1)]
         assert float(after["stick_x"]) == float(after["stick_y"]) == 0.0, (tick, after["stick_y"])
 
 
 class BareWatch:
-    """Measures in parallel when the pad is unplugged, by poll() on its usbfs node; ns of CLOCK_MONOTONIC."""
+    """Measures when the pad is unplugged, in parallel, by poll() on its usbfs node; ns of CLOCK_MONOTONIC."""
 
     def __init__(self, pad):
         self._fd = os.open(pad.usb, os.O_RDWR | os.O_CLOEXEC)
@@ -86,13 +86,13 @@ def test_unplugged_while_walking_and_plugged_in_again(case):
             session.wait_plugged(turn + 2)
         pad.unplug()
         session.wait_unplugged(times + 1)
-        time.sleep(2.0)  # it finishes its step and stands
+        time.sleep(2.0)  # the walk finishes its step and stands
         assert session.handles() <= handles, f"{session.handles()} handles, {handles} at first"
         unplugged_ns = [int(line[1]) for line in pad.lines("unplugging")]
     assert session.summary["unplugged"] == times + 1
     frames = session.frames()
     removals = ticks_of(session.lines(), lambda line: line.startswith("H:") and "remove" in line)
-    neutral_in_time(frames, removals, 0.0)  # by the tick that learns of it
+    neutral_in_time(frames, removals, 0.0)  # at the tick that learns of it
     time_ns = tick_times_ns(session.lines())
     took_s = sorted((time_ns(tick) - ns) / 1e9 for tick, ns in zip(removals, unplugged_ns))
     assert len(took_s) == times + 1 and took_s[0] > 0, took_s
@@ -141,7 +141,7 @@ def test_a_pad_is_not_taken_from_the_kernel_unasked():
 
 @pytest.mark.timeout(120)
 def test_looking_at_pads_grabs_no_node(tmp_path):
-    """Another program that reads the node would miss what comes meanwhile."""
+    """Another program that reads the node must not miss what comes meanwhile."""
     calls = tmp_path / "calls"
     with Pad("xbox360") as pad:
         for command in (["doctor"], ["pads"]):
@@ -173,7 +173,7 @@ def test_two_equal_pads_are_kept_apart():
             session.wait_unplugged(2 * turn + 1)
             second.unplug()
             session.wait_unplugged(2 * turn + 2)
-            second.plug()  # in the other order: still their own numbers
+            second.plug()  # plugged in the other order, the pads still send their own numbers
             session.wait_plugged(3 + 2 * turn)
             first.plug()
             session.wait_plugged(4 + 2 * turn)
@@ -197,10 +197,10 @@ def numbers_of(session, at):
 @pytest.mark.timeout(400)
 @pytest.mark.parametrize("driver", ["hidraw", "usb"])
 def test_flood_of_four_pads_with_a_paused_reader(driver):
-    """Each report carries its number: every gap is seen, and what came last is right."""
+    """Each report carries its number, so every gap is seen, and the newest report is right."""
     # Slow enough for a busy host: a stopped program leaves its time to the pads, which must not send faster by it.
     rate_hz, seconds = (1000, 60) if LONG and not HAS_SANITIZERS else (125, 8)
-    at = 8  # the vendor bytes of the generic pad
+    at = 8  # place of the vendor bytes of the generic pad
     with four_pads() as pads_, Session("1209:0001", "--driver", driver, "--no-rumble", name=f"flood-{driver}",
                                                awaited=1) as session:
         wait_for(lambda: session.plugged() >= 4, 60, "four pads")
@@ -237,7 +237,7 @@ def test_the_last_state_is_right_after_a_burst_with_a_stopped_reader(driver):
         for turn in range(TIMES if LONG else 2):
             time.sleep(0.3)
             ends = len(pad.lines("burst_end"))
-            pad.burst(rate_hz, seconds, at=0)  # the sticks show the number
+            pad.burst(rate_hz, seconds, at=0)  # the sticks show the report's number
             time.sleep(0.5)
             session.process.send_signal(signal.SIGSTOP)
             time.sleep(seconds)
@@ -311,7 +311,7 @@ def test_a_stalled_endpoint_recovers(driver):
 
 @pytest.mark.timeout(200)
 def test_odd_packets_on_usb_change_nothing():
-    """Short, longer than the descriptor says, of an unknown id."""
+    """Packets that are short, longer than the descriptor says, or of an unknown id."""
     with Pad("dualsense") as pad, Session(IDS["dualsense"], "--driver", "usb", name="odd") as session:
         pad.stream(0)
         pad.set(lx=200)
@@ -354,7 +354,7 @@ def test_no_permission_and_the_rule():
             assert len(rows) == 2 and all(row["usable"] for row in rows), rows
         record(user=[*as_user, "--groups", group])
         pad.unplug()
-        pad.plug()  # the rule also applies to the next node
+        pad.plug()  # the rule applies to the next node as well
         assert [row["usable"] for row in listed("--groups", group) if row["path"] == pad.hidraw] == [True]
     remark(f"no permission: {OPENINGS} times said, after the rule {OPENINGS} times opened by an ordinary user of group input")
 
@@ -366,7 +366,7 @@ def tagged(node):
 @pytest.mark.timeout(120)
 @pytest.mark.parametrize("name", ["SIGINT", "SIGTERM", "SIGKILL", "SIGSEGV"])
 def test_the_kernel_gets_its_pad_back(name):
-    """The pad returns to its kernel driver after any end of the program."""
+    """The pad returns to its kernel driver, however the program ends."""
     with Pad("generic") as pad:
         for _ in range(TIMES if LONG and name == "SIGKILL" else 2):
             play = subprocess.Popen([PROGRAM, "play", IDS["generic"], "--driver", "usb", "--no-window"],
@@ -378,7 +378,7 @@ def test_the_kernel_gets_its_pad_back(name):
 
 
 def kill_all():
-    """SIGKILL to the program and to its watcher, which has the same name."""
+    """Sends SIGKILL to the program and to its watcher, which has the same name."""
     for folder in glob.glob("/proc/[0-9]*"):
         with contextlib.suppress(OSError), open(folder + "/comm") as file:
             if file.read().strip() == "gaitpad":

@@ -38,7 +38,8 @@ outer = 0.9
 
 
 def calibrated(lx, ly):
-    """By the rules of config/README.md: each axis from its centre, then the round zone; y forward."""
+    """The calibrated stick by the rules of config/README.md: each axis from its centre, then the round zone; y
+    forward."""
     x, y = lx / 127.5 - 1 - 0.1, -(ly / 127.5 - 1)
     x = x / (0.9 - 0.1 if x > 0 else 0.1 + 0.9)
     length = math.hypot(x, y)
@@ -47,7 +48,7 @@ def calibrated(lx, ly):
 
 
 class SdlPad:
-    """SDL's game controller of that name."""
+    """SDL's game controller with that name."""
     AXES = {"left_x": 0, "left_y": 1, "right_x": 2, "right_y": 3, "left_trigger": 4, "right_trigger": 5}
     BUTTONS = ("a", "b", "x", "y")
 
@@ -58,7 +59,7 @@ class SdlPad:
         self.sdl.SDL_GameControllerGetAxis.restype = ctypes.c_int16
         self.sdl.SDL_SetHint(b"SDL_JOYSTICK_ALLOW_BACKGROUND_EVENTS", b"1")
         self.sdl.SDL_SetHint(b"SDL_JOYSTICK_HIDAPI", b"0")
-        assert self.sdl.SDL_Init(0x2000) == 0  # SDL_INIT_GAMECONTROLLER
+        assert self.sdl.SDL_Init(0x2000) == 0  # the flag SDL_INIT_GAMECONTROLLER
         names = [self.sdl.SDL_JoystickNameForIndex(i) for i in range(self.sdl.SDL_NumJoysticks())]
         assert names.count(wanted) == 1, names
         index = names.index(wanted)
@@ -86,7 +87,7 @@ class SdlPad:
 
 
 def virtual_pad():
-    """The event nodes of the pad that gaitpad makes."""
+    """The event nodes of the pad that gaitpad has made."""
     return Nodes("/sys/devices/virtual/input").joystick
 
 
@@ -135,7 +136,7 @@ def test_gaitpad_does_not_read_its_own_output():
 
 
 class Forward:
-    """`gaitpad forward` while the block lasts; `remarks` afterwards."""
+    """Runs `gaitpad forward` while the block lasts; `remarks` are known afterwards."""
 
     def __init__(self, *arguments):
         self._command = [PROGRAM, "forward", *map(str, arguments)]
@@ -164,7 +165,7 @@ class Forward:
 
 
 def ids_of(node):
-    """bus, vendor, product, version"""
+    """The ids of a node: bus, vendor, product, version."""
     return struct.unpack("4H", fcntl.ioctl(node.fd, ioctl_number(2, "E", 0x02, 8), bytes(8)))
 
 
@@ -173,7 +174,7 @@ def play_effect(node, number, times):
 
 
 def motors(pad, since_ns):
-    """(strong, weak) of each packet of a DualSense over Bluetooth."""
+    """The strengths (strong, weak) in each packet of a DualSense over Bluetooth."""
     return [(packet.data[6], packet.data[5]) for packet in pad.out_packets(since_ns) if packet.data[0] == 0x31]
 
 
@@ -197,7 +198,7 @@ def test_the_forwarded_pad_stands_in_for_the_real_one(tmp_path):
             with EventNode(pad.joystick) as real:
                 assert (node.name(), ids_of(node)) == (real.name(), ids_of(real))
                 with pytest.raises(OSError) as refused:
-                    fcntl.ioctl(real.fd, ioctl_number(1, "E", 0x90, 4), 1)  # EVIOCGRAB
+                    fcntl.ioctl(real.fd, ioctl_number(1, "E", 0x90, 4), 1)  # the request EVIOCGRAB
                 assert refused.value.errno == errno.EBUSY
                 assert_calibrated(pad, node, CORNERS)
                 pad.set(a=1, rt=200)
@@ -297,7 +298,7 @@ FORWARD_ATTEMPTS = 6
 
 
 def forwarded_block(pad, calibration):
-    """[latency in us] of one block through the virtual pad: the n-th of its packets is the n-th report."""
+    """The latencies in us of one block through the virtual pad: its n-th packet is the n-th report."""
     with Forward(IDS["generic"], "--as", "xbox360", "--calibration", calibration):
         before = len(pad.sent())
         pad.set(lx=100, ly=100)
@@ -336,7 +337,7 @@ def test_forwarding_adds_little_to_the_bare_node(tmp_path):
 
 
 def play_into(target, trace, reader):
-    """reader(wait) beside `replay --to`; its output."""
+    """Runs reader(wait) beside `replay --to` and returns its output."""
     player = subprocess.Popen([PROGRAM, "replay", trace, "--to", target, "--delay", "3"], stdout=subprocess.PIPE, text=True)
     try:
         result = reader()
@@ -370,7 +371,7 @@ def test_a_recording_comes_out_of_hidraw_as_it_was(tmp_path):
     seen = play_into("uhid", trace, read)
     assert [data for _, data in seen] == [data for _, data in recorded]
     late_s = [t - sent for (t, _), (sent, _) in zip(seen, recorded)]
-    late_ms = sorted((late - min(late_s)) * 1000 for late in late_s)  # behind the most punctual one
+    late_ms = sorted((late - min(late_s)) * 1000 for late in late_s)  # milliseconds after the most punctual report
     assert late_ms[len(late_ms) // 2] < 20, late_ms
     remark(f"replay --to uhid: {len(seen)} reports exact, median {late_ms[len(late_ms) // 2]:.1f} ms behind their times")
 

@@ -17,7 +17,7 @@ from uhid_pad import with_checksum
 
 KINDS = ("dualsense_bt", "ds4_bt", "xbox_bt")
 ALL = [f"{kind}-{driver}" for kind in KINDS for driver in ("hidraw", "evdev", "sdl")]
-CHOSEN = ALL[slices.NUMBER % len(ALL)]  # in every run a link is lost once
+CHOSEN = ALL[slices.NUMBER % len(ALL)]  # the pad that loses its link in this run
 # Seconds until a lost link is noticed. On USB the kernel reports a loss at once; here it closes the L2CAP channels
 # first.
 MOST_LOST_S = 3.0
@@ -33,7 +33,8 @@ def send(pad, state):
 
 
 def lose_and_find(pad, session, forward, turns):
-    """The link is lost while the stick is pushed forward, and comes back; seconds until the session noticed it."""
+    """Loses the link while the stick is pushed forward, and restores it; returns the seconds until the session noticed
+    it."""
     noticed = []
     for turn in range(turns):
         pad.set(**forward)
@@ -90,7 +91,7 @@ def switch_stick(driver, value):
     return value / 2047.5 - 1 if driver == "hidraw" else max(-1.0, min(1.0, (value - 2048) / 1536))
 
 
-NINTENDO_NAMES = {"a": "b", "b": "a", "x": "y", "y": "x"}  # printed on the pad: SDL's, by position
+NINTENDO_NAMES = {"a": "b", "b": "a", "x": "y", "y": "x"}  # names printed on the pad: SDL's, by position
 
 
 @pytest.mark.timeout(120)

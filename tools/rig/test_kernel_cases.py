@@ -16,7 +16,7 @@ from test_matrix import STICKS, directions
 from uhid_pad import KINDS, UhidPad
 
 TOLERANCE = 1e-3
-HATS = {0: (0, -1), 2: (1, 0), 4: (0, 1), 6: (-1, 0)}  # HAT0X, HAT0Y
+HATS = {0: (0, -1), 2: (1, 0), 4: (0, 1), 6: (-1, 0)}  # values of HAT0X, HAT0Y
 NAMES = {"lx": "left_x", "ly": "left_y", "rx": "right_x", "ry": "right_y", "lt": "left_trigger", "rt": "right_trigger"}
 
 # Each field's code in linux/input-event-codes.h. A button's name is the program's, by position, or the trigger that it
@@ -26,7 +26,7 @@ SONY_AXES = {"lx": "X", "ly": "Y", "rx": "RX", "ry": "RY", "lt": "Z", "rt": "RZ"
 SONY = {"a": (0x130, "a"), "b": (0x131, "b"), "y": (0x133, "y"), "x": (0x134, "x"), "leftshoulder": (0x136, "leftshoulder"),
         "rightshoulder": (0x137, "rightshoulder"), "back": (0x13a, "back"), "start": (0x13b, "start"),
         "guide": (0x13c, "guide"), "leftstick": (0x13d, "leftstick"), "rightstick": (0x13e, "rightstick")}
-SWITCHES = {"l2": (0x138, None), "r2": (0x139, None)}  # the triggers' own
+SWITCHES = {"l2": (0x138, None), "r2": (0x139, None)}  # keys of the triggers
 
 
 def numbered(first, names):
@@ -87,7 +87,7 @@ def expected_of_program(kind, state):
 
 
 def check_node(node, kind, state):
-    """The node follows a report at once; a busy host's program may need a while until its turn."""
+    """Checks that the node follows a report at once; on a busy host the program may need longer."""
     axes, keys = expected_of_node(kind, state)
     end = time.monotonic() + 3 * PATIENCE
     while (found := ({name: node.absolute(ABS[name]).value for name in axes}, node.keys())) != (axes, keys):

@@ -22,7 +22,7 @@ GENERIC = "1209:0001"
 RATE_HZ, SECONDS = 250, 0.8
 BLOCKS = 10 if LONG else 3
 ATTEMPTS = 3
-LOST_BY_SDL = 0.02  # it keeps only the newest state: on a busy host the guest may miss some
+LOST_BY_SDL = 0.02  # share that SDL may miss: it keeps only the newest state, and a busy host delays the guest
 WARM_UP = 10  # reports of a block that are not counted: the first is written before any reader polls
 # driver: (the bare read beside it, by how much its first quartile may exceed that one's, in us). A reader that looks
 # once in a millisecond would exceed it by 250, one of SDL's looks in two by 500.
@@ -38,7 +38,7 @@ def percentile(values, share):
 
 
 def latencies_us(sent, received):
-    """Times of writing and arrival by number. The first of equal numbers counts."""
+    """Times from writing to arrival, by number. The first of equal numbers counts."""
     arrival = {}
     for ns, number in received:
         arrival.setdefault(number, ns)
@@ -46,12 +46,12 @@ def latencies_us(sent, received):
 
 
 def written(pad, before):
-    """(ns, number in the left stick) of the burst behind the first `before` reports, without the warm-up."""
+    """The numbers written after the first `before` reports, as (ns, number in the left stick), without the warm-up."""
     return [(s.ns, s.data[0] + 256 * s.data[1]) for s in pad.sent()[before:]][WARM_UP:]
 
 
 def bare_block(pad, way, ids=GENERIC):
-    """[(ns of the arrival, number)] of one block by a reader that does nothing else. `ids`: of the node."""
+    """The arrivals of one block at a reader that does nothing else, as (ns, number). `ids`: ids of the node."""
     program = [f"{BUILD}/tools/rig/rig_plain_sdl"] if way == "plain_sdl" else [f"{BUILD}/tools/rig/rig_latency", way]
     with subprocess.Popen([*program, ids, "1000"], stdout=subprocess.PIPE, text=True) as reader:
         if reader.stdout.readline() != "ready\n":
@@ -64,11 +64,11 @@ def bare_block(pad, way, ids=GENERIC):
 
 
 def play_block(pad, driver):
-    """The same for `play`, on its own threads, and [(ns of the tick's begin, number)]."""
+    """The arrivals of one block in `play`, on its own threads, and the begins of ticks as (ns, number)."""
     times = RESULTS / f"latency_{driver}.csv"
     with Session(GENERIC, "--driver", driver, "--no-rumble", "--report-times", times, name=f"latency_{driver}") as session:
         time.sleep(0.5)
-        pad.set(lx=127, ly=129)  # SDL swallows small first movements
+        pad.set(lx=127, ly=129)  # SDL ignores small first movements
         pad.set(lx=128, ly=128)
         time.sleep(0.2)
         pad.burst(RATE_HZ, SECONDS, at=0)
@@ -83,7 +83,7 @@ def play_block(pad, driver):
 
 
 def block(pad, way):
-    """(latencies in us, those to the tick's begin, reports lost) of one block."""
+    """The latencies of one block in us: until arrival, until the tick's begin; and the number of lost reports."""
     before = len(pad.sent())
     received, begins = play_block(pad, way) if way in LIMITS_US else bare_block(pad, way)
     pad.wait_burst()
@@ -106,8 +106,7 @@ def quartiles(values):
 
 
 def write(found, blocks, ticks):
-    """To one decimal, the median with the quartiles: blocks of the same read differ by more than a hundredth of a
-    millisecond."""
+    """Writes the tables to one decimal, the median with the quartiles: blocks of one read differ by more than that."""
     rows = [["way", "reports", "q1_us", "median_us", "q3_us", "p99_us", "over_bare_us", "to_tick_q1_us", "to_tick_median_us",
              "to_tick_q3_us", "to_tick_p99_us"]]
     text = ["| way | to the program | 99th percentile | over the bare read | to the tick's begin | 99th percentile |",
@@ -134,7 +133,7 @@ def spread_text(quarters):
 
 
 def measure(pad, ways, found, ticks, lost):
-    """BLOCKS blocks of each way, in turns; the quartiles of each block."""
+    """Measures BLOCKS blocks of each way, in turns; returns the quartiles of each block."""
     blocks = {way: [] for way in ways}
     for _ in range(BLOCKS):
         for way in ways:

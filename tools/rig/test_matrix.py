@@ -41,13 +41,13 @@ KEPT = {("generic", "sdl"): {"x", "button6"}, ("ds4", "evdev"): {"touchpad"}, ("
 LINE_OF_GENERIC = ("03000000091200000100000011010000,Rig Test Pad,a:b0,b:b1,x:b3,y:b4,leftshoulder:b6,rightshoulder:b7,back:b10,"
                    "start:b11,leftx:a0,lefty:a1,rightx:a2,righty:a3,righttrigger:a4,lefttrigger:a5,dpup:h0.1,dpright:h0.2,"
                    "dpdown:h0.4,dpleft:h0.8,platform:Linux,")
-HAS_HAT = ("generic", "ds4", "dualsense")  # 0 up, clockwise; 8 released. The others have four bits.
+HAS_HAT = ("generic", "ds4", "dualsense")  # values 0 up, clockwise, 8 released; the other kinds have four bits
 NAMES = {"lx": "left_x", "ly": "left_y", "rx": "right_x", "ry": "right_y", "lt": "left_trigger",
          "rt": "right_trigger"}
 
 
 def directions(eighth):
-    """Names of the pressed D-pad buttons at that eighth of a turn, clockwise from up."""
+    """Names of the D-pad buttons pressed at that eighth of a turn, clockwise from up."""
     names = {DPAD[eighth // 2]}
     return names | {DPAD[(eighth // 2 + 1) % 4]} if eighth % 2 else names
 
@@ -58,7 +58,7 @@ def at_rest(kind):
 
 
 def states(kind, driver):
-    """The states to send in order: sticks at both extremes and between, triggers, each button, the D-pad in eight
+    """The states to send, in order: sticks at both ends and between, triggers, each button, the D-pad in eight
     directions."""
     v, rest, kept = VALUES[kind], at_rest(kind), KEPT.get((kind, driver), ())
     yield {**rest, **dict(zip(STICKS, v["some"]))}
@@ -78,18 +78,18 @@ def states(kind, driver):
 
 
 def expected_stick(kind, driver, name, value):
-    """The decoded value, +y forward. HID pads have y backwards, Switch and Xbox packets have it forward."""
+    """The decoded value, +y forward. HID pads have y backwards, Switch and Xbox packets forward."""
     if kind == "switch":
         if driver in ("hidraw", "usb"):
-            return value / 2047.5 - 1  # as the pad counts, its calibration comes later
-        return max(-1.0, min(1.0, (value - 2048) / 1536))  # hid-nintendo applies it
+            return value / 2047.5 - 1  # in the pad's own counts; the calibration comes later
+        return max(-1.0, min(1.0, (value - 2048) / 1536))  # hid-nintendo applies the calibration
     if kind in ("xbox360", "xboxone"):
         return (value + 32768) / 32767.5 - 1
     return (value / 127.5 - 1) * (-1 if name.endswith("y") else 1)
 
 
 def expected(kind, driver, state):
-    """(axes, every button that is pressed)"""
+    """The expected axes, and every button that is pressed."""
     axes = {NAMES[name]: expected_stick(kind, driver, name, state[name]) for name in STICKS}
     for name in ("lt", "rt"):
         axes[NAMES[name]] = state[name] / VALUES[kind]["trigger"]
@@ -100,12 +100,12 @@ def expected(kind, driver, state):
 
 
 def is_as_sent(row, axes, buttons):
-    """Every axis is where it was sent, and these buttons alone are pressed."""
+    """True if every axis has the sent value, and only these buttons are pressed."""
     return all(abs(row["axes"][name] - value) < 0.002 for name, value in axes.items()) and set(row["buttons"]) == buttons
 
 
 def check_sequence(rows, wanted):
-    """Every wanted state is met, in this order."""
+    """Checks that the wanted states occur in this order."""
     position = 0
     for number, (axes, buttons) in enumerate(wanted):
         found = next((i for i in range(position, len(rows)) if is_as_sent(rows[i], axes, buttons)), None)

@@ -11,7 +11,7 @@ from more_kinds import MORE, plug
 from session import Session, remark
 from test_matrix import DPAD, directions
 
-TOLERANCE = 0.01  # counts of a stick, and what the kernel's driver rounds
+TOLERANCE = 0.01  # counts of a stick, and the rounding of the kernel's driver
 # What SDL 2.26 calls otherwise: it has no name for Share, and takes the kernel's north of an unknown pad for x.
 NAMES_OF_SDL = {"xboxseries": {"misc1": None}, "edge": {"x": "y", "y": "x"}}
 

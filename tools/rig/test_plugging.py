@@ -19,14 +19,14 @@ from test_matrix import VALUES
 from uhid_pad import EMPTY_PLUG, FULL_PLUG, UhidPad
 
 SESSIONS, TURNS = (20, 50) if LONG else (1, 12 if HAS_SANITIZERS else 24)
-PUSH_S = 0.15  # a tap of the stick
-CYCLES = 1000 if LONG else 10 if HAS_SANITIZERS else 50  # at full speed, of each of two
-MOST_S = 3.0  # from the node to the session, in the median
+PUSH_S = 0.15  # duration of a tap of the stick
+CYCLES = 1000 if LONG else 10 if HAS_SANITIZERS else 50  # number of cycles at full speed, for each of two pads
+MOST_S = 3.0  # limit of the median time from the node to the session
 
 
 def push(pad, session):
-    """From rest to the rim and back, as a thumb does. Back when the rim is in the recording: on a busy host both might
-    come within a tick."""
+    """Pushes the stick from rest to the rim and back, as a thumb does. The way back begins when the recording has the
+    rim: on a busy host both might come within a tick."""
     values, before = VALUES[pad.kind], len(session.lines("E:"))
     pad.move(ly=(values["rest"], values["forward"]))
     time.sleep(PUSH_S)
@@ -36,7 +36,7 @@ def push(pad, session):
 
 
 def seen_pushes(session):
-    """How many times the stick went from rest beyond 0.9 and back."""
+    """The number of times that the stick went from rest beyond 0.9 and back."""
     sticks = [float(frame["stick_y"]) for frame in session.frames()]
     return sum(a <= 0.9 < b for a, b in zip(sticks, sticks[1:]))
 
@@ -90,9 +90,9 @@ def test_a_pad_that_rests_when_it_is_opened_counts_from_its_first_push(case):
 
 
 class Alone:
-    """A pad that is plugged in and out."""
+    """A pad that is plugged in and out alone."""
     FIRST = 0
-    FULL, REST, BYTE = 0, 128, 2  # of its stick, forward
+    FULL, REST, BYTE = 0, 128, 2  # values of its stick: forward, at rest; the stick's byte
 
     def __enter__(self):
         self.pad = UhidPad("plain")
@@ -130,7 +130,7 @@ class BehindAReceiver:
 
 
 def tap(source, session):
-    """Rest, rim, rest, without a pause but this: the rim is held until it is in the recording, a few ticks later."""
+    """Moves the stick to the rim and back; the rim is held until the recording has it, a few ticks later."""
     way = source.FULL - source.REST
     for share in (0, 1 / 3, 2 / 3, 1):
         source.pad.set(ly=source.REST + round(share * way))
@@ -141,7 +141,7 @@ def tap(source, session):
 
 
 def held(session):
-    """(open files, threads) of the program."""
+    """The program's numbers of (open files, threads)."""
     return session.handles(), len(os.listdir(f"/proc/{session.process.pid}/task"))
 
 

@@ -35,7 +35,8 @@ def is_opened(path):
 
 
 def opened_of(device):
-    """(whether the USB device is, the interfaces whose hidraw nodes are, how many event nodes are)."""
+    """What the rules open: (the USB device, the interfaces whose hidraw nodes are opened, the number of event nodes).
+    """
     hidraws = [device.interface_of(node) for node in device.hidraws
                if is_opened(f"/sys/class/hidraw/{os.path.basename(node)}")]
     events = [node for node in device.events if is_opened(f"/sys/class/input/{os.path.basename(node)}")]
@@ -46,7 +47,7 @@ def opened_of(device):
 def test_keyboards_are_opened_to_nobody():
     for ids, interfaces in KEYBOARDS:
         with Composite(ids, interfaces) as device:
-            usb, hidraws, _ = opened_of(device)  # event nodes are judged by what each one is
+            usb, hidraws, _ = opened_of(device)  # each event node is judged by its own kind
             assert not usb and not hidraws, (ids, usb, hidraws)
     remark(f"{len(KEYBOARDS)} keyboards, three of them beside or by makers of pads: udev opens none")
 

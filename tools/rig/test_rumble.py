@@ -14,7 +14,7 @@ PACKETS = {"ds4": (b"\x05", 5, 4), "dualsense": (b"\x02", 4, 3), "xbox360": (b"\
 
 
 def beats(pad, since_ns):
-    """[time in ns, strong, end in ns] of each run of the motors."""
+    """The runs of the motors as [(time in ns, strong, end in ns)]."""
     start, strong, weak = PACKETS[pad.kind]
     runs = []
     for packet in pad.out_packets(since_ns):

@@ -34,13 +34,14 @@ class Person:
         self.hand = PadHand(pad, STRAIGHT)
 
     def next_request(self, seconds=40):
-        """(part, request) of the next prompt."""
+        """The next prompt as (part, request)."""
         found = self.terminal.wait_for(r"\d of 6, ([a-z ]+): ([^\[]+?)\s*\[", seconds, self.at)
         self.at = found.end()
         return found[1], " ".join(found[2].replace("\x1b", "").split())
 
     def wait_change(self, request, again=lambda: None, seconds=40):
-        """The next prompt that asks for something else. Whoever sees the same one for five seconds does it `again`."""
+        """Waits for the next prompt that asks for something else. If the same one stays for five seconds, does the
+        movement `again`."""
         end = time.monotonic() + PATIENCE * seconds
         due = time.monotonic() + PATIENCE * 5
         while (new := self.next_request(seconds))[1] == request:
@@ -78,7 +79,7 @@ class Person:
         elif "trigger" in request and "Pull" in request:
             self.press(**{"lt" if "left trigger" in request else "rt": 255})
         elif "calls misc1" in request:
-            self.terminal.press("\n")  # a person who does not find the mute button
+            self.terminal.press("\n")  # the person does not find the mute button
         elif "D-pad" in request:
             self.press(hat=next(value for word, value in HATS.items() if word in request))
         else:
@@ -86,7 +87,7 @@ class Person:
 
     def calibrate(self):
         self.hand.hold(0.5)
-        self.hand.releases(0, 11)  # the left one rests so far off that ten are asked
+        self.hand.releases(0, 11)  # the left stick rests so far off that ten releases are asked for
         self.hand.hold(2.6)
         self.hand.turns(3)
         self.hand.pushes()
@@ -95,7 +96,7 @@ class Person:
 
 
 def lead_through(pad, terminal):
-    """Answers every prompt; the requests of each part."""
+    """Answers every prompt; returns the requests of each part."""
     person, asked = Person(pad, terminal), {}
     part, request = person.next_request()
     is_calibrated = False
@@ -156,7 +157,7 @@ def check_report(report, asked):
     opened = {driver["driver"] for driver in report["drivers"] if driver["opened"]}
     assert opened == {"hidraw", "evdev", "sdl", "usb"}, report["drivers"]
     hidraw = next(driver for driver in report["drivers"] if driver["driver"] == "hidraw")
-    assert 60 < hidraw["rate"]["rate_hz"] < 300, hidraw["rate"]  # its own 250 Hz, and the hand's 100
+    assert 60 < hidraw["rate"]["rate_hz"] < 300, hidraw["rate"]  # the pad's own 250 Hz, and the hand's 100
     assert report["unplugging"]["is_back"] and report["rumble"] == {"strong": "felt", "weak": "felt"}
     assert {side: stick["verdict"] for side, stick in report["calibration"].items()}.keys() == {"left", "right"}
     assert report["walk"]["steps"] >= 4 and abs(report["walk"]["aside_m"]) < 0.02 * report["walk"]["forward_m"]

@@ -113,7 +113,8 @@ def _ds4_feature(report, mac):
 
 
 def _ds4_interval(pad, report):
-    """The lower six bits of an output report's second byte: milliseconds between reports; 0 is as fast as the link."""
+    """The interval in the lower six bits of an output report's second byte: milliseconds between reports; 0: as short
+    as the link allows."""
     if report[0] == 0x11:
         pad.rate_hz = 1000 / max(1, report[1] & 0x3f)
 
@@ -137,7 +138,7 @@ class Kind:
 
 
 def _sony_fields(start, triggers, buttons):
-    """`start`: byte of the left stick's X."""
+    """Fields of Sony's pads. `start`: byte of the left stick's X."""
     axes = {name: (8 * (start + i), 8) for i, name in enumerate(("lx", "ly", "rx", "ry"))}
     first = 8 * buttons
     return axes | {"lt": (8 * triggers, 8), "rt": (8 * triggers + 8, 8), "hat": (first, 4), "buttons": (first + 4, 14)} | \
@@ -185,7 +186,7 @@ KINDS = {
 
 
 def read_trace(path):
-    """(Kind, [(time_s, report)]) of a recording's first device."""
+    """The kind and the reports, (Kind, [(time_s, report)]), of a recording's first device."""
     name, ids, bus, descriptor, reports = "", (0, 0), BUS_USB, b"", []
     for letter, rest in traces.lines(path, "DNIRE"):
         words = rest.split()
@@ -216,7 +217,7 @@ class HidPad(Nodes):
         self.kind = kind
         self.state = bytearray(kind.neutral)
         self.rate_hz = kind.rate_hz
-        self.good_checksum = True  # False: every report's is wrong
+        self.good_checksum = True  # False: every report has a wrong checksum
         self._thread = None
         self._outs, self._sents = [], []
         self._lock = threading.Lock()
@@ -236,7 +237,7 @@ class HidPad(Nodes):
         self._thread.start()
         if wait:
             self.sysfs = wait_for(self._find_sysfs, 10, "the HID device")
-            settle()  # a special driver takes the pad over from hid-generic once udev has loaded it
+            settle()  # a special driver replaces hid-generic as soon as udev has loaded it
             wait_for(lambda: self.events or self.hidraws, 20, "a node")
             if self.kind.fields:
                 wait_for(lambda: self.joystick, 20, "the joystick node")
@@ -306,7 +307,7 @@ class HidPad(Nodes):
         return list(self._sents)
 
     def out_packets(self, since_ns=0):
-        """Output and feature reports that the host has written."""
+        """The output and feature reports that the host has written."""
         return [packet for packet in self._outs if packet.ns >= since_ns]
 
 
@@ -351,7 +352,7 @@ class UhidPad(HidPad):
             self._write(SET_REPORT_REPLY, struct.pack("=IH", number, 0))
 
     def play(self):
-        """The trace at its own times; returns at its end."""
+        """Plays the trace at its own times; returns at its end."""
         start = time.monotonic() - (self._trace[0][0] if self._trace else 0)
         for at_s, report in self._trace:
             time.sleep(max(0.0, start + at_s - time.monotonic()))

@@ -71,7 +71,7 @@ class UinputPad(Nodes):
                     self.plays.append(Packet(time.monotonic_ns(), (code, value)))
 
     def _acknowledge(self, code, value):
-        """An effect uploaded or erased: the host's call waits for this."""
+        """Acknowledges that an effect was uploaded or erased: the host's call waits for this."""
         size, number = (104, 200) if code == UI_FF_UPLOAD else (12, 202)
         request = bytearray(struct.pack("=I", value).ljust(size, b"\0"))
         fcntl.ioctl(self._fd, ioctl_number(3, "U", number, size), request, True)
@@ -81,7 +81,7 @@ class UinputPad(Nodes):
         fcntl.ioctl(self._fd, ioctl_number(1, "U", number + 1, size), bytes(request))
 
     def set(self, **values):
-        """Names of ABS and KEYS; one SYN_REPORT behind them all."""
+        """Sets axes and keys by the names of ABS and KEYS; one SYN_REPORT follows them all."""
         events = [(EV_ABS, ABS[name], value) if name in ABS else (EV_KEY, KEYS[name], value)
                   for name, value in values.items()] + [(EV_SYN, 0, 0)]
         os.write(self._fd, b"".join(struct.pack("llHHi", 0, 0, *event) for event in events))

@@ -35,13 +35,14 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 constexpr double kLook_s = 5.0, kPlug_s = 8.0, kStyle_s = 1.7, kKey_s = 0.9, kLoad_s = 11.0;
-constexpr int kWidth = 640, kHeight = 360;  // software draws it in milliseconds
+constexpr int kWidth = 640, kHeight = 360;  // size of the window; software draws it in milliseconds
 constexpr double kTick_s = 1.0 / kDefaultRateHz;
-// In the first ten minutes, or in the first quarter of a shorter run, the caches fill.
+// The caches fill during the first ten minutes, or the first quarter of a shorter run.
 constexpr double kFilling_s = 600.0, kFillingShare = 0.25;
-constexpr double kGrowth_mb = 1.0;  // allowed between the first and last quarter of the rest
+// Allowed growth between the first and the last quarter of the rest.
+constexpr double kGrowth_mb = 1.0;
 
-// Sanitizers keep freed memory.
+// Sanitizers keep freed memory, so growth is not judged with them.
 #ifdef GAITPAD_SANITIZED
 constexpr bool kIsJudged = false;
 #else
@@ -84,7 +85,7 @@ class SleepingThread {
   std::thread thread_;
 };
 
-// Time that the host took from this machine since it started, all processors.
+// Seconds that the host took from all of this machine's processors since it started.
 double stolen_s() {
   std::ifstream file("/proc/stat");
   std::string word;
@@ -145,7 +146,7 @@ class VirtualPad {
     index_ = -1;
   }
   bool is_plugged() const { return joystick_ != nullptr; }
-  int plugs() const { return plugs_; }  // times that it was plugged in
+  int plugs() const { return plugs_; }  // Number of times that the pad was plugged in.
   void push(double forward) {
     if (joystick_ == nullptr) return;
     SDL_JoystickSetVirtualAxis(joystick_, SDL_CONTROLLER_AXIS_LEFTY,
@@ -176,7 +177,7 @@ void drop(const std::string& path) {
   SDL_PushEvent(&event);
 }
 
-// Due at a fixed interval in seconds.
+// Is due once in each interval of a fixed number of seconds.
 class Every {
  public:
   explicit Every(double period_s) : period_s_(period_s), next_s_(period_s) {}
@@ -272,7 +273,8 @@ struct Rows {
   }
 };
 
-// Ticks whose pose differs from the recorded session: by the hash, all or none.
+// Replays the recording and counts the ticks whose pose differs from the session's: by the hash,
+// either all or none.
 void replay_recording(const SessionSpec& session, const RunSummary& live, double seconds,
                       Rows& rows) {
   SessionSpec spec;
@@ -337,7 +339,7 @@ int run(double seconds, const std::string& record, const std::vector<std::string
              fmt::format("<= {}", kGrowth_mb), growth_mb <= kGrowth_mb || !kIsJudged);
   rows.add("times plugged in", soak.plugs());
   if (!record.empty() && result->status) {
-    // The last one may come after the session's last check.
+    // The session may not have seen the last plug: it may come after the session's last check.
     const auto missed = static_cast<double>(soak.plugs() - result->status->pads.plugged);
     rows.judge("of these not noticed", missed, "", "<= 1", missed >= 0.0 && missed <= 1.0);
     judge_ticks(*result->status, sleeper_late, steal_s, soak.loop_wait_s(), rows);

@@ -20,7 +20,7 @@ int write_strides(const char* path) {
   for_each_number(*family, [&numbers](double number) { numbers.push_back(number); });
   std::FILE* file = std::fopen(path, "we");
   if (file == nullptr) return std::perror(path), 1;
-  // Written as bits, because compilers may read a decimal number differently.
+  // Write floats as bits, because compilers may read a decimal number differently.
   std::fprintf(file,
                "#include \"files/made_strides.h\"\n"
                "namespace gaitpad {\n"

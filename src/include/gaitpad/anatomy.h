@@ -26,7 +26,7 @@ enum class NamedPart {
   ankle,
   toe,
   collar,
-  shoulder,   // the collar bone where an upper arm follows ("LeftShoulder"), else the upper arm
+  shoulder,   // the collar bone if an upper arm follows it ("LeftShoulder"), else the upper arm
   upper_arm,  // the joint at the upper end of the upper arm
   elbow,
   wrist,
@@ -34,14 +34,15 @@ enum class NamedPart {
   head,
 };
 struct NamedJoint {
-  NamedSide side = NamedSide::none;  // none for neck and head
-  NamedPart part = NamedPart::none;  // none also for twist joints, fingers and the like
+  NamedSide side = NamedSide::none;  // the side that the name states; none for neck and head
+  NamedPart part = NamedPart::none;  // none for twist joints, fingers and the like as well
 };
-// Prefixes such as "mixamorig:" or "CC_Base_" do not matter, nor do upper and lower case.
+// Reads a joint's name. Prefixes such as "mixamorig:" or "CC_Base_" and upper or lower case do not
+// matter.
 NamedJoint named_joint(std::string_view name);
 
-// Joints of one leg given by hand, by their names in the skeleton; the caller fills it. Empty:
-// found.
+// Names of one leg's joints in the skeleton, given by hand; the caller fills it. A joint with an
+// empty name is searched for.
 struct LegNames {
   std::string hip, knee, ankle, toe;
 };
@@ -56,7 +57,7 @@ Result<std::array<LegJoints, 2>> find_legs(const Motion& motion,
 // The lowest joint that carries both legs.
 int pelvis_of(const Skeleton& skeleton, const std::array<LegJoints, 2>& legs);
 
-// True also for a joint and itself.
+// True if `ancestor` is on the way from `joint` to the root; true also for a joint and itself.
 bool is_ancestor(const Skeleton& skeleton, int ancestor, int joint);
 
 // Joint indices of one arm. Shoulder, elbow and wrist are all set or none is. Further joints may
@@ -64,18 +65,19 @@ bool is_ancestor(const Skeleton& skeleton, int ancestor, int joint);
 struct ArmChain {
   int collar = -1;  // the lowest collar bone above the shoulder, -1: none
   int shoulder = -1, elbow = -1;
-  int wrist = -1;     // an End Site where the skeleton has no hand
-  int hand_end = -1;  // the farthest joint below the wrist, the thumb left out; -1: none
+  int wrist = -1;     // wrist joint; an End Site if the skeleton has no hand
+  int hand_end = -1;  // the farthest joint below the wrist, except for the thumb; -1: none
   bool is_found() const noexcept { return shoulder >= 0; }
 };
 
 // Indices of the joints above the legs; find_upper_body() fills them. A part that the skeleton
 // lacks is empty or -1.
 struct UpperBodyJoints {
-  std::vector<int> spine;  // from above the pelvis up to the joint that carries arms and neck
-  std::vector<int> neck;   // from above that joint to below the head
+  // Joints from above the pelvis up to the joint that carries arms and neck.
+  std::vector<int> spine;
+  std::vector<int> neck;  // joints from above that joint to below the head
   int head = -1;
-  int head_top = -1;            // the highest joint on the head, or the head itself
+  int head_top = -1;            // the highest joint on the head; the head itself if it has none
   std::array<ArmChain, 2> arm;  // indexed by Side
 };
 

@@ -17,7 +17,7 @@ namespace gaitpad {
 // Error `NAME: cause` for a cycle that is no walk: a number that is not finite, a leg without
 // length, a stride longer than four legs, events out of order.
 Result<StrideFamily> stride_family(const GaitCycle& cycle);
-// The cycle with its `strides`; errors as above.
+// Returns the cycle with its `strides`; errors as above.
 Result<GaitCycle> with_clean_strides(GaitCycle cycle);
 
 }  // namespace gaitpad

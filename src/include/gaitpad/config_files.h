@@ -28,10 +28,10 @@ Result<Character> load_character(const std::string& path);
 
 // Reads a terrain, and the height pictures (grey PNG) that it names, relative to the file.
 Result<Terrain> load_terrain(const std::string& path);
-// The same from a text. `path` stands in error sentences, and pictures are relative to it.
+// Reads a terrain from a text. `path` is used in error sentences, and pictures are relative to it.
 Result<Terrain> parsed_terrain(std::string_view text, const std::string& path);
 
-// $XDG_CONFIG_HOME/gaitpad, else $HOME/.config/gaitpad: where a user's own files stand. Empty if
+// The folder of a user's own files: $XDG_CONFIG_HOME/gaitpad, else $HOME/.config/gaitpad. Empty if
 // neither variable is an absolute path. The folder need not exist.
 std::string user_config_folder();
 
@@ -42,22 +42,22 @@ std::string user_config_folder();
 // by other functions.
 std::vector<std::string> config_folders(const std::string& built_in);
 
-// The path that a user's FILE|NAME means: itself if it has a slash or ends in .toml, else
+// The path that a user's FILE|NAME means: FILE itself if it has a slash or ends in .toml, else
 // KIND/NAME.toml in the first folder that has it. `kind` is a sub-folder: "styles", "characters",
 // "terrain", "motions". The error for an unknown name lists the known ones.
 Result<std::string> config_file(const std::vector<std::string>& folders, const std::string& kind,
                                 const std::string& file_or_name);
 
-// Every KIND/NAME.toml (or with another ending), ordered by name; of equal names the first
+// All files KIND/NAME.toml (or with another ending), ordered by name; of equal names the first
 // folder's.
 std::vector<std::string> config_files(const std::vector<std::string>& folders,
                                       const std::string& kind, std::string_view ending = ".toml");
 
-// The name by which a file is called: without its folder and without .toml.
+// The name of a file in options: without its folder and without .toml.
 std::string config_name(const std::string& path);
 
-// A configuration file or recording in one sentence: the first sentence of the comment that it
-// begins with, without brackets and their content; empty if there is none.
+// A configuration file or recording in one sentence: the first sentence of the comment at its
+// beginning, without brackets and their content; empty if there is none.
 std::string config_summary(const std::string& path);
 
 // Saves a style of the user's own as styles/NAME.toml in user_config_folder() and returns the path.

@@ -19,41 +19,43 @@ namespace gaitpad {
 
 struct CrowdMember {
   std::shared_ptr<const WalkModel> model;  // never null; members may share one
-  vec3 place_m{0.0};  // where it stands at first, facing +z; world, within kFarthest_m
+  vec3 place_m{0.0};  // place at the beginning, in the world, within kFarthest_m; it faces +z
 };
 
-// The caller fills the members. They are told apart by their index, 0 .. size() - 1; what changes a
-// member does nothing for another index.
+// A crowd. The caller fills the members. They are told apart by their index, 0 .. size() - 1; a
+// call with another index has no effect.
 class Crowd {
  public:
-  Crowd() = default;  // an empty crowd
-  // All members stand. Error: `members[3].model is null`, and a place that is none.
+  Crowd() = default;  // Has no members.
+  // Makes a crowd in which all members stand. Error: `members[3].model is null`, or a place that is
+  // not finite or too far.
   static Result<Crowd> create(std::span<const CrowdMember> members, IkMode mode = IkMode::robust);
-  // The same for members that create() would take.
+  // Makes a crowd of members that create() would accept.
   explicit Crowd(std::span<const CrowdMember> members, IkMode mode = IkMode::robust);
 
   int size() const noexcept { return static_cast<int>(states_.size()); }
-  // The parameters of each member in the next ticks; at first all stand.
+  // The parameters of each member in the next ticks; at the beginning all stand.
   std::span<GaitParams> params() noexcept { return params_; }
   // Advances all members by one tick of `dt_s` seconds, a constant of the run. No heap, lock or
   // clock.
   void advance(double dt_s) noexcept;
-  // advance() in blocks: each block once a tick, in any order and on any threads.
+  // Advance in blocks instead of by advance(): each block once a tick, in any order and on any
+  // threads.
   int blocks() const noexcept;
   void advance_block(int number, double dt_s) noexcept;
 
   const WalkModel& model(int member) const noexcept { return *models_[member]; }
   const WalkState& state(int member) const noexcept { return states_[member]; }
-  // The pose of the last tick: where joint 0 is, in the world, and each joint's local rotation.
+  // The pose of the last tick: the place of joint 0 in the world, and each joint's local rotation.
   const vec3& root_m(int member) const noexcept { return roots_m_[member]; }
   std::span<const quat> local(int member) const noexcept {
     const std::size_t first = first_joint_[member];
     return {local_.data() + first, first_joint_[member + 1] - first};
   }
   void copy_pose(int member, Pose& pose) const noexcept;
-  // Puts a member back to where it stands at first.
+  // Puts a member back to the state at the beginning.
   void restart(int member, const vec3& place_m) noexcept;
-  // move_walk() and put_walk() of gaitpad/walk.h.
+  // These are move_walk() and put_walk() of gaitpad/walk.h for a member.
   void move(int member, const Placement& by) noexcept;
   void put(int member, const vec3& place_m, double heading_rad) noexcept;
 

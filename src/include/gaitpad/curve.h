@@ -16,7 +16,7 @@ T catmull_rom(const T& a, const T& b, const T& c, const T& d, double t) noexcept
                 (3.0 * b - a - 3.0 * c + d) * t3);
 }
 
-// A periodic function of a phase, sampled evenly over [0, 1).
+// A periodic function of a phase, given by even samples over [0, 1).
 template <std::size_t N>
 struct PeriodicTable {
   std::array<double, N> value{};
@@ -28,7 +28,8 @@ struct PeriodicTable {
   }
 };
 
-// A function of u in [0, 1], sampled evenly with both ends; its slopes at the ends are one-sided.
+// A function of u in [0, 1], given by even samples including both ends; its slopes at the ends are
+// one-sided.
 template <std::size_t N>
 struct Curve {
   std::array<double, N> value{};
@@ -73,7 +74,8 @@ void approach(T& x, T& v, const T& goal_x, const T& goal_v, const R& remaining_s
 }
 
 // A difference that fades away along a cubic: `value` and `slope` at 0, both 0 from `duration` on.
-// It and the types below may hold values of several walkers side by side (V as in gaitpad/math.h).
+// This type and those below may hold values of several walkers side by side (V as in
+// gaitpad/math.h).
 template <class V>
 struct FadeOf {
   V value{}, slope{};  // slope per unit of the argument
@@ -97,11 +99,12 @@ struct SmoothFade {
       *this = {};
     }
   }
-  // For more than one remaining tick.
+  // Advances a fade with more than one remaining tick.
   template <class V>
   void move(const V& n) noexcept {
     const V s = 1.0 / n;
-    const T p = v * n, q = a * (0.5 * n * n);  // slope and half the curvature over the whole way
+    // Slope and half the curvature, for the whole of the remaining time.
+    const T p = v * n, q = a * (0.5 * n * n);
     const T c3 = -10.0 * x - 6.0 * p - 3.0 * q, c4 = 15.0 * x + 8.0 * p + 3.0 * q,
             c5 = -6.0 * x - 3.0 * p - q;
     x = x + (p + (q + (c3 + (c4 + c5 * s) * s) * s) * s) * s;

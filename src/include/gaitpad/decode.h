@@ -32,21 +32,22 @@ struct FieldBits {
   std::int64_t min = 0, max = 0;
 };
 struct AxisOp {
-  FieldBits bits;  // min, max: of the part of the range that counts
+  FieldBits bits;  // the bits; min, max: the part of the range that counts
   PadAxis axis = kLeftX;
   bool reversed = false;  // the axis falls while the field grows
-  std::int8_t side = 0;   // of a stick's axis: 0 the whole axis, else from 0 to this end (-1, 1)
+  std::int8_t side = 0;   // part of a stick's axis: 0 the whole, else from 0 to this end (-1, 1)
 };
 struct ButtonOp {
-  FieldBits bits;            // min, max: of the part of the range that counts
-  std::uint32_t mask = 0;    // pressed if one of these bits of the value is set; 0: by the range
-  std::uint32_t button = 0;  // the bit of PadState::buttons
-  bool reversed = false;     // pressed in the lower half
+  FieldBits bits;  // the bits; min, max: the part of the range that counts
+  // Pressed if one of these bits of the value is set; 0: pressed by the range.
+  std::uint32_t mask = 0;
+  std::uint32_t button = 0;  // bit of PadState::buttons that the field presses
+  bool reversed = false;     // pressed in the lower half of the range
 };
 struct HatOp {
   FieldBits bits;
-  std::int64_t last = 0;                        // values min .. last are directions
-  std::int64_t numerator = 1, denominator = 1;  // steps of 45 degrees a count
+  std::int64_t last = 0;                        // values from min to last are directions
+  std::int64_t numerator = 1, denominator = 1;  // steps of 45 degrees for each count, as a fraction
   // 0: the hat is the whole D-pad. Else any of these directions (1 up, 2 right, 4 down, 8 left)
   // presses `button` (a bit of PadState::buttons) and adds `value` to `axis`.
   std::uint8_t directions = 0;
@@ -56,19 +57,19 @@ struct HatOp {
 };
 struct ArrayOp {  // an array field: its value names a pressed button
   FieldBits bits;
-  std::vector<std::uint32_t> button;  // bit of PadState::buttons by value - min
+  std::vector<std::uint32_t> button;  // bit of PadState::buttons for each value - min
 };
 
 // The layout of one report.
 struct ReportLayout {
   std::uint8_t report_id = 0;
   bool numbered = false;  // the report begins with its id
-  // Sizes in bytes, with the id: one of exact_sizes (of a replaced descriptor); if there are none,
+  // Size in bytes, with the id: one of exact_sizes (of a replaced descriptor); if there are none,
   // min_size or more.
   std::uint16_t min_size = 0;
   std::vector<std::uint16_t> exact_sizes;
   std::uint32_t covered = 0;  // bits of PadState::buttons that this report carries
-  std::uint32_t summed = 0;   // axes (bits) that are the sum of several fields
+  std::uint32_t summed = 0;   // bits of the axes that are the sum of several fields
   std::vector<AxisOp> axes;
   std::vector<ButtonOp> buttons;
   std::vector<HatOp> hats;
@@ -79,20 +80,21 @@ struct ReportLayout {
 struct UnnamedButton {
   std::uint8_t report_id = 0;
   FieldBits bits;
-  std::uint16_t number = 0;  // id on HID's button page
+  std::uint16_t number = 0;  // the button's number on HID's button page
 };
 
 struct PadLayout {
-  bool is_pad = false;          // by its descriptor (pad_application) or by its pad file
-  bool streams = false;         // it also reports at rest: silence means a broken link
+  bool is_pad = false;          // it is a pad by its descriptor (pad_application) or by its pad
+                                // file
+  bool streams = false;         // the pad reports at rest as well, so silence means a broken link
   std::string override_origin;  // FILE:LINE of the [[pad]] entry that was used; empty: none
   ReportDescriptor descriptor;
-  std::vector<ReportLayout> reports;  // replaced ones first
+  std::vector<ReportLayout> reports;  // layouts of replaced reports come first
   std::vector<UnnamedButton> unnamed;
 };
 
-// The layout of a device. Error if its descriptor, or the one that an override replaces it by, is
-// damaged: `My pad: report descriptor: byte 12: ...`.
+// Works out the layout of a device. Error if its descriptor, or the one that an override replaces
+// it by, is damaged: `My pad: report descriptor: byte 12: ...`.
 Result<PadLayout> pad_layout(const DeviceInfo& device, const PadOverrides& overrides = {});
 
 // Indices (in ReportDescriptor::fields) of the input fields of the pad: those of the collection
@@ -101,11 +103,12 @@ std::vector<std::size_t> pad_fields(const ReportDescriptor& descriptor);
 
 // ---- Decoding
 
-// Whether a report of this layout tells where the left stick is.
+// True if reports of this layout contain the left stick.
 bool tells_stick(const ReportLayout& layout) noexcept;
-// The layout of this report. Null if it is too short, has an unknown id or is no input report.
+// The layout of this report. Null if the report is too short, has an unknown id or is no input
+// report.
 const ReportLayout* layout_of(const PadLayout& layout, const Report& report) noexcept;
-// Updates the controls that the report carries; the others keep their state. False, and `state` is
+// Updates the controls that the report contains; the others keep their state. False, and `state` is
 // unchanged, if the report is too short, has an unknown id or is no input report.
 bool decode(const PadLayout& layout, const Report& report, PadState& state) noexcept;
 

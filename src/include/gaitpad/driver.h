@@ -39,16 +39,15 @@ namespace gaitpad {
 // deflected, live and in a recording.
 inline constexpr std::string_view kKeyboardDriver = "keyboard";
 
-// Motor strengths, 0..65535 as in Linux's ff_rumble_effect. The strong motor is the slow, heavy
-// one.
-// The caller fills it.
+// Strengths of both motors, 0..65535 as in Linux's ff_rumble_effect. The strong motor is the slow,
+// heavy one. The caller fills it.
 struct Rumble {
   std::uint16_t strong = 0, weak = 0;
 };
 
-// The calibration that a pad stores itself, as its driver reads it; it may be nonsense, and is not
-// used then. Raw positions as in calibration.h, fractions of half
-// the logical range from its middle, +x right, +y forward.
+// The calibration of an axis that a pad stores itself, as its driver reads it; nonsense is not
+// used. Raw positions as in calibration.h: fractions of half the logical range from its middle, +x
+// right, +y forward.
 struct FactoryAxis {
   double min = -1.0, centre = 0.0, max = 1.0;
 };
@@ -61,8 +60,8 @@ class Device {
   enum class Status {
     report,   // `report` is filled: time_ns, size, bytes, kind (not its device). kind is input;
               // of a recording also added or removed
-    nothing,  // no report now
-    gone,     // unplugged
+    nothing,  // there is no report now
+    gone,     // the device is unplugged
   };
   virtual ~Device() = default;
 
@@ -71,34 +70,36 @@ class Device {
   // `nothing`. They may change after a read.
   virtual std::span<const pollfd> poll_fds() const noexcept = 0;
   virtual Status read(Report& report) noexcept = 0;
-  // From now on `read` gives every packet as the source gives it, also those that are no input. For
-  // recordings; nothing changes if the source has only reports.
+  // From now on `read` returns every packet that the source gives, even packets that are no input.
+  // For recordings; it has no effect if the source has only reports.
   virtual void hand_on_raw() noexcept {}
 
   // Sets the motors until the next call. False: the pad has none, or the packet was not sent.
   virtual bool rumble(const Rumble&) noexcept { return false; }
-  // None: the pad stores no calibration, or it was not read.
+  // The sticks' stored calibration. None: the pad stores none, or it was not read.
   virtual std::optional<FactorySticks> factory_sticks() const { return std::nullopt; }
   virtual std::optional<FactoryGyro> factory_gyro() const { return std::nullopt; }
-  // Reports known to be lost or refused since the device was opened (SYN_DROPPED, overruns, a wrong
-  // checksum, a stalled endpoint).
+  // Number of reports that are known to be lost or refused since the device was opened
+  // (SYN_DROPPED, overruns, a wrong checksum, a stalled endpoint).
   virtual std::int64_t lost() const noexcept { return 0; }
-  // Remarks for the user about a pad that works: one sentence each, returned once.
+  // Remarks for the user about a pad that works, one sentence each. Each is returned once.
   virtual std::vector<std::string> take_remarks() { return {}; }
 };
 
 // A device that a driver sees, open or not. The driver fills it.
 struct DeviceListing {
-  DeviceInfo info;   // without a descriptor if that cannot be read without opening
-  std::string node;  // /dev/hidraw3, /dev/input/event5, /dev/bus/usb/001/004, walk.hid
+  DeviceInfo info;   // without a descriptor if reading that needs opening the device
+  std::string node;  // path: /dev/hidraw3, /dev/input/event5, /dev/bus/usb/001/004, walk.hid
   // Equal for one pad on all drivers: the sysfs folder of its USB interface, else of its HID
   // device, else of its input device.
   std::string pad_path;
   std::vector<std::string> parts;  // pad paths of the devices that this one joins; empty: none
-  std::string kernel_driver;  // bound to it: hid-generic, xpad, playstation; empty: none or unknown
-  double poll_rate_hz = 0.0;  // by the endpoint's descriptor; 0: unknown
-  bool is_other = false;      // known to be no pad: a keyboard, the motion sensor of a pad
-  std::string problem;  // why it cannot be opened, or what else it is: one sentence; empty: usable
+  // Kernel driver bound to the device: hid-generic, xpad, playstation; empty: none or unknown.
+  std::string kernel_driver;
+  double poll_rate_hz = 0.0;  // polling rate that the endpoint's descriptor states; 0: unknown
+  bool is_other = false;      // it is known to be no pad: a keyboard, the motion sensor of a pad
+  // One sentence: why it cannot be opened, or what other device it is; empty: usable.
+  std::string problem;
 };
 
 // Whether a kernel driver may be detached while the device is open (usb only).
@@ -106,10 +107,10 @@ enum class Detach { never, allowed };
 
 struct DriverEntry {
   const char* name;
-  const char* library;  // for messages
-  // Both are null if gaitpad was built without the library. `find` never fails: a device that it
-  // cannot look at is listed with its problem. The error of `open` is one sentence that names the
-  // node.
+  const char* library;  // name of the library that the driver needs, for messages
+  // `find` and `open` are null if gaitpad was built without the library. `find` never fails: a
+  // device that it cannot look at is listed with its problem. The error of `open` is one sentence
+  // that names the node.
   std::vector<DeviceListing> (*find)();
   Result<std::unique_ptr<Device>> (*open)(const DeviceListing& listing, Detach detach);
 };

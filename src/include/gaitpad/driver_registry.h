@@ -8,9 +8,10 @@
 
 namespace gaitpad {
 
-// In the order of preference: if several drivers see a pad, the first that can open it serves it.
+// The drivers in the order of preference: if several drivers see a pad, the first that can open it
+// serves it.
 std::span<const DriverEntry> drivers() noexcept;
-// hidraw, evdev, sdl, usb or trace; null: there is no driver of that name.
+// The driver of this name: hidraw, evdev, sdl, usb or trace; null: there is none.
 const DriverEntry* find_driver(std::string_view name) noexcept;
 
 // The line for this device, by bus, ids and version, in the data base that SDL's library brings

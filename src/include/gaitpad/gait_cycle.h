@@ -20,18 +20,21 @@
 
 namespace gaitpad {
 
-inline constexpr int kCycleSamples = 128;  // a cycle; sample i stands at phase i / kCycleSamples
+// Samples of a cycle; sample i has the phase i / kCycleSamples.
+inline constexpr int kCycleSamples = 128;
 
-// gait_cycle(), procedural_gait() and cycle_on_skeleton() fill all that stands here.
+// gait_cycle(), procedural_gait() and cycle_on_skeleton() fill the structs below.
 
 // A leg's build in the standing pose. Vectors are along the standing pose's axes, in metres.
 struct LegModel {
   LegJoints joints;
-  vec3 hip_m{0.0};                  // from the pelvis joint to the hip joint (pelvis frame)
-  double thigh_m = 0, shank_m = 0;  // lengths, along -y
-  vec3 heel_m{0.0}, toe_m{0.0};     // from the ankle joint (foot frame); heel_m.y = -ankle height
-  vec3 toe_end_m{0.0};              // from the toe joint (toe frame); 0 if they are one joint
-  double toe_rest_m = 0, toe_end_rest_m = 0;  // height above the floor when standing
+  vec3 hip_m{0.0};                  // from the pelvis joint to the hip joint, in the pelvis' frame
+  double thigh_m = 0, shank_m = 0;  // lengths of the bones, which point along -y
+  // From the ankle joint, in the foot's frame; heel_m.y = -ankle height.
+  vec3 heel_m{0.0}, toe_m{0.0};
+  vec3 toe_end_m{0.0};  // from the toe joint, in the toe's frame; 0 if they are one
+                        // joint
+  double toe_rest_m = 0, toe_end_rest_m = 0;  // heights above the floor when standing
   // Standing rotation of each chain joint's own frame: joint world rotation = segment rotation *
   // standing rotation, seen with the walker facing +z. Order: hip, knee, ankle, toe.
   std::array<quat, 4> standing;
@@ -41,35 +44,39 @@ struct LegModel {
 // One leg at one phase. The angles put the model's ankle and foot where ankle_m and foot say.
 struct LegSample {
   LegAngles angles{};
-  double toe_x = 0.0;                    // radians: toe = foot Rx(toe_x); toe end up is negative
-  vec3 ankle_m{0.0};                     // travel frame
-  quat foot = quat(1.0, 0.0, 0.0, 0.0);  // segment rotation in the travel frame
+  double toe_x = 0.0;                    // angle of the toes, radians: toe = foot Rx(toe_x); toe
+                                         // end up is negative
+  vec3 ankle_m{0.0};                     // place of the ankle in the travel frame
+  quat foot = quat(1.0, 0.0, 0.0, 0.0);  // the foot's segment rotation in the travel frame
 };
 
 struct CycleSample {
-  vec3 pelvis_m{0.0};  // travel frame; z is the fore-aft oscillation, its mean and x's mean are 0
-  quat pelvis = quat(1.0, 0.0, 0.0, 0.0);  // segment rotation in the travel frame
+  // Place in the travel frame; z is the fore-aft oscillation; the means of z and x are 0.
+  vec3 pelvis_m{0.0};
+  quat pelvis = quat(1.0, 0.0, 0.0, 0.0);  // the pelvis' segment rotation in the travel frame
   std::array<LegSample, 2> leg;
 };
 
 struct StrideFamily;
 
 struct GaitCycle {
-  std::string name;  // the motion's; error sentences begin with it
-  // Metres. The root stands at the pelvis: joints from the root down to it have no offsets.
+  std::string name;  // name of the motion, with which error sentences begin
+  // The skeleton in metres. Its root is at the pelvis: joints from the root down to it have no
+  // offsets.
   Skeleton skeleton;
-  int pelvis = 0;                                   // joint of the skeleton
-  double metres_per_unit = 1.0;                     // of the motion's file
-  quat pelvis_standing = quat(1.0, 0.0, 0.0, 0.0);  // pelvis joint's world rotation when standing
+  int pelvis = 0;                // index of the pelvis joint
+  double metres_per_unit = 1.0;  // unit of the motion's file
+  // World rotation of the pelvis joint when standing.
+  quat pelvis_standing = quat(1.0, 0.0, 0.0, 0.0);
   std::array<LegModel, 2> leg;
 
-  double duration_s = 0.0;  // of the stride in the source, 0.05 .. 60
-  double stride_m = 0.0;    // travel in it, 0.001 .. 1000
-  // The stride's place in the source: from `first_frame` on, `frames` long; neither needs to be a
-  // whole number, and phase 0 is somewhere in it. Frames count from 0 in the file, of which
-  // loading drops none.
+  double duration_s = 0.0;  // duration of the stride in the source, 0.05 .. 60
+  double stride_m = 0.0;    // distance travelled in the stride, 0.001 .. 1000
+  // The stride's place in the source: from `first_frame` on, `frames` long; neither has to be a
+  // whole number, and phase 0 is somewhere in it. Frames count from 0 in the file; loading drops
+  // none.
   double first_frame = 0.0, frames = 0.0;
-  double turn_rad = 0.0;  // change of heading in it, + left; the cycle itself is straight
+  double turn_rad = 0.0;  // change of heading in the stride, + left; the cycle itself is straight
   // Step lengths and track widths by Side, measured on the heels while the feet stand flat: from
   // the other foot's heel along the travel (the two add up to stride_m), and sideways from the
   // pelvis' mean path (+ left).
@@ -78,39 +85,43 @@ struct GaitCycle {
   // Events as phases, in the order right strike, left toe-off, left strike, right toe-off. A foot
   // strikes when its heel is down and still; its toe is off when it begins to leave the place from
   // which it pushes. (The built-in walk has those of its published curves.)
-  std::array<double, 2> strike{};   // right = 0, left about 0.5
-  std::array<double, 2> toe_off{};  // left about 0.12, right about 0.62
+  // Strikes of the left and the right foot: right = 0, left about 0.5.
+  std::array<double, 2> strike{};
+  std::array<double, 2> toe_off{};  // toe-offs: left about 0.12, right about 0.62
 
-  std::vector<CycleSample> samples;  // kCycleSamples, periodic
+  std::vector<CycleSample> samples;  // kCycleSamples of them, periodic
   // kCycleSamples x joints: every joint's local rotation (joint 0: in the travel frame), periodic,
   // neighbours in the same hemisphere. The legs' rotations are those of `samples`. Turning local[0]
   // turns the whole body.
   std::vector<quat> local;
-  std::vector<quat> standing_local;  // joints: local rotations of the standing pose
+  std::vector<quat> standing_local;  // local rotations of the standing pose, one for each joint
 
-  Pace pace = Pace::own;  // as the motion's
+  Pace pace = Pace::own;  // the motion's pace
 
   // The tables that a walk reads (gaitpad/stride_family.h); with_clean_strides() fills them.
   std::shared_ptr<const StrideFamily> strides;
 };
 
-// `NAME: samples are 0, not 128`. Lists have their lengths, joints exist, numbers are finite.
+// Errors read `NAME: samples are 0, not 128`. Checks that lists have their lengths, joints exist,
+// numbers are finite.
 std::optional<Error> check(const GaitCycle& cycle);
 
 // The local rotations of some of a cycle's joints as rows of numbers: for each sample w, x, y and z
 // of one joint after the other.
 struct PoseRows {
-  int joint_count = 0;     // of the skeleton
-  std::vector<int> joint;  // the joints of the columns, four columns each
+  int joint_count = 0;     // number of joints of the skeleton
+  std::vector<int> joint;  // joints whose rotations are in the columns, four columns each
   std::vector<int> still;  // further joints, whose rotation is always the identity
-  int stride = 0;          // columns, a multiple of eight; columns beyond the joints' are padding
+  int stride = 0;          // number of columns, a multiple of eight; columns beyond the joints' are
+                           // padding
   std::vector<double> value;
-  std::vector<double> standing;  // one more row: the standing pose
+  std::vector<double> standing;  // the standing pose as one more row
 };
 
-// The cycle at any phase, whole turns included: Catmull-Rom between samples. No allocation.
+// Interpolates the cycle at any phase, also beyond 0 .. 1: Catmull-Rom between samples. No
+// allocation.
 CycleSample sample_at(const GaitCycle& cycle, double phase) noexcept;
-// The same for the local rotations of all joints. Sets pose.local and pose.joint_count, not
+// Interpolates the local rotations of all joints. Sets pose.local and pose.joint_count, not
 // pose.root_m.
 void sample_local(const GaitCycle& cycle, double phase, Pose& pose) noexcept;
 
@@ -128,17 +139,17 @@ Result<GaitCycle> gait_cycle(const Motion& motion);
 // The embedded default: an adult with 0.84 m of thigh + shank, 120 Hz, one exactly periodic and
 // left-right symmetric stride from published normative curves, arms after Boulic et al. 1990.
 GaitCycle procedural_gait();
-// The same walk as a motion of several strides (for `gaitpad motion`, export and tests).
+// The built-in walk as a motion of several strides (for `gaitpad motion`, export and tests).
 Motion procedural_motion();
 
-// Retargets a walk (section 3.2): `source`, walked by the skeleton of `character`. The character's
-// standing pose is measured on its own walk if it has one, else on the straightest frame of its
-// file. Leg angles and foot rotations are taken over, and lengths grow by the ratio of the legs.
-// Spine, neck, head and arms follow their counterparts, whatever they are called; other joints
-// follow those of equal name. Error `NAME: cause`.
+// Retargets a walk (section 3.2): returns `source` as the skeleton of `character` walks it. The
+// character's standing pose is measured on its own walk if it has one, else on the straightest
+// frame of its file. Leg angles and foot rotations are taken over, and lengths grow by the ratio of
+// the legs. Spine, neck, head and arms follow their counterparts, whatever their names are; other
+// joints follow those of equal name. Error `NAME: cause`.
 Result<GaitCycle> cycle_on_skeleton(const GaitCycle& source, const Motion& character);
 
-// Thigh + shank, the mean of both legs.
+// Length of thigh + shank, the mean of both legs.
 double mean_leg_m(const GaitCycle& cycle) noexcept;
 
 }  // namespace gaitpad

@@ -14,28 +14,29 @@
 
 namespace gaitpad {
 
-// How poses are written. The caller fills it.
+// Format of a file that is written. The caller fills it.
 struct GltfLayout {
-  std::string name;    // of the body
-  double fps = 240.0;  // poses a second, 0.001 .. 10,000
-  // One a joint, of length 1: the pose in which the body is bound to the joints, as Pose::local.
+  std::string name;    // name of the body
+  double fps = 240.0;  // poses in a second, 0.001 .. 10,000
+  // The local rotation of each joint, of length 1, in the pose in which the body is bound to the
+  // joints.
   std::vector<quat> rest_local;
-  vec3 rest_root_m{0.0};  // the root's place in that pose, world; coordinates at most 1e6
+  vec3 rest_root_m{0.0};  // place of the root in that pose, world; coordinates at most 1e6
 };
-// `GltfLayout: fps is 0, outside [0.001, 10000]`.
+// Errors read `GltfLayout: fps is 0, outside [0.001, 10000]`.
 std::optional<Error> check(const GltfLayout& layout, const Skeleton& skeleton);
 
-// The header of a .glb holds lengths that are known at the end, and each joint's rotations stand in
-// one piece. So the poses go to `scratch` in chunks and finish() puts the file together: memory
+// Writes a .glb. Its header holds lengths that are known at the end, and each joint's rotations are
+// in one block. So the poses go to `scratch` in chunks and finish() puts the file together: memory
 // does not grow with the walk.
 class GltfWriter {
  public:
   // `out` and `skeleton` must live until finish(). `scratch` is an empty file, open for reading and
   // writing.
   GltfWriter(std::ostream& out, std::fstream scratch, const Skeleton& skeleton, GltfLayout layout);
-  void write(const Pose& pose);  // appends a frame
-  // Writes the file. Returns why it is not whole: too many poses, a full disk, or what check() says
-  // of the layout; then nothing was written.
+  void write(const Pose& pose);  // Appends a frame.
+  // Writes the file. Returns why it is incomplete: too many poses, a full disk, or what check()
+  // says of the layout; then nothing was written.
   std::optional<std::string> finish();
 
  private:
@@ -44,18 +45,18 @@ class GltfWriter {
   std::size_t turning() const { return turning_.size(); }
   std::size_t chunk_bytes() const;
   void write_chunk();
-  // Copies the values of one joint (after the last one: the root's place) over all frames.
+  // Copies the values of one joint over all frames (after the last joint: the root's place).
   bool copy_track(std::size_t track, std::size_t floats);
 
   std::ostream* out_;
   std::fstream scratch_;
   const Skeleton* skeleton_;
   GltfLayout layout_;
-  std::vector<int> turning_;  // all joints but the End Sites
+  std::vector<int> turning_;  // joints with rotations: all but the End Sites
   std::vector<quat> before_;
-  std::vector<std::vector<float>> chunk_;  // one a joint of these, then the root's places
+  std::vector<std::vector<float>> chunk_;  // values of each of these joints, then the root's places
   std::size_t frames_ = 0;
-  std::optional<Error> problem_;  // with the layout
+  std::optional<Error> problem_;  // why check() refuses the layout
 };
 
 }  // namespace gaitpad

@@ -1,7 +1,7 @@
 // A hash of the bits of poses, equal on every machine: two walks are the same bit by bit if their
-// hashes are. It is FNV-1a on 64-bit words instead of bytes, with FNV's offset and prime, and a
-// shift after each product, because a product alone never carries upper bits down. Eight times
-// fewer steps than FNV-1a. It does not resist an adversary.
+// hashes are equal. It is FNV-1a on 64-bit words instead of bytes, with FNV's offset and prime, and
+// a shift after each product, because a product alone never carries upper bits down. It takes an
+// eighth of the steps of FNV-1a. It does not resist an adversary.
 #pragma once
 #include <cstdint>
 #include <cstring>

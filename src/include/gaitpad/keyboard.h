@@ -14,7 +14,7 @@ namespace gaitpad {
 
 class Bell;
 
-// Shared by the thread that reads the keys and the device.
+// The stick's goal, shared by the thread that reads the keys and the device.
 class KeyboardStick {
  public:
   KeyboardStick();
@@ -26,15 +26,15 @@ class KeyboardStick {
   // not-a-number is the centre.
   void steer(const vec2& wanted) noexcept;
 
-  // For the device: the position asked for, in steps of 1 / kFull.
+  // For the device: the goal in steps of 1 / kFull.
   static constexpr int kFull = 32767;
   vec2 wanted() const noexcept;
-  Bell& bell() noexcept { return *bell_; }  // rings at a change during sleep
-  void sleep() noexcept;                    // from now on a change rings
+  Bell& bell() noexcept { return *bell_; }  // Rings when the goal changes during sleep.
+  void sleep() noexcept;                    // From now on a change rings the bell.
 
  private:
   const std::unique_ptr<Bell> bell_;
-  std::atomic<std::uint32_t> wanted_{0};  // two 16-bit counts
+  std::atomic<std::uint32_t> wanted_{0};  // the goal as two 16-bit counts
   std::atomic<bool> is_awake_{false};
 };
 

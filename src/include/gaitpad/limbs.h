@@ -7,7 +7,7 @@ namespace gaitpad {
 
 enum Side : int { kLeftSide = 0, kRightSide = 1 };
 inline constexpr Side other(Side s) noexcept { return s == kLeftSide ? kRightSide : kLeftSide; }
-// Names by Side, of legs and of sticks, for sentences and files.
+// The names of the sides, by Side, for sentences and files.
 inline constexpr std::array<const char*, 2> kSideNames = {"left", "right"};
 
 // A leg's joint angles in radians, about axes fixed in the standing pose (x left, y up, z forward)
@@ -28,11 +28,11 @@ inline constexpr double kReferenceLeg_m = 0.84;
 enum ArmDof : int { kShoulderX, kShoulderZ, kShoulderY, kElbowX, kWristX, kWristZ, kArmDofs };
 using ArmAngles = std::array<double, kArmDofs>;
 
-// The spine's joints in two halves, from the pelvis up.
+// The halves of the spine, from the pelvis up.
 enum SpinePart : int { kLowerSpine, kUpperSpine, kSpineParts };
 
-// Metres from shoulder to wrist, and the shoulders' height, of the same adult: 0.332 and 0.818 of
-// the stature that goes with kReferenceLeg_m.
+// Distance from shoulder to wrist, and height of the shoulders, of the same adult in metres: 0.332
+// and 0.818 of the stature that goes with kReferenceLeg_m.
 inline constexpr double kReferenceArm_m = 0.568;
 inline constexpr double kReferenceShoulder_m = 1.40;
 

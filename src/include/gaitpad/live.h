@@ -23,37 +23,42 @@
 
 namespace gaitpad {
 
-// Counted since the beginning. Standing still (pace 0) counts neither as lateness nor as waiting.
+// The state of a live session, counted since its beginning. Time at pace 0 counts neither as
+// lateness nor as waiting.
 struct LiveStatus {
   static constexpr std::size_t kWaitClasses = 32;
   static constexpr std::int64_t kWaitClass_ns = 250'000;
 
   std::int64_t ticks = 0;
-  double time_s = 0.0;        // by the clock from when tick 0 was due to the stop; 0: by hand
-  std::int64_t overruns = 0;  // ticks that began more than one tick late
-  std::int64_t standstills =
-      0;                       // stops of more than a second, after which the clock was set forward
-  std::int64_t overloads = 0;  // the clock was set forward because ticks take too long
-  double skipped_s = 0.0;      // time that the clock was set forward by
-  double late_us_median = 0.0, late_us_max = 0.0;  // from when a tick was due to its begin
+  double time_s = 0.0;           // time from when tick 0 was due to the stop; 0: by hand
+  std::int64_t overruns = 0;     // number of ticks that began more than one tick late
+  std::int64_t standstills = 0;  // number of stops of more than a second, after which the clock was
+                                 // set forward
+  // Number of times that the clock was set forward because ticks take too long.
+  std::int64_t overloads = 0;
+  double skipped_s = 0.0;                          // total time by which the clock was set forward
+  double late_us_median = 0.0, late_us_max = 0.0;  // delays from when a tick was due until it began
   double tick_us_median = 0.0, tick_us_max = 0.0;  // duration of a tick, without the sleep
   // Times from the arrival of a report to the tick that uses it, at pace 1.
   double wait_us_median = 0.0, wait_us_max = 0.0;
-  // Times from the arrival of a report to the hand-over of the first frame that shows what it did,
+  // Times from the arrival of a report to the hand-over of the first frame that shows its effect,
   // at pace 1: median and 99th percentile; 0 if no frames are shown (LiveSession::end_frame()).
   double frame_us_p50 = 0.0, frame_us_p99 = 0.0;
-  std::array<std::int64_t, kWaitClasses> wait_counts{};  // by kWaitClass_ns; the last: longer
+  // Number of waits in each class of kWaitClass_ns; the last class holds all longer ones.
+  std::array<std::int64_t, kWaitClasses> wait_counts{};
   // The scheduling of the loop thread: `SCHED_FIFO 20`, `normal priority`, `by hand`.
   std::string time_policy;
   PadStreamCounts pads;
-  std::int64_t streamed = 0;        // frames sent to other programs
-  std::int64_t recording_lost = 0;  // reports that the recording missed: it is inexact then
+  std::int64_t streamed = 0;  // number of frames sent to other programs
+  // Number of reports that are missing in the recording, which is then inexact.
+  std::int64_t recording_lost = 0;
 };
 
 // The times at which an input report arrived and was used.
 struct ReportTime {
   std::int64_t tick = 0;
-  std::int64_t arrival_ns = 0, begin_ns = 0;  // CLOCK_MONOTONIC: its stamp, and the tick's begin
+  // The report's stamp and the tick's begin, CLOCK_MONOTONIC.
+  std::int64_t arrival_ns = 0, begin_ns = 0;
   std::uint16_t device = kNoDevice;
 };
 
@@ -64,7 +69,7 @@ class LiveSession {
   // Reads the files, opens the recording and starts the threads. Error: a specification that
   // check() refuses, a file that cannot be read, an impossible selector (PadStream::start()).
   static Result<std::unique_ptr<LiveSession>> start(const SessionSpec& spec);
-  // The same in two parts, so that a program can end one session only when the files of the next
+  // Starting in two parts, so that a program can end one session only when the files of the next
   // are known to fit together: prepare() reads them and touches no device. `prepared` is used once.
   struct Prepared;
   static Result<std::shared_ptr<Prepared>> prepare(const SessionSpec& spec);
@@ -73,15 +78,16 @@ class LiveSession {
 
   const SessionSpec& spec() const noexcept;
   const Cast& cast() const noexcept;
-  // The name of a device that a frame names; empty: there is none.
+  // The name of a device by its number in a frame; empty: there is none.
   std::string pad_name(std::uint16_t device) const;
 
-  // From one viewing thread.
-  const SessionFrame& latest(bool& is_new) noexcept;  // valid until the next call
-  // The same, just before drawing: if a tick is due and has not run, waits for it, at most 2 ms.
+  // The newest frame. Call it from one viewing thread.
+  const SessionFrame& latest(bool& is_new) noexcept;  // Valid until the next call.
+  // The newest frame just before drawing: if a tick is due and has not run, waits for it, at most 2
+  // ms.
   const SessionFrame& latest_due() noexcept;
-  // Tells that the frame that was read last is on the display now, or will never be. This measures
-  // the age of the reports whose effect it shows first.
+  // Call it when the last frame that was read is on the display, or will never be. It measures the
+  // age of the reports whose effect the frame shows first.
   void end_frame(FrameEnd end) noexcept;
   // Takes the oldest sample; false if there is none. If samples are not taken, new ones are
   // dropped.
@@ -91,33 +97,36 @@ class LiveSession {
   // dropped.
   bool take_report_time(ReportTime& time) noexcept;
   // Sets the pace, ticks per second over the rate: 0 stands still, 1 is real time, 0.25 slow
-  // motion, at most 8; less than 1/1024, or no number, stands still. A tick computes the same at
-  // every pace. Takes effect within 20 ms. While the session stands still latest() still shows the
-  // driving pad's state and presses.
+  // motion, at most 8; a pace below 1/1024 or not-a-number stands still. A tick computes the same
+  // at every pace. Takes effect within 20 ms. While the session stands still, latest() still shows
+  // the driving pad's state and presses.
   void set_pace(double pace) noexcept;
-  void step(int ticks) noexcept;     // if the session stands still: runs them at pace 8
-  void advance(int ticks) noexcept;  // Clock::by_hand: runs them here and now; else nothing
-  // Neither does anything for less than one tick.
-  // The keyboard as a stick: where it should go, +x right, +y forward, at most 1 long. It moves
+  // Runs this number of ticks at pace 8, if the session stands still; does nothing for less than
+  // one.
+  void step(int ticks) noexcept;
+  // Runs this number of ticks in the calling thread, with Clock::by_hand only; does nothing for
+  // less than one.
+  void advance(int ticks) noexcept;
+  // Sets the goal of the keyboard's stick, +x right, +y forward, at most 1 long. The stick moves
   // there smoothly. Not-a-number is the centre.
   void steer(const vec2& wanted) noexcept;
   // Sends a command such as `style limp_left` (grammar: config/README.md, `C:`), from any thread. A
   // command that cannot be carried out gives a remark and counts as bad.
   void command(std::string_view text);
-  // A style that commands may name from now on, also in cast(); one of the same name is replaced.
-  // From the viewing thread.
+  // Adds a style that commands may name from now on, also to cast(); one of the same name is
+  // replaced. Call it from the viewing thread.
   void add_style(const Style& style);
-  void rumble() noexcept;  // one beat of the driving pad's motors
-  // Ends the recording, if there is one; the session goes on. From the viewing thread; waits for
-  // the tick that runs. Error: the file could not be written.
+  void rumble() noexcept;  // Runs the driving pad's motors for one beat.
+  // Ends the recording, if there is one; the session goes on. Call it from the viewing thread; it
+  // waits for the running tick. Error: the file could not be written.
   std::optional<Error> end_recording();
-  bool has_ended() const noexcept;  // the pad is a recording that ended a second ago
+  bool has_ended() const noexcept;  // True if the pad is a recording that ended a second ago.
   LiveStatus status() const noexcept;
-  // Remarks for users (pads that cannot be opened, real-time scheduling that was refused), each
-  // once.
+  // Remarks for users (pads that cannot be opened, real-time scheduling that was refused). Each is
+  // returned once.
   std::vector<std::string> take_remarks();
 
-  // Ends the threads and the recording. Once. Error: the recording could not be written.
+  // Ends the threads and the recording. Call it once. Error: the recording could not be written.
   Result<RunSummary> stop();
 
  private:

@@ -28,15 +28,15 @@ static_assert(sizeof(vec3) == 3 * sizeof(double) && sizeof(quat) == 4 * sizeof(d
               "build without GLM_FORCE_DEFAULT_ALIGNED_GENTYPES");
 
 inline constexpr double kPi = std::numbers::pi;
-inline constexpr double kDegree = kPi / 180.0;           // radians
-inline const quat kIdentity = quat(1.0, 0.0, 0.0, 0.0);  // w, x, y, z
-inline const vec3 kLeft = vec3(1.0, 0.0, 0.0);           // world axes: x to the walker's left at
-inline const vec3 kUp = vec3(0.0, 1.0, 0.0);             // heading 0, y up,
-inline const vec3 kForward = vec3(0.0, 0.0, 1.0);        // z forward
+inline constexpr double kDegree = kPi / 180.0;           // a degree in radians
+inline const quat kIdentity = quat(1.0, 0.0, 0.0, 0.0);  // no rotation; w, x, y, z
+// X axis of the world, to the walker's left at heading 0.
+inline const vec3 kLeft = vec3(1.0, 0.0, 0.0);
+inline const vec3 kUp = vec3(0.0, 1.0, 0.0);       // y axis of the world
+inline const vec3 kForward = vec3(0.0, 0.0, 1.0);  // z axis of the world, forward
 
-// The same types for numbers V that stand for several walkers side by side, one in each lane of a
-// register (base/lanes.h); for doubles they are those above. In memory their parts stand in the
-// same order.
+// These types for numbers V of several walkers side by side, one in each lane of a register
+// (base/lanes.h); for doubles they are the types above. In memory their parts have the same order.
 template <class V>
 struct Vec3Of {
   V x, y, z;
@@ -56,52 +56,52 @@ using Quat = std::conditional_t<std::is_same_v<V, double>, quat, QuatOf<V>>;
 struct SinCos {
   double sin, cos;
 };
-// Within about 1 ulp of the true values for |angle| < 1e5 rad.
+// Errors are about 1 ulp at most for |angle| < 1e5 rad.
 SinCos sin_cos(double angle_rad) noexcept;
 double atan2(double y, double x) noexcept;
-double acos(double x) noexcept;  // the argument is clamped to [-1, 1]
+double acos(double x) noexcept;  // The argument is clamped to [-1, 1].
 
-// The same angle within [-pi, pi).
+// The equal angle within [-pi, pi).
 double wrapped(double angle_rad) noexcept;
 
 quat rotation_about(const vec3& unit_axis, double angle_rad) noexcept;
 quat rotation_x(double angle_rad) noexcept;
 quat rotation_y(double angle_rad) noexcept;
 quat rotation_z(double angle_rad) noexcept;
-// The smallest rotation that turns unit vector `from` to unit vector `to`.
+// The smallest rotation from unit vector `from` to unit vector `to`.
 quat rotation_between(const vec3& from, const vec3& to) noexcept;
-// A rotation as its unit axis times its angle in [0, pi], and back.
+// A rotation as its unit axis times its angle in [0, pi]; and the rotation of such a vector.
 vec3 rotation_vector(const quat& q) noexcept;
 quat from_rotation_vector(const vec3& v) noexcept;
-// `share` of the way from one rotation to the other, the shorter way round: linear, then
-// normalized. The ends are normalized as well.
+// `share` of the way from one rotation to another, along the shorter arc: linear, then normalized.
+// The ends are normalized as well.
 quat nlerp(const quat& from, const quat& to, double share) noexcept;
-// Rotation whose columns are the images of x, y, z (orthonormal, right-handed).
+// The rotation whose columns are the images of x, y, z (orthonormal, right-handed).
 quat from_axes(const vec3& x, const vec3& y, const vec3& z) noexcept;
 
-// Unit direction on the ground of a heading: 0 along +z, positive to the left (+x).
+// The unit direction on the ground of a heading: 0 along +z, positive to the left (+x).
 inline vec3 heading_direction(double heading_rad) noexcept {
   const SinCos s = sin_cos(heading_rad);
   return vec3(s.sin, 0.0, s.cos);
 }
-// Length of a vector's horizontal part.
+// The length of a vector's horizontal part.
 inline double horizontal_length(const vec3& v) noexcept { return std::sqrt(v.x * v.x + v.z * v.z); }
-// Heading of a direction's horizontal part.
+// The heading of a direction's horizontal part.
 inline double heading_of(const vec3& direction) noexcept { return atan2(direction.x, direction.z); }
 
-// The functions below take a number, or several side by side.
+// The functions below take a number, or several numbers side by side.
 template <class V>
 V within(const V& x, double low, double high) noexcept {
   const V above = x < low ? V{} + low : x;
   return high < above ? V{} + high : above;
 }
-// 0 at x <= a, 1 at x >= b, with zero slope at both ends (cubic).
+// A cubic that is 0 at x <= a and 1 at x >= b, with zero slope at both ends.
 template <class V>
 auto smoothstep(double a, double b, const V& x) noexcept {
   const auto u = within((x - a) / (b - a), 0.0, 1.0);
   return u * u * (3.0 - 2.0 * u);
 }
-// The same with zero curvature at both ends as well (quintic), from 0 to 1.
+// A quintic from 0 at x <= 0 to 1 at x >= 1, with zero slope and curvature at both ends.
 template <class V>
 auto smootherstep(const V& x) noexcept {
   const auto u = within(1.0 * x, 0.0, 1.0);
@@ -111,7 +111,7 @@ template <class A, class B, class V>
 auto mix(const A& a, const B& b, const V& t) noexcept {
   return a + (b - a) * t;
 }
-// The part of a number of turns beyond whole ones, 0 .. 1.
+// The fractional part of a number of turns, 0 .. 1.
 inline double fraction(double turns) noexcept { return turns - std::floor(turns); }
 
 }  // namespace gaitpad

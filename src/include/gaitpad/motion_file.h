@@ -18,20 +18,23 @@
 
 namespace gaitpad {
 
-// Larger files are errors.
+// Largest size of a file; a larger one is an error.
 inline constexpr std::size_t kMaxMotionFileBytes = std::size_t{512} << 20;
-inline constexpr long long kMaxFrameJoints = 10'000'000;  // 100 joints: 14 minutes at 120 Hz
+// Frames times joints; for 100 joints 14 minutes at 120 Hz.
+inline constexpr long long kMaxFrameJoints = 10'000'000;
 
 // Facts that a motion file does not state, or states wrongly. The caller fills it.
 struct LoadOptions {
-  // At most 1000; 0: from the length of the legs, metres_per_unit() below.
+  // Unit of the file, at most 1000; 0: found from the length of the legs, metres_per_unit() below.
   double metres_per_unit = 0.0;
-  // 1 .. 10,000; 0: as the file says; 120 Hz for an .amc that says nothing.
+  // Frame rate, 1 .. 10,000; 0: what the file says; 120 Hz for an .amc that says nothing.
   double frame_rate_hz = 0.0;
-  std::string skeleton;            // path of the .asf file of an .amc file; empty: beside it
-  std::array<LegNames, 2> legs{};  // indexed by Side; empty names are found by find_legs()
+  std::string skeleton;  // .asf file of an .amc file; empty: the one beside it
+  // Names of the legs' joints, indexed by Side; find_legs() finds those that are empty.
+  std::array<LegNames, 2> legs{};
 };
-// `LoadOptions: frame_rate_hz is -1, outside [1, 10000]`. Every function below calls it.
+// Errors read `LoadOptions: frame_rate_hz is -1, outside [1, 10000]`. Every function below calls
+// it.
 std::optional<Error> check(const LoadOptions& options);
 
 // Loads a motion by its file's ending: .amc with its .asf, .asf alone (its rest pose as one frame),
@@ -52,14 +55,14 @@ std::optional<Error> check(const LoadOptions& options);
 //   have a plausible length.
 Result<Motion> load_motion(const std::string& path, const LoadOptions& options = {});
 
-// The same from texts in memory; `name` stands in errors.
+// Load a motion from texts in memory; `name` replaces the path in errors.
 Result<Motion> motion_from_bvh(std::string_view text, const std::string& name,
                                const LoadOptions& options = {});
 struct NamedText {
   std::string name;
   std::string_view text;
 };
-// An `amc` without a name: the rest pose.
+// An `amc` without a name gives the rest pose.
 Result<Motion> motion_from_acclaim(const NamedText& asf, const NamedText& amc,
                                    const LoadOptions& options = {});
 
@@ -68,19 +71,19 @@ Result<Motion> motion_from_acclaim(const NamedText& asf, const NamedText& amc,
 // makes the leg 0.65 to 1.05 m long (at most one does); if none does, the leg is kReferenceLeg_m
 // long.
 double metres_per_unit(double leg_length_units) noexcept;
-// The same for a file that states its unit. The stated unit counts if it makes the leg 0.4 to 1.3 m
-// long, as children and giants have; otherwise the file is wrong, as endorphin's are.
+// The unit of a file that states it. The stated unit counts if it makes the leg 0.4 to 1.3 m long,
+// as children and giants have; otherwise the file is wrong, as endorphin's are.
 double metres_per_unit(double leg_length_units, double stated_unit_m) noexcept;
 
-// The file that a user's FILE|NAME means: itself if it has a dot or a slash or exists, else
+// The file that a user's FILE|NAME means: FILE itself if it has a dot or a slash or exists, else
 // motions/NAME.toml in the folders of configuration (config_files.h).
 Result<std::string> motion_path(const std::vector<std::string>& folders,
                                 const std::string& file_or_name);
 
 // Loads the motion of a session: a file as load_motion() does, or a .toml file (config/README.md,
-// Motions). That one holds key-framed poses, or names a motion file beside it and states what
-// cannot be found in it: its unit, skeleton, frame rate and the joints of the legs. `given` takes
-// precedence over the .toml file.
+// Motions). A .toml file holds key-framed poses, or names a motion file beside it and states what
+// cannot be found in that file: its unit, skeleton, frame rate and the joints of the legs. `given`
+// takes precedence over the .toml file.
 Result<Motion> load_motion_source(const std::string& path, const LoadOptions& given = {});
 
 }  // namespace gaitpad

@@ -18,24 +18,28 @@ DeviceIdentity identity_of(const DeviceInfo& info);
 
 // Everything that files say about pads; load_pad_files() fills it. A session reads them once.
 struct PadFiles {
-  PadOverrides overrides;                        // --map first, then config/pads
-  std::optional<CalibrationFile> calibration;    // --calibration: for every pad but the keyboard
-  std::string user_calibrations;                 // the user's folder, for live pads alone
-  std::vector<std::string> calibration_folders;  // searched for the best fitting file otherwise
-  // The user's lines of SDL's data base, the most important first, for live pads alone:
+  PadOverrides overrides;  // --map first, then config/pads
+  // The file of --calibration, for every pad except the keyboard.
+  std::optional<CalibrationFile> calibration;
+  std::string user_calibrations;  // the user's folder, for live pads only
+  // Folders that are otherwise searched for the best fitting file.
+  std::vector<std::string> calibration_folders;
+  // Mappings of the user's data base, the most important first, for live pads only:
   // $SDL_GAMECONTROLLERCONFIG, $SDL_GAMECONTROLLERCONFIG_FILE, user_mapping_file().
   // `mapping_problem` says why one of the files cannot be read; empty: all were read.
   std::vector<std::string> mappings;
   std::string mapping_problem;
 };
-// gamecontrollerdb.txt in the user's folder, whether it exists or not; empty: there is no folder.
+// Path of gamecontrollerdb.txt in the user's folder, whether it exists or not; empty: there is no
+// folder.
 std::string user_mapping_file();
-// Writes these lines into such a file, over those of the same pads; the others stay. Returns how
-// many there are now.
+// Writes these mappings into such a file. They replace those of the same pads; the others stay.
+// Returns the number of mappings in the file.
 Result<std::size_t> save_mappings(const std::string& path, const std::vector<std::string>& lines);
 inline constexpr std::size_t kMaxMappingFileBytes = std::size_t{8} << 20;
 
-// `map` and `calibration` are paths; empty: none. Error: a file that cannot be read.
+// Reads all of it. `map` and `calibration` are paths; empty: none. Error: a file that cannot be
+// read.
 Result<PadFiles> load_pad_files(const std::vector<std::string>& config_folders,
                                 const std::string& map, const std::string& calibration);
 
@@ -49,7 +53,7 @@ Result<PadConfig> pad_config(const PadFiles& files, const DeviceInfo& info,
 // a replay is the same on every machine.
 Result<PadConfig> pad_config(const PadFiles& files, const TraceDevice& device,
                              const std::string& origin);
-// All devices of the recording `source`.
+// The configurations of all devices of the recording `source`.
 Result<std::vector<PadConfig>> pad_configs(const PadFiles& files,
                                            const std::vector<TraceDevice>& devices,
                                            const std::string& source);
@@ -57,14 +61,14 @@ Result<std::vector<PadConfig>> pad_configs(const PadFiles& files,
 // A live device as a recording will hold it, and the calibration in force. pad_config() of either
 // gives the same configuration bit by bit, so a replay is exact.
 struct RecordedDevice {
-  TraceDevice device;           // with the calibration as text, and with a mapping
-  CalibrationFile calibration;  // only what the text keeps: name, mapping, numbers
+  TraceDevice device;           // has the calibration as text, and a mapping
+  CalibrationFile calibration;  // the parts of it that the text keeps: name, mapping, numbers
 };
-// A calibration file for this one device (by unique id or port) counts more than the pad's factory
-// sticks, and these count more than a file for its model (whose dead zones stay). Of files that fit
-// equally well the user's counts. Without a mapping in the calibration the device gets a line of
-// the user's data base, else of SDL's, if config/pads has no entry for it.
-// `remarks` receives a sentence for each damaged file that was left out.
+// Chooses a live device's calibration. A file for this one device (by unique id or port) takes
+// precedence over the pad's factory sticks, and these over a file for its model (whose dead zones
+// stay). Of files that fit equally well the user's is taken. Without a mapping in the calibration
+// the device gets one of the user's data base, else of SDL's, if config/pads has no entry for it.
+// `remarks` receives a sentence for each damaged file that was skipped.
 RecordedDevice recorded_device(const PadFiles& files, const DeviceInfo& info,
                                const std::optional<FactorySticks>& factory,
                                std::vector<std::string>& remarks);

@@ -23,11 +23,13 @@ namespace gaitpad {
 // The pad that a user asks for; empty: any. The caller fills it. The functions below refuse a
 // selector that no device or driver can fit.
 struct PadSelector {
-  std::string pad;  // a path (node or recording), a `vid:pid`, a unique id, a unique part of a name
-  std::string driver;  // hidraw, evdev, sdl or usb: this driver alone
+  // A path (node or recording), a `vid:pid`, a unique id, or a part of a name that only one pad
+  // has.
+  std::string pad;
+  std::string driver;  // the only driver to use: hidraw, evdev, sdl or usb; empty: any
 };
 
-// A kernel's driver is detached only for a user who names usb.
+// Allows detaching a kernel driver only if the user names usb.
 inline Detach detach_asked(const PadSelector& selector) {
   return selector.driver == "usb" ? Detach::allowed : Detach::never;
 }
@@ -38,17 +40,17 @@ struct PadSighting {
   const DriverEntry* driver = nullptr;
   bool is_pad = false;  // it has a stick, or its driver knows only after opening it
   std::string problem;  // one sentence that says why it is not usable; empty: it is usable
-  // Number of the node's file (inode): another one after the device was plugged in again, although
-  // the node's name may be the same. 0: not known.
+  // Number of the node's file (inode). It changes when the device is plugged in again, even if the
+  // node's name does not. 0: not known.
   std::uint64_t node_file = 0;
 };
 
-// Equal for all sightings of the same pad by different drivers.
+// A key that all sightings of one pad by different drivers share.
 std::string pad_key(const PadSighting& sighting);
 
 enum class Drivers {
-  // SDL is asked only if it is asked for, or if no other driver of kernel devices was built: its
-  // start takes up to a second.
+  // All drivers, but SDL only if it is asked for, or if no other driver of kernel devices was
+  // built: its start takes up to a second.
   preferred,
   all,
 };
@@ -72,24 +74,25 @@ Result<std::vector<PadSighting>> chosen_pads(const std::vector<PadSighting>& sig
 // of all pads if it is empty. Error as for chosen_pads().
 Result<std::vector<PadSighting>> matching_pads(const std::vector<PadSighting>& sightings,
                                                const PadSelector& selector);
-// Whether PAD names a recording: an existing file, or a path that ends in .hid.
+// True if PAD names a recording: an existing file, or a path that ends in .hid.
 bool is_recording(const std::string& pad);
 
-// Whether `b` is the device `a` plugged in again: same driver and ids, and the same unique id, or
+// True if `b` is the device `a` plugged in again: same driver and ids, and the same unique id, or
 // the same port if they have none.
 bool is_same_device(const DeviceInfo& a, const DeviceInfo& b) noexcept;
 
-inline constexpr std::size_t kMaxPads = kMaxTraceDevices;  // different ones in one session
+inline constexpr std::size_t kMaxPads = kMaxTraceDevices;  // most different pads in one session
 
-inline constexpr std::size_t kMostRingReports = std::size_t{1} << 20;  // 1 GB
+// Largest ring, which takes 1 GB.
+inline constexpr std::size_t kMostRingReports = std::size_t{1} << 20;
 
-// The caller fills it.
+// Options of a stream; the caller fills them.
 struct PadStreamOptions {
-  PadFiles files;  // of load_pad_files()
+  PadFiles files;  // files about pads, read by load_pad_files()
   PadSelector selector;
   // The keyboard as a further device. It has index 0 and is there from the start. Null: none.
   std::shared_ptr<KeyboardStick> keyboard = nullptr;
-  bool is_raw = false;  // every packet as its node gives it, input or not (Device::hand_on_raw)
+  bool is_raw = false;  // passes on every packet, input or not (Device::hand_on_raw)
   // For tests: other drivers; a file descriptor that replaces udev (readable when something was
   // plugged in or out, silent after one read(); -1: udev); the size of the ring in reports, a power
   // of two up to kMostRingReports.
@@ -98,15 +101,16 @@ struct PadStreamOptions {
   std::size_t ring_reports = 1024;
 };
 
-// `PadStreamOptions: ring_reports is 3, not a power of two in [1, 1048576]`.
+// Errors read `PadStreamOptions: ring_reports is 3, not a power of two in [1, 1048576]`.
 std::optional<Error> check(const PadStreamOptions& options);
 
-// Counted since the beginning.
+// Numbers since the beginning.
 struct PadStreamCounts {
-  std::int64_t reports = 0;  // written to the ring
-  std::int64_t lost = 0;     // reports that a source lost, and those that found the ring full
-  std::int64_t plugged = 0, unplugged = 0;  // pads without the keyboard
-  std::int64_t commands_left_out = 0;       // too long, or too many at once
+  std::int64_t reports = 0;  // reports that were written to the ring
+  std::int64_t lost = 0;     // reports that a source lost, and reports that found the ring full
+  // Pads that were plugged in and out, without the keyboard.
+  std::int64_t plugged = 0, unplugged = 0;
+  std::int64_t commands_left_out = 0;  // commands that were too long, or too many at once
 };
 
 // Pads as one stream of reports: found, opened, and kept through unplugging and plugging in again.
@@ -123,29 +127,30 @@ struct PadStreamCounts {
 // it from then on.
 class PadStream {
  public:
-  // Starts both threads. Pads that are plugged in already are announced like those plugged in
-  // later. If no device fits the selector, the stream waits for one. Error: an unknown driver, a
-  // damaged recording, a part of a name that fits several pads.
+  // Starts both threads. Pads that are plugged in already are announced in the same way as those
+  // plugged in later. If no device fits the selector, the stream waits for one. Error: an unknown
+  // driver, a damaged recording, a part of a name that fits several pads.
   static Result<std::unique_ptr<PadStream>> start(PadStreamOptions options);
-  ~PadStream();  // closes every device and gives back what was taken from the kernel
+  ~PadStream();  // Closes every device and gives back what was taken from the kernel.
 
   // The reading end, for one thread; wait-free and without heap. The first report of a device is
   // `added`, also after plugging in again. If the ring was full, the newest report of each device
-  // and report id follows once there is room. The time stamps of a device never go back. A command
-  // is never blank, and line breaks in it are blanks.
-  const Report* front() noexcept;  // the oldest report, null if there is none; valid until pop()
+  // and report id follows as soon as there is room. The time stamps of a device never decrease. A
+  // command is never blank, and line breaks in it become blanks.
+  const Report* front() noexcept;  // The oldest report, null if there is none; valid until pop().
   void pop() noexcept;
-  // Sleeps until there is something to read or the time is over. Not for the loop thread.
+  // Sleeps until there is something to read or the time is over. Do not call it in the loop thread.
   void wait(std::chrono::milliseconds timeout);
 
-  // The description of a device; valid once front() has given its first `added`, and unchanged
-  // afterwards. For the reading thread, and for threads that it told of the device.
+  // The description of a device; valid after front() has given its first `added`, and unchanged
+  // afterwards. For the reading thread, and for threads that it tells about the device.
   const TraceDevice& device(std::uint16_t index) const noexcept;
   const PadLayout& layout(std::uint16_t index) const noexcept;
   // Moves the configuration out, once. Its pad is not present: `added` follows.
   PadConfig take_config(std::uint16_t index) noexcept;
 
-  // Runs the motors for that long. From the reading thread, wait-free. Dropped if too many wait.
+  // Runs the motors for this time. Call it from the reading thread; it does not wait. Dropped if
+  // too many requests wait.
   void rumble(std::uint16_t device, const Rumble& rumble,
               std::chrono::milliseconds duration) noexcept;
   // From any thread: a line such as `style limp_left` becomes a report of kind command.
@@ -153,8 +158,9 @@ class PadStream {
 
   // True once every device of a recording has come to its end; never for hardware.
   bool has_ended() const noexcept;
-  PadStreamCounts counts() const noexcept;  // any thread
-  // Remarks for users (a pad that cannot be opened and why, an unplugged one), each once.
+  PadStreamCounts counts() const noexcept;  // Any thread.
+  // Remarks for users (an unplugged pad; a pad that cannot be opened, and why). Each is returned
+  // once.
   std::vector<std::string> take_remarks();
 
  private:

@@ -24,19 +24,21 @@ namespace gaitpad {
 // The facts about a pad that are known before its first report. pad_config() fills them
 // (gaitpad/pad_configuration.h), or a program that has pads of its own.
 struct PadConfig {
-  std::shared_ptr<const PadLayout> layout;  // null: none of its reports can be decoded
+  std::shared_ptr<const PadLayout> layout;  // null: no report of the pad can be decoded
   Calibration calibration;
-  bool is_usable = true;            // it has a stick that can drive
-  bool is_present = true;           // plugged in at the start
-  bool streams = false;             // it reports even while at rest: silence means that it is gone
-  bool is_fallback = false;         // the keyboard: it drives only while no other pad is plugged in
-  bool has_factory_sticks = false;  // live pads: it told its own calibration when it was opened
-  std::optional<FactoryGyro> factory_gyro;  // the same for its gyroscope
+  bool is_usable = true;   // it has a stick that can drive
+  bool is_present = true;  // plugged in at the start
+  bool streams = false;    // it reports even while at rest: silence means that it is gone
+  // It is the keyboard, which drives only while no other pad is plugged in.
+  bool is_fallback = false;
+  // Live pads: the pad told its own calibration when it was opened.
+  bool has_factory_sticks = false;
+  std::optional<FactoryGyro> factory_gyro;  // calibration of the gyroscope that the pad told
 };
-// `Calibration: left.inner is 2, outside [0, 0.9]`, and the same for the gyroscope.
+// Errors read `Calibration: left.inner is 2, outside [0, 0.9]`; those of the gyroscope are similar.
 std::optional<Error> check(const PadConfig& config);
 
-// For users.
+// A remark for users.
 inline constexpr std::string_view kHatDrives =
     "while a pad's left stick has not moved, its D-pad drives (arcade sticks in D-pad mode)";
 
@@ -51,6 +53,8 @@ enum class PadRules {
   version_2,
 };
 
+// Pads of a session; the class decides which of them drives.
+//
 // The first usable pad drives: the first of those plugged in at the start, else the first to be
 // added. Another pad takes over when it is moved, by a tenth of a stick's deflection or a button,
 // if the driving one has not been moved yet or has rested for 5 s: receivers without a pad, virtual
@@ -72,7 +76,7 @@ enum class PadRules {
 // stick is neutral or exactly at rest and a fallback's left stick is not, the fallback's sticks
 // count.
 //
-// Nothing but the constructor allocates.
+// Only the constructor allocates.
 class Pads {
  public:
   Pads() = default;
@@ -80,17 +84,17 @@ class Pads {
   // kMaxRateHz.
   Pads(std::vector<PadConfig> configs, int rate_hz, PadRules rules = PadRules::version_2);
 
-  // Sets what is known of a device that was found later, before its first add_pad(). Swaps:
-  // `config` receives what was known before.
+  // Sets the configuration of a device that was found later, before its first add_pad(). Swaps:
+  // `config` receives the previous one.
   void set_pad(std::uint16_t device, PadConfig& config) noexcept;
-  // Takes in an input report. False if its device cannot send such a report: then nothing changes.
+  // Takes an input report. False if its device cannot send such a report: then nothing changes.
   bool take_report(const Report& report) noexcept;
-  void add_pad(std::uint16_t device) noexcept;     // it was plugged in
-  void remove_pad(std::uint16_t device) noexcept;  // it was unplugged
+  void add_pad(std::uint16_t device) noexcept;     // Call it when the pad was plugged in.
+  void remove_pad(std::uint16_t device) noexcept;  // Call it when the pad was unplugged.
   // The driving stick after this tick's reports. Call it once a tick: it counts the silence.
   Stick finish_tick() noexcept;
 
-  // kNoDevice: no pad has driven so far. The driving pad may be unplugged.
+  // The driving pad, which may be unplugged; kNoDevice: no pad has driven so far.
   std::uint16_t driving() const noexcept { return driving_; }
   // The driving pad's uncalibrated state; at rest if there is no driving pad.
   const PadState& driving_state() const noexcept;
@@ -98,9 +102,9 @@ class Pads {
   const PadConfig* driving_pad() const noexcept;
   // The number of reports of the driving pad since the beginning, sound or not.
   std::uint64_t driving_reports() const noexcept;
-  // Presses of each button of the pad that drove at that moment, since the beginning. Every report
-  // counts, so that a press between two ticks is not missed. A button that is held while the pad is
-  // plugged in counts with the first report.
+  // Number of presses of each button since the beginning, each on the pad that drove at that time.
+  // Every report counts, so that a press between two ticks is not missed. A button that is held
+  // while the pad is plugged in counts with the first report.
   const PressCounts& presses() const noexcept { return presses_; }
   // The number of times that the driving pad's left stick began to move the character untouched.
   std::int64_t untouched() const noexcept { return untouched_; }
@@ -108,24 +112,24 @@ class Pads {
  private:
   struct Pad {
     PadConfig config;
-    PadState state;               // as reported
-    JumpFilter filter;            // of its sticks
+    PadState state;               // the state that the pad reported last
+    JumpFilter filter;            // removes jumps of its sticks
     bool is_awaited = false;      // plugged in again and not yet seen near its centre
     bool is_seen = false;         // it has reported since it was plugged in
-    bool has_left_moved = false;  // since it was plugged in
-    Stick moved_to;               // where its sticks were when they moved last
-    int resting_ticks = 0;        // since it was moved, deflected or pressed
+    bool has_left_moved = false;  // its left stick has moved since it was plugged in
+    Stick moved_to;               // position of its sticks when they moved last
+    int resting_ticks = 0;        // ticks since it was moved, deflected or pressed
     std::uint64_t reports = 0;
     int silent_ticks = 0;
-    int settled_ticks = 0;  // of silence: the filter then ends its delay
-    int turn = 0;  // the lowest goes first among pads that can take over; 0: never plugged in
+    int settled_ticks = 0;  // ticks of silence after which the filter's delay ends
+    int turn = 0;  // rank among pads that can take over, the lowest first; 0: never plugged in
   };
   bool is_silent(const Pad& pad) const noexcept;
   static Stick calibrated(const Pad& pad) noexcept;
   bool is_near_centre(const Pad& pad) const noexcept;
   bool is_at_rest(const Pad& pad) const noexcept;
   bool take_movement(Pad& pad, std::uint32_t buttons_before) noexcept;
-  // `is_first`: the pad's first report since it was plugged in.
+  // Lets another pad take over if it may. `is_first`: its first report since it was plugged in.
   void offer_seat(std::uint16_t device, bool is_first, bool has_moved) noexcept;
   void give_seat(std::uint16_t device) noexcept;
   bool can_take_over(const Pad& pad) const noexcept;
@@ -141,10 +145,10 @@ class Pads {
   std::vector<Pad> pads_;
   PadRules rules_ = PadRules::version_2;
   std::uint16_t driving_ = kNoDevice;
-  bool is_driver_moved_ = false;  // since it drives
+  bool is_driver_moved_ = false;  // the driving pad was moved since it drives
   int turns_ = 0;
   PressCounts presses_{};
-  UntouchedWatch watch_;  // of the driving pad
+  UntouchedWatch watch_;  // watches the driving pad's left stick
   std::int64_t untouched_ = 0, ticks_ = 0;
   int rate_hz_ = 1;
   int silence_ticks_ = 0, settled_ticks_ = 0, yielding_ticks_ = 0;

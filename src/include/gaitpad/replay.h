@@ -1,4 +1,4 @@
-// A recording through the whole system, without a window: files and a summary come out.
+// Replays a recording through the whole system, without a window, and returns files and a summary.
 #pragma once
 #include <cstdint>
 #include <functional>
@@ -13,12 +13,12 @@ namespace gaitpad {
 
 struct ReplayResult {
   RunSummary summary;
-  std::vector<std::string> remarks;  // what a user should know though it is no failure
+  std::vector<std::string> remarks;  // remarks for the user that are no failures
 };
 
-// Called now and then while a replay runs, with how many of its ticks are done. The time of a
-// replay is proportional to these, however long the gaps between its reports are. False: it ends
-// here, and replay() returns an error.
+// Called repeatedly while a replay runs, with the number of ticks that are done. The time of a
+// replay is proportional to that number, however long the gaps between its reports are. False: the
+// replay ends at once, and replay() returns an error.
 using ReplayProgress = std::function<bool(std::int64_t done, std::int64_t ticks)>;
 
 // Replays `spec.replay.trace` from its first tick to its last and writes the files that

@@ -11,7 +11,7 @@
 
 namespace gaitpad {
 
-// The numbers of Linux's linux/input.h. Other numbers occur and are kept.
+// Kinds of buses, with the numbers of Linux's linux/input.h. Other numbers occur and are kept.
 enum class BusType : std::uint16_t {
   unknown = 0x00,
   usb = 0x03,
@@ -21,17 +21,18 @@ enum class BusType : std::uint16_t {
   host = 0x19,
 };
 
-// A device as its driver knows it, which fills this. To decode a pad of one's own, `descriptor` is
+// A device as its driver knows it; the driver fills it. For decoding your own pad `descriptor` is
 // enough; the ids let config/pads recognise the model.
 struct DeviceInfo {
   BusType bus = BusType::unknown;
   std::uint16_t vendor = 0;
   std::uint16_t product = 0;
   std::uint16_t version = 0;
-  std::string driver;  // that opened it: hidraw, usb, evdev, sdl, keyboard; empty: as hidraw
+  // Driver that opened it: hidraw, usb, evdev, sdl, keyboard; empty: treated as hidraw.
+  std::string driver;
   std::string name;
   std::string unique_id;                 // serial number or Bluetooth address; empty: none
-  std::string physical_path;             // the port, as the kernel writes it
+  std::string physical_path;             // the port in the kernel's form
   std::vector<std::uint8_t> descriptor;  // HID report descriptor (HID 1.11, 6.2.2)
   std::string mapping;                   // a line of SDL's controller data base; empty: none
   bool operator==(const DeviceInfo&) const = default;
@@ -39,14 +40,14 @@ struct DeviceInfo {
 
 // Rates of turn about a pad's axes, rad/s: pitch (nose up), yaw and roll (to the left).
 using TurnRates = std::array<double, 3>;
-// The calibration of its gyroscope that a pad stores itself, by the numbers of its reports.
+// The calibration of its gyroscope that a pad stores itself, in the counts of its reports.
 struct FactoryGyro {
-  std::array<double, 3> zero{};  // counts at rest
+  std::array<double, 3> zero{};  // counts of each axis at rest
   std::array<double, 3> rad_s_per_count{};
 };
 
 enum class ReportKind : std::uint8_t {
-  input,    // bytes as read; they begin with the report id if the descriptor has ids
+  input,    // bytes as they were read; they begin with the report id if the descriptor has ids
   command,  // the bytes are text, for instance `style limp_left`; no device
   added,    // no bytes: the device was plugged in
   removed,  // no bytes: it was unplugged; its pad is neutral until it is added again
@@ -55,13 +56,14 @@ enum class ReportKind : std::uint8_t {
 inline constexpr std::size_t kMaxReportBytes = 1024;
 inline constexpr std::uint16_t kNoDevice = 0xffff;
 
-// A driver fills it, or a program that has pads of its own.
+// One report. A driver fills it, or a program that has its own pads.
 struct Report {
-  std::int64_t time_ns = 0;          // CLOCK_MONOTONIC live; of a recording its own clock
+  std::int64_t time_ns = 0;          // live: CLOCK_MONOTONIC; in a recording: its own clock
   std::uint16_t device = kNoDevice;  // index in the list of devices of a session or trace
   ReportKind kind = ReportKind::input;
   std::uint16_t size = 0;  // at most kMaxReportBytes; a longer one is no report
-  std::array<std::uint8_t, kMaxReportBytes> bytes;  // only the first `size` are set
+  // The content, of which the first `size` bytes are set.
+  std::array<std::uint8_t, kMaxReportBytes> bytes;
 };
 // The text of a command.
 inline std::string_view text_of(const Report& r) noexcept {
@@ -80,7 +82,7 @@ enum PadAxis : int {
   kRightTrigger,
   kAxisCount,
 };
-// HID's y of a stick grows towards the player, ours away from the player.
+// True for the y of sticks: HID's grows towards the player, ours away from the player.
 constexpr bool is_upward(PadAxis axis) { return axis == kLeftY || axis == kRightY; }
 
 // Bit numbers in PadState::buttons, named by position as in SDL: `a` is the bottom one of four.
@@ -143,7 +145,7 @@ inline constexpr std::array<std::string_view, kButtonCount> kButtonNames = {"a",
                                                                             "misc5",
                                                                             "misc6"};
 
-// Clockwise from up in steps of 45 degrees.
+// Directions of a hat, clockwise from up in steps of 45 degrees.
 enum class Hat : std::uint8_t {
   up,
   up_right,
@@ -160,7 +162,7 @@ enum class Hat : std::uint8_t {
 // calibrated: a stick may rest beside 0 and reach less than 1 (calibration.h corrects that).
 struct PadState {
   std::array<float, kAxisCount> axis{};
-  std::uint32_t buttons = 0;  // bit k: PadButton k is pressed; the D-pad is in it
+  std::uint32_t buttons = 0;  // bit k: PadButton k is pressed; the D-pad's buttons are included
   Hat hat = Hat::released;
   bool operator==(const PadState&) const = default;
 };

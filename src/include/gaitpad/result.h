@@ -22,13 +22,13 @@ class [[nodiscard]] Result {
  public:
   Result(T value) : content_(std::move(value)) {}
   Result(Error error) : content_(std::move(error)) {}
-  explicit operator bool() const { return content_.index() == 0; }  // whether there is a value
-  // The value; only where there is one.
+  explicit operator bool() const { return content_.index() == 0; }  // True if there is a value.
+  // The value; call it only if there is one.
   T& operator*() { return std::get<0>(content_); }
   const T& operator*() const { return std::get<0>(content_); }
   T* operator->() { return &std::get<0>(content_); }
   const T* operator->() const { return &std::get<0>(content_); }
-  // Why there is no value; only where there is none.
+  // The error; call it only if there is no value.
   const Error& error() const { return std::get<1>(content_); }
 
  private:

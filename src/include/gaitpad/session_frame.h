@@ -13,66 +13,72 @@
 
 namespace gaitpad {
 
-// The part of a session that stays the same while it runs.
+// A character, as far as it stays the same while the session runs.
 struct CastMember {
-  std::string character, style;  // names; the style is the one at the beginning
+  std::string character, style;  // names of the character and of its style at the beginning
   std::shared_ptr<const WalkModel> model;
   GaitLimits limits;
 };
 struct CrowdCastMember {
   std::shared_ptr<const WalkModel> model;
-  int style = 0;  // in Cast::styles
+  int style = 0;  // index in Cast::styles
 };
 struct Cast {
-  std::string motion;  // its name
+  std::string motion;  // name of the motion
   std::shared_ptr<const GaitCycle> source;
   std::vector<CastMember> members;
-  std::vector<CrowdCastMember> crowd;                       // the members whose poses viewers get
+  std::vector<CrowdCastMember> crowd;                       // members of the crowd whose poses
+                                                            // viewers get
   std::shared_ptr<const Terrain> terrain = flat_terrain();  // never null
-  std::vector<std::string> styles;                          // that a `style` command may name
-  std::vector<StyleValues> style_values;                    // of these, as in their files
+  std::vector<std::string> styles;                          // names of the styles that a `style`
+                                                            // command may name
+  std::vector<StyleValues> style_values;                    // the values of these styles, as in
+                                                            // their files
   int rate_hz = 240;
 };
 Cast cast_of(const Simulation& simulation, const SimulationConfig& config);
 
 struct WalkerFrame {
-  Pose before, pose;  // after the tick before and after this one
+  Pose before, pose;  // poses after the previous tick and after this one
   WalkFrame walk;
-  GaitParams params;  // that the tick used
-  StyleValues style;  // the chosen one, with the changes made by commands
+  GaitParams params;  // parameters that the tick used
+  StyleValues style;  // the chosen style, with the changes made by commands
   int style_index = 0;
   GaitOverrides overrides;
-  std::array<LegAngles, 2> angles_rad{};  // of the pose; signs as in gaitpad/limbs.h
-  double phase = 0.0;            // of the source's cycle, 0 .. 1 from the right heel strike on
+  // The legs' angles in the pose; signs as in gaitpad/limbs.h.
+  std::array<LegAngles, 2> angles_rad{};
+  double phase = 0.0;            // phase of the source's cycle, 0 .. 1 from the right heel strike
+                                 // on
   double presence = 0.0;         // share of the source's motion that shows: 0 standing .. 1 walking
-  std::array<vec3, 2> lift_m{};  // where the heel began its present or last flight, world
+  std::array<vec3, 2> lift_m{};  // where the heel was when its present or last flight began, world
   vec3 landing_m{0.0};           // where the heel of the present or last step lands, world
   std::int64_t ik_failures = 0;
 };
 
-// The driving pad.
+// The pad that drives, in a frame.
 struct PadFrame {
   std::uint16_t device = kNoDevice;  // kNoDevice: none has driven so far
   bool is_present = false;
-  PadState state;              // uncalibrated
-  Calibration calibration;     // which converts `state` to the stick
-  std::uint64_t reports = 0;   // since the beginning
-  std::int64_t untouched = 0;  // how often its left stick began to walk untouched
+  PadState state;              // uncalibrated state
+  Calibration calibration;     // converts `state` to the stick
+  std::uint64_t reports = 0;   // number of its reports since the beginning
+  std::int64_t untouched = 0;  // number of times that its left stick began to walk untouched
 };
 
 struct SessionFrame {
   std::int64_t tick = -1;    // -1: none yet
-  std::int64_t time_ns = 0;  // CLOCK_MONOTONIC, when the tick was due; 0 in a replay
-  Stick stick;               // calibrated
+  std::int64_t time_ns = 0;  // when the tick was due, CLOCK_MONOTONIC; 0 in a replay
+  Stick stick;               // the calibrated sticks
   PadFrame pad;
-  // Presses of each button since the beginning (Pads::presses()): none is missed between frames.
+  // Number of presses of each button since the beginning (Pads::presses()), so that none is missed
+  // between frames.
   PressCounts presses{};
   SimulationCounts counts;
-  IkMode ik = IkMode::robust;  // of the walkers
+  IkMode ik = IkMode::robust;  // mode of the walkers' inverse kinematics
   StickMeans stick_means = StickMeans::steers;
   int walker_count = 0;
   std::array<WalkerFrame, kMaxWalkers> walkers;
-  FollowerPoses crowd;  // by Cast::crowd
+  FollowerPoses crowd;  // poses of the members in Cast::crowd
 };
 // Copies only the joints that there are: use a frame for one session only. The first copy of a
 // session with a crowd into a frame takes room on the heap; later ones do not.
@@ -81,8 +87,8 @@ void copy_frame(const Simulation& simulation, SessionFrame& frame) noexcept;
 // One tick of one character, small enough to keep many of them.
 struct WalkerSample {
   std::array<std::array<float, 3>, 2> joint_rad{};  // hip flexion, knee flexion, ankle dorsiflexion
-  std::array<vec3, 2> heel_m{}, toe_m{};            // world
-  std::array<float, 2> heel_above_m{};              // the ground below it
+  std::array<vec3, 2> heel_m{}, toe_m{};            // places in the world
+  std::array<float, 2> heel_above_m{};              // height above the ground below the heel
   std::array<std::int16_t, 2> ik_iterations{};
   std::array<float, 2> ik_error_m{};
   Stage stage = Stage::idle;

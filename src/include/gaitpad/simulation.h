@@ -27,113 +27,123 @@ namespace gaitpad {
 
 inline constexpr int kMaxWalkers = 16;
 
-// simulation_config() fills both from files (gaitpad/session_spec.h), or a program does.
+// A character. simulation_config() fills both structs from files (gaitpad/session_spec.h), or a
+// program does.
 struct WalkerConfig {
-  Character character;                 // its build
+  Character character;                 // the character's build
   int style = 0;                       // index in SimulationConfig::styles
   std::optional<GaitCycle> own_cycle;  // the cycle on the character's own skeleton, if it has one
 };
 struct SimulationConfig {
-  int rate_hz = 240;           // ticks a second, kLeastRateHz .. kMaxRateHz
-  IkMode ik = IkMode::robust;  // until a command says otherwise, like `stick`
+  int rate_hz = 240;  // ticks a second, kLeastRateHz .. kMaxRateHz
+  // Mode of the inverse kinematics at the beginning; commands change it, as they do `stick`.
+  IkMode ik = IkMode::robust;
   StickMeans stick = StickMeans::steers;
-  std::vector<PadConfig> pads;  // a report's device is the index here
+  std::vector<PadConfig> pads;  // indexed by a report's device
   PadRules pad_rules = PadRules::version_2;
-  // That commands may name, at least one; of equal names the first one counts.
+  // Styles that commands may name, at least one; of equal names the first one counts.
   std::vector<Style> styles;
-  GaitCycle cycle;        // its pace is the one in force
-  Pace pace = Pace::own;  // that was chosen; with the built-in motion it changes nothing
-  // 1 .. kMaxWalkers; they stand side by side, the first at the origin.
+  GaitCycle cycle;        // the motion; its own pace is the one that is used
+  Pace pace = Pace::own;  // the pace that was chosen; it has no effect on the built-in motion
+  // 1 .. kMaxWalkers characters; they stand side by side, the first at the origin.
   std::vector<WalkerConfig> walkers;
   int crowd = 0;  // number of characters that walk behind the first, 0 .. kMaxFollowers
-  // That move the crowd on, at most, 1 .. kMaxCrowdThreads; the poses are the same for any number.
+  // Most threads that advance the crowd, 1 .. kMaxCrowdThreads; the poses are the same for any
+  // number.
   int crowd_threads = 1;
   bool shows_crowd = true;  // keeps the crowd's poses of two ticks for viewers
   std::shared_ptr<const Terrain> terrain = flat_terrain();  // never null
-  std::vector<std::string> remarks;  // remarks for the user on the files that it was read from
+  // Remarks for the user about the files that the configuration was read from.
+  std::vector<std::string> remarks;
 };
 
-// `SimulationConfig: rate_hz is 0, outside [10, 10000]`. Calls the check of all that it holds.
+// Errors read `SimulationConfig: rate_hz is 0, outside [10, 10000]`. Calls the check of all
+// members.
 std::optional<Error> check(const SimulationConfig& config);
 
-// Configurations for devices that are not known yet: set_pad() fills them in.
+// Configurations for devices that are not known yet; set_pad() replaces them.
 std::vector<PadConfig> unknown_pads(std::size_t count);
 
-// All that follows is what a simulation tells. Counted since the beginning.
+// Numbers since the beginning; the structs below are results of a simulation.
 struct SimulationCounts {
   std::int64_t ticks = 0;
   std::int64_t reports = 0;      // input reports, sound or not
-  std::int64_t bad_reports = 0;  // too short, of an unknown id, of no device
+  std::int64_t bad_reports = 0;  // too short, with an unknown id or of no device
   std::int64_t commands = 0;
-  std::int64_t bad_commands = 0;  // malformed, with unknown names, out of bounds: changed nothing
+  // Malformed, with unknown names or out of bounds; they changed nothing.
+  std::int64_t bad_commands = 0;
 };
 
-// The zone of the terrain that a walker is in, and the style that it returns to when it leaves.
+// The zone that a walker is in, and the style to which it returns when it leaves.
 struct ZoneStyle {
-  int index = -1;           // in Terrain::zones; -1: none
-  bool gives_back = false;  // false: in no zone, or a command has chosen another style in it
-  int own_style = 0;        // from before the zone
+  int index = -1;           // index in Terrain::zones; -1: none
+  bool gives_back = false;  // false: in no zone, or a command has chosen another style inside it
+  int own_style = 0;        // index of the style before the zone
   StyleValues own_values;
 };
 
 struct Walker {
-  std::shared_ptr<const WalkModel> model;  // shared with copies of the simulation
+  // The walker's model, shared with copies of the simulation.
+  std::shared_ptr<const WalkModel> model;
   GaitLimits limits;
   int style = 0;       // index in Simulation::styles()
-  StyleValues values;  // of that style, with what commands have changed since
+  StyleValues values;  // values of that style, with the changes by commands
   ZoneStyle zone;
   StyleBlend blend;
-  double tired = 0.0;    // 0 .. 1, by the fatigue model of its style
-  StyleValues in_force;  // used by the last tick: `values` blended in, with fatigue
+  double tired = 0.0;    // tiredness, 0 .. 1, by the fatigue model of its style
+  StyleValues in_force;  // values in the last tick: `values` blended in, with fatigue
   GaitOverrides overrides;
-  GaitParams params;  // of the last tick
+  GaitParams params;  // parameters of the last tick
   WalkState state;
-  Pose before, pose;             // of the tick before the last and of the last
-  vec3 start_m{0.0};             // where it stood at first, facing +z; world
-  double walked_m = 0.0;         // on the ground, along the path of its hips; resets do not count
-  std::int64_t ik_failures = 0;  // legs times ticks
+  Pose before, pose;             // poses after the last tick but one and after the last
+  vec3 start_m{0.0};             // place at the beginning, facing +z; world
+  double walked_m = 0.0;         // distance on the ground, along the path of the hips; resets do
+                                 // not count
+  std::int64_t ik_failures = 0;  // number of failures, one for each leg and tick
 };
 
-// Copies only the joints that there are: a whole Pose has 10 KB.
+// Copies only as many joints as there are: a whole Pose has 10 KB.
 void copy_pose(const Pose& from, Pose& to) noexcept;
 
-// Copies are cheap, a few kilobytes a character: they share what does not change.
+// A simulation. Copies are cheap, a few kilobytes for each character, because they share what does
+// not change.
 class Simulation {
  public:
   // Error: what check() refuses, a motion that does not fit a character, a zone whose style does
   // not exist.
   static Result<Simulation> create(const SimulationConfig& config);
 
-  // Sets what is known of a device that was found while the simulation runs, before its first
+  // Sets the configuration of a device that was found while the simulation runs, before its first
   // report. Its entry in SimulationConfig::pads must be one of unknown_pads(). No heap: they are
   // swapped.
   void set_pad(std::uint16_t device, PadConfig&& config) noexcept { pads_.set_pad(device, config); }
-  // Takes over a list of styles in which those so far keep their places, and hands the old one
-  // back. No heap.
+  // Replaces the list of styles by one in which the present styles keep their places, and hands the
+  // old list back. No heap.
   void swap_styles(std::shared_ptr<const std::vector<Style>>& styles) noexcept {
     styles_.swap(styles);
   }
-  // Runs one tick with the reports that belong to it, in order of arrival. No heap, lock or clock,
-  // unless several threads move a crowd on.
+  // Runs one tick with its reports, in order of arrival. No heap, lock or clock, unless several
+  // threads advance a crowd.
   void step(std::span<const Report> reports) noexcept;
-  // Takes in one report of the tick that the next step() runs. For recordings: a tick of one may
+  // Takes one report of the tick that the next step() runs. For recordings, in which a tick may
   // have millions of reports.
   void take_report(const Report& report) noexcept;
 
   const std::vector<Walker>& walkers() const { return walkers_; }
-  const Followers& followers() const { return followers_; }  // the crowd
+  const Followers& followers() const { return followers_; }  // The crowd.
   const std::vector<Style>& styles() const { return *styles_; }
   // The ground: the configuration's terrain, enlarged if a foot would not fit its treads.
   const std::shared_ptr<const Terrain>& terrain() const { return terrain_; }
   double terrain_scale() const { return terrain_scale_; }
-  const Stick& stick() const { return stick_; }  // of the last tick
+  const Stick& stick() const { return stick_; }  // The sticks in the last tick.
   StickMeans stick_means() const { return stick_means_; }
-  IkMode ik() const { return ik_; }  // of the walkers; `ik` commands change it
+  // The mode of the walkers' inverse kinematics; `ik` commands change it.
+  IkMode ik() const { return ik_; }
   const Pads& pads() const { return pads_; }
-  // Whether a heel of the first character struck the ground in the last tick.
+  // True if a heel of the first character struck the ground in the last tick.
   bool heel_struck() const { return heel_struck_; }
   const SimulationCounts& counts() const { return counts_; }
-  // Hash over the bits of every pose of every character in every tick so far, those of the crowd
+  // Hash of the bits of every pose of every character in every tick so far; the crowd's poses come
   // after the walkers'.
   std::uint64_t pose_hash() const { return hash_.value(); }
 
@@ -142,7 +152,8 @@ class Simulation {
   Result<std::vector<std::shared_ptr<const WalkModel>>> models_of(const SimulationConfig& config);
   std::optional<Error> find_zone_styles();
   bool obey(std::string_view text) noexcept;
-  int style_index(std::string_view name) const noexcept;  // -1: there is none
+  // Index of the style; -1: there is none with this name.
+  int style_index(std::string_view name) const noexcept;
   bool choose_style(std::span<Walker> walkers, std::string_view name) noexcept;
   void add_to_hash(const vec3& root_m, std::span<const quat> local) noexcept;
 
@@ -150,14 +161,14 @@ class Simulation {
   IkMode ik_ = IkMode::robust;
   Pads pads_;
   std::shared_ptr<const std::vector<Style>> styles_;
-  std::shared_ptr<const std::vector<int>> zone_styles_;  // of each of the terrain's zones
+  std::shared_ptr<const std::vector<int>> zone_styles_;  // index of each zone's style
   std::vector<Walker> walkers_;
   Followers followers_;
   std::shared_ptr<const Terrain> terrain_;
   double terrain_scale_ = 1.0;
   Stick stick_;
   StickMeans stick_means_ = StickMeans::steers;
-  double camera_rad_ = 0.0;  // the heading along which a pointing stick is seen
+  double camera_rad_ = 0.0;  // heading of the camera, to which a pointing stick is relative
   bool heel_struck_ = false;
   SimulationCounts counts_;
   WordHash hash_;

@@ -15,38 +15,40 @@ namespace gaitpad {
 
 inline constexpr int kMaxJoints = 320;
 
-// A motion's reader or a program with its own bones fills it; immutable after that. Joints stand in
-// depth-first order, parents before children; joint 0 is the root (parent -1).
+// A joint and the bone to its parent. A motion's reader or a program with its own skeleton fills
+// it; it does not change after that. Joints are in depth-first order, parents before children;
+// joint 0 is the root (parent -1).
 struct Joint {
-  std::string name;          // of an End Site: its parent's name + "_End"
-  int parent = -1;           // index of an earlier joint
-  vec3 offset_m{0.0};        // from the parent joint, in the parent joint's frame; finite
-  bool is_end_site = false;  // the tip of a bone in a BVH file: a place that nothing turns
+  std::string name;          // name; for an End Site its parent's name + "_End"
+  int parent = -1;           // index of the parent, which is an earlier joint
+  vec3 offset_m{0.0};        // place relative to the parent joint, in the parent joint's frame;
+                             // finite
+  bool is_end_site = false;  // it is the tip of a bone in a BVH file, which nothing turns
 };
 struct Skeleton {
   std::vector<Joint> joints;
-  int find(const std::string& name) const;  // exact name, -1 where there is none
+  // Index of the joint with exactly this name; -1: there is none.
+  int find(const std::string& name) const;
 };
 
-// Joint indices of one leg. Between hip and knee (or knee and ankle) further joints may stand
-// (twist joints); they keep a fixed rotation. find_legs() fills it; -1: not set.
+// Joint indices of one leg. Further joints (twist joints) may be between hip and knee or knee and
+// ankle; they keep a fixed rotation. find_legs() fills it; -1: not set.
 struct LegJoints {
   int hip = -1, knee = -1, ankle = -1;
-  int toe = -1;      // the ball of the foot; an End Site where the skeleton has no toe joint
-  int toe_end = -1;  // the toe's End Site or last descendant; the toe itself where that is an End
-                     // Site
+  int toe = -1;      // the ball of the foot; an End Site if the skeleton has no toe joint
+  int toe_end = -1;  // the toe's End Site or last descendant; the toe itself if it is an End Site
 };
 
-// A walk or a program fills it; at most kMaxJoints. Plain, trivially copyable. local[j] turns joint
-// j's frame into its parent's, local[0] into the world.
+// A posture of at most kMaxJoints joints; a walk or a program fills it. Plain, trivially copyable.
+// local[j] turns joint j's frame into its parent's, local[0] into the world.
 struct Pose {
   vec3 root_m{0.0};  // world position of joint 0
   std::array<quat, kMaxJoints> local;
   int joint_count = 0;
 };
 
-// World frames, of forward_kinematics(): where each joint is, and what turns its frame into the
-// world's.
+// World frames of the joints, from forward_kinematics(): the place of each joint, and the rotation
+// from its frame to the world's.
 struct JointFrames {
   std::array<vec3, kMaxJoints> position_m;
   std::array<quat, kMaxJoints> rotation;
@@ -56,12 +58,12 @@ struct JointFrames {
 // turned by its local rotation. Writes the frames of the first pose.joint_count joints.
 void forward_kinematics(const Skeleton& skeleton, const Pose& pose, JointFrames& frames) noexcept;
 
-// The same for some joints only, parents before children. Frames of parents that are not among them
-// are read from `frames`.
+// Forward kinematics of some joints only, parents before children. Frames of parents that are not
+// among them are read from `frames`.
 void forward_kinematics(const Skeleton& skeleton, const vec3& root_m, std::span<const quat> local,
                         std::span<const int> joints, JointFrames& frames) noexcept;
 
-// The same for local rotations of all joints, with the root at the origin.
+// Forward kinematics for local rotations of all joints, with the root at the origin.
 void forward_kinematics(const Skeleton& skeleton, std::span<const quat> local,
                         JointFrames& frames) noexcept;
 

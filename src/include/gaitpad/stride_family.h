@@ -17,27 +17,31 @@
 namespace gaitpad {
 
 inline constexpr int kStrideRatios = 8;
-inline constexpr double kRatioStep = 0.2;  // ratios 0, 0.2 .. 1.4; 1 is the data's own stride
+// Distance of neighbouring ratios: 0, 0.2 .. 1.4; 1 is the data's own stride.
+inline constexpr double kRatioStep = 0.2;
 inline constexpr double kMostRatio = kRatioStep * (kStrideRatios - 1);
-inline constexpr int kBackRatios = 5;  // backwards 0 .. 0.8: steps are shorter
+// Ratios of backward strides, 0 .. 0.8: backward steps are shorter.
+inline constexpr int kBackRatios = 5;
 
-// Structs of numbers alone may be those of several walks side by side (V as in gaitpad/math.h).
+// Structs that consist of numbers only may hold those of several walks side by side (V as in
+// gaitpad/math.h).
 template <class V>
 struct StrideFootOf {
   Vec<V> heel_m{};
-  // The foot's rotation from flat and straight ahead: about its transverse axis, toe down positive;
-  // then, in the turned foot, by the rotation vector whose parts are about its upward axis and
-  // about its length.
+  // The foot's rotation from flat and straight ahead: first about its transverse axis (toe down
+  // positive), then, in the turned foot, by the rotation vector whose parts are about its upward
+  // axis and along its length.
   V pitch_rad{}, twist_rad{}, roll_rad{};
 };
 
-// A stride at one phase. Counted from standing: the pelvis' place from the standing pelvis over the
+// A stride at one phase, relative to standing: the pelvis' place from the standing pelvis over the
 // path, angles from the standing pose's.
 template <class V>
 struct StrideCellOf {
   Vec<V> pelvis_m{};
   V pelvis_yaw_rad{};
-  Vec<V> pelvis_tilt{};  // the rest of its rotation, as a rotation vector, from the standing roll
+  // The rest of the pelvis' rotation from its standing roll, as a rotation vector.
+  Vec<V> pelvis_tilt{};
   std::array<StrideFootOf<V>, 2> foot{};
   std::array<std::array<V, kLegDofs>, 2> leg_rad{};
 };
@@ -59,32 +63,33 @@ struct StrideTrackOf : FootprintsOf<V> {
 };
 using StrideTrack = StrideTrackOf<double>;
 
-// Scales strides of the motion to the character: all lengths by `length`, but those of the pelvis
-// by `pelvis`.
+// Scales strides of the motion to the character: lengths of the pelvis by `pelvis`, all others by
+// `length`.
 struct StrideScale {
   double length = 1.0, pelvis = 1.0;
-  vec3 hips_m{0.0};                  // the middle of the hips, from the pelvis, in the motion
-  double stand_roll_rad = 0.0;       // of the motion's standing pelvis
-  std::array<vec3, 2> standing_m{};  // that middle when standing: motion's, character's
-  std::array<vec3, 2> apart_m{};     // by Side: feet's shift for a wider or narrower pelvis
+  vec3 hips_m{0.0};                  // from the pelvis to the middle of the hips, in the motion
+  double stand_roll_rad = 0.0;       // roll of the motion's standing pelvis
+  std::array<vec3, 2> standing_m{};  // that middle when standing: in the motion, in the character
+  std::array<vec3, 2> apart_m{};     // shift of the feet for a wider or narrower pelvis, by Side
 };
 
-// One stride length. All of it may be added and scaled, number by number.
+// The strides of one length. All of it may be added and scaled, number by number.
 struct StrideTable : StrideTrack {
   // Control points of the periodic uniform cubic B-spline in phase.
   std::array<StrideCell, kCycleSamples> knot{};
 };
 
-// stride_family() fills it (gaitpad/clean_strides.h). Metres and radians of the motion's skeleton.
+// Strides of several lengths; stride_family() fills it (gaitpad/clean_strides.h). Metres and
+// radians of the motion's skeleton.
 struct StrideFamily {
-  double stand_m = 0.0;                  // the pelvis' height when standing,
-  double lead_m = 0.0;                   // how far it is before the heels,
-  double stand_roll_rad = 0.0;           // its roll, left side up positive,
-  std::array<LegAngles, 2> stand_rad{};  // and the legs' angles
+  double stand_m = 0.0;                  // height of the standing pelvis
+  double lead_m = 0.0;                   // distance of the standing pelvis in front of the heels
+  double stand_roll_rad = 0.0;           // roll of the standing pelvis, left side up positive
+  std::array<LegAngles, 2> stand_rad{};  // angles of the standing legs
   // Walking backwards is walking forwards run back (Thorstensson 1986), but the feet land and leave
   // as Table I has it. These strides have negative lengths.
-  std::vector<StrideTable> back;   // kBackRatios
-  std::vector<StrideTable> table;  // kStrideRatios
+  std::vector<StrideTable> back;   // kBackRatios tables
+  std::vector<StrideTable> table;  // kStrideRatios tables
 };
 
 // A stride at one phase and ratio.
@@ -94,24 +99,25 @@ struct StridePlaceOf {
   StrideCellOf<V> cell;
 };
 using StridePlace = StridePlaceOf<double>;
-// Knots of the spline that goes through these samples of a cycle.
+// Knots of the spline through these samples of a cycle.
 std::array<StrideCell, kCycleSamples> knots_through(
     const std::array<StrideCell, kCycleSamples>& samples) noexcept;
 StrideCell mixed(const StrideCell& a, const StrideCell& b, double share_a, double share_b) noexcept;
-// A cubic spline in phase, smooth to the second derivative, and cubic in ratio; the ratio is
-// clamped to the family's. No heap.
+// The stride at a phase and a ratio: a cubic spline in phase, smooth to the second derivative, and
+// cubic in ratio; the ratio is clamped to the family's. No heap.
 StridePlace stride_at(const std::vector<StrideTable>& table, double phase, double ratio) noexcept;
 
 // The share of the cycle's time that the roll of a foot (Table I (b)) takes in strides of this
 // ratio, from its share in the data: double support is longer in short steps.
 double roll_time_share(double data_share, double ratio) noexcept;
 
-// Converts a phase to the time at which it is reached. The four stages of a cycle have a time each;
-// the rate is smooth: cubic in each stage, and at a border between two the mean of their rates.
+// Converts a phase to the time at which it is reached. Each of the four stages of a cycle has a
+// duration; the rate is smooth: cubic in each stage, and at a border between two the mean of their
+// rates.
 struct StageClock {
-  std::array<double, 4> phase_share{},
-      time_share{};                             // roll right, flight left, roll left, flight right
-  double time_at(double phase) const noexcept;  // both in cycles
+  // Shares of the cycle's phase and time: roll right, flight left, roll left, flight right.
+  std::array<double, 4> phase_share{}, time_share{};
+  double time_at(double phase) const noexcept;  // Both numbers are in cycles.
 };
 
 }  // namespace gaitpad

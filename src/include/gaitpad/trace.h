@@ -21,18 +21,19 @@ inline constexpr int kLeastRateHz = 10;  // at fewer ticks a second a walk is to
 inline constexpr int kMaxRateHz = 10000;
 inline constexpr int kTraceVersion = 2;  // PadRules names the changes of each version
 inline constexpr std::size_t kMaxTraceDevices = 16;
-inline constexpr std::size_t kMaxTraceBytes = std::size_t{512} << 20;  // of a file
+inline constexpr std::size_t kMaxTraceBytes = std::size_t{512} << 20;  // most bytes of a file
 inline constexpr std::size_t kMaxTraceEvents = std::size_t{1} << 24;
-inline constexpr std::size_t kMaxTraceTextBytes = 512;  // of a name, a path, an id, a mapping
+// Most bytes of a name, a path, an id or a mapping.
+inline constexpr std::size_t kMaxTraceTextBytes = 512;
 inline constexpr std::int64_t kMaxTraceGapUs = 600'000'000;
 inline constexpr std::int64_t kMaxTraceDurationUs = 1'000'000'000'000;
 
 // Times are in microseconds of the recording's own clock.
 
-// read_trace() fills these, or a program that records by other means.
+// read_trace() fills these structs, or a program that records by other means.
 
 struct TraceDevice {
-  int index = 0;  // of its `D:` line
+  int index = 0;  // number in its `D:` line
   DeviceInfo info;
   std::string calibration;  // TOML text of its `K:` lines; empty: none
   bool operator==(const TraceDevice&) const = default;
@@ -40,8 +41,8 @@ struct TraceDevice {
 
 // A report, a command, plugging in or unplugging. Its bytes are in Trace::bytes.
 struct TraceEvent {
-  std::int64_t time_us = 0;  // since an arbitrary moment, as in the file
-  std::int64_t tick = 0;     // the tick that uses it: of `T:` lines, else by assign_ticks()
+  std::int64_t time_us = 0;  // time since an arbitrary moment, as in the file
+  std::int64_t tick = 0;     // the tick that uses it: from a `T:` line, else by assign_ticks()
   std::uint32_t first_byte = 0;
   std::uint16_t size = 0;
   std::uint16_t device = kNoDevice;  // index in Trace::devices
@@ -49,41 +50,42 @@ struct TraceEvent {
   bool operator==(const TraceEvent&) const = default;
 };
 
-// A file that a session was made of, as its recording holds it.
+// A file that a session was made of, as its recording contains it.
 struct TraceFile {
-  std::string name;        // with the folders that other files find it in
-  std::string bytes;       // of a text: its lines, each with a line feed
-  std::int64_t tick = -1;  // from which on; -1: from the start
+  std::string name;        // name with the folders by which other files refer to it
+  std::string bytes;       // content; of a text: its lines, each with a line feed
+  std::int64_t tick = -1;  // first tick in which it is used; -1: from the start
   bool operator==(const TraceFile&) const = default;
 };
 
 struct Trace {
-  std::string path;             // error sentences begin with it
-  int version = kTraceVersion;  // of the `V:` line; a file without one replays by today's rules
-  std::optional<int> rate_hz;   // of the `V:` line
-  std::optional<Pace> pace;     // of the `O: pace` line
+  std::string path;  // error sentences begin with it
+  // Number in the `V:` line; a file without one replays by today's rules.
+  int version = kTraceVersion;
+  std::optional<int> rate_hz;        // rate in the `V:` line
+  std::optional<Pace> pace;          // pace in the `O: pace` line
   std::vector<std::string> options;  // the texts of the other `O:` lines
   std::vector<TraceFile> files;      // in the order of their `F:` lines
-  bool has_ticks = false;            // from `T:` lines: TraceEvent::tick is set
+  bool has_ticks = false;            // the file has `T:` lines, so TraceEvent::tick is set
   std::vector<TraceDevice> devices;
   std::vector<TraceEvent> events;  // in the order of the file; ticks never decrease
   std::vector<std::uint8_t> bytes;
-  std::optional<std::int64_t> end_time_us;  // of the `Q:` line
+  std::optional<std::int64_t> end_time_us;  // time in the `Q:` line
   std::optional<std::int64_t> end_ticks;
-  std::int64_t skipped_lines = 0;  // damaged lines; Damage::skip only
-  std::string first_damage;        // the sentence on the first of them
+  std::int64_t skipped_lines = 0;  // number of damaged lines; Damage::skip only
+  std::string first_damage;        // the sentence about the first of them
 };
 
-// `walk.hid: events[3].device is 7, but there are 2 devices`. Its rate is one, and devices, bytes,
-// ticks and times of its events are there and in order.
+// Errors read `walk.hid: events[3].device is 7, but there are 2 devices`. Checks that the rate is
+// valid, and that devices, bytes, ticks and times of events exist and are in order.
 std::optional<Error> check(const Trace& trace);
 
 // What to do with a damaged line: refuse the whole file, or skip the line and count it.
 enum class Damage { refuse, skip };
 
-// Errors: `walk.hid:12: the report length says 64 but 63 bytes follow`.
+// Reads a file. Errors: `walk.hid:12: the report length says 64 but 63 bytes follow`.
 Result<Trace> read_trace(const std::string& path, Damage damage = Damage::refuse);
-// The same from memory; `name` stands for the path in errors.
+// Reads a file's text from memory; `name` replaces the path in errors.
 Result<Trace> parse_trace(std::string_view text, const std::string& name,
                           Damage damage = Damage::refuse);
 // `3 damaged lines were skipped, the first: ...`; nothing if there were none.
@@ -101,27 +103,29 @@ int replay_rate_hz(const Trace& trace, std::optional<int> asked);
 // pace, which shows by its `T:` lines, had the adult's. Nothing: the motion's.
 std::optional<Pace> replay_pace(const Trace& trace, std::optional<Pace> asked);
 
-// The event as a driver would have delivered it. `trace` is one that check() accepts.
+// Copies the event as a driver would have delivered it. check() must accept `trace`.
 void copy_report(const Trace& trace, const TraceEvent& event, Report& report) noexcept;
 Report report_of(const Trace& trace, const TraceEvent& event) noexcept;
 
 // Writes a trace line by line in the order of the calls.
 class TraceWriter {
  public:
-  void begin(int rate_hz, int version = kTraceVersion);      // `V:`, before anything else
-  void pace(Pace pace);                                      // `O:`, before any event
-  void option(std::string_view text);                        // `O:`
-  void file(std::string_view name, std::string_view bytes);  // `F:` and its lines
+  // Writes the `V:` line, before anything else.
+  void begin(int rate_hz, int version = kTraceVersion);
+  void pace(Pace pace);                // Writes `O: pace`, before any event.
+  void option(std::string_view text);  // Writes an `O:` line.
+  // Writes an `F:` line and the file's lines.
+  void file(std::string_view name, std::string_view bytes);
   void comment(std::string_view sentence);
   // The lines that describe the device; texts are cut to the reader's limits. The only device of a
   // recording needs no `D:` line if its index is 0.
   enum class Index { written, left_out };
   void device(const TraceDevice& device, Index index);
-  void tick(std::int64_t tick);  // `T:`, if it is another tick than before
-  // `index`: of a device that was written before; none for a command.
+  void tick(std::int64_t tick);  // Writes a `T:` line if the tick differs from the last one.
+  // Writes an event. `index`: of a device that was written before; none for a command.
   void event(ReportKind kind, std::int64_t time_us, std::optional<int> index,
              std::span<const std::uint8_t> bytes);
-  void end(std::int64_t time_us, std::int64_t ticks);  // `Q:`
+  void end(std::int64_t time_us, std::int64_t ticks);  // Writes the `Q:` line.
 
   // Whole lines that were written since the last take_text().
   const std::string& text() const { return text_; }
@@ -130,13 +134,14 @@ class TraceWriter {
  private:
   std::string text_;
   std::optional<std::int64_t> tick_;
-  std::optional<int> current_;  // device of the last `D:`
+  std::optional<int> current_;  // device of the last `D:` line
 };
 
 // The text of a trace: parse_trace() reads the same devices and events from it, and hid-replay
 // plays it. `trace` is one that check() accepts; write_trace() calls it. It has `T:` lines if
 // has_ticks is set, `V:` if rate_hz is, `Q:` if both ends are.
 std::string trace_text(const Trace& trace);
-Result<std::int64_t> write_trace(const Trace& trace, const std::string& path);  // bytes written
+// Returns the number of bytes written.
+Result<std::int64_t> write_trace(const Trace& trace, const std::string& path);
 
 }  // namespace gaitpad

@@ -18,15 +18,16 @@
 
 namespace gaitpad {
 
-// step_begin: the other foot has landed or a stand ends, and this foot is the next to fly.
-// toe_off: its toe leaves the ground. heel_strike: its heel lands.
+// step_begin: the other foot has landed or a stand ends, and this foot will fly next. toe_off: the
+// toe of this foot leaves the ground. heel_strike: its heel lands.
 enum class WalkEventKind : std::uint8_t { step_begin, toe_off, heel_strike };
 
-// walk_events() fills it.
+// An event of a foot; walk_events() fills it.
 struct WalkEvent {
   WalkEventKind kind = WalkEventKind::heel_strike;
   Side side = kLeftSide;
-  vec3 place_m{0.0};  // world: where the heel is or was planted; toe_off: the toe
+  // Place in the world where the heel is or was planted; for toe_off: that of the toe.
+  vec3 place_m{0.0};
 };
 
 // The events in their order in time. A tick of at most kMostTick_s has each event of a foot at most
@@ -42,28 +43,30 @@ struct WalkEvents {
 // event.
 WalkEvents walk_events(const WalkFrame& before, const WalkState& state) noexcept;
 
-// Weights by joint of the model's skeleton: 1 for the legs, the pelvis and what it hangs on; else
-// 0, so that a game's own trunk, arms and head stay as they are, in the frame of the pelvis.
+// Weights for mix_pose(), one for each joint of the model's skeleton: 1 for the legs, the pelvis
+// and the joints that carry it; else 0, so that a game's own trunk, arms and head stay as they are,
+// in the frame of the pelvis.
 std::vector<float> legs_and_pelvis(const WalkModel& model);
 
-// Brings each joint of `own`, a pose of the same skeleton, to the walk's by its weight: 0 leaves
-// its rotation, 1 makes it the walk's, both to the bit; between them lies the shorter way round.
-// Weights beyond are clamped, one that is not a number counts as 0. The root's place follows the
-// root's weight. Joints beyond the shortest of the three stay.
+// Mixes each joint of `own`, a pose of the same skeleton, with the walk's by its weight: 0 keeps
+// its rotation, 1 makes it the walk's, both to the bit; other weights follow the shorter arc.
+// Weights outside are clamped, a weight that is not a number counts as 0. The root's place follows
+// the root's weight. Joints beyond the shortest of the three lists stay.
 void mix_pose(std::span<const float> weights, const Pose& walk, Pose& own) noexcept;
 
-// Both write one entry a bone of the caller's: of joint `joints[i]`, or nothing where that is no
-// joint of the pose. They write as many bones as `out` has room for, and return how many entries
-// they considered. What stands in the world is seen from `model`, where the caller's object lies:
-// {state.frame.root_m, state.frame.heading_rad} for an object that is moved by root motion, {} for
-// the world. Where that is not finite nothing is written, and 0 returned.
+// Both functions write one entry for each of the caller's bones: that of joint `joints[i]`, or
+// nothing if there is no such joint in the pose. They write as many bones as `out` has room for,
+// and return the number of entries that they considered. Places in the world are converted to the
+// frame of `model`, the caller's object: {state.frame.root_m, state.frame.heading_rad} for an
+// object that is moved by root motion, {} for the world. If that is not finite nothing is written,
+// and 0 returned.
 
-// Local rotations, 4 floats each: x, y, z, w. The root's turns into the frame of `model`; its place
-// there goes to `root_m`.
+// Writes local rotations, 4 floats each: x, y, z, w. The root's turns into the frame of `model`;
+// its place in that frame goes to `root_m`.
 int write_rotations(const Pose& pose, const Placement& model, std::span<const int> joints,
                     std::span<float> out, std::array<float, 3>& root_m) noexcept;
 
-// Rotation and place in the frame of `model`, 16 floats each: a matrix, column by column.
+// Writes rotation and place in the frame of `model`, 16 floats each: a matrix, column by column.
 int write_matrices(const Skeleton& skeleton, const Pose& pose, const Placement& model,
                    std::span<const int> joints, std::span<float> out) noexcept;
 

@@ -65,7 +65,7 @@ std::optional<Error> draw_curves(const JointCurves& curves, const std::string& t
   return write_png(path, page.surface.get());
 }
 
-// Both axes are logarithmic.
+// Draws curves over two logarithmic axes.
 std::optional<Error> draw_crowd(const std::vector<CrowdCurve>& curves, const std::string& processor,
                                 const std::string& path) {
   constexpr int kWidth = 900, kHeight = 620;

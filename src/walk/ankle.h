@@ -1,0 +1,105 @@
+// After the legs: an ankle that bends up too far is eased. In flight the foot points down, in late
+// support the heel rises; a foot that has to stand still does neither.
+#pragma once
+#include "walk/leg_solve.h"
+#include "walk/reach.h"
+
+namespace gaitpad::anew {
+namespace {
+
+// Ankles bend up to 38 degrees, and softly beyond it: people's reach 35 to 40 with a bent knee.
+inline constexpr float kMostBent_rad = 0.66322512f, kSoftBent_rad = 0.10471976f,
+                       kSoftFlying_rad = 0.20943951f;
+
+// Points a flying foot down: as far as the ground allows by its pitch alone, and farther by lifting
+// it so that its toe stays at its height.
+template <class V>
+void point_down(const Time<V>& time, const Sole<V>& sole, const Turn<V>& yaw, const V& heel_m,
+                const V& more_rad, Foot<V>& foot) noexcept {
+  const Mask<V> on_toe{};  // none
+  const V u = time.u, open = smooth(0.0f, 0.2f, u) * (1.0f - smooth(0.7f, 0.95f, u)),
+          low = within(V((sole.toe_rest_m - heel_m) / sole.foot_m), -1.0f, 1.0f),
+          room = sole.elevation_rad - arc_sine_of(low) - foot.pitch_rad,
+          allowed = least(more_rad, most(room, V{}));
+  set_pitch(sole, yaw, V(foot.pitch_rad + allowed), on_toe, foot);
+  const V toe_y_m = foot.toe_m.y;
+  set_pitch(sole, yaw, V(foot.pitch_rad + open * (more_rad - allowed)), on_toe, foot);
+  const V lift_m = toe_y_m - foot.toe_m.y;
+  foot.heel_m.y = foot.heel_m.y + lift_m;
+  foot.toe_m.y = foot.toe_m.y + lift_m;
+}
+
+// `phase`: what is shown. `bent`: by how much its ankle is bent too far.
+template <class V>
+void ease_ankle(const Tables& tables, const Time<V>& time, const Stride<V>& stride, const V& phase,
+                const V& bent, int k, const Pelvis<V>& pelvis, const Change<V>& change,
+                const Footing<V>& footing, State<V>& state, Feet<V>& feet,
+                const V (&begun_rad)[kLegAngles], Leg<V>& leg) noexcept {
+  const auto starts = change.starting != V{};
+  const auto right = k == 0 ? time.right : no(time.right);
+  const LegBones &l = tables.leg[0], &r = tables.leg[1];
+  const auto flies = k == 0 ? time.flies : Mask<V>{}, stands = k == 0 ? no(time.flies) : time.flies;
+  // An ankle that stairs bend while standing would jump where a walk starts.
+  const V begun = both(starts, no(time.flies)) ? smooth(V(state.tick / state.roll_ticks))
+                                               : all<V>(1.0f),
+          may = begun * heel_rise(tables, time, right, phase, no(Mask<V>{}), change);
+  const V soft = chosen<V>(flies, kSoftFlying_rad, kSoftBent_rad),
+          excess = soft_positive(bent, soft) * (flies    ? all<V>(1.0f)
+                                                : stands ? may
+                                                         : V{});
+  const auto eases = excess != V{};
+  if (!any(eases)) return;
+  Foot<V>& foot = feet.foot[k];
+  const Sole<V>& sole = feet.sole[k];
+  const Turn<V> yaw = foot.yaw;
+  Foot<V> risen = foot;
+  set_pitch(sole, yaw, V(foot.pitch_rad + excess), no(flies), risen);
+  if (any(flies)) {
+    const V heel_m =
+        (foot.heel_m.y - feet.base_m) * (is_uneven(tables) ? upright(footing.print) : all<V>(1.0f));
+    Foot<V> down = foot;
+    point_down(time, sole, yaw, heel_m, excess, down);
+    risen.heel_m = chosen(flies, down.heel_m, risen.heel_m);
+    risen.toe_m = chosen(flies, down.toe_m, risen.toe_m);
+    risen.turn = chosen(flies, down.turn, risen.turn);
+    risen.pitch_rad = flies ? down.pitch_rad : risen.pitch_rad;
+  }
+  // Once more, from where it started: it turns little there, and its knee does not swivel away.
+  V start_rad[kLegAngles], off_rad[kLegAngles];
+  set_table_angles(tables, right, stride, k, start_rad);
+  std::copy_n(begun_rad, kLegAngles, off_rad);
+  const Turn<V> to_pelvis = back(pelvis.turn);
+  const Vec<V> ankle_m = to_pelvis * (ankle_of(risen, sole) - pelvis.place_m - pelvis.hip_m[k]);
+  const Leg<V> again =
+      solve_leg<V>(chosen<V>(right, r.thigh_m, l.thigh_m), chosen<V>(right, r.shank_m, l.shank_m),
+                   ankle_m, to_pelvis * risen.turn, start_rad, off_rad);
+  foot.heel_m = chosen(eases, risen.heel_m, foot.heel_m);
+  foot.toe_m = chosen(eases, risen.toe_m, foot.toe_m);
+  foot.turn = chosen(eases, risen.turn, foot.turn);
+  foot.pitch_rad = eases ? risen.pitch_rad : foot.pitch_rad;
+  leg.hip = chosen(eases, again.hip, leg.hip);
+  leg.knee = chosen(eases, again.knee, leg.knee);
+  leg.ankle = chosen(eases, again.ankle, leg.ankle);
+  for (int j = 0; j < kLegAngles; ++j)
+    state.leg_rad[k][j] = eases ? off_rad[j] : state.leg_rad[k][j];
+}
+
+template <class V>
+void ease_ankles(const Tables& tables, const Time<V>& time, const Stride<V>& stride, const V& phase,
+                 const Pelvis<V>& pelvis, const Change<V>& change, const Footing<V>& footing,
+                 State<V>& state, Feet<V>& feet, const V (&begun_rad)[2][kLegAngles],
+                 Leg<V> (&legs)[2]) noexcept {
+  const LegBones &l = tables.leg[0], &r = tables.leg[1];
+  for (int k : {0, 1}) {
+    const auto right = k == 0 ? time.right : no(time.right);
+    const V bent = -(stride.leg_rad[k][4] + chosen<V>(right, r.stand_rad[4], l.stand_rad[4]) +
+                     state.leg_rad[k][4]) -
+                   kMostBent_rad;
+    if (!any(bent > all<V>(-kSoftFlying_rad))) continue;
+    ease_ankle(tables, time, stride, phase, bent, k, pelvis, change, footing, state, feet,
+               begun_rad[k], legs[k]);
+  }
+}
+
+}  // namespace
+}  // namespace gaitpad::anew

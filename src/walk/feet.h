@@ -1,0 +1,477 @@
+// Fourth: where both feet are, and how they are turned.
+#pragma once
+#include "walk/ground.h"
+
+namespace gaitpad::anew {
+namespace {
+
+template <class V>
+struct Foot {
+  Vec<V> heel_m, toe_m;
+  V pitch_rad{};  // of the line from heel to toe: 0 flat, toe down positive
+  Turn<V> yaw, edge, turn;
+};
+
+// The numbers of a foot that the swinging one and the standing one differ in, for they are of
+// different sides.
+template <class V>
+struct Sole {
+  Vec<V> heel_m, line_m, forward, side;  // in the foot's frame; from heel to toe
+  V elevation_rad, foot_m, toe_rest_m, half_width_m;
+};
+template <class V>
+Sole<V> sole_of(const Tables& tables, const Mask<V>& right) noexcept {
+  const LegBones &l = tables.leg[0], &r = tables.leg[1];
+  const auto of = [&](float LegBones::*bone) { return chosen<V>(right, r.*bone, l.*bone); };
+  const Vec<V> heel_m = by_side<V>(right, l.heel_m, r.heel_m);
+  return {heel_m,
+          by_side<V>(right, l.toe_m, r.toe_m) - heel_m,
+          by_side<V>(right, l.forward, r.forward),
+          by_side<V>(right, l.side, r.side),
+          of(&LegBones::elevation_rad),
+          of(&LegBones::foot_m),
+          of(&LegBones::toe_rest_m),
+          of(&LegBones::half_width_m)};
+}
+
+template <class V>
+Turn<V> edge_of(const Sole<V>& sole, const V& twist_rad, const V& roll_rad) noexcept {
+  const Vec<V>& f = sole.forward;
+  return turn_by(Vec<V>{f.x * roll_rad, twist_rad + f.y * roll_rad, f.z * roll_rad});
+}
+// Of the foot by its direction, pitch and edge; then the point that is not planted follows.
+template <class V>
+void set_pitch(const Sole<V>& sole, const Turn<V>& yaw, const V& pitch_rad, const Mask<V>& on_toe,
+               Foot<V>& foot) noexcept {
+  foot.pitch_rad = pitch_rad;
+  foot.yaw = yaw;
+  foot.turn = yaw * (turn_about(sole.side, pitch_rad) * foot.edge);
+  const Vec<V> line = foot.turn * sole.line_m;
+  const Vec<V> heel_m = foot.toe_m - line, toe_m = foot.heel_m + line;
+  foot.heel_m = chosen(on_toe, heel_m, foot.heel_m);
+  foot.toe_m = chosen(on_toe, foot.toe_m, toe_m);
+}
+
+// The style's factor on the height of the flight.
+template <class V>
+V lift_of(const Time<V>& time, const State<V>& state) noexcept {
+  return time.right ? state.lift[1].x : state.lift[0].x;
+}
+// At most 1: a lame foot stays low.
+template <class V>
+V low_lift(const Mask<V>& right, const State<V>& state) noexcept {
+  return least(right ? state.lift[1].x : state.lift[0].x, all<V>(1.0f));
+}
+// Of its pitch in the tables, until the middle of its flight.
+template <class V>
+V low_pitch(const V& low, const V& u) noexcept {
+  return mix(low, all<V>(1.0f), smoother(V(2.0f * u)));
+}
+
+// Of the flight: a style's factor on the height grows until here, and goes between the others.
+inline constexpr float kLiftGrown = 0.4f, kLiftFalls = 0.5f, kLiftEnds = 0.85f, kPitchFade = 0.2f;
+inline constexpr float kShortPitchFade = 0.6f, kFirstLift_m = 0.03f,
+                       kLastLift_m = 0.025f;  // of a first and a last one
+// Of the first roll: until then the heel stays down; of the tables' pitch when it lifts off.
+inline constexpr float kHeelStays = 0.25f, kFirstPitch = 0.8f;
+inline constexpr float kHeelRises = 0.5f;  // of the first flight: of the other foot
+inline constexpr float kRollEnd = 0.9f;    // of the roll: the toe is down
+// A flying toe may be that far below where it stands: the tables' own, which only just leave the
+// floor, are let through.
+inline constexpr float kMostSink_m = 0.0015f, kSoftPitch_rad = 0.0069813f, kWiderPitch = 0.25f;
+
+// The tables' place of the swinging heel, from its footprint to the landing; `base_m`: the height
+// of the ground line below it.
+template <class V, class F>
+Vec<V> flight_heel(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
+                   const Stride<V>& stride, const Hips<V>& hips, const V& phase, const V& u,
+                   const Change<V>& change, const State<V>& state, const F& footing,
+                   V& base_m) noexcept {
+  const Way<V> left = way_of(state.print_rad);
+  const V turns = chosen<V>(time.right, 1.0f, 0.0f);
+  const auto seen = [&](const Footprints<V>& prints, const Vec<V>& heel_m, const V& turned) {
+    Vec<V> p = heel_m - prints.swing_m;
+    p.z = p.z + prints.stride_m * (phase - turned);
+    return p;
+  };
+  const Vec<V> from = left * seen(hips.behind, stride.heel_behind_m, V(turns - 1.0f)),
+               to = landing.way * seen(hips.ahead, stride.heel_ahead_m, turns);
+  const V gone = smoother(u);
+  Vec<V> p{mix(V(state.print_x_m + from.x), V(landing.x_m + to.x), gone), V{},
+           mix(V(state.print_z_m + from.z), V(landing.z_m + to.z), gone)};
+  const auto closes = change.closing != V{}, is_short = either(change.starting != V{}, closes);
+  if (any(is_short)) {
+    // As far as strides of its own length have it; before it lands it is one of the walk.
+    constexpr float kInPlaceStride_m = 0.02f, kLikeAStep = 0.4f, kWalksFrom = 0.3f;
+    const Vec<V> ahead = seen(hips.own, stride.heel_behind_m, turns);
+    const auto in_place = size(hips.own.stride_m) < all<V>(kInPlaceStride_m);
+    const V far = in_place ? smoother(u)
+                           : V(1.0f + ahead.z / (in_place ? all<V>(1.0f) : hips.own.stride_m)),
+            goes = kLikeAStep * smoother(V((u - kWalksFrom) * (1.0f / (1.0f - kWalksFrom)))),
+            walks = closes ? V{} : goes;
+    // Sideways, to or from hip width, it goes evenly.
+    const V goes_x = landing.x_m - state.print_x_m, goes_z = landing.z_m - state.print_z_m,
+            asides = goes_x * landing.way.cosine - goes_z * landing.way.sine,
+            left_m = ahead.x + asides * (gone - far);
+    const V x = state.print_x_m + goes_x * far + landing.way.cosine * left_m,
+            z = state.print_z_m + goes_z * far - landing.way.sine * left_m;
+    p.x = is_short ? mix(x, V(landing.x_m + to.x), walks) : p.x;
+    p.z = is_short ? mix(z, V(landing.z_m + to.z), walks) : p.z;
+  }
+  // On an arc: neither on its chord, which leads through the standing leg, nor on both directions
+  // mixed, which lead far out.
+  const V turn = landing.rad - state.print_rad;
+  if (any(turn != V{})) {
+    const V x = landing.x_m - state.print_x_m, z = landing.z_m - state.print_z_m,
+            square = x * x + z * z;
+    const V share = within(V(((p.x - state.print_x_m) * x + (p.z - state.print_z_m) * z) /
+                             most(square, all<V>(1e-6f))),
+                           0.0f, 1.0f);
+    const Way<V> middle = way_of(V(state.print_rad + 0.5f * turn));
+    const V arc = share * (1.0f - share), mixed = (1.0f - gone) * share + gone * (1.0f - share);
+    const V out = turn * root(square) * 0.5f * (is_short ? arc : V(arc - mixed));
+    p.x = p.x - middle.cosine * out;
+    p.z = p.z + middle.sine * out;
+  }
+  // A greater factor acts while the foot is high, a smaller one from the lift-off on.
+  const V factor = lift_of(time, state), low = least(factor, all<V>(1.0f));
+  V more = 1.0f + (most(factor, all<V>(1.0f)) - 1.0f) * (1.0f - smooth(kLiftFalls, kLiftEnds, u));
+  base_m = V{};
+  if constexpr (kIsUneven<F>) {
+    V up{};
+    base_m = ground_line(tables, landing, p, u, state, footing, up);
+    more = more * up;
+  }
+  p.y = stride.heel_high_m * low * mix(all<V>(1.0f), more, smoother(V(u * (1.0f / kLiftGrown))));
+  // Its toe leaves the floor at once.
+  const V left_u = 1.0f - u, square_u = u * left_u;
+  const V high_m = tables.size * 16.0f * chosen<V>(closes, kLastLift_m, kFirstLift_m);
+  p.y = is_short ? V(p.y + high_m * square_u * square_u) : p.y;
+  if constexpr (kIsUneven<F>) p.y = p.y + base_m;
+  return p;
+}
+
+// What the lift-off, or a change of plan, differed by fades: of the heel and of the pitch.
+template <class V>
+V gap_share(const Time<V>& time, const Change<V>& change) noexcept {
+  return (time.u - change.gap_begin) / change.gap_lasts;
+}
+// The heel from its table's place, `heel_m`, to where it is, and off the floor, whose height is
+// `base_m`.
+template <class V>
+Vec<V> with_gap(const Tables& tables, const Time<V>& time, const Vec<V>& heel_m, const V& base_m,
+                const Change<V>& change, const State<V>& state) noexcept {
+  constexpr float kSoftFloor_m = 0.02f, kSoftFrom = 0.3f, kSoftUntil = 0.7f;
+  const V s = gap_share(time, change);
+  const auto fading = both(time.flies, s < all<V>(1.0f)), changed = change.gap_begin != V{};
+  V of_gap = value_left(s), of_slope = slope_left(s), falls = all<V>(1.0f);
+  Vec<V> p = heel_m;
+  if (any(changed)) {
+    // It may come down fast: a quintic then stays higher. One that was lower than it is to be goes
+    // over in proportion: it would else come to the ground.
+    const V w = 1.0f - s, w3 = w * w * w,
+            lift = tables.size * 16.0f * kLastLift_m * change.gap_lasts;
+    of_gap = changed ? V(w3 * (1.0f + s * (3.0f + 6.0f * s))) : of_gap;
+    of_slope = changed ? V(w3 * s * (1.0f + 3.0f * s)) : of_slope;
+    p.y = both(changed, fading) ? V(p.y + lift * (s * s) * (w * w)) : p.y;
+    falls = both(changed, state.gap_m.y < V{}) ? V((p.y - base_m) / change.gap_high_m) : falls;
+  }
+  of_gap = fading ? of_gap : V{};
+  of_slope = fading ? V(of_slope * change.gap_lasts) : V{};
+  p = p + Vec<V>{state.gap_m.x, V(state.gap_m.y * falls), state.gap_m.z} * of_gap +
+      state.gap_slope_m * of_slope;
+  V high_m = most(p.y, base_m);
+  if (any(changed)) {
+    const V soft_m = kSoftFloor_m * tables.size * smoother(V(s * (1.0f / kSoftFrom))) *
+                     (1.0f - smoother(V((time.u - kSoftUntil) * (1.0f / (1.0f - kSoftUntil)))));
+    high_m =
+        changed ? V(base_m + soft_positive(V(p.y - base_m), most(soft_m, all<V>(1e-6f)))) : high_m;
+  }
+  p.y = high_m;
+  return p;
+}
+// `tick`: of the flight.
+template <class V>
+V pitch_off(const Time<V>& time, const V& tick, const Change<V>& change,
+            const State<V>& state) noexcept {
+  const auto is_short = either(change.starting != V{}, change.closing != V{}),
+             changed = change.pitch_lasts != V{};
+  const V own_ticks = state.flight_ticks * chosen<V>(is_short, kShortPitchFade, kPitchFade),
+          ticks = changed ? change.pitch_lasts : own_ticks,
+          t = (tick - (changed ? change.pitch_begin : V{})) / ticks;
+  return both(time.flies, t < all<V>(1.0f)) ? V(state.swing_pitch_rad * value_left(t) +
+                                                state.swing_pitch_rate * ticks * slope_left(t))
+                                            : V{};
+}
+
+template <class V>
+V flying_yaw(const Time<V>& time, const Landing<V>& landing, const Change<V>& change,
+             const State<V>& state) noexcept {
+  return state.print_rad + (landing.rad - state.print_rad) * (1.0f - value_left(time.u)) +
+         state.lift_turn_rad * slope_left(time.u) + change.gap_rad * edge_left(time.u, change);
+}
+
+// How long a roll takes until the toe is down, and how much of that is over.
+template <class V>
+V roll_lasts(const Change<V>& change, const State<V>& state) noexcept {
+  return kRollEnd * (state.roll_ticks - change.led_from);
+}
+template <class V>
+V roll_over(const Change<V>& change, const State<V>& state) noexcept {
+  return (state.tick - change.led_from) / roll_lasts(change, state);
+}
+// What is left of the pitch with which it landed.
+template <class V>
+V landed_pitch(const Change<V>& change, const State<V>& state) noexcept {
+  const V s = roll_over(change, state);
+  return s < all<V>(1.0f) ? V(state.stand_pitch_rad * value_left(s) +
+                              change.led_rate_rad * roll_lasts(change, state) * slope_left(s))
+                          : V{};
+}
+
+// A foot in the air, still without its pitch.
+template <class V>
+struct Flight {
+  Vec<V> heel_m, table_heel_m;
+  V base_m{}, lifted_m{};  // the ground line below it; how much higher the plane that it left is
+  Way<V> way;              // where it points
+  Turn<V> tilt{V{} + 1.0f, V{}, V{}, V{}}, edge;
+};
+
+template <class V, class F>
+Flight<V> fly(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
+              const Stride<V>& by_clock, const Stride<V>& stride, const Hips<V>& hips,
+              const V& phase, const Sole<V>& sole, const Change<V>& change, const State<V>& state,
+              const F& footing) noexcept {
+  Flight<V> flight;
+  const V one = all<V>(1.0f), u = time.u;
+  flight.table_heel_m = flight_heel(tables, time, landing, by_clock, hips, phase, u, change, state,
+                                    footing, flight.base_m);
+  flight.heel_m = with_gap(tables, time, flight.table_heel_m, flight.base_m, change, state);
+  // A low foot that hardly leaves the floor does not roll onto an edge.
+  const V low = mix(one, low_lift<V>(time.right, state),
+                    V(smoother(V(u * 2.0f)) * (1.0f - smoother(V((u - 0.6f) * 2.5f)))));
+  const StrideFoot<V>& table = stride.foot[0];
+  flight.edge = edge_of(sole, V(low * table.twist_rad), V(low * table.roll_rad));
+  const Way<V> left = way_of(state.print_rad),
+               flown = way_of(flying_yaw(time, landing, change, state));
+  flight.way = chosen(time.flies, flown, left);
+  if constexpr (kIsUneven<F>) {
+    const Turn<V> from = tilt_of(footing.print), to = tilt_of(footing.landing);
+    const Vec<V>& p = flight.heel_m;
+    flight.lifted_m = footing.print_y_m +
+                      rise_of(footing.print, V(p.x - state.print_x_m), V(p.z - state.print_z_m)) -
+                      flight.base_m;
+    const V goes = time.flies ? V(1.0f - value_left(u)) : V{};
+    flight.tilt = unit(Turn<V>{mix(from.w, to.w, goes), mix(from.x, to.x, goes),
+                               mix(from.y, to.y, goes), mix(from.z, to.z, goes)});
+  }
+  return flight;
+}
+
+// Its pitch: what is planned, as far as toe and edge stay off the ground.
+template <class V, class F>
+void pitch_in_flight(const Time<V>& time, const Sole<V>& sole, const Flight<V>& flight,
+                     const V& planned, const V& off, const F& footing, Foot<V>& foot) noexcept {
+  const V u = time.u;
+  V height_m = flight.heel_m.y;
+  if constexpr (kIsUneven<F>) {
+    // The toe leaves the plane that it stood on, which may be another one than the ground line.
+    const V lifted_m = flight.lifted_m * (1.0f - smoother(V(u * (1.0f / kLiftGround))));
+    height_m = (height_m - (flight.base_m + lifted_m)) * upright(footing.print);
+  }
+  foot.edge = flight.edge;
+  const Vec<V> rolled = foot.edge * sole.line_m;
+  const V ahead = dot(rolled, sole.forward), flat_ahead = dot(sole.line_m, sole.forward);
+  const V steeper = (rolled.y * flat_ahead - sole.line_m.y * ahead) / (sole.foot_m * sole.foot_m);
+  const V across = (flight.way.turn() * (turn_about(sole.side, planned) * foot.edge) * sole.side).y;
+  const V edge_m =
+      sole.half_width_m * size(across) * smooth(0.0f, 0.25f, u) * (1.0f - smooth(0.9f, 1.0f, u));
+  const V deep = (sole.toe_rest_m + edge_m - kMostSink_m - height_m) / sole.foot_m;
+  const V limit = sole.elevation_rad - arc_sine(within(deep, -0.95f, 0.95f)) + arc_sine(steeper);
+  const V soft =
+      kSoftPitch_rad + kWiderPitch * size(off) * smooth(0.0f, 0.1f, u) + edge_m / sole.foot_m;
+  const V pitch = time.flies ? soft_least(planned, limit, soft) : most(planned, V{});
+  foot.heel_m = flight.heel_m;
+  const Turn<V> level = flight.way.turn();
+  set_pitch(sole, kIsUneven<F> ? flight.tilt * level : level, pitch, no(time.flies), foot);
+}
+
+template <class V>
+struct Feet {
+  Foot<V> foot[2];  // swing, stand
+  Sole<V> sole[2];
+  Vec<V> table_heel_m;  // of the swinging one
+  V base_m{};           // the ground line below it
+  Vec<V> flat_toe_m;    // of the standing one, where it is flat on its ground
+};
+
+template <class V, class F>
+Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
+                  const Stride<V>& by_clock, const Stride<V>& stride, const Hips<V>& hips,
+                  const Change<V>& change, const State<V>& state, F& footing) noexcept {
+  Feet<V> feet;
+  const V one = all<V>(1.0f);
+  const auto starts = change.starting != V{}, closes = change.closing != V{},
+             first_roll = both(starts, no(time.flies));
+  {  // The foot that stands: on its heel while it rolls, then on its toe.
+    Foot<V>& foot = feet.foot[1];
+    const Sole<V>& sole = feet.sole[1] = sole_of<V>(tables, no(time.right));
+    const StrideFoot<V>& table = stride.foot[1];
+    const V s = roll_over(change, state);
+    const V off = landed_pitch(change, state);
+    // Where the hips lead, its toe is down when the other one lifts off.
+    const V stays = 1.0f - change.led * (time.flies ? V{} : smoother(s));
+    // In a first step it has not landed: its heel rises only while the other foot flies. In a last
+    // one it stays flat.
+    const V rises = starts ? smoother(V(time.u * (1.0f / kHeelRises))) : stays,
+            ends = change.gap_begin != V{} ? edge_left(time.u, change) : V{},
+            shows = both(closes, time.flies) ? ends : rises;
+    const V low = time.flies ? low_lift<V>(no(time.right), state) : one;
+    const V pitch = low * table.pitch_rad * shows + (time.flies ? V{} : off);
+    V planted = time.flies ? most(pitch, V{}) : least(pitch, V{});
+    Turn<V> tilt{one, V{}, V{}, V{}};
+    feet.flat_toe_m = sole.line_m;
+    if constexpr (kIsUneven<F>) {
+      tilt = tilt_of(footing.stand);
+      feet.flat_toe_m = tilt * sole.line_m;
+      // Where the hips have risen over it, it rises on its toe.
+      const V rises_m = rise_with_hips<V>(tables, no(time.right), stride.leg_rad[1][3], V{}, V{},
+                                          footing),
+              begun = starts ? smoother(V(time.u * (1.0f / kFirstRise))) : one;
+      planted = time.flies ? pitch_to_rise<V>(tables, no(time.right), V(rises_m * begun), planted)
+                           : planted;
+    }
+    foot.edge = edge_of(sole, table.twist_rad, table.roll_rad);
+    foot.toe_m = feet.flat_toe_m;
+    foot.heel_m = {};
+    set_pitch(sole, tilt, planted, time.flies, foot);
+  }
+  Foot<V>& foot = feet.foot[0];
+  const Sole<V>& sole = feet.sole[0] = sole_of<V>(tables, time.right);
+  Flight<V> flight =
+      fly(tables, time, landing, by_clock, stride, hips, state.phase, sole, change, state, footing);
+  feet.table_heel_m = flight.table_heel_m;
+  const V off = pitch_off(time, state.tick, change, state);
+  const V lifts =
+      smoother(V((state.tick / state.roll_ticks - kHeelStays) * (1.0f / (1.0f - kHeelStays))));
+  const V low = low_pitch(low_lift<V>(time.right, state), time.u);
+  V planned = first_roll ? V(low * (kFirstPitch * by_clock.foot[0].pitch_rad * lifts))
+                         : V(low * stride.foot[0].pitch_rad + off);
+  foot.toe_m = {state.toe_x_m, sole.toe_rest_m, state.toe_z_m};
+  if constexpr (kIsUneven<F>) {
+    foot.toe_m.y = footing.toe_y_m;
+    follow_room(tables, footing);
+    const Vec<V> room_m = room_at(time.u, state, footing);
+    const V base_m = time.flies ? V(flight.base_m + room_m.y) : footing.print_y_m,
+            hover_m = time.flies ? V(0.5f * footing.early_m * smooth(0.0f, 0.5f, time.u)) : V{};
+    footing.rise_m =
+        rise_with_hips<V>(tables, time.right, stride.leg_rad[0][3], base_m, hover_m, footing);
+    footing.rise_m = first_roll ? V{} : footing.rise_m;
+    const Vec<V> risen_m{room_m.x, V(room_m.y + footing.rise_m), room_m.z};
+    flight.heel_m = flight.heel_m + risen_m;
+    flight.base_m = base_m;
+    flight.heel_m.y = most(flight.heel_m.y, base_m);
+    planned = time.flies ? planned
+                         : pitch_to_rise<V>(tables, time.right, footing.rise_m, most(planned, V{}));
+  }
+  pitch_in_flight(time, sole, flight, planned, off, footing, foot);
+  feet.base_m = flight.base_m;
+  return feet;
+}
+
+template <class V>
+Vec<V> ankle_of(const Foot<V>& foot, const Sole<V>& sole) noexcept {
+  return foot.heel_m - foot.turn * sole.heel_m;
+}
+
+// A value's slope now, per tick, from its last three.
+template <class V>
+V slope_of(const V& now, const V& last, const V& before) noexcept {
+  return 0.5f * (3.0f * now - 4.0f * last + before);
+}
+
+// Where a foot lifts off, what it and its slope differ by from its flight in the tables, which are
+// read a tick ahead.
+template <class V, class F>
+void lift_off(const Tables& tables, const Time<V>& time, const Mask<V>& lifts,
+              const Landing<V>& landing, const Hips<V>& hips, const Feet<V>& feet,
+              const Stride<V>& stride, const Change<V>& change, State<V>& state,
+              F& footing) noexcept {
+  const V ticks = state.flight_ticks, phase = state.phase + state.phase_rate,
+          share = (state.tick + 1.0f) / (state.roll_ticks + ticks);
+  const Stride<V> next =
+      read_by_clock(tables, time, landing, phase, share, V(1.0f / ticks), change, state);
+  V base_m{};
+  const Vec<V> ahead = flight_heel(tables, time, landing, next, hips, phase, V(1.0f / ticks),
+                                   change, state, footing, base_m),
+               &heel = feet.foot[0].heel_m, &table = feet.table_heel_m,
+               &last = state.last_heel_m[0], &before = state.last_heel_m[1];
+  const auto slope = [&](V Vec<V>::*part) {
+    return V((slope_of(heel.*part, last.*part, before.*part) - (ahead.*part - table.*part)) *
+             ticks);
+  };
+  const V low = low_lift<V>(time.right, state);
+  const V pitch = feet.foot[0].pitch_rad, table_pitch = low * stride.foot[0].pitch_rad,
+          rate = slope_of(pitch, state.last_pitch_rad[0], state.last_pitch_rad[1]) -
+                 (low_pitch(low, V(1.0f / ticks)) * next.foot[0].pitch_rad - table_pitch);
+  state.gap_m = chosen(lifts, heel - table, state.gap_m);
+  state.gap_slope_m = chosen(lifts, Vec<V>{slope(&Vec<V>::x), slope(&Vec<V>::y), slope(&Vec<V>::z)},
+                             state.gap_slope_m);
+  if constexpr (kIsUneven<F>) {
+    // How it rises with the hips is no part of it.
+    const V rises_m = slope_of(footing.rise_m, footing.last_rise_m[0], footing.last_rise_m[1]);
+    state.gap_m.y = lifts ? V(state.gap_m.y - footing.rise_m) : state.gap_m.y;
+    state.gap_slope_m.y = lifts ? V(state.gap_slope_m.y - rises_m * ticks) : state.gap_slope_m.y;
+    const V lifts_y_m = footing.print_y_m + rise_of(footing.print, V(heel.x - state.print_x_m),
+                                                    V(heel.z - state.print_z_m));
+    footing.lift_y_m = lifts ? lifts_y_m : footing.lift_y_m;
+  }
+  state.swing_pitch_rad = lifts ? V(pitch - table_pitch) : state.swing_pitch_rad;
+  state.swing_pitch_rate = lifts ? rate : state.swing_pitch_rate;
+  // In a turn it pivots on its planted toe as its heel rises.
+  state.lift_turn_rad = lifts ? V(state.turn_rad_s.x * tables.tick_s * ticks) : state.lift_turn_rad;
+}
+
+template <class V>
+void keep_swing(const Foot<V>& swing, State<V>& state) noexcept {
+  state.last_heel_m[1] = state.last_heel_m[0], state.last_heel_m[0] = swing.heel_m;
+  state.last_pitch_rad[1] = state.last_pitch_rad[0], state.last_pitch_rad[0] = swing.pitch_rad;
+}
+
+// At a strike the feet change their parts, and the step frame moves to the footprint that is new.
+template <class V>
+void change_feet(const Landing<V>& landing, const Mask<V>& strikes, const Feet<V>& feet,
+                 const Stride<V>& stride, State<V>& state) noexcept {
+  const auto set = [&](const V& to, V& number) { number = strikes ? to : number; };
+  const Way<V> back_turn{-landing.way.half_sine, landing.way.half_cosine, -landing.way.sine,
+                         landing.way.cosine};
+  const auto moved = [&](const V& x_m, const V& z_m) {
+    return back_turn * Vec<V>{x_m - landing.x_m, V{}, z_m - landing.z_m};
+  };
+  const Vec<V> print = moved(V{}, V{}), toe = moved(feet.flat_toe_m.x, feet.flat_toe_m.z);
+  set(print.x, state.print_x_m), set(print.z, state.print_z_m);
+  set(V(-landing.rad), state.print_rad);
+  set(toe.x, state.toe_x_m), set(toe.z, state.toe_z_m);
+  for (int k : {0, 1, 2}) {
+    const Vec<V> pelvis = moved(state.pelvis_x_m[k], state.pelvis_z_m[k]);
+    set(pelvis.x, state.pelvis_x_m[k]), set(pelvis.z, state.pelvis_z_m[k]);
+  }
+  set(V(state.heading_rad - landing.rad), state.heading_rad);
+  set(V{}, state.landing_x_m), set(V{}, state.landing_z_m), set(V{}, state.landing_rad);
+  set(state.next_wider_m, state.wider_m);
+  set(landing.ratio, state.ratio_behind);
+  set(V(feet.foot[0].pitch_rad - stride.stood_pitch_rad), state.stand_pitch_rad);
+  for (int j = 0; j < kLegAngles; ++j) {
+    const auto swap = [&](V(&of)[2][kLegAngles]) {
+      const V swing = of[0][j], stand = of[1][j];
+      of[0][j] = strikes ? stand : swing;
+      of[1][j] = strikes ? swing : stand;
+    };
+    swap(state.leg_rad);
+    swap(state.last_leg_rad);
+  }
+}
+
+}  // namespace
+}  // namespace gaitpad::anew

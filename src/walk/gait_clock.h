@@ -1,0 +1,263 @@
+// First of a tick: what is asked for, smoothed; how far the step has come.
+#pragma once
+#include "walk/state.h"
+#include "walk/tables.h"
+
+namespace gaitpad::anew {
+namespace {
+
+// Where a tick is in its step.
+template <class V>
+struct Time {
+  Mask<V> right, flies, back;   // the right foot swings; it flies already; steps lead backward
+  V u{};                        // share of the flight that is over, 0 before it
+  V share{};                    // of the step
+  V to_strike{};                // ticks
+  V step_phase{}, stage_end{};  // phases at which the step began and this roll or flight ends
+};
+
+template <class V>
+V by_side(const Mask<V>& right, const V (&of)[2]) noexcept {
+  return right ? of[1] : of[0];
+}
+template <class V>
+Vec<V> by_side(const Mask<V>& right, const std::array<float, 3>& left_of,
+               const std::array<float, 3>& right_of) noexcept {
+  return {chosen<V>(right, right_of[0], left_of[0]), chosen<V>(right, right_of[1], left_of[1]),
+          chosen<V>(right, right_of[2], left_of[2])};
+}
+
+template <class V>
+void follow(const V& goal, const Filter& filter, Smoothed<V>& value) noexcept {
+  value.v = (value.v + (goal - value.x) * filter.pull) * filter.keep;
+  value.v = size(value.v) < all<V>(1e-30f) ? V{} : value.v;  // denormal numbers are slow
+  value.x = value.x + value.v * filter.tick_s;
+}
+// A turn whose goal is 0 comes to exactly that.
+template <class V>
+void settle(const V& goal, Smoothed<V>& value) noexcept {
+  constexpr float kStraight_rad_s = 1e-5f;
+  const auto still = both(goal == V{}, size(value.x) < all<V>(kStraight_rad_s));
+  value.x = still ? V{} : value.x;
+  value.v = still ? V{} : value.v;
+}
+
+// Head and chest turn before the pelvis does (people: by 0.3 s and less).
+template <class V>
+void lead_turn(const V& ahead_rad, const Filter& filter, Smoothed<V>& value) noexcept {
+  constexpr float kStill_rad = 1e-7f;
+  follow(ahead_rad, filter, value);
+  const auto still = both(ahead_rad == V{}, size(value.x) < all<V>(kStill_rad));
+  value.x = still ? V{} : value.x;
+  value.v = still ? V{} : value.v;
+}
+
+// Of the foot that swings, in the data: run back, a foot makes the step that the other one makes
+// forwards.
+template <class V>
+V own_step_m(const Tables& tables, const Mask<V>& right, const Mask<V>& back) noexcept {
+  return chosen<V>(right != back, tables.leg[1].own_step_m, tables.leg[0].own_step_m);
+}
+// The longer one of the steps asked for, over the data's: a limp does not change the other's.
+template <class V>
+V asked_ratio(const Tables& tables, const State<V>& state) noexcept {
+  const auto back = state.backward != V{}, left = V{} != V{};
+  return most(V(state.asked.length_m[0] / own_step_m<V>(tables, left, back)),
+              V(state.asked.length_m[1] / own_step_m<V>(tables, no(left), back)));
+}
+// Whether it is to walk on as it walks: to go the other way it has to come to rest.
+template <class V>
+Mask<V> is_to_walk(const State<V>& state) noexcept {
+  const Asked<V>& asked = state.asked;
+  const auto on_spot = both(asked.length_m[0] == V{}, asked.length_m[1] == V{});
+  return both(asked.walks != V{}, either(on_spot, asked.backward == state.backward));
+}
+
+// `left`: the share of the lengths asked for that uneven ground leaves.
+template <class V>
+void smooth_asked(const Tables& tables, const Change<V>& change, const V& left,
+                  State<V>& state) noexcept {
+  constexpr float kGravity_m_s2 = 9.81f, kLeastCycle_s = 0.2f;
+  constexpr float kFirstStep = 0.9f;  // of the length asked for
+  constexpr float kChestAhead_s = 0.13f, kHeadAhead_s = 0.30f;
+  const Asked<V>& asked = state.asked;
+  const auto walks = is_to_walk(state);
+  for (int side : {0, 1}) {
+    // The first step goes as far as the push that is still on its way asks.
+    const auto starts = change.starting != V{},
+               steps = both(starts, state.right_swings == all<V>(static_cast<float>(side)));
+    const auto stops = change.stops != V{}, is_quick = either(starts, stops),
+               goes_on = both(change.catch_ticks != V{},
+                              state.right_swings == all<V>(static_cast<float>(side)));
+    const V rests = most(change.stands, change.closing),
+            kept_m = rests != V{} ? V{} : state.length_m[side].x,
+            asked_m = walks ? asked.length_m[side] : kept_m,
+            goal_m = either(stops, goes_on) ? change.length_m[side] : asked_m;
+    Smoothed<V> first = state.length_m[side];
+    follow(both(steps, no(stops)) ? V(kFirstStep * goal_m) : goal_m, tables.first_step, first);
+    follow(goal_m, tables.step, state.length_m[side]);
+    state.length_m[side].x = is_quick ? first.x : state.length_m[side].x;
+    state.length_m[side].v = is_quick ? first.v : state.length_m[side].v;
+    follow(asked.lift[side], tables.step, state.lift[side]);
+  }
+  const V cycle_s = asked.time_s[0] + asked.time_s[1];
+  follow(V(0.5f * cycle_s), tables.step, state.step_time_s);
+  const V turn_rad_s = walks ? asked.turn_rad_s : V{};
+  follow(turn_rad_s, tables.turn_goal, state.turn_goal_rad_s);
+  settle(turn_rad_s, state.turn_goal_rad_s);
+  follow(state.turn_goal_rad_s.x, tables.turn, state.turn_rad_s);
+  settle(state.turn_goal_rad_s.x, state.turn_rad_s);
+  lead_turn(V(kChestAhead_s * turn_rad_s), tables.chest, state.chest_ahead_rad);
+  lead_turn(V(kHeadAhead_s * turn_rad_s), tables.head, state.head_ahead_rad);
+  follow(asked.bounce, tables.bounce, state.bounce);
+  follow(asked.sway, tables.bounce, state.sway);
+  const V both_m = state.length_m[0].x + state.length_m[1].x;
+  follow(V(0.5f * both_m * left * (1.0f / tables.source_step_m)), tables.step, state.pace);
+  follow(within(V(2.0f * state.pace.x), 0.0f, 1.0f), tables.posture, state.posture);
+  // A lean of v w / g puts the weight on the standing foot's edge, as on a bicycle.
+  const V speed_m_s = both_m / most(cycle_s, all<V>(kLeastCycle_s));
+  follow(V(speed_m_s * state.turn_rad_s.x * (1.0f / kGravity_m_s2)), tables.lean, state.lean_rad);
+  state.heading_rad = state.heading_rad + state.turn_rad_s.x * tables.tick_s;
+}
+
+// Double support takes a longer share of shorter steps (roll_time_share() of stride_family.h).
+template <class V>
+V roll_share(const V& data_share, const V& ratio) noexcept {
+  constexpr float kLonger = 0.9f, kShorter = 2.4f, kLeast = 0.04f, kMost = 0.22f;
+  const V less = 1.0f - ratio, share = data_share * (less > V{} ? 1.0f + kLonger * less
+                                                                : 1.0f / (1.0f - kShorter * less));
+  return least(most(share, least(all<V>(kLeast), data_share)), most(all<V>(kMost), data_share));
+}
+
+// Ticks of a stage of this time: whole beats of 1/240 s, so that a steady walk is periodic and has
+// the same rhythm at every rate.
+template <class V>
+V whole_beats(const V& time_s, float least_beats) noexcept {
+  return most(floored(V(time_s * 240.0f + 0.5f)), all<V>(least_beats)) * (1.0f / 240.0f);
+}
+template <class V>
+V ticks_of(const V& time_s, float tick_s) noexcept {
+  return most(floored(V(time_s * (1.0f / tick_s) + 0.5f)), all<V>(2.0f));
+}
+
+// Of the step in which `right` swings: shares of the phase, and times of roll and flight.
+template <class V>
+struct Stages {
+  V roll, flight, roll_s, flight_s;
+};
+template <class V>
+Stages<V> stages_of(const Tables& tables, const Change<V>& change, const State<V>& state,
+                    const Mask<V>& right) noexcept {
+  constexpr float kLeastRoll = 6.0f, kLeastFlight = 12.0f;  // beats
+  const Asked<V>& asked = state.asked;
+  const auto& share = tables.stage_share;
+  const V roll = chosen<V>(right, share[2], share[0]),
+          flight = chosen<V>(right, share[3], share[1]);
+  const V ratio = asked_ratio(tables, state);
+  const V rolls = roll_share(roll, ratio), flies = roll + flight - rolls;
+  const V lands_s = by_side<V>(no(right), asked.time_s), swings_s = by_side<V>(right, asked.time_s);
+  return {roll, flight, whole_beats(V(2.0f * lands_s * change.slowness * rolls), kLeastRoll),
+          whole_beats(V(2.0f * swings_s * change.slowness * flies), kLeastFlight)};
+}
+
+// A start: from the stick to the lift-off, and the first flight, in seconds and of a steady one.
+inline constexpr float kFirstRoll_s = 0.25f, kLeastFirstFlight_s = 0.38f,
+                       kMostFirstFlight_s = 0.62f, kFirstFlight = 0.9f;
+
+// The first flight follows the stick until the foot lifts off: a thumb takes some time.
+template <class V>
+void time_first_flight(const Tables& tables, const Mask<V>& where, const Change<V>& change,
+                       State<V>& state) noexcept {
+  const float tick_s = tables.tick_s, scale = tables.time_scale;
+  const Stages<V> here = stages_of(tables, change, state, state.right_swings != V{});
+  const V roll_s = whole_beats(all<V>(kFirstRoll_s * scale), 1.0f), roll = ticks_of(roll_s, tick_s),
+          flight_s = whole_beats(within(V(kFirstFlight * here.flight_s),
+                                        kLeastFirstFlight_s * scale, kMostFirstFlight_s * scale),
+                                 1.0f),
+          step_s = roll_s + flight_s, flight = ticks_of(V(step_s - roll * tick_s), tick_s);
+  state.step_s = where ? step_s : state.step_s;
+  state.roll_ticks = where ? roll : state.roll_ticks;
+  state.flight_ticks = where ? flight : state.flight_ticks;
+  state.end_rate = where ? V(0.5f * (here.roll / roll + here.flight / flight)) : state.end_rate;
+}
+
+template <class V>
+V ticks_of_stage(const State<V>& state) noexcept {
+  return state.flies != V{} ? state.flight_ticks : state.roll_ticks;
+}
+// Where the walk's tick is in its step.
+template <class V>
+Time<V> time_of(const Tables& tables, const State<V>& state) noexcept {
+  Time<V> time;
+  time.right = state.right_swings != V{};
+  time.flies = state.flies != V{};
+  time.back = state.backward != V{};
+  const auto& share = tables.stage_share;
+  time.step_phase = chosen<V>(time.right, share[0] + share[1], 0.0f);
+  time.stage_end = time.step_phase + chosen<V>(time.right, share[2], share[0]) +
+                   (time.flies ? chosen<V>(time.right, share[3], share[1]) : V{});
+  time.u = time.flies ? V(state.tick / state.flight_ticks) : V{};
+  time.to_strike = ticks_of_stage(state) - state.tick + (time.flies ? V{} : state.flight_ticks);
+  time.share = (state.tick + (time.flies ? state.roll_ticks : V{})) /
+               (state.roll_ticks + state.flight_ticks);
+  return time;
+}
+
+// Moves the clock on by one tick. The phase follows a cubic to the end of the stage.
+template <class V>
+Time<V> advance_clock(const Tables& tables, const Change<V>& change, State<V>& state) noexcept {
+  const auto follows = both(change.starting != V{}, state.flies == V{}),
+             runs = change.stands == V{};
+  if (any(follows)) time_first_flight(tables, follows, change, state);
+  const V stage_end = time_of(tables, state).stage_end, left = ticks_of_stage(state) - state.tick,
+          s = 1.0f / left, way = stage_end - state.phase, v0 = state.phase_rate * left,
+          v1 = state.end_rate * left, c2 = 3.0f * way - 2.0f * v0 - v1, c3 = v0 + v1 - 2.0f * way;
+  state.phase = runs ? V(state.phase + (v0 + (c2 + c3 * s) * s) * s) : state.phase;
+  state.phase_rate = runs ? V((v0 + (2.0f * c2 + 3.0f * c3 * s) * s) * s) : V{};
+  state.tick = runs ? V(state.tick + 1.0f) : V{};
+  return time_of(tables, state);
+}
+
+// After the roll, where `lifts`: the flight begins.
+template <class V>
+void begin_flight(const Tables& tables, const Time<V>& time, const Mask<V>& lifts,
+                  const Change<V>& change, State<V>& state) noexcept {
+  const Stages<V> here = stages_of(tables, change, state, time.right),
+                  next = stages_of(tables, change, state, no(time.right));
+  // At its end the phase runs at the mean of both stages' rates, so that nothing has a kink there.
+  const V end_rate =
+      0.5f * (here.flight / state.flight_ticks + next.roll / ticks_of(next.roll_s, tables.tick_s));
+  state.end_rate = lifts ? end_rate : state.end_rate;
+  state.flies = lifts ? all<V>(1.0f) : state.flies;
+  state.tick = lifts ? V{} : state.tick;
+}
+
+// After the flight, where `strikes`: the other foot's step begins. It makes up for what the steps
+// before were too short or long by rounding. Where it is slower than the last one (`led`), hips
+// that still are as fast would have to sink for the foot behind: it leaves the floor sooner.
+template <class V>
+void begin_step(const Tables& tables, const Time<V>& time, const Mask<V>& strikes,
+                const Change<V>& change, State<V>& state) noexcept {
+  const float tick_s = tables.tick_s;
+  const Stages<V> next = stages_of(tables, change, state, no(time.right));
+  const V short_s = state.late_s + state.step_s - (state.roll_ticks + state.flight_ticks) * tick_s;
+  const V late_s = within(short_s, -tick_s, tick_s), step_s = next.roll_s + next.flight_s,
+          own_roll = ticks_of(V(next.roll_s + late_s), tick_s),
+          last_roll = next.roll / most(state.phase_rate, all<V>(1e-4f)),
+          led_roll = most(floored(root(V(own_roll * last_roll))), all<V>(2.0f)),
+          roll = change.led != V{} ? least(own_roll, led_roll) : own_roll,
+          flight = ticks_of(V(step_s + late_s - roll * tick_s), tick_s);
+  state.late_s = strikes ? late_s : state.late_s;
+  state.step_s = strikes ? step_s : state.step_s;
+  state.roll_ticks = strikes ? roll : state.roll_ticks;
+  state.flight_ticks = strikes ? flight : state.flight_ticks;
+  state.end_rate = strikes ? V(0.5f * (next.roll / roll + next.flight / flight)) : state.end_rate;
+  state.strike_rate = strikes ? state.phase_rate : state.strike_rate;
+  state.phase = strikes ? (time.right ? V{} : time.stage_end) : state.phase;
+  state.right_swings = strikes ? V(1.0f - state.right_swings) : state.right_swings;
+  state.flies = strikes ? V{} : state.flies;
+  state.tick = strikes ? V{} : state.tick;
+}
+
+}  // namespace
+}  // namespace gaitpad::anew

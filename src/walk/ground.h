@@ -1,0 +1,343 @@
+// Uneven ground in lanes: what planes make of feet, hips and stride. Where a landing is chosen, and
+// how a flight keeps clear of risers, is planned for one walk at a time (ground_plan.h).
+#pragma once
+#include "walk/hips.h"
+
+namespace gaitpad::anew {
+namespace {
+
+inline bool is_uneven(const Tables& tables) noexcept { return tables.terrain != nullptr; }
+
+// --- Planes --------------------------------------------------------------------------------------
+
+// From level ground to a plane.
+template <class V>
+Turn<V> tilt_of(const Slope<V>& slope) noexcept {
+  const V steep = root(V(1.0f + (slope.x * slope.x + slope.z * slope.z)));
+  return unit(Turn<V>{V(steep + 1.0f), -slope.z, V{}, slope.x});
+}
+template <class V>
+V upright(const Slope<V>& slope) noexcept {  // of its normal
+  return 1.0f / root(V(1.0f + (slope.x * slope.x + slope.z * slope.z)));
+}
+template <class V>
+V rise_of(const Slope<V>& slope, const V& x_m, const V& z_m) noexcept {
+  return slope.x * x_m + slope.z * z_m;
+}
+template <class V>
+Slope<V> chosen(const Mask<V>& mask, const Slope<V>& a, const Slope<V>& b) noexcept {
+  return {mask ? a.x : b.x, mask ? a.z : b.z};
+}
+
+// The cubic B-spline from 0 at u = 0 to `end` at u = 1, with slope 0 at both, by its inner knots.
+template <class V>
+V spline_at(const V* knots, const V& end, const V& u) noexcept {
+  constexpr int n = kRoomKnots + 1;
+  const V low = u < V{} ? V{} : u, x = (low > V{} + 1.0f ? V{} + 1.0f : low) * float(n);
+  V sum{};
+  for (int k = -1; k <= n + 1; ++k) {
+    const V control = k < 0    ? knots[0]
+                      : k == 0 ? V(-0.5f * knots[0])
+                      : k < n  ? knots[k - 1]
+                      : k == n ? V(1.5f * end - 0.5f * knots[n - 2])
+                               : knots[n - 2];
+    const V off = x - float(k), d = off < V{} ? -off : off, left = 2.0f - d,
+            near = 4.0f + d * d * (3.0f * d - 6.0f), far = left * left * left;
+    const V weight = d < V{} + 1.0f ? near : far;
+    sum = sum + (left > V{} ? V(control * weight) : V{});
+  }
+  return sum / 6.0f;
+}
+
+// --- The stride ----------------------------------------------------------------------------------
+
+// Trunks lean by 5 to 6 degrees up a grade of 15 %, by 7 to 8 up stairs, and back by 2 downhill
+// (Leroux, Fung and Barbeau 2002; Nadeau, McFadyen and Malouin 2003).
+inline constexpr float kUphillLean_rad = 0.14835299f, kDownhillLean_rad = 0.05235988f,
+                       kHalfLeanGrade = 0.09f;
+inline constexpr float kShortestRun = 0.2f;  // in legs: a step over less ground has no grade
+inline constexpr float kShortStep = 0.1f;  // of the data's: shorter ones say nothing of the ground
+inline constexpr float kLeastLeft = 0.3f;  // the ground leaves that much of a step's length
+// Sticks change the ratio slower, but for a first step.
+inline constexpr float kRatioJump_1_s = 2.4f, kFirstRatioJump_1_s = 14.4f;
+
+template <class V>
+void lean_into_slope(const Tables& tables, const Change<V>& change, Footing<V>& footing) noexcept {
+  const V run_m = most(size(footing.step_m), all<V>(kShortestRun * tables.leg_m)),
+          grade = change.stands != V{} ? V{} : V(footing.landing_y_m / run_m),
+          most_rad = chosen<V>(grade > V{}, kUphillLean_rad, kDownhillLean_rad);
+  follow(V(most_rad * grade / (size(grade) + kHalfLeanGrade)), tables.slope_lean, footing.lean_rad);
+}
+
+template <class V>
+V ratio_on_ground(const Change<V>& change, const State<V>& state,
+                  const Footing<V>& footing) noexcept {
+  return change.closing != V{}
+             ? state.ratio_behind
+             : most(V(footing.step_ratio + footing.off_ratio.x + change.off_ratio.x), V{});
+}
+
+// What the ground leaves of the step's length, and the ratio for which the tables are read: a step
+// that is to end on another tread than it was has another ratio at once, and the tables come to it
+// until the flight begins.
+template <class V>
+void follow_ground(const Tables& tables, const Time<V>& time, const AskedStep<V>& asked,
+                   const Change<V>& change, const State<V>& state, Footing<V>& footing,
+                   Landing<V>& landing) noexcept {
+  const auto stands = change.stands != V{};
+  footing.step_m = landing.x_m * asked.to.sine + landing.z_m * asked.to.cosine;
+  const V wanted_m = size(asked.length_m), step_m = size(footing.step_m),
+          least_m = all<V>(kShortStep * tables.source_step_m),
+          left = wanted_m < least_m ? all<V>(1.0f)
+                                    : within(V(step_m / most(wanted_m, least_m)), kLeastLeft, 1.0f);
+  follow(left, tables.ground, footing.left);
+  const V own_m = own_step_m<V>(tables, time.right, time.back),
+          ratio = stands ? V{} : V(step_m / own_m), jump = ratio - footing.step_ratio,
+          most_jump = tables.tick_s *
+                      chosen<V>(change.starting != V{}, kFirstRatioJump_1_s, kRatioJump_1_s);
+  footing.step_ratio = ratio;
+  const auto strikes = both(no(time.flies), state.tick == all<V>(1.0f));
+  Off<V>& off = footing.off_ratio;
+  off.x = strikes ? V{} : V(off.x - (size(jump) > most_jump ? jump : V{}));
+  off.v = strikes ? V{} : off.v;
+  off.a = strikes ? V{} : off.a;
+  fade(time.flies ? all<V>(1.0f) : V(state.roll_ticks - state.tick + 1.0f), off);
+  landing.ratio = ratio_on_ground(change, state, footing);
+}
+
+// Rises are in legs. A riser of 17 cm takes an adult at least 0.84 s; both feet equally long.
+template <class V>
+V slowness_of(const Tables& tables, const Mask<V>& right, const State<V>& state,
+              const Footing<V>& footing) noexcept {
+  constexpr float kSlowerOnStairs = 1.2f, kSlowestRise = 0.34f, kSteepRise = 0.15f,
+                  kStairStep_s = 0.84f, kStairRise = 0.2f;
+  const V rise = least(footing.next_rise, all<V>(kSlowestRise)),
+          own_s = by_side<V>(right, state.asked.time_s),
+          other_s = by_side<V>(no(right), state.asked.time_s),
+          level_s = mix(own_s, most(own_s, other_s), smooth(0.0f, kSteepRise, rise)),
+          stair_s = rise * (kStairStep_s * tables.time_scale / kStairRise),
+          slow_s = most(V(level_s * (1.0f + kSlowerOnStairs * rise)), stair_s);
+  return rise == V{} ? all<V>(1.0f) : V(slow_s / own_s);
+}
+
+// --- The ground that the hips go over ------------------------------------------------------------
+
+// Up, the knee that lands bent straightens until late single support; down, the standing knee
+// holds, and yields from the middle of single support until the landed foot has taken the weight
+// (McFadyen & Winter 1988). Of the step, of the flight, of the roll.
+inline constexpr float kRiseLasts = 0.9f, kSinkBegin = 0.5f, kSinkEnd = 0.25f;
+// Closing, both feet then stand, with straight knees, at the landing.
+inline constexpr float kSinkBeginClosing = 0.15f;
+// How far the knee of a foot gives way that lands from a height: kYield legs from great heights,
+// half of it from kHalfYield. Chosen so that the knee is bent by 20 to 35 degrees on house stairs.
+// The other leg's knee is bent by kBentBefore of it, for a straight knee cannot yield smoothly.
+inline constexpr float kYield = 0.0255f, kHalfYield = 0.01f, kBentBefore = 0.65f;
+
+template <class V>
+struct Sinking {
+  V ticks, share;
+};
+template <class V>
+Sinking<V> sinking(const Change<V>& change, const State<V>& state, const V& tick) noexcept {
+  const auto closes = change.closing != V{};
+  const V begin = state.flight_ticks * chosen<V>(closes, kSinkBeginClosing, kSinkBegin),
+          ticks = state.flight_ticks - begin + (closes ? V{} : V(kSinkEnd * state.roll_ticks));
+  return {ticks, V(most(V(tick - begin), V{}) / ticks)};
+}
+
+// A quintic from where the hips are to where the landed foot carries them, less what they then sink
+// to the next landing.
+template <class V>
+void move_hips_ground(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
+                      const Change<V>& change, const State<V>& state,
+                      Footing<V>& footing) noexcept {
+  const auto stands = change.stands != V{}, closes = change.closing != V{},
+             strikes = both(no(stands), both(no(time.flies), state.tick == all<V>(1.0f)));
+  // How far the next foot lands below the standing one, its heel or its toe.
+  const float left_m = tables.leg[0].foot_m, right_m = tables.leg[1].foot_m, leg_m = tables.leg_m;
+  const V toe_m = chosen<V>(time.right, right_m, left_m),
+          stood_m = footing.stand.z * chosen<V>(time.right, left_m, right_m),
+          lands_m = footing.landing_y_m + rise_of(footing.landing, V(landing.way.sine * toe_m),
+                                                  V(landing.way.cosine * toe_m)),
+          fall_m = most(V(-footing.landing_y_m), V(stood_m - lands_m));
+  const auto falls = fall_m > V{};
+  const V early_m =
+      both(falls, no(closes)) ? V(kYield * leg_m * fall_m / (fall_m + kHalfYield * leg_m)) : V{};
+  Off<V>&hips = footing.hips_m, &off = footing.off_m;
+  const auto set = [&](const V& to, V& number) { number = strikes ? to : number; };
+  const V bent_m = kBentBefore * early_m,
+          level_m = closes ? V{} : V(-most(footing.yield_m, bent_m));
+  const auto yields = both(footing.yield_m > bent_m, hips.x > level_m);
+  const V step_ticks = state.roll_ticks + state.flight_ticks;
+  set(floored(V(yields   ? V(kSinkEnd * state.roll_ticks)
+                : closes ? step_ticks
+                         : V(kRiseLasts * step_ticks))),
+      footing.settle_ticks);
+  set(level_m, footing.level_m);
+  set(V(hips.x - level_m), off.x), set(hips.v, off.v), set(hips.a, off.a);
+  set(V{}, footing.drop_m), set(V{}, footing.yield_m), set(V{}, footing.early_m);
+  // Upwards, the rear leg of one that closes would be too short: hips that rest wait for its
+  // flight.
+  const auto rests = both(off.x < V{}, both(off.v == V{}, off.a == V{})),
+             waits = either(stands, both(no(time.flies), both(closes, rests)));
+  const V begun = state.tick + (time.flies ? state.roll_ticks : V{});
+  Off<V> faded = off;
+  fade(V(footing.settle_ticks - begun + 1.0f), faded);
+  const Sinking<V> now = sinking(change, state, V(time.flies ? state.tick : V{})),
+                   end = sinking(change, state, state.flight_ticks);
+  const auto plans = both(no(waits), now.share == V{});
+  const V end_share = smoother(end.share),
+          drop_m =
+              falls ? V(most(V(footing.level_m - footing.landing_y_m + early_m), V{}) / end_share)
+                    : V{};
+  footing.early_m = plans ? early_m : footing.early_m;
+  footing.drop_m = plans ? drop_m : footing.drop_m;
+  footing.yield_m =
+      plans ? (falls ? V(early_m + (1.0f - end_share) * drop_m) : V{}) : footing.yield_m;
+  const V s = now.share, left = 1.0f - s, per_tick = s > V{} ? V(1.0f / now.ticks) : V{},
+          down_m = footing.drop_m * per_tick;
+  off = {waits ? off.x : faded.x, waits ? off.v : faded.v, waits ? off.a : faded.a};
+  hips.x = waits ? hips.x : V(footing.level_m + off.x - footing.drop_m * smoother(s));
+  hips.v = waits ? V{} : V(off.v - down_m * 30.0f * s * s * left * left);
+  hips.a = waits ? V{} : V(off.a - down_m * per_tick * 60.0f * s * left * (1.0f - 2.0f * s));
+}
+
+// --- Feet that rise with the hips ----------------------------------------------------------------
+
+// A leg is stretched to this share of its length before its foot has to rise with the hips; the
+// foot rises no further than one on its toe lifts its ankle.
+inline constexpr float kStretch = 0.998f, kSoftStretch_m = 0.02f, kMostOnToe = 0.5f,
+                       kSoftOnToe = 0.3f;
+inline constexpr float kFirstRise = 0.4f;  // of the first flight: a standing foot has risen
+inline constexpr float kMostUpright = 0.99f,
+                       kSoftUpright = 0.12f;  // of a foot on its toe, as a sine
+
+// Of a foot over ground of height `base_m`, whose knee is `knee_rad` bent in the tables. One that
+// flies down comes with the hips, and softly: over its ground they are lower by `hover_m` twice.
+template <class V>
+V rise_with_hips(const Tables& tables, const Mask<V>& right, const V& knee_rad, const V& base_m,
+                 const V& hover_m, const Footing<V>& footing) noexcept {
+  const auto of = [&](float LegBones::*bone) {
+    return chosen<V>(right, tables.leg[1].*bone, tables.leg[0].*bone);
+  };
+  const auto on_toe = [](const LegBones& leg) {
+    const auto& toe = leg.toe_m;
+    return std::sqrt(toe[0] * toe[0] + toe[1] * toe[1] + toe[2] * toe[2]) + toe[1];
+  };
+  const V a = of(&LegBones::thigh_m), b = of(&LegBones::shank_m),
+          knee =
+              knee_rad + chosen<V>(right, tables.leg[1].stand_rad[3], tables.leg[0].stand_rad[3]);
+  V sine, cosine;
+  sin_cos(knee, sine, cosine);
+  const V known_m = root(V(a * a + b * b + 2.0f * a * b * cosine)),
+          room_m = most(V(kStretch * (a + b) - known_m), V{}), higher_m = footing.hips_m.x - base_m,
+          up_m = most(higher_m, V{}), soft_m = all<V>(kSoftStretch_m * tables.size),
+          rise_m = soft_positive(V(higher_m + hover_m - room_m),
+                                 V(hover_m + up_m * soft_m / (up_m + soft_m))),
+          most_m = chosen<V>(right, on_toe(tables.leg[1]), on_toe(tables.leg[0]));
+  const V bounded_m = soft_least(rise_m, V(kMostOnToe * most_m), V(kSoftOnToe * most_m));
+  return higher_m <= -2.0f * hover_m ? V{} : bounded_m;
+}
+
+// Of any sine.
+template <class V>
+V arc_sine_of(const V& x) noexcept {
+  const V a = size(x), low = arc_sine(least(a, all<V>(0.5f))),
+          high = 1.57079633f - 2.0f * arc_sine(root(V(most(V(0.5f - 0.5f * a), V{}))));
+  const V angle = a > all<V>(0.5f) ? high : low;
+  return x < V{} ? -angle : angle;
+}
+
+// The pitch of a foot on its toe whose ankle is higher by `rise_m`.
+template <class V>
+V pitch_to_rise(const Tables& tables, const Mask<V>& right, const V& rise_m,
+                const V& pitch_rad) noexcept {
+  constexpr float kUpright_rad = 1.57079633f;
+  const auto length_of = [](const LegBones& leg) {
+    const auto& toe = leg.toe_m;
+    return std::sqrt(toe[0] * toe[0] + toe[1] * toe[1] + toe[2] * toe[2]);
+  };
+  const V length_m = chosen<V>(right, length_of(tables.leg[1]), length_of(tables.leg[0])),
+          down_m = chosen<V>(right, -tables.leg[1].toe_m[1], -tables.leg[0].toe_m[1]),
+          flat_rad = arc_sine_of(V(down_m / length_m));
+  V sine, cosine;
+  sin_cos(least(V(flat_rad + pitch_rad), all<V>(kUpright_rad)), sine, cosine);
+  const V higher =
+              soft_least(V(sine + rise_m / length_m), all<V>(kMostUpright), all<V>(kSoftUpright)),
+          risen_rad = most(pitch_rad, V(arc_sine_of(higher) - flat_rad));
+  return rise_m == V{} ? pitch_rad : risen_rad;
+}
+
+// --- Flights -------------------------------------------------------------------------------------
+
+// A flight shorter than this climbs by time, not by place; metres at the reference leg.
+inline constexpr float kClimbsInPlace_m = 0.1f;
+// A foot that goes far up is lifted less: its way over the riser is lift enough, and the knee folds
+// only so far. Rises in legs.
+inline constexpr float kLiftUp = 0.5f, kHighUp = 0.2f, kHighestUp = 0.345f;
+inline constexpr float kLiftGround =
+    0.5f;  // of the flight: until then the plane left bounds the toe
+inline constexpr float kReplan_m = 0.005f;  // a landing moved by more is planned for anew
+
+// The height of the ground line below a flying heel: it climbs as the foot has come over the
+// ground; across a riser not at all, for there the splines raise the foot. And the factor on the
+// foot's lift.
+template <class V>
+V ground_line(const Tables& tables, const Landing<V>& landing, const Vec<V>& heel_m, const V& u,
+              const State<V>& state, const Footing<V>& footing, V& lift) noexcept {
+  const V way_x = landing.x_m - state.print_x_m, way_z = landing.z_m - state.print_z_m,
+          gone_x = heel_m.x - state.print_x_m, gone_z = heel_m.z - state.print_z_m,
+          in_place = all<V>(kClimbsInPlace_m * kClimbsInPlace_m * tables.size * tables.size),
+          square = way_x * way_x + way_z * way_z,
+          gone = (gone_x * way_x + gone_z * way_z + in_place * (1.0f - value_left(u))) /
+                 (square + in_place),
+          rise_m = footing.landing_y_m - footing.print_y_m;
+  lift = mix(all<V>(1.0f), all<V>(kLiftUp),
+             smooth(kHighUp, kHighestUp, V(rise_m * (1.0f / tables.leg_m))));
+  return footing.print_y_m + (footing.crosses != V{} ? V{} : V(rise_m * gone));
+}
+
+// The climb that the splines have to make: 0 where no riser is crossed.
+template <class V>
+V climb_over_risers(const Footing<V>& footing) noexcept {
+  return footing.crosses != V{} ? V(footing.landing_y_m - footing.lift_y_m) : V{};
+}
+
+// Moves the splines that are in force to those planned.
+template <class V>
+void follow_room(const Tables& tables, Footing<V>& footing) noexcept {
+  for (int k = 0; k < kRoomKnots; ++k) {
+    follow(footing.raise_m[k], tables.room, footing.raise[k]);
+    follow(footing.shift_m[k], tables.room, footing.shift[k]);
+  }
+}
+// What they move a flying heel by.
+template <class V>
+Vec<V> room_at(const V& u, const State<V>& state, const Footing<V>& footing) noexcept {
+  V raise[kRoomKnots], shift[kRoomKnots];
+  for (int k = 0; k < kRoomKnots; ++k) raise[k] = footing.raise[k].x, shift[k] = footing.shift[k].x;
+  const V away_m = spline_at(shift, V{}, u), sine = 2.0f * state.frame_sine * state.frame_cosine,
+          cosine = state.frame_cosine * state.frame_cosine - state.frame_sine * state.frame_sine;
+  return {-sine * away_m, spline_at(raise, climb_over_risers(footing), u), cosine * away_m};
+}
+
+// At a strike the step frame goes to the landing, which is where the foot then stands.
+template <class V>
+void change_footing(const Landing<V>& landing, const Mask<V>& strikes, const V& flat_toe_y_m,
+                    Footing<V>& footing) noexcept {
+  const auto set = [&](const V& to, V& number) { number = strikes ? to : number; };
+  const auto seen = [&](const Slope<V>& slope) {
+    return Slope<V>{V(landing.way.cosine * slope.x - landing.way.sine * slope.z),
+                    V(landing.way.cosine * slope.z + landing.way.sine * slope.x)};
+  };
+  const V y_m = footing.landing_y_m;
+  footing.print = chosen(strikes, seen(footing.stand), footing.print);
+  footing.stand = chosen(strikes, seen(footing.landing), footing.stand);
+  footing.landing = chosen(strikes, footing.stand, footing.landing);
+  set(V(-y_m), footing.print_y_m), set(V(flat_toe_y_m - y_m), footing.toe_y_m);
+  set(V(footing.hips_m.x - y_m), footing.hips_m.x), set(V{}, footing.landing_y_m);
+  set(V{}, footing.level_x_m), set(V{}, footing.level_z_m);
+}
+
+}  // namespace
+}  // namespace gaitpad::anew

@@ -1,0 +1,748 @@
+// Footholds. Risers cut the ground into pieces, and a foot stands on one piece. For each piece
+// between the wanted place and the standing foot's, a cost says how much the step would have to
+// become longer, shorter, higher or more sideways, and whether the sole would overhang an edge. The
+// cheapest piece wins; on it the heel goes as near to the wanted place as the room for the sole
+// allows. The foot then gets a plane: the ground's best fit under its sole.
+//
+// Flights. A flight is planned over a ground line from one foothold's height to the other's. Where
+// ground rises above this line, a B-spline raises it: its control points are the greatest heights
+// of the ground under the sole in their neighbourhood. At a riser close to a foothold a second
+// spline moves the foot along z, away from the riser; down stairs it moves the foot ahead, and the
+// first one is drawn taut over the edges, so that the foot sinks early.
+#include "walk/ground_plan.h"
+
+#include "animation/floor.h"
+#include "walk/feet.h"
+#include "walk/walk.h"
+
+namespace gaitpad::anew {
+namespace {
+
+vec3 doubles(const std::array<float, 3>& v) noexcept { return vec3(v[0], v[1], v[2]); }
+vec3 doubles(const Vec<float>& v) noexcept { return vec3(v.x, v.y, v.z); }
+
+// The step frame in the walk's own coordinates.
+struct Frame {
+  vec3 at_m;
+  double heading_rad, sine, cosine;
+  explicit Frame(const Origin& origin) noexcept
+      : at_m(origin.x_m, origin.y_m, origin.z_m), heading_rad(origin.heading_rad) {
+    const SinCos s = gaitpad::sin_cos(wrapped(origin.heading_rad));
+    sine = s.sin, cosine = s.cos;
+  }
+  vec3 way(const vec3& v) const noexcept {
+    return vec3(cosine * v.x + sine * v.z, v.y, cosine * v.z - sine * v.x);
+  }
+  vec3 out(const vec3& place) const noexcept { return at_m + way(place); }
+  vec3 in(const vec3& place) const noexcept {
+    const vec3 v = place - at_m;
+    return vec3(cosine * v.x - sine * v.z, v.y, cosine * v.z + sine * v.x);
+  }
+  // Of a slope outside.
+  Slope<float> in(double x, double z) const noexcept {
+    return {static_cast<float>(cosine * x - sine * z), static_cast<float>(cosine * z + sine * x)};
+  }
+};
+
+// --- Footholds -----------------------------------------------------------------------------------
+
+constexpr double kSlopeShortens = 1.0;  // a grade g leaves 1 / (1 + g) of a step
+// The sole keeps kEdgeRoom legs away from an edge, but gives up at most kMostEdgeShare of its room.
+constexpr double kEdgeRoom = 0.05, kMostEdgeShare = 0.3;
+constexpr int kMostPieces = 8;  // compared, from the wanted one to the standing foot's
+// How willingly a step is moved across the heading, against along it.
+constexpr double kSkew = 0.25;
+// What a piece costs: about the logarithm of how much longer or shorter it makes the step (steps
+// shorter than kLeastStep legs count as that long), and further costs of what the step becomes:
+// stuck in place, sideways, high, overhanging, long. Rises are in legs.
+constexpr double kLeastStep = 0.05, kStuck = 0.3, kStuckCosts = 2.0, kAside = 3.0;
+constexpr double kEasyRise = 0.22, kRiseCosts = 10.0, kMostRise = 0.345, kTooHigh = 100.0;
+constexpr double kOverhang = 30.0, kLongStep = 0.6, kLongCosts = 10.0;
+constexpr double kCrossStep = 0.5, kCrossWay = 0.85, kLeastCross = 0.25;  // lengths in legs
+constexpr double kStay = 0.1;       // another piece than before has to be cheaper by this
+constexpr double kBeside_m = 1e-6;  // from a riser: on one side of it
+constexpr double kLeast_m = 1e-6;
+
+// How far the sole reaches along z from its heel point.
+struct Extent {
+  double back_m = 0.0, front_m = 0.0;
+  double middle_m() const noexcept { return 0.5 * (back_m + front_m); }
+};
+Extent sole_extent(const LegBones& leg, double yaw_rad) noexcept {
+  const quat yaw = rotation_y(yaw_rad);
+  const double tip = (yaw * (doubles(leg.tip_m) - doubles(leg.heel_m))).z;
+  const double half = std::abs((yaw * doubles(leg.side)).z) * leg.half_width_m;
+  return {std::min(0.0, tip) - half, std::max(0.0, tip) + half};
+}
+
+// Where the heel may stand on a piece, along z.
+struct Room {
+  double low_m, high_m, lacks_m;
+};
+Room room_on(const Stretch& piece, const Extent& sole, double leg_m) noexcept {
+  const double low = piece.from_m - sole.back_m, high = piece.to_m - sole.front_m;
+  if (high < low) return {0.5 * (low + high), 0.5 * (low + high), low - high};
+  const double edge = std::min(kEdgeRoom * leg_m, kMostEdgeShare * (high - low));
+  return {low + edge, high - edge, 0.0};
+}
+
+// A step whose foothold is looked for.
+struct Step {
+  vec3 from_m{0.0}, lift_m{0.0};  // heels of the foot that stands and of the one that flies
+  Stretch stands, lifts;          // their pieces
+  vec3 forward{0.0, 0.0, 1.0}, wanted_m{0.0};
+  double leg_m = 0.0;
+  Extent sole;
+  double length_m() const noexcept { return glm::dot(wanted_m - from_m, forward); }
+};
+
+// The longest step over a riser, counted from the foot that stands and over the whole way of the
+// foot that flies: that foot has to rise before it may go forward.
+double longest_to(const Step& step, const Stretch& piece) noexcept {
+  double longest = std::numeric_limits<double>::infinity();
+  const double sign = step.length_m() < 0.0 ? -1.0 : 1.0;
+  if (piece.from_m != step.stands.from_m) longest = kCrossStep * step.leg_m;
+  if (piece.from_m != step.lifts.from_m) {
+    const double gone = sign * glm::dot(step.from_m - step.lift_m, step.forward);
+    longest = std::min(longest, std::max(kLeastCross, kCrossWay - gone / step.leg_m) * step.leg_m);
+  }
+  return longest;
+}
+vec3 wanted_on(const Step& step, const Stretch& piece) noexcept {
+  const double wanted = step.length_m(), longest = longest_to(step, piece);
+  return step.wanted_m + step.forward * (std::clamp(wanted, -longest, longest) - wanted);
+}
+
+// A move that shifts a place by `dz_m` along z while it leaves the heading as little as it can.
+vec3 shifted(const Step& step, double dz_m) noexcept {
+  const vec3& f = step.forward;
+  const vec3 left = glm::cross(kUp, f);
+  return (f * f.z + left * (left.z * kSkew)) * (dz_m / (f.z * f.z + left.z * left.z * kSkew));
+}
+vec3 place_on(const Step& step, const Stretch& piece) noexcept {
+  const Room room = room_on(piece, step.sole, step.leg_m);
+  const vec3 near = wanted_on(step, piece);
+  return near + shifted(step, std::clamp(near.z, room.low_m, room.high_m) - near.z);
+}
+
+// A step of this length would hardly leave the place.
+bool is_stuck(const Step& step, double length_m) noexcept {
+  const double wanted = step.length_m(), sign = wanted < 0.0 ? -1.0 : 1.0;
+  return sign * wanted > kLeastStep * step.leg_m && sign * length_m < kStuck * sign * wanted;
+}
+
+double cost_of(const Floor& floor, const Step& step, const Stretch& piece) noexcept {
+  const vec3 place = place_on(step, piece), move = place - wanted_on(step, piece);
+  const double middle =
+      std::clamp(place.z + step.sole.middle_m(), piece.from_m + kBeside_m, piece.to_m - kBeside_m);
+  const double rise =
+      std::abs(ground_at(floor, place.x, middle).height_m - step.from_m.y) / step.leg_m;
+  const double wanted = step.length_m(), length = glm::dot(place - step.from_m, step.forward),
+               sign = wanted < 0.0 ? -1.0 : 1.0;
+  const double least = kLeastStep * step.leg_m;
+  const double ratio = std::max(0.0, sign * length + least) / (sign * wanted + least);
+  const double aside = std::abs(glm::dot(move, glm::cross(kUp, step.forward))) / step.leg_m;
+  const double longer = sign * length - std::min(longest_to(step, piece),
+                                                 std::max(sign * wanted, kLongStep * step.leg_m));
+  return 2.0 * std::abs(1.0 - ratio) / (1.0 + ratio) + kAside * aside +
+         (is_stuck(step, length) ? kStuckCosts : 0.0) +
+         kLongCosts * std::max(0.0, longer) / step.leg_m +
+         kRiseCosts * std::max(0.0, rise - kEasyRise) + kTooHigh * std::max(0.0, rise - kMostRise) +
+         kOverhang * room_on(piece, step.sole, step.leg_m).lacks_m / step.leg_m;
+}
+
+// Tries the pieces from the one that the wanted place is on back to the standing foot's. Where that
+// is the same one, and its edge is in the way, the one behind this edge is tried, too.
+Stretch best_piece(const Floor& floor, const Step& step, const Stretch* settled) noexcept {
+  const double middle = step.sole.middle_m(), stands = step.from_m.z + middle;
+  Stretch piece = piece_at(floor, step.wanted_m.z + middle), best = piece;
+  if (piece.from_m == step.stands.from_m) {
+    const Room room = room_on(piece, step.sole, step.leg_m);
+    const double z = std::clamp(step.wanted_m.z, room.low_m, room.high_m), dz = z - step.wanted_m.z;
+    if (is_stuck(step, step.length_m() + step.forward.z * dz))
+      piece = piece_at(floor, dz > 0.0 ? piece.from_m - kBeside_m : piece.to_m + kBeside_m);
+  }
+  double least = std::numeric_limits<double>::infinity();
+  for (int n = 0; n < kMostPieces; ++n) {
+    double cost = cost_of(floor, step, piece);
+    if (settled && piece.from_m == settled->from_m) cost -= kStay;
+    if (cost < least) {
+      least = cost;
+      best = piece;
+    }
+    if (stands < piece.from_m) {
+      piece = piece_at(floor, piece.from_m - kBeside_m);
+    } else if (stands > piece.to_m) {
+      piece = piece_at(floor, piece.to_m + kBeside_m);
+    } else {
+      break;
+    }
+  }
+  return best;
+}
+
+// The share of its length that a step keeps on a slope.
+double slope_share(const Floor& floor, const Step& step) noexcept {
+  const double length = horizontal_length(step.wanted_m - step.from_m);
+  if (length < kLeast_m || step.wanted_m.z < step.stands.from_m ||
+      step.wanted_m.z > step.stands.to_m)
+    return 1.0;
+  const double rise = ground_at(floor, step.wanted_m.x, step.wanted_m.z).height_m - step.from_m.y;
+  return 1.0 / (1.0 + kSlopeShortens * std::abs(rise) / length);
+}
+
+// A plane through a heel's place.
+struct Plane {
+  vec3 place_m;
+  double slope_x = 0.0, slope_z = 0.0;
+};
+
+// A sole's directions on the ground.
+struct Track {
+  vec3 along, across;  // unit
+  double length_m;     // to the tip
+  vec3 ball_m, tip_m;  // from the heel, level
+};
+Track track_of(const LegBones& leg, double yaw_rad) noexcept {
+  const quat yaw = rotation_y(yaw_rad);
+  Track track;
+  track.ball_m = yaw * (doubles(leg.ball_m) - doubles(leg.heel_m));
+  track.tip_m = yaw * (doubles(leg.tip_m) - doubles(leg.heel_m));
+  track.across = yaw * doubles(leg.side);
+  track.length_m = horizontal_length(track.tip_m);
+  track.along = vec3(track.tip_m.x, 0.0, track.tip_m.z) / track.length_m;
+  return track;
+}
+Plane plane_of(const vec3& place_m, const Track& track, double grade, double bank) noexcept {
+  return {place_m, track.along.x * grade + track.across.x * bank,
+          track.along.z * grade + track.across.z * bank};
+}
+
+// The plane on which heel and ball of a sole lie on the ground of a game exactly: a game draws its
+// ground, and a foot is seen beside it. Across, the plane is the best fit under heel and tip.
+Plane plane_through(const Floor& floor, const LegBones& leg, const vec3& heel_m,
+                    double yaw_rad) noexcept {
+  constexpr int kRounds =
+      3;  // the ball moves as the plane tilts; each leaves a tenth of it or less
+  Track track = track_of(leg, yaw_rad);
+  const double length = horizontal_length(track.ball_m), half = leg.half_width_m;
+  track.along = vec3(track.ball_m.x, 0.0, track.ball_m.z) / length;
+  const vec3 side = track.across * half;
+  const std::array<double, 6> ground =
+      heights_at<6>(floor, {heel_m, heel_m + track.ball_m, heel_m + side, heel_m - side,
+                            heel_m + track.tip_m + side, heel_m + track.tip_m - side});
+  const double bank = (ground[2] - ground[3] + ground[4] - ground[5]) / (4.0 * half);
+  double grade = (ground[1] - ground[0]) / length;
+  const vec3 place(heel_m.x, ground[0], heel_m.z);
+  for (int round = 0; round < kRounds; ++round) {
+    const vec3 normal = glm::normalize(kUp - track.along * grade - track.across * bank);
+    const vec3 lies = place + rotation_between(kUp, normal) * track.ball_m;
+    grade += (ground_at(floor, lies.x, lies.z).height_m - lies.y) / length;
+  }
+  return plane_of(place, track, grade, bank);
+}
+
+// The best fit to the ground under a sole: the ground is as far above the plane as below it. Ground
+// beyond the risers around `piece` does not count.
+Plane plane_under(const Floor& floor, const LegBones& leg, const vec3& heel_m, double yaw_rad,
+                  const Stretch& piece) noexcept {
+  if (floor.terrain.asked.ask != nullptr) return plane_through(floor, leg, heel_m, yaw_rad);
+  const Track track = track_of(leg, yaw_rad);
+  const double length = track.length_m, half = leg.half_width_m;
+  const auto height = [&](double a, double c) {  // of the ground, shares of length and half width
+    const vec3 p = heel_m + track.along * (a * length) + track.across * (c * half);
+    return ground_at(floor, p.x, std::clamp(p.z, piece.from_m + kBeside_m, piece.to_m - kBeside_m))
+        .height_m;
+  };
+  const std::array<double, 4> corner = {height(0, 1), height(0, -1), height(1, 1), height(1, -1)};
+  const double grade = (corner[2] + corner[3] - corner[0] - corner[1]) / (2.0 * length);
+  const double bank = (corner[0] - corner[1] + corner[2] - corner[3]) / (4.0 * half);
+  const double middle = 0.25 * (corner[0] + corner[1] + corner[2] + corner[3]);
+  double low = 0.0, high = 0.0;  // of the ground over the plane through the corners
+  const auto compare = [&](double a, double c, double y) {
+    const double over = y - (middle + grade * (a - 0.5) * length + bank * c * half);
+    low = std::min(low, over);
+    high = std::max(high, over);
+  };
+  compare(0, 1, corner[0]);
+  compare(0, -1, corner[1]);
+  compare(1, 1, corner[2]);
+  compare(1, -1, corner[3]);
+  for (const double a : {0.0, 0.35, 0.7, 1.0}) compare(a, 0, height(a, 0));
+  const double y_m = middle - grade * 0.5 * length + 0.5 * (low + high);
+  return plane_of(vec3(heel_m.x, y_m, heel_m.z), track, grade, bank);
+}
+
+// The rise of the step after the landing, in legs: on stairs it takes longer. Of the rise to the
+// next landing and the rest of the flying foot's rise, the greater one.
+double next_rise(const Tables& tables, const Floor& floor, const Step& landing,
+                 const vec3& landing_m, const Stretch& piece, double length_m, const vec3& across_m,
+                 double middle_m) noexcept {
+  Step step = landing;
+  step.lift_m = landing.from_m;
+  step.lifts = landing.stands;
+  step.from_m = landing_m;
+  step.stands = piece;
+  step.wanted_m = step.from_m + step.forward * length_m - across_m;
+  const vec3 place = place_on(step, best_piece(floor, step, nullptr));
+  const vec3 middle =
+      place + (tables.terrain->asked.ask == nullptr ? kForward * step.sole.middle_m()
+                                                    : step.forward * middle_m);
+  const double next_m = ground_at(floor, middle.x, middle.z).height_m;
+  const double step_m = std::abs(next_m - landing_m.y), way_m = std::abs(next_m - landing.from_m.y);
+  return std::max(step_m, way_m - step_m) / tables.leg_m;
+}
+
+}  // namespace
+
+void choose_foothold(const Tables& tables, const AskedFoothold& asked, Block<1>& block) noexcept {
+  const State<float>& state = block.state;
+  Footing<float>& footing = block.footing;
+  const Frame frame(block.origin[0]);
+  const Floor floor{*tables.terrain, block.placed[0]};
+  const int swing = state.right_swings != 0.0f ? 1 : 0;
+  const LegBones& leg = tables.leg[swing];
+  Step step;
+  step.from_m = frame.at_m;
+  step.lift_m = frame.out(vec3(state.print_x_m, footing.print_y_m, state.print_z_m));
+  step.stands = piece_at(floor, step.from_m.z);
+  step.lifts = piece_at(floor, step.lift_m.z);
+  const vec3 along(asked.sine, 0.0, asked.cosine);
+  step.forward = frame.way(along);
+  step.leg_m = tables.leg_m;
+  const double yaw = state.landing_rad + frame.heading_rad, length = asked.length_m;
+  step.sole = sole_extent(leg, yaw);
+  const vec3 level(footing.level_x_m, 0.0, footing.level_z_m),
+      across_m = frame.way(level - along * length);
+  const auto wanted = [&] {
+    return step.from_m + step.forward * (length * footing.share) + across_m;
+  };
+  if (state.flies == 0.0f) {
+    footing.share = 1.0f;
+    step.wanted_m = wanted();
+    footing.share = static_cast<float>(slope_share(floor, step));
+  }
+  step.wanted_m = wanted();
+  Stretch& piece = block.piece[0];
+  if (asked.settles) piece = best_piece(floor, step, asked.begins ? nullptr : &piece);
+  footing.overhangs = room_on(piece, step.sole, step.leg_m).lacks_m > 0.0 ? 1.0f : 0.0f;
+  const Plane plane = plane_under(floor, leg, place_on(step, piece), yaw, piece);
+  const vec3 landing = frame.in(plane.place_m);
+  if (state.flies == 0.0f)
+    footing.crosses = piece_at(floor, plane.place_m.z).from_m != step.lifts.from_m ? 1.0f : 0.0f;
+  block.state.landing_x_m = static_cast<float>(landing.x);
+  block.state.landing_z_m = static_cast<float>(landing.z);
+  footing.landing_y_m = static_cast<float>(landing.y);
+  footing.landing = frame.in(plane.slope_x, plane.slope_z);
+  const double way = state.backward != 0.0f ? -1.0 : 1.0,
+               next_m = asked.goes_on ? way * state.length_m[1 - swing].x * footing.share : 0.0;
+  footing.next_rise =
+      static_cast<float>(next_rise(tables, floor, step, plane.place_m, piece, next_m, across_m,
+                                   sole_extent(leg, yaw - heading_of(step.forward)).middle_m()));
+}
+
+StandingPlace standing_place(const Tables& tables, const Placement& placed, int side,
+                             const vec3& heel_m, double heading_rad) noexcept {
+  const LegBones& leg = tables.leg[side];
+  const Floor floor{*tables.terrain, placed};
+  Step step;
+  step.wanted_m = step.from_m = step.lift_m = heel_m;
+  step.leg_m = tables.leg_m;
+  step.sole = sole_extent(leg, heading_rad);
+  const Stretch piece = piece_at(floor, heel_m.z + step.sole.middle_m());
+  const Plane plane = plane_under(floor, leg, place_on(step, piece), heading_rad, piece);
+  const Frame frame(Origin{plane.place_m.x, plane.place_m.z, heading_rad, plane.place_m.y});
+  return {plane.place_m, frame.in(plane.slope_x, plane.slope_z)};
+}
+
+double ground_height(const Tables& tables, const Placement& placed, const vec3& place_m) noexcept {
+  if (tables.terrain == nullptr) return 0.0;
+  return ground_at(Floor{*tables.terrain, placed}, place_m.x, place_m.z).height_m;
+}
+
+namespace {
+
+// --- Flights over the ground between two footholds -----------------------------------------------
+
+constexpr int kProbes = 48;  // along a flight
+constexpr int kKnotsOfFlight = kRoomKnots + 1;
+constexpr double kRoomAbove_m = 0.025;  // over the ground; metres at the reference leg, as below
+constexpr double kRoomBeside_m = 0.005, kRoomAhead_m = 0.016, kMostShift_m = 0.25, kRiser_m = 0.01;
+constexpr double kLack_m = 0.006, kEasyShift_m = 0.2, kSharper = 1.5;
+// A lift-off stays gentler: there the leg is stretched.
+constexpr double kMostSharp = 0.38;
+constexpr int kTries = 4;
+// Of the flight: from here on a foot on its way down is over its landing's piece.
+constexpr double kOver = 0.685;
+constexpr int kMostRisers = 4, kTautRounds = 24;
+constexpr double kTautRoom = 0.5;  // of kRoomAbove_m
+constexpr double kLeastWeight = 1e-6, kLeastLeft_m = 1e-6;
+constexpr double kLeastWanted_m = 0.004, kMostGain = 6.0;
+
+using Spline = std::array<double, kRoomKnots>;
+double spline_of(const Spline& knots, double end, double u) noexcept {
+  return spline_at(knots.data(), end, u);
+}
+// 1 in mid-flight, 0 at its ends.
+double in_flight(double u) noexcept {
+  return gaitpad::smoothstep(0.0, 0.2, u) * (1.0 - gaitpad::smoothstep(0.8, 1.0, u));
+}
+
+// A value wanted at each probe of the flight.
+using Wanted = std::array<double, kProbes + 1>;
+
+// The outer knots as shares of their neighbours: the smaller, the gentler the spline's ends.
+struct Ends {
+  double first = 0.2, last = 0.2;
+};
+
+// Each knot is the greatest wanted value within its reach. The outer ones are bounded, so that the
+// spline ends gently.
+Spline envelope(const Wanted& wanted, const Ends& ends) noexcept {
+  Spline knots;
+  for (int k = 1; k < kKnotsOfFlight; ++k) {
+    double& knot = knots[k - 1];
+    knot = wanted[k * kProbes / kKnotsOfFlight];
+    for (int i = 0; i <= kProbes; ++i) {
+      if (std::abs(i * kKnotsOfFlight - k * kProbes) < 2 * kProbes)
+        knot = std::max(knot, wanted[i]);
+    }
+  }
+  const auto gentle = [](double knot, double end, double next, double share) {
+    const double most_off = share * std::abs(next - end);
+    return std::clamp(knot, end - most_off, end + most_off);
+  };
+  knots.front() = gentle(knots.front(), 0.0, knots[1], ends.first);
+  knots.back() = gentle(knots.back(), wanted.back(), knots[kKnotsOfFlight - 3], ends.last);
+  return knots;
+}
+
+// The same for values of both signs. Where the spline falls short of them, all of it is multiplied
+// by a gain; no knot exceeds `most_m`.
+Spline wide_envelope(const Wanted& wanted, double most_m) noexcept {
+  Wanted positive, negative;
+  for (int i = 0; i <= kProbes; ++i) {
+    positive[i] = std::max(0.0, wanted[i]);
+    negative[i] = std::max(0.0, -wanted[i]);
+  }
+  Spline knots = envelope(positive, Ends{});
+  const Spline other = envelope(negative, Ends{});
+  for (int k = 0; k < kRoomKnots; ++k) knots[k] -= other[k];
+  double gain = 1.0;
+  for (int i = 1; i < kProbes; ++i) {
+    if (std::abs(wanted[i]) < kLeastWanted_m) continue;
+    const double got = spline_of(knots, 0.0, static_cast<double>(i) / kProbes);
+    gain = std::max(gain, got * wanted[i] > 0.0 ? wanted[i] / got : 1.0);
+  }
+  for (double& knot : knots) knot = std::clamp(knot * std::min(gain, kMostGain), -most_m, most_m);
+  return knots;
+}
+
+// Sharpens an end if the sideways shift there is too large or was not reached; returns false if
+// neither end changed.
+bool sharpen(const Wanted& beside, const Spline& shift, double size, Ends& ends) noexcept {
+  Ends more = ends;
+  for (int i = 1; i < kProbes; ++i) {
+    const double got = spline_of(shift, 0.0, static_cast<double>(i) / kProbes);
+    const double lack = beside[i] > 0.0 ? beside[i] - got : beside[i] < 0.0 ? got - beside[i] : 0.0;
+    if (lack < kLack_m * size && std::abs(beside[i]) < kEasyShift_m * size) continue;
+    if (2 * i < kProbes) {
+      more.first = std::min(kMostSharp, kSharper * ends.first);
+    } else {
+      more.last = kSharper * ends.last;
+    }
+  }
+  const bool changed = more.first > ends.first || more.last > ends.last;
+  ends = more;
+  return changed;
+}
+
+// Points of a sole in the walk's own coordinates: heel and tip on both sides, ball.
+using SolePoints = std::array<vec3, 5>;
+
+// A flight as planned over its ground line.
+struct PlannedFlight {
+  std::array<SolePoints, kProbes + 1> sole;
+  std::array<SolePoints, kProbes + 1> base;  // y: of the line's plane below each of them
+  Wanted left{};                             // the way that is left along z
+  Stretch begin, end;
+  double begin_room = 0.0, begin_m = 0.0, end_m = 0.0, climb = 0.0;
+  // A flight that ends on its own piece goes beside a riser, not over it.
+  bool stays() const noexcept { return begin.from_m == end.from_m; }
+};
+
+void set_points(const LegBones& leg, const Frame& frame, const Flight<float>& flight,
+                const Foot<float>& foot, SolePoints& points, SolePoints& base) noexcept {
+  const Vec<float> side{leg.side[0], leg.side[1], leg.side[2]};
+  const auto place = [](const std::array<float, 3>& v, const std::array<float, 3>& from) {
+    return Vec<float>{v[0] - from[0], v[1] - from[1], v[2] - from[2]};
+  };
+  const Turn<float> toes =
+      foot.turn * (back(foot.edge) * turn_about(side, -std::max(0.0f, foot.pitch_rad)));
+  const Vec<float> half = (foot.turn * side) * leg.half_width_m,
+                   ball = foot.heel_m + foot.turn * place(leg.ball_m, leg.heel_m),
+                   tip = foot.toe_m + toes * place(leg.tip_m, leg.toe_m);
+  const std::array<Vec<float>, 5> local = {foot.heel_m - half, foot.heel_m + half, ball, tip - half,
+                                           tip + half};
+  const Vec<float> n = flight.tilt * Vec<float>{0.0f, 1.0f, 0.0f};
+  for (std::size_t k = 0; k < local.size(); ++k) {
+    points[k] = frame.out(doubles(local[k]));
+    const float line_m =
+        flight.base_m -
+        (n.x * (local[k].x - foot.heel_m.x) + n.z * (local[k].z - foot.heel_m.z)) / n.y;
+    base[k] = vec3(points[k].x, frame.at_m.y + line_m, points[k].z);
+  }
+}
+
+Time<float> time_in_flight(const Tables& tables, const State<float>& state) noexcept {
+  Time<float> time;
+  time.right = state.right_swings != 0.0f;
+  time.flies = true;
+  time.back = state.backward != 0.0f;
+  const auto& share = tables.stage_share;
+  time.step_phase = time.right ? share[0] + share[1] : 0.0f;
+  time.stage_end =
+      time.step_phase + (time.right ? share[2] : share[0]) + (time.right ? share[3] : share[1]);
+  return time;
+}
+
+PlannedFlight planned_flight(const Tables& tables, const Floor& floor, const Frame& frame,
+                             const Block<1>& block) noexcept {
+  const State<float>& state = block.state;
+  const Change<float>& change = block.change;
+  const Footing<float>& footing = block.footing;
+  Time<float> time = time_in_flight(tables, state);
+  const Way<float> to = way_of(state.landing_rad);
+  Landing<float> landing = planned_landing(tables, time, to, change, state);
+  landing.ratio = ratio_on_ground(change, state, footing);
+  Hips<float> hips;
+  hips.behind = footprints_of(tables, time, state.ratio_behind);
+  hips.ahead = footprints_of(tables, time, landing.ratio);
+  hips.own = footprints_of(tables, time, short_ratio(tables, landing, state));
+  const float left = state.flight_ticks - state.tick, way = time.stage_end - state.phase,
+              v0 = state.phase_rate * left, v1 = state.end_rate * left,
+              c2 = 3.0f * way - 2.0f * v0 - v1, c3 = v0 + v1 - 2.0f * way;
+  const vec3 lands = frame.out(vec3(landing.x_m, footing.landing_y_m, landing.z_m)),
+             print = frame.out(vec3(state.print_x_m, footing.print_y_m, state.print_z_m));
+  const LegBones& leg = tables.leg[time.right ? 1 : 0];
+  PlannedFlight flight;
+  for (int i = 0; i <= kProbes; ++i) {
+    time.u = static_cast<float>(i) / kProbes;
+    const float tick = time.u * state.flight_ticks, s = (tick - state.tick) / left,
+                phase = state.phase + (v0 + (c2 + c3 * s) * s) * s;
+    time.share = (state.roll_ticks + tick) / (state.roll_ticks + state.flight_ticks);
+    const Stride<float> stride =
+        read_by_clock(tables, time, landing, phase, time.share, time.u, change, state);
+    const Sole<float> sole = sole_of<float>(tables, time.right);
+    const Flight<float> flies =
+        fly(tables, time, landing, stride, stride, hips, phase, sole, change, state, footing);
+    const float off = pitch_off(time, tick, change, state);
+    Foot<float> foot;
+    const float low = low_pitch(low_lift<float>(time.right, state), time.u);
+    pitch_in_flight(time, sole, flies, low * stride.foot[0].pitch_rad + off, off, footing, foot);
+    set_points(leg, frame, flies, foot, flight.sole[i], flight.base[i]);
+    flight.left[i] = lands.z - frame.out(doubles(flies.heel_m)).z;
+  }
+  flight.begin = piece_at(floor, print.z);
+  flight.end = piece_at(floor, lands.z);
+  flight.begin_m = print.y, flight.end_m = lands.y;
+  flight.begin_room = kRoomAhead_m * tables.size;  // generous: the pitch may still change
+  for (const vec3& p : flight.sole.front())
+    flight.begin_room = std::min(
+        {flight.begin_room, 0.7 * (flight.begin.to_m - p.z), 0.7 * (p.z - flight.begin.from_m)});
+  flight.climb = climb_over_risers(footing);
+  return flight;
+}
+
+// How far to move along z so that no part of the sole is inside a riser that leads up from
+// `height_m` at either end of `piece`.
+double way_back(const Floor& floor, const SolePoints& sole, const Stretch& piece, double height_m,
+                double room, double size) noexcept {
+  double shift = 0.0;
+  for (const vec3& p : sole) {
+    const bool ahead_up =
+        std::isfinite(piece.to_m) &&
+        ground_at(floor, p.x, piece.to_m + kRiser_m).height_m > height_m + kRiser_m;
+    const bool behind_up =
+        std::isfinite(piece.from_m) &&
+        ground_at(floor, p.x, piece.from_m - kRiser_m).height_m > height_m + kRiser_m;
+    if (ahead_up) shift = std::min(shift, piece.to_m - room - p.z);
+    if (behind_up) shift = std::max(shift, piece.from_m + room - p.z);
+  }
+  return std::clamp(shift, -kMostShift_m * size, kMostShift_m * size);
+}
+
+// How far the ground line has to rise so that the sole, moved along z by `shift`, clears the
+// ground.
+Wanted wanted_raise(const Tables& tables, const Floor& floor, const PlannedFlight& flight,
+                    bool crosses, const Spline& shift) noexcept {
+  const double above_m = kRoomAbove_m * tables.size;
+  Wanted above;
+  for (int i = 0; i <= kProbes; ++i) {
+    const double u = static_cast<double>(i) / kProbes, moved = spline_of(shift, 0.0, u);
+    double over = -tables.leg_m;
+    SolePoints sole = flight.sole[i];
+    for (vec3& p : sole) {
+      p.z += moved;
+      if (flight.stays())
+        p.z = std::clamp(p.z, flight.begin.from_m + kBeside_m, flight.begin.to_m - kBeside_m);
+    }
+    const auto ground = heights_at(floor, sole);
+    for (std::size_t k = 0; k < sole.size(); ++k)
+      over = std::max(over, ground[k] - flight.base[i][k].y);
+    above[i] = crosses ? over + above_m * in_flight(u)
+                       : std::max(0.0, over) + std::clamp(over, 0.0, above_m);
+  }
+  above.front() = 0.0;
+  above.back() = flight.climb;
+  return above;
+}
+
+// In the second half of a flight a shift towards the landing is taken out of `beside` and becomes a
+// share of the way that is left. The share only grows, so the foot is over its landing early and
+// sinks to it; it never overshoots and comes back.
+Spline lead_in(const PlannedFlight& flight, Wanted& beside) noexcept {
+  Spline knots;
+  double share = 0.0;
+  for (int k = 1; k < kKnotsOfFlight; ++k) {
+    for (int i = kProbes / 2; i < std::min(kProbes, (k + 2) * kProbes / kKnotsOfFlight); ++i) {
+      if (beside[i] * flight.left[i] > 0.0)
+        share = std::max(share, std::min(1.0, beside[i] / flight.left[i]));
+    }
+    knots[k - 1] = share * flight.left[k * kProbes / kKnotsOfFlight];
+  }
+  for (int i = kProbes / 2; i < kProbes; ++i) {
+    if (beside[i] * flight.left[i] > 0.0) beside[i] = 0.0;
+  }
+  return knots;
+}
+
+struct RoomPlan {
+  Spline raise_m{}, shift_m{};
+};
+
+// For every flight that does not only lead down.
+RoomPlan plan_over(const Tables& tables, const Floor& floor, const PlannedFlight& flight,
+                   bool crosses) noexcept {
+  const double size = tables.size;
+  const Wanted above = wanted_raise(tables, floor, flight, crosses, Spline{});
+  Wanted beside{};
+  RoomPlan room;
+  // Start gentle; sharpen until the riser is cleared.
+  Ends ends;
+  for (int tries = 0; tries < kTries; ++tries) {
+    room.raise_m = envelope(above, ends);
+    for (int i = 1; i < kProbes; ++i) {
+      beside[i] = 0.0;
+      const double u = static_cast<double>(i) / kProbes;
+      if (!flight.stays() && above[i] <= spline_of(room.raise_m, above.back(), u)) continue;
+      beside[i] = 2 * i < kProbes ? way_back(floor, flight.sole[i], flight.begin, flight.begin_m,
+                                             flight.begin_room, size)
+                                  : way_back(floor, flight.sole[i], flight.end, flight.end_m,
+                                             kRoomBeside_m * size, size);
+    }
+    Wanted away = beside;
+    room.shift_m = lead_in(flight, away);
+    const Spline back_m = wide_envelope(away, kMostShift_m * size);
+    for (int k = 0; k < kRoomKnots; ++k) room.shift_m[k] += back_m[k];
+    if (!sharpen(beside, room.shift_m, size, ends)) break;
+  }
+  return room;
+}
+
+// Smallest advance that puts the sole past all ground that is higher than the ground line with
+// `raise` and lies before the landing's piece.
+double way_on(const Tables& tables, const Floor& floor, const PlannedFlight& flight, int i,
+              double raise) noexcept {
+  const double room = kRoomBeside_m * tables.size, least_m = kLeastWanted_m * tables.size;
+  const bool ahead = flight.left[i] > 0.0;
+  double on = 0.0;
+  for (int risers = 0; risers < kMostRisers; ++risers) {
+    for (std::size_t k = 0; k < flight.sole[i].size(); ++k) {
+      const vec3& p = flight.sole[i][k];
+      const double z = p.z + on;
+      if (ahead ? z >= flight.end.from_m : z <= flight.end.to_m) continue;
+      if (ground_at(floor, p.x, z).height_m <= flight.base[i][k].y + raise + least_m) continue;
+      const Stretch piece = piece_at(floor, z);
+      on += ahead ? piece.to_m + room - z : piece.from_m - room - z;
+    }
+  }
+  return on;
+}
+
+// Lowers the inner knots until the spline is a taut line over what is wanted, less some of its
+// room: the envelope alone holds each height for two knots longer than needed. Where the spline is
+// too low already, it sinks no further.
+void draw_taut(const Wanted& wanted, double room_m, Spline& knots) noexcept {
+  Wanted slack;
+  std::array<Wanted, kRoomKnots> weight;  // how much each knot counts at each probe
+  for (int i = 0; i <= kProbes; ++i) {
+    const double u = static_cast<double>(i) / kProbes;
+    const double spare = (1.0 - kTautRoom) * room_m * in_flight(u);
+    slack[i] = std::max(0.0, spline_of(knots, wanted.back(), u) - wanted[i] + spare);
+    for (int k = 0; k < kRoomKnots; ++k) {
+      Spline alone{};
+      alone[k] = 1.0;
+      weight[k][i] = spline_of(alone, 0.0, u);
+    }
+  }
+  for (int round = 0; round < kTautRounds; ++round) {
+    for (int k = kKnotsOfFlight - 3; k > 0; --k) {
+      double fall = knots[k] - 0.5 * (knots[k - 1] + knots[k + 1]);
+      for (int i = 0; i <= kProbes; ++i) {
+        if (weight[k][i] > kLeastWeight) fall = std::min(fall, slack[i] / weight[k][i]);
+      }
+      knots[k] -= fall;
+      for (int i = 0; i <= kProbes; ++i) slack[i] -= fall * weight[k][i];
+    }
+  }
+}
+
+// True for a flight over risers that all lead down.
+bool leads_down(const Tables& tables, const Floor& floor, const PlannedFlight& flight) noexcept {
+  if (flight.climb > -kRiser_m) return false;
+  const Wanted above = wanted_raise(tables, floor, flight, true, Spline{});
+  return *std::max_element(above.begin(), above.end()) < kRoomAbove_m * tables.size + kRiser_m;
+}
+
+// Ahead of its own path, by a growing share of the way that is left, the foot sinks as soon as it
+// has passed an edge.
+RoomPlan plan_down(const Tables& tables, const Floor& floor, const PlannedFlight& flight) noexcept {
+  constexpr int over = static_cast<int>(kOver * kProbes);
+  const double left = flight.left[over];
+  const double needed = std::abs(left) < kLeastLeft_m
+                            ? 0.0
+                            : way_on(tables, floor, flight, over, flight.climb) / left;
+  const double share = std::clamp(needed, 0.0, 1.0);
+  RoomPlan room;
+  for (int k = 1; k < kKnotsOfFlight; ++k)
+    room.shift_m[k - 1] = share *
+                          gaitpad::smoothstep(0.0, kOver, static_cast<double>(k) / kKnotsOfFlight) *
+                          flight.left[k * kProbes / kKnotsOfFlight];
+  const Wanted above = wanted_raise(tables, floor, flight, true, room.shift_m);
+  room.raise_m = envelope(above, Ends{});
+  draw_taut(above, kRoomAbove_m * tables.size, room.raise_m);
+  return room;
+}
+
+}  // namespace
+
+void plan_room(const Tables& tables, bool begins, Block<1>& block) noexcept {
+  const State<float>& state = block.state;
+  Footing<float>& footing = block.footing;
+  const Frame frame(block.origin[0]);
+  const Floor floor{*tables.terrain, block.placed[0]};
+  footing.room_for_m = {state.landing_x_m, footing.landing_y_m, state.landing_z_m};
+  const PlannedFlight flight = planned_flight(tables, floor, frame, block);
+  const RoomPlan room = leads_down(tables, floor, flight)
+                            ? plan_down(tables, floor, flight)
+                            : plan_over(tables, floor, flight, footing.crosses != 0.0f);
+  for (int k = 0; k < kRoomKnots; ++k) {
+    footing.raise_m[k] = static_cast<float>(room.raise_m[k]);
+    footing.shift_m[k] = static_cast<float>(room.shift_m[k]);
+    if (begins) footing.raise[k] = {footing.raise_m[k], 0.0f};
+    if (begins) footing.shift[k] = {footing.shift_m[k], 0.0f};
+  }
+}
+
+}  // namespace gaitpad::anew

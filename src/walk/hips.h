@@ -1,0 +1,542 @@
+// Third: where the hips are, and the phase that goes with it.
+#pragma once
+#include "walk/strides.h"
+
+namespace gaitpad::anew {
+namespace {
+
+// The hips' path in the strides of some footprints, without their oscillation: a line in phase.
+template <class V>
+struct Path {
+  V x_m{}, z_m{}, per_cycle_x_m{}, per_cycle_z_m{};
+};
+// To the next landing. `turns`: cycles at the end of the step.
+template <class V>
+Path<V> path_to(const Landing<V>& landing, const Footprints<V>& prints, const V& turns) noexcept {
+  const Vec<V> seen =
+      landing.way * Vec<V>{prints.swing_m.x, V{}, prints.swing_m.z + prints.stride_m * turns};
+  return {landing.x_m - seen.x, landing.z_m - seen.z, landing.way.sine * prints.stride_m,
+          landing.way.cosine * prints.stride_m};
+}
+
+// Moves what a value is off its plan by one tick along the quintic that ends in 0 after `ticks`.
+template <class V>
+void fade(const V& ticks, Off<V>& off) noexcept {
+  const V n = most(ticks, all<V>(1.0f)), s = 1.0f / n, p = off.v * n, q = off.a * (0.5f * n * n);
+  const V c3 = -10.0f * off.x - 6.0f * p - 3.0f * q, c4 = 15.0f * off.x + 8.0f * p + 3.0f * q,
+          c5 = -6.0f * off.x - 3.0f * p - q;
+  const auto lasts = ticks > all<V>(1.0f);
+  off.x = lasts ? V(off.x + (p + (q + (c3 + (c4 + c5 * s) * s) * s) * s) * s) : V{};
+  off.v =
+      lasts ? V((p + (2.0f * q + (3.0f * c3 + (4.0f * c4 + 5.0f * c5 * s) * s) * s) * s) * s) : V{};
+  off.a =
+      lasts ? V((2.0f * q + (6.0f * c3 + (12.0f * c4 + 20.0f * c5 * s) * s) * s) * (s * s)) : V{};
+}
+
+template <class V>
+struct Hips {
+  V x_m{}, z_m{};  // of the pelvis, on the ground
+  Way<V> heading;  // of the body
+  Footprints<V> behind, ahead;
+  Footprints<V> own;  // in a first step: of the foot that flies
+};
+
+// They follow the stride ahead to the landing. What they are off that path, for the step before was
+// another one or the landing has moved, fades until the strike.
+template <class V>
+Hips<V> move_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
+                  const Stride<V>& stride, const Change<V>& change, State<V>& state) noexcept {
+  Hips<V> hips;
+  hips.heading = way_of(state.heading_rad);
+  hips.behind = footprints_of(tables, time, state.ratio_behind);
+  hips.ahead = footprints_of(tables, time, landing.ratio);
+  if (any(either(change.starting != V{}, change.closing != V{})))
+    hips.own = footprints_of(tables, time, short_ratio(tables, landing, state));
+  const V turns = chosen<V>(time.right, 1.0f, 0.0f);
+  const Path<V> to = path_to(landing, hips.ahead, turns);
+  const V x_m = to.x_m + to.per_cycle_x_m * state.phase,
+          z_m = to.z_m + to.per_cycle_z_m * state.phase;
+  const auto strikes = both(no(time.flies), state.tick == all<V>(1.0f));
+  if (any(strikes)) {
+    // From the path past the foot that stands, in the stride behind, at this strike and the two
+    // ticks after it.
+    const V from_x_m = -hips.behind.stand_m.x - to.x_m, from_z_m = -hips.behind.stand_m.z - to.z_m,
+            per_x_m = -to.per_cycle_x_m, per_z_m = hips.behind.stride_m - to.per_cycle_z_m;
+    const V ticks = state.roll_ticks, way = time.stage_end - time.step_phase;
+    const V v0 = state.strike_rate * ticks, v1 = state.end_rate * ticks,
+            c2 = 3.0f * way - 2.0f * v0 - v1, c3 = v0 + v1 - 2.0f * way;
+    const auto phase_at = [&](float n) {
+      const V s = n / ticks;
+      return V(time.step_phase + (v0 + (c2 + c3 * s) * s) * s);
+    };
+    const V p0 = time.step_phase, p1 = phase_at(1.0f), p2 = phase_at(2.0f),
+            rate = 0.5f * (4.0f * p1 - 3.0f * p0 - p2), bend = p0 - 2.0f * p1 + p2;
+    const auto begin = [&](const V& from_m, const V& per_m, Off<V>& off) {
+      off.x = strikes ? V(from_m + per_m * p0) : off.x;
+      off.v = strikes ? V(per_m * rate) : off.v;
+      off.a = strikes ? V(per_m * bend) : off.a;
+    };
+    begin(from_x_m, per_x_m, state.hips_x_m);
+    begin(from_z_m, per_z_m, state.hips_z_m);
+    // After a step in which the hips led they go on from where they are.
+    const auto was_led = both(strikes, change.was_led != V{});
+    if (any(was_led)) {
+      V x_m[3], z_m[3];
+      for (int n : {0, 1, 2}) {
+        const V at = n == 0 ? p0 : n == 1 ? p1 : p2, k = all<V>(static_cast<float>(n));
+        const Vec<V> pelvis = hips.heading * read_pelvis(tables, time, at, state.ratio_behind,
+                                                         state.ratio_behind, V{});
+        const auto goes = [&](const Off<V>& of) { return V(of.x + k * (of.v + 0.5f * k * of.a)); };
+        x_m[n] = goes(change.pelvis_x_m) - pelvis.x - (to.x_m + to.per_cycle_x_m * at);
+        z_m[n] = goes(change.pelvis_z_m) - pelvis.z - (to.z_m + to.per_cycle_z_m * at);
+      }
+      const auto go_on = [&](const V(&m)[3], Off<V>& off) {
+        off.x = was_led ? m[0] : off.x;
+        off.v = was_led ? V(0.5f * (4.0f * m[1] - 3.0f * m[0] - m[2])) : off.v;
+        off.a = was_led ? V(m[0] - 2.0f * m[1] + m[2]) : off.a;
+      };
+      go_on(x_m, state.hips_x_m);
+      go_on(z_m, state.hips_z_m);
+    }
+  }
+  // Where the path has moved the hips have not.
+  const V was_x_m = state.path_x_m + state.per_cycle_x_m * state.phase,
+          was_z_m = state.path_z_m + state.per_cycle_z_m * state.phase;
+  state.hips_x_m.x = state.hips_x_m.x + (strikes ? V{} : V(was_x_m - x_m));
+  state.hips_z_m.x = state.hips_z_m.x + (strikes ? V{} : V(was_z_m - z_m));
+  state.path_x_m = to.x_m, state.path_z_m = to.z_m;
+  state.per_cycle_x_m = to.per_cycle_x_m, state.per_cycle_z_m = to.per_cycle_z_m;
+  const V ticks = time.to_strike + 1.0f;
+  fade(ticks, state.hips_x_m);
+  fade(ticks, state.hips_z_m);
+  const Vec<V> off = hips.heading * stride.pelvis_m;
+  hips.x_m = x_m + state.hips_x_m.x + off.x;
+  hips.z_m = z_m + state.hips_z_m.x + off.z;
+  return hips;
+}
+
+// --- A change of pace: the hips lead, the phase follows ------------------------------------------
+
+// Steps whose ratios differ by more are led. What the phase is off the one found fades in kCarry_s.
+inline constexpr float kLiftFade = 0.5f;  // of the flight: until then the lift-off's motion fades
+inline constexpr float kOtherPace = 0.02f, kCarry_s = 0.15f, kMostBend_m_s2 = 15.0f;
+// The goal's rate and acceleration are read so far around the strike.
+inline constexpr float kAimTicks = 4.0f;
+// How much a phase that is a cycle off the clock counts, against hips that are off their place:
+// metres at the reference leg. It keeps heights in time with the landing.
+inline constexpr float kInTime_m = 1.2f, kLeastWay_m2 = 0.02f, kPhaseStep = 1e-3f;
+inline constexpr float kGoesSomewhere = 0.2f;                   // of the data's stride
+inline constexpr float kBeforeStep = 0.1f, kAfterStep = 0.14f;  // phases around the step's own
+inline constexpr float kFastestPhase = 2.5f;                    // of the clock's
+inline constexpr int kFewTries = 2, kPhaseTries = 6;
+
+// Moves the pelvis by one tick to where the tables have it at the coming strike, with their rate
+// and acceleration there.
+template <class V>
+void move_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
+                 const V& strike_phase, const V& strike_rate, const State<V>& state,
+                 Change<V>& change) noexcept {
+  V x_m[3], z_m[3];
+  for (int k : {0, 1, 2}) {
+    const V at = strike_phase + (static_cast<float>(k - 1) * kAimTicks) * strike_rate;
+    const Vec<V> pelvis =
+        landing.way * read_pelvis(tables, time, at, landing.ratio, landing.ratio, V{});
+    x_m[k] = state.path_x_m + state.per_cycle_x_m * at + pelvis.x;
+    z_m[k] = state.path_z_m + state.per_cycle_z_m * at + pelvis.z;
+  }
+  const auto led = change.led != V{}, closes = change.closing != V{}, stops = change.stops != V{};
+  const V left = stops ? change.rest_ticks : time.to_strike, ticks = left + 1.0f;
+  // Or to rest between the feet as the last step leaves them.
+  if (any(stops)) {
+    const V swings_m = chosen<V>(time.right, tables.leg[1].stance_m, tables.leg[0].stance_m),
+            stands_m = chosen<V>(time.right, tables.leg[0].stance_m, tables.leg[1].stance_m),
+            next_m = time.right ? change.length_m[0] : change.length_m[1];
+    const V further_m = change.further * (time.back ? -next_m : next_m);
+    const Vec<V> rest = landing.way * Vec<V>{-swings_m, V{}, tables.rest_lead_m + further_m};
+    for (int k : {0, 1, 2}) {
+      x_m[k] = closes ? -stands_m : stops ? landing.x_m + rest.x : x_m[k];
+      z_m[k] = closes ? all<V>(tables.rest_lead_m) : stops ? landing.z_m + rest.z : z_m[k];
+    }
+  }
+  const auto move = [&](const V(&m)[3], Off<V>& pelvis) {
+    const V rate = (m[2] - m[0]) * (0.5f / kAimTicks),
+            bend = (m[2] - 2.0f * m[1] + m[0]) * (0.5f / (kAimTicks * kAimTicks));
+    const auto goal = [&](const V& n) {
+      return Off<V>{V(m[1] - n * (rate - 0.5f * n * bend)), V(rate - bend * n), bend};
+    };
+    const Off<V> was = goal(ticks), is = goal(left);
+    Off<V> off{V(pelvis.x - was.x), V(pelvis.v - was.v), V(pelvis.a - was.a)};
+    fade(stops ? ticks : most(ticks, change.catch_ticks), off);
+    pelvis.x = led ? V(is.x + off.x) : pelvis.x;
+    pelvis.v = led ? V(is.v + off.v) : pelvis.v;
+    pelvis.a = led ? V(is.a + off.a) : pelvis.a;
+  };
+  move(x_m, change.pelvis_x_m);
+  move(z_m, change.pelvis_z_m);
+}
+
+// The phase at which the tables have the pelvis where it is: by Newton's method, from `phase` on.
+template <class V>
+V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
+                  const Hips<V>& hips, const V& strike_phase, const V& strike_rate, const V& share,
+                  const Mask<V>& is_new, const State<V>& state, const Change<V>& change,
+                  V& rate) noexcept {
+  const Way<V>& way = landing.way;
+  const auto along = [&](const V& x_m, const V& z_m) {
+    return V(x_m * way.sine + z_m * way.cosine);
+  };
+  const V at_zero = mix(along(V(-hips.behind.stand_m.x), V(-hips.behind.stand_m.z)),
+                        along(state.path_x_m, state.path_z_m), share),
+          per_cycle = mix(along(V{}, hips.behind.stride_m),
+                          along(state.per_cycle_x_m, state.per_cycle_z_m), share);
+  const auto by_tables = [&](const V& p) {
+    return V(at_zero + per_cycle * p +
+             read_pelvis(tables, time, p, state.ratio_behind, landing.ratio, share).z);
+  };
+  const V wanted = along(change.pelvis_x_m.x, change.pelvis_z_m.x),
+          goes = along(change.pelvis_x_m.v, change.pelvis_z_m.v);
+  const float square = tables.size * tables.size, in_time_m2 = kInTime_m * kInTime_m * square,
+              least_m2 = kLeastWay_m2 * square;
+  // Of a first step hips that go somewhere tell the phase alone.
+  const V in_time = in_time_m2 * (1.0f - most(change.starting, change.closing) *
+                                             smooth(0.0f, kGoesSomewhere, landing.ratio));
+  const V low = time.step_phase - kBeforeStep, high = strike_phase + kAfterStep;
+  V phase = change.phase - change.off_phase.x;
+  phase = phase - floored(V(phase - 0.5f * (low + high) + 0.5f));
+  phase = least(most(phase, low), high);
+  const V last = phase;
+  for (int n = 0; n < (any(is_new) ? kPhaseTries : kFewTries); ++n) {
+    const V here = by_tables(phase),
+            slope = (by_tables(V(phase + kPhaseStep)) - here) * (1.0f / kPhaseStep),
+            weight = 1.0f / (slope * slope + (in_time + least_m2));
+    const V step = ((here - wanted) * slope + in_time * (phase - state.phase)) * weight,
+            next = least(most(V(phase - step), low), high),
+            moves = (goes * slope + in_time * state.phase_rate) * weight;
+    const auto tries = either(is_new, all<V>(static_cast<float>(n)) < all<V>(kFewTries));
+    phase = tries ? next : phase;
+    rate = tries ? moves : rate;
+  }
+  const V fastest = kFastestPhase * strike_rate;
+  return is_new ? phase : least(most(phase, V(last - fastest)), V(last + fastest));
+}
+
+// So much of a stride shows.
+template <class V>
+void show(const V& shown, Stride<V>& stride) noexcept {
+  for (StrideFoot<V>& foot : stride.foot) {
+    foot.pitch_rad = shown * foot.pitch_rad;
+    foot.twist_rad = shown * foot.twist_rad;
+    foot.roll_rad = shown * foot.roll_rad;
+  }
+  stride.pelvis_m = stride.pelvis_m * shown;
+  stride.pelvis_tilt_rad = stride.pelvis_tilt_rad * shown;
+  stride.pelvis_yaw_rad = shown * stride.pelvis_yaw_rad;
+  stride.pelvis_low_m = shown * stride.pelvis_low_m;
+  stride.pelvis_high_m = shown * stride.pelvis_high_m;
+  for (auto& leg : stride.leg_rad)
+    for (V& angle_rad : leg) angle_rad = shown * angle_rad;
+}
+
+inline constexpr float kShownAfter = 0.55f;  // of a first step: all of the tables shows
+
+// What is left of a last step, from its plan on.
+template <class V>
+V closing_left(const Time<V>& time, const Change<V>& change) noexcept {
+  return smoother(V(time.to_strike / most(change.closing_ticks, all<V>(1.0f))));
+}
+// By the plan: how much of the tables shows, and how far the step has come over from the stride
+// behind, at 0, to the one ahead, at 1.
+template <class V>
+V planned_shown(const Time<V>& time, const Change<V>& change) noexcept {
+  const V begins = smoother(V(time.share * (1.0f / kShownAfter))),
+          walks = change.closing != V{} ? closing_left(time, change) : all<V>(1.0f);
+  return change.stands != V{} ? V{} : change.starting != V{} ? begins : walks;
+}
+template <class V>
+V planned_over(const Time<V>& time, const Change<V>& change) noexcept {
+  const V walks = change.starting != V{} ? all<V>(1.0f) : smoother(time.share);
+  return change.closing != V{} ? V{} : walks;
+}
+
+// Where hips lead or have led: their place, and the stride at the phase that goes with it. The foot
+// that flies keeps to the clock. Returns that phase; elsewhere that of the clock.
+template <class V>
+V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
+            const Stride<V>& by_clock, State<V>& state, Change<V>& change, Hips<V>& hips,
+            Stride<V>& stride) noexcept {
+  const auto led = change.led != V{}, stands = change.stands != V{}, closes = change.closing != V{},
+             runs = either(either(either(led, change.was_led != V{}), change.off_ticks != V{}),
+                           stands);
+  stride = by_clock;
+  if (!any(runs)) return state.phase;
+  const auto is_new = change.is_new != V{};
+  for (Off<V>* off : {&change.off_phase, &change.off_shown, &change.off_over, &change.off_ratio})
+    fade(change.off_ticks, *off);
+  change.off_ticks = most(V(change.off_ticks - 1.0f), V{});
+  change.rest_ticks = most(V(change.rest_ticks - 1.0f), V{});
+  change.catch_ticks = most(V(change.catch_ticks - 1.0f), V{});
+  const V over = planned_over(time, change) + change.off_over.x;
+  V phase = state.phase, rate = state.phase_rate;
+  if (any(led)) {
+    const Stages<V> next = stages_of(tables, change, state, no(time.right));
+    const V flight = chosen<V>(time.right, tables.stage_share[3], tables.stage_share[1]),
+            strike_phase = time.stage_end + (time.flies ? V{} : flight),
+            strike_rate = time.flies ? state.end_rate
+                                     : V(0.5f * (flight / state.flight_ticks +
+                                                 next.roll / ticks_of(next.roll_s, tables.tick_s)));
+    move_pelvis(tables, time, landing, strike_phase, strike_rate, state, change);
+    V moves{};
+    const V found = phase_of_pelvis(tables, time, landing, hips, strike_phase, strike_rate, over,
+                                    is_new, state, change, moves);
+    phase = led ? found : phase;
+    rate = led ? moves : rate;
+  }
+  const V was = change.phase - floored(V(change.phase - phase + 0.5f));
+  change.off_phase.x = is_new ? V(was + change.phase_rate - phase) : change.off_phase.x;
+  change.off_phase.v = is_new ? V(change.phase_rate - rate) : change.off_phase.v;
+  change.off_phase.a = is_new ? V{} : change.off_phase.a;
+  const float carry = kCarry_s * tables.time_scale / tables.tick_s;
+  change.off_ticks =
+      is_new ? most(floored(all<V>(carry + 0.5f)), change.off_ticks) : change.off_ticks;
+  change.is_new = V{};
+  change.shown = runs ? V(planned_shown(time, change) + change.off_shown.x) : change.shown;
+  phase = phase + change.off_phase.x;
+  const V goes = is_new ? V(rate + change.off_phase.v) : V(phase - was);
+  change.phase = runs ? phase : change.phase;
+  change.phase_rate = runs ? goes : change.phase_rate;
+  phase = runs ? phase : state.phase;
+  Stride<V> read = read_stride(tables, time, phase, state.ratio_behind, landing.ratio, over);
+  if (any(change.shown != all<V>(1.0f))) show(change.shown, read);
+  stride = read;
+  stride.heel_behind_m = by_clock.heel_behind_m, stride.heel_ahead_m = by_clock.heel_ahead_m;
+  stride.heel_high_m = by_clock.heel_high_m;
+  // It stood, and will stand, at another phase than it flies at.
+  constexpr float kEdgeGoes = 0.4f;  // of the flight
+  const V goes_over =
+              smoother(V(time.u * (1.0f / kEdgeGoes))) *
+              (1.0f -
+               (closes ? V{} : smoother(V((time.u - (1.0f - kEdgeGoes)) * (1.0f / kEdgeGoes))))),
+          share = led ? goes_over : all<V>(1.0f);
+  const StrideFoot<V>& stood = read.foot[0];
+  StrideFoot<V> flying = by_clock.foot[0];
+  const V edge = edge_left(time.u, change);
+  flying.twist_rad = flying.twist_rad + edge * change.gap_twist_rad;
+  flying.roll_rad = flying.roll_rad + edge * change.gap_roll_rad;
+  StrideFoot<V>& swing = stride.foot[0];
+  swing.pitch_rad = time.flies ? flying.pitch_rad : stood.pitch_rad;
+  swing.twist_rad = time.flies ? mix(stood.twist_rad, flying.twist_rad, share) : stood.twist_rad;
+  swing.roll_rad = time.flies ? mix(stood.roll_rad, flying.roll_rad, share) : stood.roll_rad;
+  const Vec<V> moved = hips.heading * (read.pelvis_m - by_clock.pelvis_m);
+  hips.x_m = stands ? state.pelvis_x_m[0]
+             : led  ? change.pelvis_x_m.x
+             : runs ? V(hips.x_m + moved.x)
+                    : hips.x_m;
+  hips.z_m = stands ? state.pelvis_z_m[0]
+             : led  ? change.pelvis_z_m.x
+             : runs ? V(hips.z_m + moved.z)
+                    : hips.z_m;
+  return phase;
+}
+
+template <class V>
+void keep_pelvis(const Hips<V>& hips, State<V>& state) noexcept {
+  for (int k : {2, 1}) {
+    state.pelvis_x_m[k] = state.pelvis_x_m[k - 1];
+    state.pelvis_z_m[k] = state.pelvis_z_m[k - 1];
+  }
+  state.pelvis_x_m[0] = hips.x_m, state.pelvis_z_m[0] = hips.z_m;
+}
+
+// Where the pelvis is, and how it moves there.
+template <class V>
+void go_on_from_here(const Tables& tables, const Mask<V>& begins, const State<V>& state,
+                     Change<V>& change) noexcept {
+  const V m_x = state.pelvis_x_m[0] - state.pelvis_x_m[1],
+          m_z = state.pelvis_z_m[0] - state.pelvis_z_m[1],
+          b_x = state.pelvis_x_m[1] - state.pelvis_x_m[2],
+          b_z = state.pelvis_z_m[1] - state.pelvis_z_m[2];
+  const V bend_x = m_x - b_x, bend_z = m_z - b_z, bend = root(V(bend_x * bend_x + bend_z * bend_z));
+  const float most_bend = kMostBend_m_s2 * tables.tick_s * tables.tick_s;
+  const V within_most = most_bend / most(bend, all<V>(most_bend));
+  const auto begin = [&](const V& place, const V& m, const V& b, const V& bends, Off<V>& pelvis) {
+    pelvis.x = begins ? place : pelvis.x;
+    pelvis.v = begins ? V(1.5f * m - 0.5f * b) : pelvis.v;
+    pelvis.a = begins ? V(bends * within_most) : pelvis.a;
+  };
+  begin(state.pelvis_x_m[0], m_x, b_x, bend_x, change.pelvis_x_m);
+  begin(state.pelvis_z_m[0], m_z, b_z, bend_z, change.pelvis_z_m);
+}
+
+// Where a step begins that goes another way than the last one, or follows one that did: it goes on
+// from where the pelvis is, in the new step frame. `phase`: what was shown at the strike.
+template <class V>
+void begin_lead(const Tables& tables, const Mask<V>& strikes, const V& phase, const V& rate,
+                const State<V>& state, Change<V>& change) noexcept {
+  const auto right = state.right_swings == V{};  // it swings in the step that begins
+  const V own_m = own_step_m<V>(tables, right, state.backward != V{}),
+          asked_m = by_side<V>(right, state.asked.length_m),
+          smoothed_m = right ? state.length_m[1].x : state.length_m[0].x,
+          begun_m = tables.terrain == nullptr ? V(state.ratio_behind * own_m) : smoothed_m,
+          last_m = change.starting != V{} ? begun_m : smoothed_m;
+  // In the last step of a stop the foot closes beside the other one.
+  const auto stops = change.stops != V{}, rests = both(strikes, change.closing != V{}),
+             closes = both(both(strikes, no(rests)), both(stops, change.further == V{}));
+  change.stands = rests ? all<V>(1.0f) : change.stands;
+  change.stops = rests ? V{} : change.stops;
+  change.further = strikes ? V{} : change.further;
+  change.closing = closes ? all<V>(1.0f) : strikes ? V{} : change.closing;
+  const auto changes = size(V((asked_m - last_m) / own_m)) > all<V>(kOtherPace);
+  const auto leads = both(no(rests), either(either(stops, changes), change.catch_ticks != V{}));
+  change.length_m[0] = both(strikes, no(stops)) ? state.asked.length_m[0] : change.length_m[0];
+  change.length_m[1] = both(strikes, no(stops)) ? state.asked.length_m[1] : change.length_m[1];
+  change.was_led = rests ? V{} : strikes ? change.led : change.was_led;
+  change.off_ticks = rests ? V{} : change.off_ticks;
+  for (Off<V>* off : {&change.off_phase, &change.off_shown}) off->x = rests ? V{} : off->x;
+  for (Off<V>* off : {&change.off_over, &change.off_ratio})
+    off->x = strikes ? V{} : off->x, off->v = strikes ? V{} : off->v,
+    off->a = strikes ? V{} : off->a;
+  change.led = strikes ? chosen<V>(leads, 1.0f, 0.0f) : change.led;
+  change.starting = strikes ? V{} : change.starting;
+  const auto begins = both(strikes, either(change.led != V{}, change.was_led != V{}));
+  go_on_from_here(tables, begins, state, change);
+  change.is_new = begins ? all<V>(1.0f) : change.is_new;
+  change.gap_begin = strikes ? V{} : change.gap_begin;
+  change.gap_lasts = strikes ? all<V>(kLiftFade) : change.gap_lasts;
+  change.pitch_lasts = strikes ? V{} : change.pitch_lasts;
+  change.gap_rad = strikes ? V{} : change.gap_rad;
+  change.led_from = strikes ? V{} : change.led_from;
+  change.led_rate_rad = strikes ? V{} : change.led_rate_rad;
+  change.gap_twist_rad = strikes ? V{} : change.gap_twist_rad;
+  change.gap_roll_rad = strikes ? V{} : change.gap_roll_rad;
+  change.phase = begins ? phase : change.phase;
+  change.phase_rate = begins ? rate : change.phase_rate;
+}
+
+// The pelvis in the step frame.
+template <class V>
+struct Pelvis {
+  Vec<V> place_m;
+  Turn<V> turn;
+  Vec<V> hip_m[2];  // joints, from its place; swing and stand
+};
+
+// On uneven ground: into a slope the trunk leans about the hip joints.
+template <class V>
+void lean_pelvis(const Tables& tables, const Turn<V>& upright, const Turn<V>& turned,
+                 const Footing<V>& footing, Pelvis<V>& pelvis) noexcept {
+  const auto &l = tables.leg[0].hip_m, &r = tables.leg[1].hip_m;
+  const Vec<V> middle_m{all<V>(0.5f * (l[0] + r[0])), all<V>(0.5f * (l[1] + r[1])),
+                        all<V>(0.5f * (l[2] + r[2]))};
+  const Turn<V> leans =
+      upright * (turn_about(Vec<V>{all<V>(1.0f), V{}, V{}}, footing.lean_rad.x) * turned);
+  pelvis.place_m = pelvis.place_m + pelvis.turn * middle_m - leans * middle_m;
+  pelvis.place_m.y = pelvis.place_m.y + footing.hips_m.x;
+  pelvis.turn = leans;
+}
+
+template <class V, class F>
+Pelvis<V> pelvis_over(const Tables& tables, const Time<V>& time, const Hips<V>& hips,
+                      const Stride<V>& stride, const State<V>& state, const F& footing) noexcept {
+  // More bounce lets it sink deeper, less keeps it as low as its lowest: no leg has to be longer.
+  const V more = state.bounce.x - 1.0f, y = stride.pelvis_m.y,
+          stays = more > V{} ? stride.pelvis_high_m : stride.pelvis_low_m;
+  const V height_m = tables.stand_m + y + more * (y - stays);
+  // In a turn the body leans as a whole, about the ground below the hips.
+  V half_sine, half_cosine;
+  sin_cos_small(V(0.5f * state.lean_rad.x), half_sine, half_cosine);
+  const V left_m = height_m * 2.0f * half_sine * half_cosine;
+  Pelvis<V> pelvis;
+  pelvis.place_m = {hips.x_m + hips.heading.cosine * left_m,
+                    height_m * (1.0f - 2.0f * half_sine * half_sine),
+                    hips.z_m - hips.heading.sine * left_m};
+  Vec<V> tilt = stride.pelvis_tilt_rad;
+  tilt.z = tilt.z + tables.stand_roll_rad;
+  V sine, cosine;
+  sin_cos_small(V(0.5f * state.sway.x * stride.pelvis_yaw_rad), sine, cosine);
+  const Turn<V> lean{half_cosine, V{}, V{}, -half_sine}, sway{cosine, V{}, sine, V{}};
+  const Turn<V> upright = hips.heading.turn() * lean, turned = sway * turn_by(tilt);
+  pelvis.turn = upright * turned;
+  if constexpr (kIsUneven<F>) lean_pelvis(tables, upright, turned, footing, pelvis);
+  pelvis.hip_m[0] = pelvis.turn * by_side<V>(time.right, tables.leg[0].hip_m, tables.leg[1].hip_m);
+  pelvis.hip_m[1] =
+      pelvis.turn * by_side<V>(no(time.right), tables.leg[0].hip_m, tables.leg[1].hip_m);
+  return pelvis;
+}
+
+// A leg reaches so far, of its length: a knee bent by 4 degrees. Lengths in metres at the reference
+// leg: what the tables ask for is let through, a turn or the ground may ask for more and more.
+inline constexpr float kReach = 0.9994f, kSoftReach_m = 0.006f, kKnown_m = 0.0015f,
+                       kWiderReach = 0.6f, kWidestReach_m = 0.06f, kMostSunk_m = 0.34f,
+                       kSoftSunk_m = 0.12f;
+inline constexpr float kLowReach =
+    0.985f;  // of the leg: a foot whose heel stays low reaches so far
+
+// The spline's knots stand so far apart, in seconds at the reference leg.
+inline constexpr float kSinkKnot_s = 0.06f, kSoftSink_m = 0.002f;
+inline int sink_knot_ticks(const Tables& tables) noexcept {
+  return std::max(1, static_cast<int>(kSinkKnot_s * tables.time_scale / tables.tick_s + 0.5f));
+}
+template <class V>
+V known_sink(const Tables& tables, const Change<V>& change) noexcept {
+  constexpr float kSixth = 1.0f / 6.0f;
+  const int knot = sink_knot_ticks(tables), all_ticks = (kSinkKnots - 3) * knot;
+  V sink_m{};
+  for (int w = 0; w < kLanes<V>; ++w) {
+    const int left = static_cast<int>(lane(change.sink_ticks, w));
+    if (left == 0) continue;
+    const int at = all_ticks - left, i = at / knot;
+    const float t = static_cast<float>(at - i * knot) / static_cast<float>(knot), s = 1.0f - t;
+    set_lane(s * s * s * kSixth * lane(change.sink_m[i], w) +
+                 (4.0f + t * t * (3.0f * t - 6.0f)) * kSixth * lane(change.sink_m[i + 1], w) +
+                 (4.0f + s * s * (3.0f * s - 6.0f)) * kSixth * lane(change.sink_m[i + 2], w) +
+                 t * t * t * kSixth * lane(change.sink_m[i + 3], w),
+             w, sink_m);
+  }
+  return sink_m;
+}
+
+// Lowers it where a leg is asked for more than the tables know. `ankle_m`: swing and stand.
+template <class V>
+void sink(const Tables& tables, const Time<V>& time, const Stride<V>& stride,
+          const Vec<V> (&ankle_m)[2], const State<V>& state, Change<V>& change,
+          Pelvis<V>& pelvis) noexcept {
+  const float grown = tables.size;
+  V squares{};
+  for (int k : {0, 1}) {
+    const auto right = k == 0 ? time.right : no(time.right);
+    const auto of = [&](float LegBones::*bone) {
+      return chosen<V>(right, tables.leg[1].*bone, tables.leg[0].*bone);
+    };
+    const V a = of(&LegBones::thigh_m), b = of(&LegBones::shank_m),
+            knee = stride.leg_rad[k][3] +
+                   chosen<V>(right, tables.leg[1].stand_rad[3], tables.leg[0].stand_rad[3]);
+    V sine, cosine;
+    sin_cos(knee, sine, cosine);
+    const V table = root(V(a * a + b * b + 2.0f * a * b * cosine)),
+            low = least(right ? state.lift[1].x : state.lift[0].x, all<V>(1.0f)),
+            known = low < all<V>(1.0f) ? mix(V(kLowReach * (a + b)), table, low) : table;
+    const Vec<V> way = ankle_m[k] - (pelvis.place_m + pelvis.hip_m[k]);
+    const V span = root(dot(way, way)), beyond = (span - known) * (1.0f / grown);
+    const V soft = grown * (kSoftReach_m + kWiderReach * least(beyond, all<V>(kWidestReach_m)));
+    const V times = beyond * (1.0f / kKnown_m), shows = times * times,
+            excess = soft_positive(V(span - kReach * (a + b)), soft) * shows / (1.0f + shows),
+            upright = most(V(0.3f * span), V(-way.y)) / span, down = excess / upright;
+    squares = squares + (beyond > V{} ? V(down * down) : V{});
+  }
+  const V down_m = root(squares);
+  V sunk_m = soft_least(down_m, all<V>(kMostSunk_m * grown), all<V>(kSoftSunk_m * grown));
+  change.wants_m = sunk_m;
+  const auto ahead = change.sink_ticks != V{};
+  if (any(ahead)) {
+    // What it was known to want, or more.
+    const V known_m = known_sink(tables, change),
+            width_m = most(least(known_m, all<V>(kSoftSink_m * grown)), all<V>(1e-6f)),
+            more_m = known_m + soft_positive(V(sunk_m - known_m), width_m);
+    sunk_m = both(ahead, known_m > all<V>(1e-6f)) ? more_m : sunk_m;
+    change.sink_ticks = ahead ? V(change.sink_ticks - 1.0f) : V{};
+  }
+  pelvis.place_m.y = pelvis.place_m.y - sunk_m;
+}
+
+}  // namespace
+}  // namespace gaitpad::anew

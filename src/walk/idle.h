@@ -1,0 +1,102 @@
+// A person who stands breathes, sways over the feet, and looks round now and then. All of it
+// follows from the ticks of the stand, so a replay stands the same; it begins some time after the
+// feet are at rest and ends while a walk begins. Planted feet stay where they are: hips move over
+// them.
+#pragma once
+#include <cstdint>
+
+#include "walk/hips.h"
+
+namespace gaitpad::anew {
+namespace {
+
+template <class V>
+struct Idle {
+  V breath_rad{}, glance_rad{}, nod_rad{};
+  V ahead_m{}, left_m{};  // of the hips
+};
+
+// 0 .. 1 of the draw `which` of a glance: splitmix64, so that neighbours have nothing in common.
+inline float drawn(std::uint64_t glance, std::uint64_t which) noexcept {
+  std::uint64_t bits = (4 * glance + which + 1) * 0x9e3779b97f4a7c15u;
+  bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9u;
+  bits = (bits ^ (bits >> 27)) * 0x94d049bb133111ebu;
+  return static_cast<float>(static_cast<double>((bits ^ (bits >> 31)) >> 11) * 0x1p-53);
+}
+
+template <class V>
+V sine_of_cycles(const V& cycles, float begin_rad) noexcept {
+  V sine, cosine;
+  sin_cos(V(6.2831853f * (cycles - floored(cycles)) + begin_rad), sine, cosine);
+  return sine;
+}
+
+// `amount`: of it all.
+template <class V>
+void glance(const V& time_s, const V& amount, const V& outwards, Idle<V>& idle) noexcept {
+  // A glance every seven seconds: when it begins, how far it goes, how long it is held.
+  constexpr float kEvery_s = 7.0f, kFirst_s = 1.0f, kLast_s = 3.5f, kTurns_s = 0.6f, kBack_s = 0.7f,
+                  kHeldLeast_s = 0.6f, kHeldMost_s = 1.6f, kLeast_rad = 0.13962634f,
+                  kMost_rad = 0.45378561f, kMostNod_rad = 0.10471976f;
+  const V number = floored(V(time_s * (1.0f / kEvery_s)));
+  V draw[4];
+  for (int w = 0; w < kLanes<V>; ++w) {
+    const auto n = static_cast<std::uint64_t>(lane(number, w));
+    for (int k = 0; k < 4; ++k) set_lane(drawn(n, static_cast<std::uint64_t>(k)), w, draw[k]);
+  }
+  const V begins_s = kFirst_s + (kLast_s - kFirst_s) * draw[0],
+          held_s = kHeldLeast_s + (kHeldMost_s - kHeldLeast_s) * draw[1],
+          since_s = time_s - number * kEvery_s - begins_s;
+  const V turned = smoother(V(since_s * (1.0f / kTurns_s))) *
+                   (1.0f - smoother(V((since_s - kTurns_s - held_s) * (1.0f / kBack_s))));
+  const V to = 2.0f * draw[2] - 1.0f, far = kLeast_rad + (kMost_rad - kLeast_rad) * size(to);
+  idle.glance_rad = amount * turned * outwards * (to < V{} ? V(-far) : far);
+  idle.nod_rad = amount * turned * kMostNod_rad * (draw[3] - 0.3f);
+}
+
+template <class V>
+Idle<V> advance_idle(const Tables& tables, const Change<V>& change, const State<V>& state,
+                     Styled<V>& styled) noexcept {
+  constexpr float kBeginsAfter_s = 1.0f, kBegins_s = 2.0f, kEnds_s = 0.8f;
+  // 14 breaths a minute raise the trunk by so much (people at rest: 12 to 18).
+  constexpr float kBreath_Hz = 0.235f, kBreath_rad = 0.010471976f;
+  Idle<V> idle;
+  const auto stands = change.stands != V{}, acts = either(stands, styled.idle_share != V{});
+  if (!any(either(acts, styled.idle_ticks != V{}))) return idle;
+  const float dt = tables.tick_s;
+  const V time_s = styled.idle_ticks * dt;
+  const V begins = time_s >= all<V>(kBeginsAfter_s) ? all<V>(dt / kBegins_s) : V{};
+  styled.idle_share =
+      within(V(styled.idle_share + (stands ? begins : all<V>(-dt / kEnds_s))), 0.0f, 1.0f);
+  const auto goes_on = either(stands, styled.idle_share > V{});
+  styled.idle_ticks = goes_on ? V(styled.idle_ticks + 1.0f) : V{};
+  const V asked = styled.acts != V{} ? styled.body[kIdle].x : all<V>(1.0f),
+          amount = smoother(styled.idle_share) * asked;
+  if (!any(amount != V{})) return idle;
+  idle.breath_rad =
+      amount * kBreath_rad * (0.5f - 0.5f * sine_of_cycles(V(kBreath_Hz * time_s), 1.5707963f));
+  // Of mirrored walks the stands are mirrored, too: the foot that landed last says which it is.
+  const V outwards = state.right_swings != V{} ? all<V>(1.0f) : all<V>(-1.0f);
+  glance(time_s, amount, outwards, idle);
+  // Quiet stance sways by 3 to 5 mm (standard deviation of the centre of pressure, Winter 1995),
+  // below 0.5 Hz.
+  const V size_m = amount * tables.size;
+  const auto swings = [&](float size, float rate_Hz, float begin_rad) {
+    return V(size * sine_of_cycles(V(rate_Hz * time_s), begin_rad));
+  };
+  idle.ahead_m = size_m * (swings(0.0030f, 0.19f, 2.0f) + swings(0.0015f, 0.43f, 0.5f));
+  idle.left_m = size_m * outwards * (swings(0.0035f, 0.13f, 0.0f) + swings(0.0020f, 0.31f, 1.0f));
+  return idle;
+}
+
+// Moves the hips over the feet.
+template <class V>
+void sway(const Idle<V>& idle, const Way<V>& heading, Pelvis<V>& pelvis) noexcept {
+  pelvis.place_m.x =
+      pelvis.place_m.x + (heading.sine * idle.ahead_m + heading.cosine * idle.left_m);
+  pelvis.place_m.z =
+      pelvis.place_m.z + (heading.cosine * idle.ahead_m - heading.sine * idle.left_m);
+}
+
+}  // namespace
+}  // namespace gaitpad::anew

@@ -1,0 +1,292 @@
+// Numbers of several walks side by side, one in each lane of a register, or of one walk alone.
+// Every lane gets the bits that its walk gets alone: + - * / and square roots in one order, masks
+// in place of branches, and no contraction (see the flags of the build).
+#pragma once
+#include <array>
+#include <cmath>
+#include <cstring>
+
+namespace gaitpad::anew {
+
+template <int kWidth>
+struct FloatsOf {
+  using Type __attribute__((vector_size(4 * kWidth))) = float;
+};
+template <>
+struct FloatsOf<1> {
+  using Type = float;
+};
+template <int kWidth>
+using Floats = typename FloatsOf<kWidth>::Type;
+template <class V>
+inline constexpr int kLanes = sizeof(V) / sizeof(float);
+template <class V>
+using Mask = decltype(V{} < V{});  // bool of one walk
+
+template <class V>
+struct Vec {
+  V x{}, y{}, z{};
+};
+
+template <class V>
+struct Turn {  // a unit quaternion
+  V w{}, x{}, y{}, z{};
+};
+
+namespace {
+
+template <class V>
+inline V all(float x) noexcept {
+  return V{} + x;
+}
+template <class V>
+inline float lane(const V& v, int i) noexcept {
+  return reinterpret_cast<const float*>(&v)[i];
+}
+template <class V>
+inline void set_lane(float x, int i, V& v) noexcept {
+  reinterpret_cast<float*>(&v)[i] = x;
+}
+
+inline bool both(bool a, bool b) noexcept { return a && b; }
+inline bool either(bool a, bool b) noexcept { return a || b; }
+inline bool no(bool a) noexcept { return !a; }
+inline bool any(bool a) noexcept { return a; }
+template <class M>
+inline M both(const M& a, const M& b) noexcept {
+  return a & b;
+}
+template <class M>
+inline M either(const M& a, const M& b) noexcept {
+  return a | b;
+}
+template <class M>
+inline M no(const M& a) noexcept {
+  return ~a;
+}
+template <class M>
+inline bool any(const M& mask) noexcept {
+  static_assert(sizeof(M) >= 16, "a mask, not a number");
+  std::array<long long, sizeof(M) / 8> parts;
+  std::memcpy(parts.data(), &mask, sizeof mask);
+  long long sum = 0;
+  for (const long long part : parts) sum |= part;
+  return sum != 0;
+}
+template <class V>
+inline V chosen(const Mask<V>& mask, const V& a, const V& b) noexcept {
+  return mask ? a : b;
+}
+template <class V>
+inline V chosen(const Mask<V>& mask, float a, float b) noexcept {
+  return mask ? all<V>(a) : all<V>(b);
+}
+
+template <class V>
+inline V least(const V& a, const V& b) noexcept {
+  return b < a ? b : a;
+}
+template <class V>
+inline V most(const V& a, const V& b) noexcept {
+  return a < b ? b : a;
+}
+template <class V>
+inline V within(const V& x, float low, float high) noexcept {
+  return least(most(x, all<V>(low)), all<V>(high));
+}
+template <class V>
+inline V size(const V& x) noexcept {
+  return most(x, -x);
+}
+template <class V>
+inline V root(const V& x) noexcept {
+  if constexpr (kLanes<V> == 1) {
+    return std::sqrt(x);
+  } else {
+    V r{};
+    for (int i = 0; i < kLanes<V>; ++i) r[i] = std::sqrt(x[i]);
+    return r;
+  }
+}
+// To the nearest whole number, for |x| below 2^22.
+template <class V>
+inline V rounded(const V& x) noexcept {
+  constexpr float kRound = 12582912.0f;  // 1.5 * 2^23: adding it leaves no room for fractions
+  return (x + kRound) - kRound;
+}
+template <class V>
+inline V floored(const V& x) noexcept {
+  const V near = rounded(x);
+  return near > x ? near - 1.0f : near;
+}
+
+// --- Curves --------------------------------------------------------------------------------------
+
+// 0 at x <= 0, 1 at x >= 1; with zero slope at both ends, and with zero curvature, too.
+template <class V>
+inline V smooth(const V& x) noexcept {
+  const V u = within(x, 0.0f, 1.0f);
+  return u * u * (3.0f - 2.0f * u);
+}
+template <class V>
+inline V smoother(const V& x) noexcept {
+  const V u = within(x, 0.0f, 1.0f);
+  return u * u * u * (10.0f + u * (6.0f * u - 15.0f));
+}
+template <class V>
+inline V smooth(float from, float to, const V& x) noexcept {
+  return smooth(V((x - from) * (1.0f / (to - from))));
+}
+template <class V>
+inline V mix(const V& a, const V& b, const V& share) noexcept {
+  return a + (b - a) * share;
+}
+// max(x, 0) and min(a, b) with their corner rounded by a parabola over |x| < width.
+template <class V>
+inline V soft_positive(const V& x, const V& width) noexcept {
+  const V rounded = (x + width) * (x + width) / (4.0f * width), above = x >= width ? x : rounded;
+  return x <= -width ? V{} : above;
+}
+template <class V>
+inline V soft_least(const V& a, const V& b, const V& width) noexcept {
+  return a - soft_positive(V(a - b), width);
+}
+// Cubics that carry a value, and a slope, from 0 to nothing at 1.
+template <class V>
+inline V value_left(const V& s) noexcept {
+  return 1.0f + s * s * (2.0f * s - 3.0f);
+}
+template <class V>
+inline V slope_left(const V& s) noexcept {
+  return s * (1.0f - s) * (1.0f - s);
+}
+
+// --- Sines ---------------------------------------------------------------------------------------
+
+// Below pi / 4 to 1e-7: minimax polynomials (Cephes, sinf and cosf).
+template <class V>
+inline void sin_cos_small(const V& x, V& sine, V& cosine) noexcept {
+  const V z = x * x;
+  sine = x + x * z * (-1.6666654611e-1f + z * (8.3321608736e-3f + z * -1.9515295891e-4f));
+  cosine =
+      1.0f - 0.5f * z +
+      z * z * (4.166664568298827e-2f + z * (-1.388731625493765e-3f + z * 2.443315711809948e-5f));
+}
+// Of any angle below 1e4.
+template <class V>
+inline void sin_cos(const V& angle_rad, V& sine, V& cosine) noexcept {
+  const V quarters = rounded(V(angle_rad * 0.63661977f));
+  // pi / 2 in three parts, of which the first two have few digits.
+  const V x = ((angle_rad - quarters * 1.5703125f) - quarters * 4.837512969970703125e-4f) -
+              quarters * 7.54978995489188216e-8f;
+  V s, c;
+  sin_cos_small(x, s, c);
+  const auto is_odd = [](const V& n) {
+    const V half = 0.5f * n;
+    return half != rounded(half);
+  };
+  const auto odd = is_odd(quarters), back = is_odd(rounded(V(0.5f * quarters - 0.25f)));
+  const V sine_of = odd ? c : s, cosine_of = odd ? s : c;
+  sine = back ? -sine_of : sine_of;
+  cosine = (odd != back) ? -cosine_of : cosine_of;
+}
+// Up to 0.5 to 1e-7, up to 0.7 to 1e-4: of a foot's pitch (Cephes, asinf).
+template <class V>
+inline V arc_sine(const V& x) noexcept {
+  const V z = x * x;
+  return x + x * z *
+                 (1.6666752422e-1f +
+                  z * (7.4953002686e-2f +
+                       z * (4.5470025998e-2f + z * (2.4181311049e-2f + z * 4.2163199048e-2f))));
+}
+
+// --- Vectors and rotations -----------------------------------------------------------------------
+
+template <class V>
+inline Vec<V> operator+(const Vec<V>& a, const Vec<V>& b) noexcept {
+  return {a.x + b.x, a.y + b.y, a.z + b.z};
+}
+template <class V>
+inline Vec<V> operator-(const Vec<V>& a, const Vec<V>& b) noexcept {
+  return {a.x - b.x, a.y - b.y, a.z - b.z};
+}
+template <class V, class K>
+inline Vec<V> operator*(const Vec<V>& a, const K& k) noexcept {
+  return {a.x * k, a.y * k, a.z * k};
+}
+template <class V>
+inline V dot(const Vec<V>& a, const Vec<V>& b) noexcept {
+  return a.x * b.x + a.y * b.y + a.z * b.z;
+}
+template <class V>
+inline Vec<V> cross(const Vec<V>& a, const Vec<V>& b) noexcept {
+  return {a.y * b.z - b.y * a.z, a.z * b.x - b.z * a.x, a.x * b.y - b.x * a.y};
+}
+template <class V>
+inline Vec<V> chosen(const Mask<V>& mask, const Vec<V>& a, const Vec<V>& b) noexcept {
+  return {mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
+}
+template <class V>
+inline Turn<V> operator*(const Turn<V>& p, const Turn<V>& q) noexcept {
+  return {
+      p.w * q.w - p.x * q.x - p.y * q.y - p.z * q.z, p.w * q.x + p.x * q.w + p.y * q.z - p.z * q.y,
+      p.w * q.y + p.y * q.w + p.z * q.x - p.x * q.z, p.w * q.z + p.z * q.w + p.x * q.y - p.y * q.x};
+}
+template <class V>
+inline Vec<V> operator*(const Turn<V>& q, const Vec<V>& v) noexcept {
+  const Vec<V> axis{q.x, q.y, q.z}, once = cross(axis, v), twice = cross(axis, once);
+  return v + ((once * q.w) + twice) * 2.0f;
+}
+template <class V>
+inline Turn<V> back(const Turn<V>& q) noexcept {
+  return {q.w, -q.x, -q.y, -q.z};
+}
+template <class V>
+inline Turn<V> unit(const Turn<V>& q) noexcept {
+  const V k = 1.0f / root(V((q.w * q.w + q.x * q.x) + (q.y * q.y + q.z * q.z)));
+  return {q.w * k, q.x * k, q.y * k, q.z * k};
+}
+template <class V>
+inline Turn<V> chosen(const Mask<V>& mask, const Turn<V>& a, const Turn<V>& b) noexcept {
+  return {mask ? a.w : b.w, mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
+}
+// About a unit axis, by less than a quarter turn.
+template <class V>
+inline Turn<V> turn_about(const Vec<V>& axis, const V& angle_rad) noexcept {
+  V s, c;
+  sin_cos_small(V(0.5f * angle_rad), s, c);
+  return {c, axis.x * s, axis.y * s, axis.z * s};
+}
+// By a rotation vector of up to 30 degrees: the tangent of its half as a series.
+template <class V>
+inline Turn<V> turn_by(const Vec<V>& v) noexcept {
+  const V square = dot(v, v), k = 0.5f + square * (1.0f / 24.0f + square * (1.0f / 240.0f));
+  return unit(Turn<V>{all<V>(1.0f), v.x * k, v.y * k, v.z * k});
+}
+
+// A direction on the ground, counted from straight ahead, to the left positive.
+template <class V>
+struct Way {
+  V half_sine{}, half_cosine = all<V>(1.0f), sine{}, cosine = all<V>(1.0f);
+  // A place seen from where it points so.
+  Vec<V> operator*(const Vec<V>& p) const noexcept {
+    return {cosine * p.x + sine * p.z, p.y, cosine * p.z - sine * p.x};
+  }
+  Turn<V> turn() const noexcept { return {half_cosine, V{}, half_sine, V{}}; }
+};
+template <class V>
+inline Way<V> way_of(const V& heading_rad) noexcept {
+  Way<V> way;
+  sin_cos(V(0.5f * heading_rad), way.half_sine, way.half_cosine);
+  way.sine = 2.0f * way.half_sine * way.half_cosine;
+  way.cosine = way.half_cosine * way.half_cosine - way.half_sine * way.half_sine;
+  return way;
+}
+template <class V>
+inline Way<V> chosen(const Mask<V>& mask, const Way<V>& a, const Way<V>& b) noexcept {
+  return {mask ? a.half_sine : b.half_sine, mask ? a.half_cosine : b.half_cosine,
+          mask ? a.sine : b.sine, mask ? a.cosine : b.cosine};
+}
+
+}  // namespace
+}  // namespace gaitpad::anew

@@ -1,0 +1,158 @@
+// Fifth: the legs. The knee follows from the distance to the ankle. Of the poses that are left,
+// which differ by the knee's swivel about the line from hip to ankle, a leg takes the one nearest
+// to its start: the least sum of squares of its seven angles' changes, which is what the
+// pseudoinverse of the paper's equation (4) gives, to first order. The foot is exactly where it is
+// planned.
+#pragma once
+#include "walk/feet.h"
+
+namespace gaitpad::anew {
+namespace {
+
+template <class V>
+struct Leg {
+  Turn<V> hip, knee, ankle;
+  Mask<V> short_of{};  // the ankle is out of the leg's reach
+  V more_pitch_rad{};  // by which the weights pitch the foot beyond its plan
+};
+
+// What is added to the tables' angles leaks away at this rate.
+inline constexpr float kLeastKnee_rad = 0.017453293f, kLeak_per_s = 4.0f;
+inline constexpr float kStraightCosine = 0.99984770f, kFoldedCosine = -0.9f;  // 1 and 154 degrees
+inline constexpr float kMostSwivel_rad = 0.3f;  // in a tick: farther away it is not first order
+
+// Turns two axes of a frame about the third; (a, b) in cyclic order.
+template <class V>
+void turn_axes(Vec<V>& a, Vec<V>& b, const V& sine, const V& cosine) noexcept {
+  const Vec<V> old = a;
+  a = old * cosine + b * sine;
+  b = b * cosine - old * sine;
+}
+
+// How much three joint axes have to turn for a rotation vector: x, z and y of Rx Rz Ry. `x` and `y`
+// are the axes before the last turn, `z` is the second one.
+template <class V>
+void turns_xzy(const Vec<V>& vector, const Vec<V>& x, const Vec<V>& y, const Vec<V>& z,
+               const V& sine_z, const V& cosine_z, V (&turns)[3]) noexcept {
+  turns[0] = dot(vector, x) / cosine_z;
+  turns[1] = dot(vector, z);
+  turns[2] = dot(vector, y) + sine_z * turns[0];
+}
+
+// `ankle_m`, `foot`: seen from the hip joint in the pelvis' frame. `table_rad`: where it starts,
+// with `off_rad`, to which the turns are added to first order.
+template <class V>
+Leg<V> solve_leg(const V& thigh_m, const V& shank_m, const Vec<V>& ankle_m, const Turn<V>& foot,
+                 const V (&table_rad)[kLegAngles], V (&off_rad)[kLegAngles]) noexcept {
+  V hs[kLegAngles], hc[kLegAngles], s[kLegAngles], c[kLegAngles];
+  for (int j = 0; j < kLegAngles; ++j) {
+    sin_cos_small(V(0.5f * (table_rad[j] + off_rad[j])), hs[j], hc[j]);
+    s[j] = 2.0f * hs[j] * hc[j];
+    c[j] = 1.0f - 2.0f * hs[j] * hs[j];
+  }
+  // Axes at the start: of the hip, the thigh, the shank, the ankle and the foot.
+  const Vec<V> hip_z{V{}, -s[0], c[0]}, hip_x{c[1], s[1] * c[0], s[1] * s[0]},
+      hip_y{-s[1], c[1] * c[0], c[1] * s[0]};
+  Vec<V> x = hip_x, z = hip_z;
+  turn_axes(z, x, s[2], c[2]);
+  Vec<V> foot_x = x, foot_y = hip_y, ankle_z = z;
+  turn_axes(foot_y, ankle_z, s[3], c[3]);
+  turn_axes(foot_y, ankle_z, s[4], c[4]);
+  turn_axes(foot_x, foot_y, s[5], c[5]);
+  const Vec<V> ankle_x = foot_x;
+  Vec<V> foot_z = ankle_z;
+  turn_axes(foot_z, foot_x, s[6], c[6]);
+
+  const V square = dot(ankle_m, ankle_m),
+          bends = (square - (thigh_m * thigh_m + shank_m * shank_m)) / (2.0f * thigh_m * shank_m);
+  Leg<V> leg;
+  leg.short_of = either(bends > all<V>(kStraightCosine), bends < all<V>(kFoldedCosine));
+  const V knee_c = within(bends, kFoldedCosine, kStraightCosine),
+          knee_hc = root(V(0.5f + 0.5f * knee_c)), knee_hs = root(V(0.5f - 0.5f * knee_c)),
+          knee_s = 2.0f * knee_hc * knee_hs, knee_turns = knee_s * c[3] - knee_c * s[3];
+  // The least turn of the hip that brings the ankle to its place, and what is left of the foot's
+  // turn for the ankle.
+  const Vec<V> from = hip_y * -(thigh_m + shank_m * knee_c) - z * (shank_m * knee_s),
+               axis = cross(from, ankle_m);
+  const V w = root(V(dot(from, from) * square)) + dot(from, ankle_m);
+  const Vec<V> goal_x{1.0f - 2.0f * (foot.y * foot.y + foot.z * foot.z),
+                      2.0f * (foot.x * foot.y + foot.w * foot.z),
+                      2.0f * (foot.x * foot.z - foot.w * foot.y)},
+      goal_y{2.0f * (foot.x * foot.y - foot.w * foot.z),
+             1.0f - 2.0f * (foot.x * foot.x + foot.z * foot.z),
+             2.0f * (foot.y * foot.z + foot.w * foot.x)},
+      goal_z = cross(goal_x, goal_y);
+  const Vec<V> of_hip = axis * V(2.0f / w),
+               of_foot =
+                   (cross(foot_x, goal_x) + cross(foot_y, goal_y) + cross(foot_z, goal_z)) * 0.5f,
+               of_ankle = of_foot - of_hip - x * knee_turns,
+               line = ankle_m * V(1.0f / root(square));
+  V hip[3], ankle[3], hip_swivels[3], ankle_swivels[3];
+  turns_xzy(of_hip, hip_x, hip_y, hip_z, s[1], c[1], hip);
+  turns_xzy(of_ankle, ankle_x, foot_y, ankle_z, s[5], c[5], ankle);
+  turns_xzy(line, hip_x, hip_y, hip_z, s[1], c[1], hip_swivels);
+  turns_xzy(line, ankle_x, foot_y, ankle_z, s[5], c[5], ankle_swivels);
+  V along{}, squares{};
+  for (int i = 0; i < 3; ++i) {
+    along = along + (ankle_swivels[i] * ankle[i] - hip_swivels[i] * hip[i]);
+    squares = squares + (hip_swivels[i] * hip_swivels[i] + ankle_swivels[i] * ankle_swivels[i]);
+  }
+  const V swivel_rad = within(V(along / squares), -kMostSwivel_rad, kMostSwivel_rad);
+  for (int i = 0; i < 3; ++i) {
+    off_rad[i] = off_rad[i] + (hip[i] + swivel_rad * hip_swivels[i]);
+    off_rad[4 + i] = off_rad[4 + i] + (ankle[i] - swivel_rad * ankle_swivels[i]);
+  }
+  off_rad[3] = off_rad[3] + knee_turns;
+
+  const V i0 = hc[0] * hc[1], i1 = hs[0] * hc[1], i2 = -hs[0] * hs[1], i3 = hc[0] * hs[1];
+  const Turn<V> start{i0 * hc[2] - i2 * hs[2], i1 * hc[2] - i3 * hs[2], i0 * hs[2] + i2 * hc[2],
+                      i3 * hc[2] + i1 * hs[2]};
+  const Vec<V> half = line * V(0.5f * swivel_rad), vector = axis + half * w + cross(half, axis);
+  leg.hip = unit(Turn<V>{V(w - dot(half, axis)), vector.x, vector.y, vector.z} * start);
+  leg.knee = {knee_hc, knee_hs, V{}, V{}};
+  leg.ankle = back(leg.hip * leg.knee) * foot;
+  return leg;
+}
+
+// Of swing (0) or stand (1).
+template <class V>
+void set_table_angles(const Tables& tables, const Mask<V>& right, const Stride<V>& stride, int k,
+                      V (&table_rad)[kLegAngles]) noexcept {
+  for (int j = 0; j < kLegAngles; ++j)
+    table_rad[j] = stride.leg_rad[k][j] +
+                   chosen<V>(right, tables.leg[1].stand_rad[j], tables.leg[0].stand_rad[j]);
+  table_rad[3] = most(table_rad[3], all<V>(kLeastKnee_rad));
+}
+
+// Swing and stand. `begun_rad`: what was added to the tables' angles where they started; null where
+// nobody asks.
+template <class V>
+void solve_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stride,
+                const Feet<V>& feet, const Pelvis<V>& pelvis, State<V>& state, Leg<V> (&legs)[2],
+                V (*begun_rad)[kLegAngles]) noexcept {
+  // What is added to the tables' angles leaks away, and most of what it had changed by goes on: the
+  // most with which the swivel still returns without swinging, a double root.
+  const float keep = 1.0f - std::min(1.0f, kLeak_per_s * tables.tick_s),
+              square_root = 1.0f - std::sqrt(1.0f - keep), ahead = square_root * square_root;
+  const Turn<V> to_pelvis = back(pelvis.turn);
+  for (int k : {0, 1}) {
+    const auto right = k == 0 ? time.right : no(time.right);
+    const LegBones &l = tables.leg[0], &r = tables.leg[1];
+    V table_rad[kLegAngles];
+    set_table_angles(tables, right, stride, k, table_rad);
+    for (int j = 0; j < kLegAngles; ++j) {
+      const V off = state.leg_rad[k][j];
+      state.leg_rad[k][j] = keep * off + ahead * (off - state.last_leg_rad[k][j]);
+      state.last_leg_rad[k][j] = off;
+    }
+    const Vec<V> ankle_m =
+        to_pelvis * (ankle_of(feet.foot[k], feet.sole[k]) - pelvis.place_m - pelvis.hip_m[k]);
+    if (begun_rad != nullptr) std::copy_n(state.leg_rad[k], kLegAngles, begun_rad[k]);
+    legs[k] =
+        solve_leg<V>(chosen<V>(right, r.thigh_m, l.thigh_m), chosen<V>(right, r.shank_m, l.shank_m),
+                     ankle_m, to_pelvis * feet.foot[k].turn, table_rad, state.leg_rad[k]);
+  }
+}
+
+}  // namespace
+}  // namespace gaitpad::anew

@@ -1,0 +1,81 @@
+// Last: the rotations and the root of the pose, in the world.
+#pragma once
+#include "walk/pose_places.h"
+#include "walk/upper_body.h"
+
+namespace gaitpad::anew {
+
+namespace {
+
+template <class V>
+void write_joint(const Turn<V>& q, int joint, const Poses& poses) noexcept {
+  for (int w = 0; w < poses.walks; ++w) write_joint(q, joint, w, poses);
+}
+
+template <class V>
+Turn<V> same(const std::array<float, 4>& q) noexcept {
+  return {all<V>(q[0]), all<V>(q[1]), all<V>(q[2]), all<V>(q[3])};
+}
+
+// Toes stay level while the heel is the higher end; in the air the change is rounded.
+template <class V>
+V level_toe(const V& pitch_rad, const V& u) noexcept {
+  constexpr float kSoftToe_rad = 0.2617994f;
+  const V air = smooth(0.0f, 0.2f, u) * (1.0f - smooth(0.85f, 1.0f, u));
+  return -soft_positive(pitch_rad, most(V(kSoftToe_rad * air), all<V>(1e-6f)));
+}
+
+template <class V>
+void write_legs(const Tables& tables, const Time<V>& time, const Feet<V>& feet,
+                const Leg<V> (&legs)[2], const Poses& poses) noexcept {
+  Turn<V> toes[2];
+  for (int k : {0, 1}) {
+    const Foot<V>& foot = feet.foot[k];
+    toes[k] = back(foot.edge) *
+              turn_about(feet.sole[k].side, level_toe(V(foot.pitch_rad + legs[k].more_pitch_rad),
+                                                      k == 0 ? time.u : V{}));
+  }
+  for (int side : {0, 1}) {
+    const LegBones& bones = tables.leg[side];
+    const auto swings = side == 1 ? time.right : no(time.right);
+    const Turn<V> turn[4] = {
+        chosen(swings, legs[0].hip, legs[1].hip), chosen(swings, legs[0].knee, legs[1].knee),
+        chosen(swings, legs[0].ankle, legs[1].ankle), chosen(swings, toes[0], toes[1])};
+    for (int j = 0; j < 4; ++j) {
+      if (bones.joint[j] < 0) continue;
+      write_joint(tables.legs_are_plain
+                      ? turn[j]
+                      : same<V>(bones.before[j]) * turn[j] * same<V>(bones.after[j]),
+                  bones.joint[j], poses);
+    }
+  }
+}
+
+// A skeleton's root is its pelvis.
+template <int kWidth>
+void write_root(const Tables& tables, const Pelvis<Floats<kWidth>>& pelvis,
+                const Block<kWidth>& block, const Poses& poses) noexcept {
+  using V = Floats<kWidth>;
+  const State<V>& state = block.state;
+  const V sine = 2.0f * state.frame_sine * state.frame_cosine,
+          cosine = state.frame_cosine * state.frame_cosine - state.frame_sine * state.frame_sine;
+  const Vec<V>& p = pelvis.place_m;
+  const V x_m = cosine * p.x + sine * p.z, z_m = cosine * p.z - sine * p.x;
+  for (int w = 0; w < poses.walks; ++w) {
+    const Origin& origin = block.origin[w];
+    *poses.root_m[w] =
+        vec3(origin.x_m + lane(x_m, w), origin.y_m + lane(p.y, w), origin.z_m + lane(z_m, w));
+  }
+  const Turn<V> frame{state.frame_cosine, V{}, state.frame_sine, V{}};
+  write_joint(frame * pelvis.turn * same<V>(tables.pelvis_standing), tables.pelvis, poses);
+  for (int w = 0; block.is_placed && w < poses.walks; ++w) {
+    const Placement& placed = block.placed[w];
+    if (placed == Placement{}) continue;
+    *poses.root_m[w] = to_world(placed, *poses.root_m[w]);
+    quat& root = poses.local[w][tables.pelvis];
+    root = rotation_y(placed.heading_rad) * root;
+  }
+}
+
+}  // namespace
+}  // namespace gaitpad::anew

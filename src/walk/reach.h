@@ -1,0 +1,162 @@
+// Fourth, where a leg would be too short, or a style keeps a heel low: the standing foot rises on
+// its toe.
+#pragma once
+#include "walk/feet.h"
+
+namespace gaitpad::anew {
+namespace {
+
+// How far a standing foot may leave the floor with its heel: from here on in its own phase, and
+// wholly so much later.
+inline constexpr float kRiseBegin = 0.20f, kHeelRiseLasts = 0.18f;
+// Of the leg: with the hip farther away, the heel rises.
+inline constexpr float kReachOnToe = 0.99995f;
+inline constexpr float kMostPitch_rad = 1.4835299f, kWidePitch_rad = 0.43633231f;  // 85, 25 degrees
+// A low foot rises when its leg is longer than kLowReach, with hips that are lower by this.
+inline constexpr float kLowHips_m = 0.045f, kLowUntil = 0.25f, kLowRisen_rad = 0.78539816f,
+                       kSoftRise_rad = 0.20943951f;
+
+// 0 flat .. 1 freely. `right`: the foot's side.
+template <class V>
+V heel_rise(const Tables& tables, const Time<V>& time, const Mask<V>& right, const V& phase,
+            const Mask<V>& is_stand, const Change<V>& change) noexcept {
+  const auto& share = tables.stage_share;
+  const V p = phase - chosen<V>(right, 0.0f, share[0] + share[1]), own = p - floored(p),
+          begin = most(chosen<V>(right, share[0], share[2]), all<V>(kRiseBegin)),
+          rises = smooth(V((own - begin) * (1.0f / kHeelRiseLasts)));
+  const auto rests = both(is_stand, change.closing != V{});
+  const V shown = rests ? V(rises * closing_left(time, change)) : rises;
+  return change.stands != V{} ? V{} : shown;
+}
+
+// The angle with this sine and cosine, to 1e-6 below a right angle.
+template <class V>
+V angle_of(const V& sine, const V& cosine) noexcept {
+  // The tangent of a quarter of it, then its arc (Cephes, atanf).
+  const V half = sine / most(V(1.0f + cosine), all<V>(1e-6f)),
+          x = half / (1.0f + root(V(1.0f + half * half))), z = x * x;
+  return 4.0f *
+         (x + x * z *
+                  (-3.33329491539e-1f +
+                   z * (1.99777106478e-1f + z * (-1.38776856032e-1f + z * 8.05374449538e-2f))));
+}
+
+// The pitch at which the ankle, turning about the planted toe, is so far from the hip: P cos + Q
+// sin = K in the foot's own vertical plane.
+template <class V>
+V pitch_in_reach(const Foot<V>& foot, const Sole<V>& sole, const Vec<V>& hip_m,
+                 const V& reach_m) noexcept {
+  const Vec<V> d = back(foot.yaw) * (hip_m - foot.toe_m), c = (sole.heel_m + sole.line_m) * -1.0f;
+  const V cf = dot(c, sole.forward), df = dot(d, sole.forward);
+  const V p = df * cf + d.y * c.y, q = df * c.y - d.y * cf,
+          k = 0.5f * (dot(d, d) + dot(c, c) - reach_m * reach_m) -
+              dot(d, sole.side) * dot(c, sole.side),
+          over = 1.0f / most(V(root(V(p * p + q * q))), all<V>(1e-6f));
+  const V cosine =
+      most(soft_least(V(k * over), all<V>(kMostUpright), all<V>(kSoftUpright)), all<V>(-1.0f));
+  const V sine = root(V(1.0f - cosine * cosine));
+  return soft_least(angle_of(V((q * cosine - p * sine) * over), V((p * cosine + q * sine) * over)),
+                    all<V>(kMostPitch_rad), all<V>(kWidePitch_rad));
+}
+
+// Pitches a foot about its toe, where `rises`.
+template <class V>
+void rise_on_toe(const Sole<V>& sole, const V& pitch_rad, const Mask<V>& rises,
+                 Foot<V>& foot) noexcept {
+  Foot<V> risen = foot;
+  set_pitch(sole, foot.yaw, pitch_rad, rises, risen);
+  foot.pitch_rad = rises ? pitch_rad : foot.pitch_rad;
+  foot.turn = chosen(rises, risen.turn, foot.turn);
+  foot.heel_m = chosen(rises, risen.heel_m, foot.heel_m);
+}
+
+template <class V>
+V leg_m(const Tables& tables, const Mask<V>& right) noexcept {
+  const LegBones &l = tables.leg[0], &r = tables.leg[1];
+  return chosen<V>(right, r.thigh_m + r.shank_m, l.thigh_m + l.shank_m);
+}
+
+// Feet whose heels a style keeps low: the hips sink for them, and they rise as far as their legs
+// ask. `asked_rad`: swing and stand, by how much.
+template <class V>
+void keep_heels_low(const Tables& tables, const Time<V>& time, const V& phase,
+                    const Stride<V>& stride, const Change<V>& change, const State<V>& state,
+                    Styled<V>& styled, Pelvis<V>& pelvis, Feet<V>& feet,
+                    V (&asked_rad)[2]) noexcept {
+  constexpr float kAsGoodAsOne = 1e-5f, kAsGoodAsNone = 1e-6f;
+  const auto is_low = least(state.lift[0].x, state.lift[1].x) < all<V>(1.0f - kAsGoodAsOne),
+             acts = either(is_low, either(styled.low[0].x != V{}, styled.low[1].x != V{}));
+  if (!any(acts)) return;
+  const Mask<V> none{};
+  const V presence = change.shown * within(state.posture.x, 0.0f, 1.0f);
+  Mask<V> rolls[2] = {none, no(time.flies)};
+  V low[2];
+  for (int k : {0, 1}) {
+    const auto right = k == 0 ? time.right : no(time.right), flies = k == 0 ? time.flies : none;
+    const V rises = flies ? V(1.0f - smoother(V(time.u * (1.0f / kLowUntil))))
+                          : heel_rise(tables, time, right, phase, k == 1 ? no(none) : none, change);
+    const V goal = rolls[k] ? V{} : V(presence * rises * (1.0f - low_lift<V>(right, state)));
+    Smoothed<V> next = styled.low[k];
+    follow(goal, tables.lowers, next);
+    const auto over = both(goal == V{}, next.x < all<V>(kAsGoodAsNone));
+    styled.low[k].x = acts ? (over ? V{} : next.x) : V{};
+    styled.low[k].v = acts ? (over ? V{} : next.v) : V{};
+    low[k] = styled.low[k].x;
+    const V down_m =
+        (kLowHips_m * tables.size) * low[k] * smooth(0.0f, kLowRisen_rad, stride.foot[k].pitch_rad);
+    pelvis.place_m.y = acts ? V(pelvis.place_m.y - down_m) : pelvis.place_m.y;
+  }
+  for (int k : {0, 1}) {
+    const auto right = k == 0 ? time.right : no(time.right),
+               rises = both(no(rolls[k]), low[k] > V{});
+    Foot<V>& foot = feet.foot[k];
+    const V pitch_rad = pitch_in_reach<V>(foot, feet.sole[k], pelvis.place_m + pelvis.hip_m[k],
+                                          V(kLowReach * leg_m<V>(tables, right)));
+    const V more = least(all<V>(1.0f), V(2.0f * low[k])) *
+                   soft_positive(V(pitch_rad - foot.pitch_rad), all<V>(kSoftRise_rad));
+    asked_rad[k] = rises ? more : V{};
+    rise_on_toe(feet.sole[k], V(foot.pitch_rad + more), rises, foot);
+  }
+}
+
+// Lets a standing foot rise on its toe where its leg would be too short.
+template <class V>
+void reach_with_toe(const Tables& tables, const Time<V>& time, const Change<V>& change,
+                    const Pelvis<V>& pelvis, Feet<V>& feet) noexcept {
+  for (int k : {0, 1}) {
+    const auto right = k == 0 ? time.right : no(time.right),
+               stands = both(change.stands == V{}, k == 0 ? no(time.flies) : time.flies);
+    Foot<V>& foot = feet.foot[k];
+    const V reach_m = kReachOnToe * leg_m<V>(tables, right);
+    const Vec<V> hip_m = pelvis.place_m + pelvis.hip_m[k],
+                 way = hip_m - ankle_of(foot, feet.sole[k]);
+    const auto short_of = both(stands, dot(way, way) > reach_m * reach_m);
+    if (!any(short_of)) continue;
+    const V pitch_rad = most(foot.pitch_rad, pitch_in_reach<V>(foot, feet.sole[k], hip_m, reach_m));
+    rise_on_toe(feet.sole[k], pitch_rad, short_of, foot);
+  }
+}
+
+// The feet as they were planned, before they rose as their legs asked.
+template <class V>
+void take_back(const V (&asked_rad)[2], Feet<V>& feet) noexcept {
+  for (int k : {0, 1}) {
+    const auto asked = asked_rad[k] != V{};
+    if (!any(asked)) continue;
+    Foot<V>& foot = feet.foot[k];
+    rise_on_toe(feet.sole[k], V(foot.pitch_rad - asked_rad[k]), asked, foot);
+  }
+}
+
+// At a strike.
+template <class V>
+void change_styled_feet(const Mask<V>& strikes, Styled<V>& styled) noexcept {
+  for (V Smoothed<V>::*part : {&Smoothed<V>::x, &Smoothed<V>::v}) {
+    const V swing = styled.low[0].*part, stand = styled.low[1].*part;
+    styled.low[0].*part = strikes ? stand : swing;
+    styled.low[1].*part = strikes ? swing : stand;
+  }
+}
+
+}  // namespace
+}  // namespace gaitpad::anew

@@ -1,0 +1,380 @@
+// How one walk comes to rest at any moment of a step, and how it goes on if the stick comes back.
+//
+// A stop chooses among three ends the first that brakes softly: the flying foot closes beside the
+// standing one; it lands ahead and the other foot closes; one more step comes between. The hips go
+// to their place between the feet along a quintic, whose time is chosen for the least braking. It
+// is rare, so that lanes take their turns. On level ground: elsewhere a walk closes with the next
+// step.
+#pragma once
+#include <limits>
+
+#include "walk/feet.h"
+
+namespace gaitpad::anew {
+namespace {
+
+// A quintic to rest brakes with about kNeed v^2 / way. Times are in seconds at the reference leg.
+inline constexpr float kNeed = 0.72f, kBrake_m_s2 = 3.0f, kCloseBrake_m_s2 = 3.3f,
+                       kMostBrake_m_s2 = 3.9f;
+inline constexpr float kLeastStep = 0.25f, kFurtherStep = 0.3f;  // of the foot's own step
+inline constexpr float kToClose_s = 0.40f, kWayWhileClosing = 0.44f, kNextStep_s = 0.35f;
+inline constexpr float kStays = 0.45f;     // from this flight on its landing stays
+inline constexpr float kBehind_m = 0.02f;  // the foot that may still close
+inline constexpr float kLandsAhead =
+    0.42f;  // of a step: so far are hips behind the foot that lands
+inline constexpr float kTurnsOnSpot = 0.1f;  // steps below this ratio
+inline constexpr float kTurnsBack = 0.45f;   // of a closing flight: until then the walk goes on
+inline constexpr float kMostCatch_s = 0.8f;  // until hips that have braked are in their place
+inline constexpr float kNearStrike_s = 0.15f, kLow_m = 0.001f;
+inline constexpr float kLeastRest_s = 0.25f, kAfterLanding_s = 0.15f;
+// Of the last step: its roll and its flight, the latter also of a steady one.
+inline constexpr float kLeastClosing_s = 0.30f, kMostClosing = 1.25f, kLeastClosingRoll_s = 0.11f,
+                       kLeastRollLeft_s = 0.05f, kLongestClosingRoll = 1.6f;
+
+// At this time from now the hips have at least so far to go yet: their foot lands ahead of them.
+struct Behind {
+  float time_s = 0.0f, way_m = 0.0f;
+};
+
+// The time in which hips come to rest most softly, neither beyond their place nor back, and not
+// before their feet. `goes`, `aside`: off their place ahead and to the side, in seconds.
+inline float best_rest_s(const Off<float>& goes, const Off<float>& aside, float least_s,
+                         float most_s, const Behind (&landings)[2]) noexcept {
+  constexpr int kTimes = 20, kPoints = 40;
+  constexpr float kOver = 200.0f, kBack = 50.0f, kLate = 0.8f, kAhead = 40.0f;  // costs, in m/s2
+  float best_s = least_s, least = std::numeric_limits<float>::infinity();
+  for (int k = 0; k < kTimes; ++k) {
+    const float time_s = least_s + (most_s - least_s) * static_cast<float>(k) / (kTimes - 1.0f),
+                point_s = time_s / static_cast<float>(kPoints);
+    const auto of_point = [&](const Off<float>& of) {
+      return Off<float>{of.x, of.v * point_s, of.a * point_s * point_s};
+    };
+    Off<float> off = of_point(goes), sways = of_point(aside);
+    float brakes = 0.0f, over = 0.0f, back = 0.0f, ahead = 0.0f;
+    for (int n = kPoints; n > 1; --n) {
+      fade(static_cast<float>(n), off);
+      fade(static_cast<float>(n), sways);
+      brakes = most(brakes, root(off.a * off.a + sways.a * sways.a) / (point_s * point_s));
+      over = most(over, most(off.x, goes.x - off.x));
+      back = most(back, -off.v / point_s);
+      const float now_s = static_cast<float>(kPoints - n + 1) * point_s;
+      for (const Behind& landing : landings)
+        if (now_s <= landing.time_s) ahead = most(ahead, off.x + landing.way_m);
+    }
+    const float cost = brakes + kOver * over + kBack * back + kLate * time_s + kAhead * ahead;
+    if (cost < least) best_s = time_s, least = cost;
+  }
+  return best_s;
+}
+
+// The flying foot by the plan in force, now and a tick later.
+struct Flown {
+  Vec<float> heel_m[2];
+  float pitch_rad[2], yaw_rad, twist_rad, roll_rad;
+};
+inline Flown flown(const Tables& tables, const Change<float>& change,
+                   const State<float>& state) noexcept {
+  Flown flown;
+  State<float> at = state;
+  for (int k : {0, 1}) {
+    const Time<float> time = time_of(tables, at);
+    const Way<float> to = way_of(heading_ahead(tables, at, time.to_strike + 1.0f));
+    const Landing<float> landing = planned_landing(tables, time, to, change, at);
+    const Stride<float> stride =
+        read_by_clock(tables, time, landing, at.phase, time.share, time.u, change, at);
+    Hips<float> hips;
+    hips.behind = footprints_of(tables, time, at.ratio_behind);
+    hips.ahead = footprints_of(tables, time, landing.ratio);
+    hips.own = footprints_of(tables, time, short_ratio(tables, landing, at));
+    float base_m = 0.0f;
+    const Vec<float> heel_m = flight_heel(tables, time, landing, stride, hips, at.phase, time.u,
+                                          change, at, NoFooting{}, base_m);
+    flown.heel_m[k] = with_gap(tables, time, heel_m, base_m, change, at);
+    if (k == 0) {
+      flown.yaw_rad = flying_yaw(time, landing, change, at);
+      const float edge = edge_left(time.u, change);
+      flown.twist_rad = stride.foot[0].twist_rad + edge * change.gap_twist_rad;
+      flown.roll_rad = stride.foot[0].roll_rad + edge * change.gap_roll_rad;
+    }
+    flown.pitch_rad[k] =
+        low_pitch(low_lift<float>(time.right, at), time.u) * stride.foot[0].pitch_rad +
+        pitch_off(time, at.tick, change, at);
+    at.tick += 1.0f, at.phase += at.phase_rate;
+  }
+  return flown;
+}
+
+// Gives the running step another end. A foot in flight whose landing `moves` goes over to its new
+// path until it lands.
+template <class Work>
+void change_step(const Tables& tables, bool moves, State<float>& state, Change<float>& change,
+                 const Work& work) noexcept {
+  const bool flies = state.flies != 0.0f;
+  const auto ratio = [&] {
+    const Time<float> time = time_of(tables, state);
+    return planned_landing(tables, time,
+                           way_of(heading_ahead(tables, state, time.to_strike + 1.0f)), change,
+                           state)
+        .ratio;
+  };
+  const Flown was = flies ? flown(tables, change, state) : Flown{};
+  const Time<float> time = time_of(tables, state);
+  const float ratio_was = ratio(), shown = change.shown,
+              over = planned_over(time, change) + change.off_over.x;
+  if (change.led == 0.0f) {
+    go_on_from_here(tables, true, state, change);
+    change.phase = state.phase, change.phase_rate = state.phase_rate;
+  }
+  if (change.led == 0.0f && !flies) {  // the foot that rolls down goes on from its pitch
+    State<float> next = state;
+    next.tick += 1.0f;
+    const float pitch_rad = landed_pitch(change, state);
+    change.led_rate_rad = landed_pitch(change, next) - pitch_rad;
+    state.stand_pitch_rad = pitch_rad;
+    change.led_from = state.tick;
+  }
+  work();
+  change.led = change.is_new = 1.0f;
+  change.off_ticks = floored(2.0f * kCarry_s * tables.time_scale / tables.tick_s + 0.5f);
+  const Time<float> now = time_of(tables, state);
+  change.off_shown = {shown - planned_shown(now, change), 0.0f, 0.0f};
+  change.off_over = {over - planned_over(now, change), 0.0f, 0.0f};
+  if (!moves) return;
+  change.gap_begin = now.u;
+  NoFooting level;
+  plan_landing(tables, now, change, state, level);
+  change.off_ratio = {};
+  change.off_ratio.x = ratio_was - ratio();
+  if (!flies) return;
+  const float ticks = state.flight_ticks;
+  change.gap_lasts = most(1.0f - change.gap_begin, 1.0f / ticks);
+  change.pitch_begin = state.tick, change.pitch_lasts = change.gap_lasts * ticks;
+  state.gap_m = state.gap_slope_m = {};
+  change.gap_high_m = 1.0f;
+  state.swing_pitch_rad = state.swing_pitch_rate = 0.0f;
+  change.gap_rad = change.gap_twist_rad = change.gap_roll_rad = 0.0f;
+  const Flown is = flown(tables, change, state);
+  state.gap_m = was.heel_m[0] - is.heel_m[0];
+  state.gap_slope_m = ((was.heel_m[1] - is.heel_m[1]) - state.gap_m) * ticks;
+  change.gap_high_m = most(is.heel_m[0].y, kLow_m * tables.size);
+  if (state.gap_m.y < 0.0f)
+    state.gap_slope_m.y -=
+        state.gap_m.y * (is.heel_m[1].y - is.heel_m[0].y) / change.gap_high_m * ticks;
+  change.gap_rad = was.yaw_rad - is.yaw_rad;
+  change.gap_twist_rad = was.twist_rad - is.twist_rad;
+  change.gap_roll_rad = was.roll_rad - is.roll_rad;
+  state.swing_pitch_rad = was.pitch_rad[0] - is.pitch_rad[0];
+  state.swing_pitch_rate = (was.pitch_rad[1] - is.pitch_rad[1]) - state.swing_pitch_rad;
+}
+
+// Ticks until the hips are as far ahead of the foot that stands as in a walk when the other one
+// lifts off.
+inline float ticks_to_lift_off(const Tables& tables, const State<float>& state,
+                               const Change<float>& change) noexcept {
+  const Time<float> time = time_of(tables, state);
+  const float phase = time.step_phase + tables.stage_share[time.right ? 2 : 0];
+  const Footprints<float> prints = footprints_of(tables, time, state.ratio_behind);
+  const float place_m =
+      prints.stride_m * phase - prints.stand_m.z +
+      read_pelvis(tables, time, phase, state.ratio_behind, state.ratio_behind, 0.0f).z;
+  Off<float> off = change.pelvis_z_m;
+  off.x -= tables.rest_lead_m;
+  float ticks = 1.0f;
+  for (; ticks < change.rest_ticks; ticks += 1.0f) {
+    fade(change.rest_ticks + 1.0f - ticks, off);
+    if ((tables.rest_lead_m + off.x - place_m) * (time.back ? -1.0f : 1.0f) >= 0.0f) break;
+  }
+  return ticks;
+}
+
+// Times the last step, whose foot has yet to lift off: it lands when the hips rest, or later.
+inline void time_closing_step(const Tables& tables, State<float>& state,
+                              Change<float>& change) noexcept {
+  const float scale = tables.time_scale / tables.tick_s;
+  const auto ticks_of_time = [&](float time_s) { return floored(time_s * scale + 0.5f); };
+  const float shortest = ticks_of_time(kLeastClosing_s),
+              longest = most(shortest, floored(kMostClosing * state.flight_ticks)),
+              least_roll =
+                  most(least(ticks_of_time(kLeastClosingRoll_s), state.roll_ticks) - state.tick,
+                       ticks_of_time(kLeastRollLeft_s));
+  // Hips may rest before it lands.
+  const float all_ticks = most(change.rest_ticks, shortest + least_roll),
+              most_roll =
+                  least(all_ticks - shortest, floored(kLongestClosingRoll * state.roll_ticks)),
+              rolls = least(most(ticks_to_lift_off(tables, state, change), least_roll),
+                            most(least_roll, most_roll));
+  state.flight_ticks = least(most(all_ticks - rolls, shortest), longest);
+  state.roll_ticks = state.tick + rolls;
+  change.closing_ticks = rolls + state.flight_ticks;
+  change.rest_ticks = least(change.rest_ticks, change.closing_ticks);
+  const bool right = state.right_swings != 0.0f;
+  state.end_rate = 0.5f * (tables.stage_share[right ? 2 : 0] / state.roll_ticks +
+                           tables.stage_share[right ? 3 : 1] / state.flight_ticks);
+}
+
+// Where one that walks is not to any more: how it comes to rest.
+inline void plan_rest(const Tables& tables, State<float>& state, Change<float>& change) noexcept {
+  const bool flies = state.flies != 0.0f, right = state.right_swings != 0.0f;
+  if (!flies && state.tick == 0.0f) return;  // its landing is planned in this tick
+  const float tick_s = tables.tick_s, scale = tables.time_scale;
+  const Time<float> time = time_of(tables, state);
+  const Way<float> way = way_of(state.landing_rad);
+  const float sign = time.back ? -1.0f : 1.0f;
+  const auto along = [&](float x, float z) { return sign * (x * way.sine + z * way.cosine); };
+  Change<float> here = change;
+  if (change.led == 0.0f) go_on_from_here(tables, true, state, here);
+  const Off<float>&x = here.pelvis_x_m, &z = here.pelvis_z_m;
+  const float speed = along(x.v, z.v) / tick_s, bend = along(x.a, z.a) / (tick_s * tick_s),
+              from = sign * tables.rest_lead_m - along(x.x, z.x), need = kNeed * speed * speed,
+              left_s = time.to_strike * tick_s,
+              planned = along(state.landing_x_m, state.landing_z_m),
+              own_m = own_step_m<float>(tables, right, time.back),
+              next_own_m = own_step_m<float>(tables, !right, time.back),
+              foot_m = flies ? along(state.last_heel_m[0].x, state.last_heel_m[0].z)
+                             : along(state.print_x_m, state.print_z_m);
+  const float longest_s =
+      (kLongestClosingRoll * state.roll_ticks + kMostClosing * state.flight_ticks) * tick_s;
+  const auto left_of = [&](float x, float z) { return x * way.cosine - z * way.sine; };
+  // `aside_m`: where they are to rest, to the left of the foot that stands.
+  const auto to_rest = [&](float way_m, float aside_m, float least_s, float most_s,
+                           const Behind(&landings)[2]) {
+    const Off<float> aside{left_of(x.x, z.x) - aside_m, left_of(x.v, z.v) / tick_s,
+                           left_of(x.a, z.a) / (tick_s * tick_s)};
+    const float time_s =
+        best_rest_s({-way_m, speed, bend}, aside, least_s, most(least_s, most_s), landings);
+    change.rest_ticks = ticks_of(time_s, tick_s);
+    change.stops = 1.0f;
+  };
+  const bool may_close =
+      (from >= need / kCloseBrake_m_s2 && foot_m < -kBehind_m) || planned < kTurnsOnSpot * own_m;
+  if (may_close && change.starting == 0.0f && (!flies || time.u < kStays)) {
+    change_step(tables, true, state, change, [&] {
+      const Behind none[2] = {};
+      to_rest(most(from, 0.0f), -tables.leg[right ? 0 : 1].stance_m, kLeastRest_s * scale,
+              flies ? left_s + (kMostClosing - 1.0f) * state.flight_ticks * tick_s : longest_s,
+              none);
+      change.closing = 1.0f;
+      change.is_aimed = 0.0f;  // it lands beside the other foot, not where a game wants it
+      if (flies) {
+        state.flight_ticks = most(state.flight_ticks, state.tick + change.rest_ticks);
+        change.closing_ticks = state.flight_ticks - state.tick;
+      } else {
+        time_closing_step(tables, state, change);
+      }
+    });
+    return;
+  }
+  const float least_m = most(kLeastStep * own_m, foot_m + kBehind_m);
+  const auto wanted = [&](float time_s) {
+    return most(need / kBrake_m_s2, kWayWhileClosing * speed * (left_s + time_s * scale)) - from;
+  };
+  float step_m = planned, further_m = 0.0f;
+  if (time.u < kStays) step_m = least(most(wanted(kToClose_s), least(least_m, planned)), planned);
+  if (from + step_m < need / kMostBrake_m_s2)
+    further_m = least(most(wanted(kToClose_s + kNextStep_s) - step_m, kFurtherStep * next_own_m),
+                      next_own_m);
+  const float step_s = (state.roll_ticks + state.flight_ticks) * tick_s,
+              between_s = further_m > 0.0f ? step_s : 0.0f;
+  const float lead_m = sign * tables.rest_lead_m;
+  const Behind landings[2] = {{left_s, kLandsAhead * step_m + lead_m + further_m},
+                              {left_s + between_s, kLandsAhead * further_m + lead_m}};
+  change_step(tables, time.u < kStays, state, change, [&] {
+    to_rest(from + step_m + further_m,
+            left_of(state.landing_x_m, state.landing_z_m) - tables.leg[right ? 1 : 0].stance_m,
+            left_s + between_s + kAfterLanding_s * scale, left_s + between_s + longest_s, landings);
+    change.further = further_m > 0.0f ? 1.0f : 0.0f;
+    const int swing = right ? 1 : 0;
+    change.length_m[swing] = step_m;
+    change.length_m[1 - swing] = further_m;
+    state.length_m[swing] = {step_m, 0.0f};
+    if (further_m > 0.0f) state.length_m[1 - swing] = {further_m, 0.0f};
+  });
+}
+
+// The ticks in which hips that have braked come most softly to where the tables have them, at the
+// coming strike or later.
+inline float catch_ticks(const Tables& tables, const State<float>& state,
+                         const Change<float>& change) noexcept {
+  constexpr int kTimes = 12;
+  constexpr float kBack = 50.0f, kLate = 0.8f;  // costs, in m/s2
+  const Time<float> time = time_of(tables, state);
+  const float tick_s = tables.tick_s, share = tables.stage_share[time.right ? 3 : 1],
+              strike_phase = time.stage_end + (time.flies ? 0.0f : share),
+              rate = share / state.flight_ticks;
+  const Way<float> to = way_of(heading_ahead(tables, state, time.to_strike + 1.0f));
+  const Landing<float> landing = planned_landing(tables, time, to, change, state);
+  const Path<float> path =
+      path_to(landing, footprints_of(tables, time, landing.ratio), time.right ? 1.0f : 0.0f);
+  const float sign = time.back ? -1.0f : 1.0f;
+  const auto along = [&](float x, float z) {
+    return sign * (x * landing.way.sine + z * landing.way.cosine);
+  };
+  float m[3];
+  for (int k : {0, 1, 2}) {
+    const float at = strike_phase + static_cast<float>(k - 1) * kAimTicks * rate;
+    m[k] = along(path.x_m + path.per_cycle_x_m * at, path.z_m + path.per_cycle_z_m * at) +
+           sign * read_pelvis(tables, time, at, landing.ratio, landing.ratio, 0.0f).z;
+  }
+  const float goes = (m[2] - m[0]) * (0.5f / kAimTicks),
+              bend = (m[2] - 2.0f * m[1] + m[0]) * (0.5f / (kAimTicks * kAimTicks)),
+              left = time.to_strike;
+  const Off<float>&x = change.pelvis_x_m, &z = change.pelvis_z_m;
+  const Off<float> begin{along(x.x, z.x) - m[1] + left * (goes - 0.5f * left * bend),
+                         along(x.v, z.v) - goes + bend * left, along(x.a, z.a) - bend};
+  const float longest = most(left, ticks_of(kMostCatch_s * tables.time_scale, tick_s));
+  float best = left, least_cost = std::numeric_limits<float>::infinity();
+  for (int k = 0; k < kTimes; ++k) {
+    const float all = floored(left + (longest - left) * static_cast<float>(k) / (kTimes - 1.0f));
+    Off<float> off = begin;
+    float jerks = 0.0f, back = 0.0f;
+    for (float n = all; n > 1.0f; n -= 1.0f) {
+      fade(n, off);
+      jerks = most(jerks, size(off.a + bend));
+      back = most(back, -(off.v + goes - bend * (left - (all - n) - 1.0f)));
+    }
+    const float cost = jerks / (tick_s * tick_s) + kBack * back / tick_s + kLate * all * tick_s;
+    if (cost < least_cost) best = all, least_cost = cost;
+  }
+  return best;
+}
+
+// The stick has come back while the walk comes to rest.
+inline void walk_on(const Tables& tables, State<float>& state, Change<float>& change) noexcept {
+  const bool flies = state.flies != 0.0f, closes = change.closing != 0.0f,
+             right = state.right_swings != 0.0f;
+  if (!flies && state.tick == 0.0f) return;
+  const Time<float> time = time_of(tables, state);
+  if (closes && flies && time.u > kTurnsBack) return;
+  // Hips that have braked cannot be where the tables have them at a strike that is near.
+  if (flies && time.to_strike * tables.tick_s < kNearStrike_s * tables.time_scale) return;
+  // As far as the hips, which have braked, can be where the tables have them at its strike.
+  const int swing = right ? 1 : 0;
+  const float asked_m = state.asked.length_m[swing], tick_s = tables.tick_s;
+  const Stages<float> own = stages_of(tables, change, state, right);
+  const Way<float> way = way_of(state.landing_rad);
+  const float sign = time.back ? -1.0f : 1.0f;
+  const auto along = [&](float x, float z) { return sign * (x * way.sine + z * way.cosine); };
+  const bool moves = !flies || time.u < kStays;
+  const float at_m = along(change.pelvis_x_m.x, change.pelvis_z_m.x),
+              speed = along(change.pelvis_x_m.v, change.pelvis_z_m.v) / tick_s,
+              foot_m = flies ? along(state.last_heel_m[0].x, state.last_heel_m[0].z) : 0.0f;
+  change_step(tables, moves, state, change, [&] {
+    if (closes) {
+      if (!flies) state.roll_ticks = most(state.tick + 1.0f, ticks_of(own.roll_s, tick_s));
+      state.flight_ticks = most(state.tick + 1.0f, ticks_of(own.flight_s, tick_s));
+    }
+    const float left_s = time_of(tables, state).to_strike * tick_s,
+                goes = 0.5f * left_s / (own.roll_s + own.flight_s),
+                reach_m = (at_m + 0.5f * speed * left_s) / most(1.0f - kLandsAhead - goes, 0.05f);
+    const float shortest_m =
+        least(most(kLeastStep * own_step_m<float>(tables, right, time.back), foot_m + kBehind_m),
+              asked_m);
+    if (moves) state.length_m[swing] = {least(most(reach_m, shortest_m), asked_m), 0.0f};
+    change.length_m[swing] = state.length_m[swing].x;
+    change.stops = change.closing = change.further = 0.0f;
+  });
+  change.catch_ticks = catch_ticks(tables, state, change);
+}
+
+}  // namespace
+}  // namespace gaitpad::anew

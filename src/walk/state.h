@@ -1,0 +1,253 @@
+// All that a walk remembers between two ticks. Numbers of W walks stand side by side and stay so.
+//
+// Places are in the *step frame*: its origin is the heel of the foot that stands, on the ground,
+// its z axis where that foot points, x to the left, y up. So the standing foot needs no numbers,
+// floats are exact to a tenth of a micrometre wherever a walk goes, and a strike is one change of
+// frame. A step is the roll of the foot that has landed (*stand*) and the flight of the other one
+// (*swing*). Rates are per tick, phases in cycles from the right foot's strike in the data.
+#pragma once
+#include "gaitpad/terrain.h"
+#include "gaitpad/walk.h"
+#include "walk/lanes.h"
+
+namespace gaitpad::anew {
+
+inline constexpr int kLegAngles = 7;  // hip x, z, y; knee; ankle x, z, y
+
+// A value and its rate, per second.
+template <class V>
+struct Smoothed {
+  V x{}, v{};
+};
+// What a value differs by from its plan, and the difference's rate and acceleration, per tick.
+template <class V>
+struct Off {
+  V x{}, v{}, a{};
+};
+
+// What is asked for; by Side: the left foot's, the right foot's. Written by whoever steers.
+template <class V>
+struct Asked {
+  V walks{};                                // 1: walk, else come to rest
+  V length_m[2]{}, time_s[2]{}, lift[2]{};  // StrideParams
+  V turn_rad_s{}, bounce{}, sway{};
+  V backward{};  // 1: steps lead backward; where a walk goes the other way it comes to rest first
+};
+
+template <class V>
+struct State {
+  Asked<V> asked;
+  // The same, smoothed; the mean step over the data's, and how much of the data's posture that
+  // shows (0 .. 1); the body's lean into a turn, to the left; the mean step time.
+  Smoothed<V> length_m[2], lift[2], turn_goal_rad_s, turn_rad_s, bounce, sway;
+  Smoothed<V> pace, posture, lean_rad, step_time_s;
+
+  // How far chest and head are turned ahead of the pelvis.
+  Smoothed<V> chest_ahead_rad, head_ahead_rad;
+
+  // Clock.
+  V right_swings{}, flies{};       // 1 or 0
+  V backward{};                    // 1: its steps lead backward
+  V tick{};                        // in the roll or the flight
+  V roll_ticks{}, flight_ticks{};  // that they last
+  V step_s{}, late_s{};            // of the step, unrounded; what the steps so far were too short
+  V phase{}, phase_rate{};         // now
+  V strike_rate{}, end_rate{};     // at the last strike; at the end of roll or flight
+
+  // Path.
+  V heading_rad{};
+  V landing_x_m{}, landing_z_m{}, landing_rad{};  // the coming footprint
+  V wider_m{}, next_wider_m{};      // how far beside the data's track this and the coming one are
+  V ratio_behind{}, ratio_ahead{};  // of the last step's stride, and of this one's, over the data's
+  // The tables' path of the hips to that landing at phase 0, and its way per cycle, a tick ago.
+  V path_x_m{}, path_z_m{}, per_cycle_x_m{}, per_cycle_z_m{};
+  Off<V> hips_x_m, hips_z_m;           // from that path
+  V pelvis_x_m[3]{}, pelvis_z_m[3]{};  // in the last tick, and one and two before it
+
+  // Swing foot: its last footprint and where its toe stands there.
+  V print_x_m{}, print_z_m{}, print_rad{}, toe_x_m{}, toe_z_m{};
+  // Its heel at lift-off, and the slope per flight, less the tables'; both fade in the flight.
+  // Where it was one and two ticks ago. The yaw's slope per flight.
+  Vec<V> gap_m, gap_slope_m, last_heel_m[2];
+  V lift_turn_rad{};
+  // Pitches at lift-off and landing less the tables', and the former's slope per tick.
+  V swing_pitch_rad{}, swing_pitch_rate{}, stand_pitch_rad{};
+  V last_pitch_rad[2]{};
+
+  // Legs, swing and stand: their angles less the tables', now and a tick ago.
+  V leg_rad[2][kLegAngles]{}, last_leg_rad[2][kLegAngles]{};
+
+  // Turn of the step frame in the world, half of it.
+  V frame_sine{}, frame_cosine{};
+};
+inline constexpr int kSinkKnots = 16;
+
+// A first step, or one whose pace is another one than that of the step before: the hips go to their
+// place at the coming strike along a quintic, and the phase at which the tables are read follows
+// them.
+template <class V>
+struct Change {
+  V stands{}, starting{}, closing{};  // 1 or 0: both feet rest; the first step; the last one
+  V shown = V{} + 1.0f;               // how much of the tables: 0 at rest
+  V led{}, was_led{};                 // 1 or 0: this step, and the one before it
+  V is_new{};                         // 1: the plan has changed since the last tick
+  // Of a roll: the tick from which on the hips lead, and the rate of what its pitch was off then.
+  V led_from{}, led_rate_rad{};
+  Off<V> pelvis_x_m, pelvis_z_m;  // where the pelvis is, while it leads and a tick after
+  V phase{}, phase_rate{};        // that are shown
+  // What a changed plan has left, of the phase, of what shows, of how far the step has come over to
+  // its own stride, and of this stride's ratio: fades in off_ticks.
+  Off<V> off_phase, off_shown, off_over, off_ratio;
+  V off_ticks{};
+  // Of a stop: 1 or 0; the steps that are left before the last one, 1 or 0, and the lengths of both
+  // feet's; until the hips rest, and how long the last step took from its plan on.
+  V stops{}, further{}, length_m[2]{}, rest_ticks{}, closing_ticks{};
+  // How far hips sink before a leg is at its reach, as knots of a cubic spline (kSinkKnot_s), and
+  // the ticks that are left of it; how far a leg at its reach wants them to sink in this tick.
+  V sink_m[kSinkKnots]{}, sink_ticks{}, wants_m{};
+  V foreseen_m{};   // both steps' lengths that were asked for when that was found
+  V catch_ticks{};  // of a walk that goes on after all: until its hips are where they ought to be
+  // Of a flight: from where on, and over how much of it, its gap fades; the gaps of yaw, twist
+  // and roll, and how high the heel was to be there; the ticks from and over which its pitch's
+  // does, if its plan has changed.
+  V gap_begin{}, gap_lasts = V{} + 0.5f, gap_rad{}, gap_twist_rad{}, gap_roll_rad{};
+  V gap_high_m = V{} + 1.0f;
+  V pitch_begin{}, pitch_lasts{};
+  V asked_ticks{};          // how long one that stands has been asked to walk
+  V slowness = V{} + 1.0f;  // factor on the step's times: on stairs steps take longer
+  // What is asked of the coming landing. 1: it is to be here; else a push moves it by so much, and
+  // 1: the landing after it.
+  V is_aimed{}, aim_x_m{}, aim_z_m{}, aim_rad{}, push_x_m{}, push_z_m{}, push_waits{};
+};
+
+// Legs whose weights differ (weights.h); read where any walk of a block has such.
+template <class V>
+struct Weighted {
+  // 1 or 0: the style has weights that differ; such were in force a tick ago. By Side: what is
+  // asked for, and the same smoothed.
+  V asked{}, acts{};
+  V goal[2][kLegAngles]{};
+  Smoothed<V> weight[2][kLegAngles];
+  // Swing and stand: the running means of the even angles, filtered once and twice; what the
+  // weights add to those, now and a tick ago; how loose the foot is after standing flat.
+  V lagging_rad[2][kLegAngles]{}, mean_rad[2][kLegAngles]{};
+  V shift_rad[2][kLegAngles]{}, last_shift_rad[2][kLegAngles]{};
+  Smoothed<V> loose[2];
+};
+
+// Numbers of UpperBodyParams, in its order: of those by Side the left one's first.
+enum BodyNumber : int {
+  kArmSwing = 0,
+  kArmOut_deg = 2,
+  kArmWeight = 4,
+  kSpineWeight = 16,
+  kLean_deg = 18,
+  kOverLeft_deg = 19,
+  kOverRight_deg = 20,
+  kHand = 21,
+  kLook = 35,
+  kLookYaw_deg = 36,
+  kLookPitch_deg = 37,
+  kLookAt = 38,
+  kLead = 42,
+  kIdle = 43,
+  kBodyNumbers = 44
+};
+
+// What else a style asks for; read where any walk of a block has such.
+template <class V>
+struct Styled {
+  // 1 or 0: the style's upper body is not the data's; it was not in the last tick. What it is to
+  // be, and the same smoothed.
+  V asked{}, acts{};
+  V goal[kBodyNumbers]{};
+  Smoothed<V> body[kBodyNumbers];
+  // Of one who stands: ticks, and how much of breath, sway and glances shows.
+  V idle_ticks{}, idle_share{};
+  // Swing and stand: how low a foot's heel is kept where it would rise.
+  Smoothed<V> low[2];
+};
+
+// How a plane rises along x and along z.
+template <class V>
+struct Slope {
+  V x{}, z{};
+};
+// What uneven ground makes of a walk; a walk on level ground does not read it. Heights are over the
+// step frame: over the ground at the heel of the foot that stands.
+inline constexpr int kRoomKnots = 7;  // inner ones of a spline over the flight
+template <class V>
+struct Footing {
+  // The planes of the foot that stands, of the other one's last footprint, and of the landing.
+  Slope<V> stand, print, landing;
+  V print_y_m{}, toe_y_m{}, landing_y_m{};
+  // Where the foot would land if the ground were level, and for which such place the landing was
+  // chosen last; the share of the step's length that a slope leaves; the rise of the step after
+  // this one, in legs; 1: the sole overhangs an edge.
+  V level_x_m{}, level_z_m{}, level_rad{}, asked_x_m{}, asked_z_m{}, asked_rad{};
+  V share = V{} + 1.0f, next_rise{}, overhangs{};
+  // The ground that the hips go over, per tick; where it settles over the standing foot, what it is
+  // still off, and how long after the strike; how far it then sinks to the next landing, and how
+  // far below that one it is, at it and after it.
+  Off<V> hips_m;
+  V level_m{};
+  Off<V> off_m;
+  V settle_ticks{}, drop_m{}, early_m{}, yield_m{};
+  // The step along the heading, its ratio, and what the tables' ratio is off it; the share of the
+  // wanted lengths that the ground leaves; the trunk's lean into the slope, forwards.
+  V step_m{}, step_ratio{};
+  Off<V> off_ratio;
+  Smoothed<V> left{V{} + 1.0f, V{}}, lean_rad;
+  // The swinging foot: how far it rises with the hips, and did one and two ticks ago; its plane's
+  // height where its heel lifted off; 1: it crosses a riser. What keeps it off the ground: splines
+  // up, and away from a riser, planned for a landing; the same, smoothed and in force.
+  V rise_m{}, last_rise_m[2]{}, lift_y_m{}, crosses{};
+  Vec<V> room_for_m;
+  V raise_m[kRoomKnots]{}, shift_m[kRoomKnots]{};
+  Smoothed<V> raise[kRoomKnots], shift[kRoomKnots];
+};
+
+// In its place where the ground is level.
+struct NoFooting {};
+template <class F>
+inline constexpr bool kIsUneven = !std::is_same_v<F, NoFooting>;
+
+template <class V>
+inline constexpr int kStateNumbers = (sizeof(State<V>) + sizeof(Change<V>) + sizeof(Weighted<V>) +
+                                      sizeof(Styled<V>) + sizeof(Footing<V>)) /
+                                     sizeof(V);
+static_assert(sizeof(State<float>) <= 512);
+
+// The step frame in the walk's own coordinates. Doubles, written at strikes alone.
+struct Origin {
+  double x_m = 0.0, z_m = 0.0, heading_rad = 0.0, y_m = 0.0;
+};
+
+// A block of walks of one build. Aligned here, for g++ 12 forgets that of registers in a template's
+// arguments.
+template <int kWidth>
+struct alignas(64) Block {
+  State<Floats<kWidth>> state;
+  Change<Floats<kWidth>> change;
+  Weighted<Floats<kWidth>> weighted;
+  Styled<Floats<kWidth>> styled;
+  Footing<Floats<kWidth>> footing;
+  Origin origin[kWidth];
+  Placement placed[kWidth];  // of the walk's own coordinates in the world
+  Stretch piece[kWidth];     // of uneven ground: where the swinging foot lands
+  bool is_placed = false;    // a walk of them is placed
+};
+
+// Copies a walk from a lane of one block to a lane of another.
+template <int kFrom, int kTo>
+void copy_walk(const Block<kFrom>& from, int from_lane, Block<kTo>& to, int to_lane) noexcept {
+  for (int n = 0; n < kStateNumbers<float>; ++n)
+    reinterpret_cast<float*>(&to)[n * kTo + to_lane] =
+        reinterpret_cast<const float*>(&from)[n * kFrom + from_lane];
+  to.origin[to_lane] = from.origin[from_lane];
+  to.placed[to_lane] = from.placed[from_lane];
+  to.is_placed |= from.is_placed;
+  to.piece[to_lane] = from.piece[from_lane];
+}
+
+}  // namespace gaitpad::anew

@@ -1,0 +1,293 @@
+#include "walk/tables.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+
+#include "gaitpad/curve.h"
+#include "motion/stencil.h"
+
+namespace gaitpad::anew {
+namespace {
+
+template <class Numbers>
+std::array<float, 3> floats(const Numbers& v) {
+  return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+std::array<float, 4> wxyz(const quat& q) {
+  return {static_cast<float>(q.w), static_cast<float>(q.x), static_cast<float>(q.y),
+          static_cast<float>(q.z)};
+}
+std::array<float, 4> xyzw(const quat& q) {
+  return {static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z),
+          static_cast<float>(q.w)};
+}
+
+// The knots of the periodic cubic B-spline through evenly spaced samples: the inverse of the filter
+// [1 4 1] / 6, a recursive one with its pole, forwards and backwards (Unser 1993).
+std::array<double, kKnots> knots_through(const std::array<double, kKnots>& samples) {
+  constexpr double kPole = -0.26794919243112270;  // sqrt(3) - 2
+  constexpr int kReach = 28;                      // its power is below the rounding of a double
+  std::array<double, kKnots> once, knots;
+  double sum = 0.0;
+  for (int i = -kReach; i < kKnots; ++i) {
+    sum = samples[(i + kKnots) % kKnots] + kPole * sum;
+    if (i >= 0) once[i] = sum;
+  }
+  sum = 0.0;
+  for (int i = kKnots - 1 + kReach; i >= 0; --i) {
+    sum = -6.0 * kPole * once[i % kKnots] + kPole * sum;
+    if (i < kKnots) knots[i] = sum;
+  }
+  return knots;
+}
+// Knot k stands at row k + 1; rows wrap round.
+constexpr int knot_of_row(int row) { return (row + kKnots - 1) % kKnots; }
+
+std::array<double, kRowNumbers> numbers_of(const StridePlace& place) {
+  const StrideCell& cell = place.cell;
+  std::array<double, kRowNumbers> all{};
+  double* to = all.data();
+  const auto add = [&to](std::initializer_list<double> numbers) {
+    to = std::copy(numbers.begin(), numbers.end(), to);
+  };
+  for (const StrideFoot& foot : cell.foot) add({foot.heel_m.x, foot.heel_m.y, foot.heel_m.z});
+  for (const StrideFoot& foot : cell.foot) add({foot.pitch_rad});
+  for (const StrideFoot& foot : cell.foot) add({foot.twist_rad, foot.roll_rad});
+  add({cell.pelvis_m.x, cell.pelvis_m.y, cell.pelvis_m.z, cell.pelvis_yaw_rad, cell.pelvis_tilt.x,
+       cell.pelvis_tilt.y, cell.pelvis_tilt.z});
+  for (const auto& leg : cell.leg_rad) to = std::copy(leg.begin(), leg.end(), to);
+  add({place.track.low_m, place.track.high_m});
+  return all;
+}
+
+void fill_harmonics(const WalkModel& model, Tables& tables) {
+  for (int r = 0; r < kRatios; ++r) {
+    for (auto& side : tables.leg_harmonics[r])
+      for (auto& numbers : side) numbers.fill(0.0f);
+    for (int k = 0; k < kKnots; ++k) {
+      const StrideCell cell = stride_of(model, false, double(k) / kKnots, kRatioStep * r).cell;
+      for (int n = 0; n < 1 + 2 * kHarmonics; ++n) {
+        const SinCos turn = gaitpad::sin_cos(2.0 * kPi * ((n + 1) / 2) * k / kKnots);
+        const double of = (n == 0 ? 1.0 : n % 2 == 1 ? 2.0 * turn.cos : 2.0 * turn.sin) / kKnots;
+        for (int side : {0, 1})
+          for (int j = 0; j < kLegAngles; ++j)
+            tables.leg_harmonics[r][side][j][n] += static_cast<float>(of * cell.leg_rad[side][j]);
+      }
+    }
+  }
+}
+
+template <std::size_t kOf>
+void fill_strides(const WalkModel& model, bool backward, RowsOf<kOf>& rows) {
+  for (std::size_t r = 0; r < kOf; ++r) {
+    std::array<std::array<double, kRowNumbers>, kKnots> sample;
+    for (int k = 0; k < kKnots; ++k)
+      sample[k] = numbers_of(
+          stride_of(model, backward, double(k) / kKnots, kRatioStep * static_cast<double>(r)));
+    for (int n = 0; n < kRowNumbers; ++n) {
+      std::array<double, kKnots> of_number;
+      for (int k = 0; k < kKnots; ++k) of_number[k] = sample[k][n];
+      const auto knots = knots_through(of_number);
+      for (int row = 0; row < kKnots + 3; ++row)
+        reinterpret_cast<float*>(&rows[row][r])[n] = static_cast<float>(knots[knot_of_row(row)]);
+    }
+  }
+}
+void fill_footprints(const FootprintLine& line, FootprintLines& lines, float& most_ratio) {
+  for (int side : {0, 1}) {
+    lines.at_zero_m[side] = floats(line.at_zero.footprint_m[side]);
+    lines.per_ratio_m[side] = floats(line.per_ratio.footprint_m[side]);
+  }
+  lines.stride_at_zero_m = static_cast<float>(line.at_zero.stride_m);
+  lines.stride_per_ratio_m = static_cast<float>(line.per_ratio.stride_m);
+  most_ratio = static_cast<float>(line.most_ratio);
+}
+
+void fill_legs(const WalkModel& model, Tables& tables) {
+  tables.legs_are_plain = true;
+  for (int side : {0, 1}) {
+    const LegBuild& from = model.leg[side];
+    LegBones& to = tables.leg[side];
+    tables.chain[side] = from.chain;
+    to.hip_m = floats(from.model.hip_m);
+    to.heel_m = floats(from.model.heel_m);
+    to.toe_m = floats(from.model.toe_m);
+    to.forward = floats(from.forward);
+    to.side = floats(from.side);
+    to.ball_m = floats(from.ball_m);
+    to.tip_m = floats(from.tip_m);
+    to.thigh_m = static_cast<float>(from.model.thigh_m);
+    to.shank_m = static_cast<float>(from.model.shank_m);
+    to.elevation_rad = static_cast<float>(from.elevation_rad);
+    to.foot_m = static_cast<float>(from.foot_m);
+    to.toe_rest_m = static_cast<float>(from.model.toe_rest_m);
+    to.half_width_m = static_cast<float>(from.half_width_m);
+    to.track_m = static_cast<float>(from.track_m);
+    const double below_hip_m = from.model.hip_m.x + from.model.heel_m.x;
+    to.stance_m = static_cast<float>(std::abs(below_hip_m) > std::abs(from.track_m) ? below_hip_m
+                                                                                    : from.track_m);
+    to.own_step_m = static_cast<float>(model.own_step_m[side]);
+    for (int j = 0; j < kLegAngles; ++j)
+      to.stand_rad[j] = static_cast<float>(model.stand_rad[side][j]);
+    for (int j = 0; j < 4; ++j) {
+      to.joint[j] = from.joint[j].joint;
+      to.before[j] = wxyz(from.joint[j].before);
+      to.after[j] = wxyz(from.joint[j].after);
+      constexpr std::array<float, 4> kNone = {1.0f, 0.0f, 0.0f, 0.0f};
+      tables.legs_are_plain &= to.before[j] == kNone && to.after[j] == kNone;
+    }
+  }
+}
+
+int swing_of(const WalkModel& model, int joint) {
+  for (int side : {0, 1}) {
+    const ArmBuild& arm = model.body.arm[side];
+    if (!arm.is_there) continue;
+    if (joint == arm.joints.shoulder) return 1 + 2 * side;
+    if (joint == arm.joints.elbow) return 2 + 2 * side;
+  }
+  return 0;
+}
+
+// Chest and head turn ahead: the spine's joints share the chest's turn, and neck and head what the
+// head is ahead of the chest, the neck by its share.
+constexpr double kNeckShare = 0.45;  // of what the head turns beside the chest
+void fill_path(const WalkModel& model, Tables& tables) {
+  const UpperBodyModel& body = model.body;
+  const std::vector<int>&spine = body.joints.spine, &head = body.head_path;
+  const int joints = static_cast<int>(head.size()), necks = joints - 1 - body.neck_at;
+  for (int i = 0; i < joints; ++i) {
+    if (head[i] == model.cycle.pelvis) tables.path.clear();
+    if (head[i] == model.cycle.pelvis) continue;
+    const bool bends = std::find(spine.begin(), spine.end(), head[i]) != spine.end();
+    const float share = bends ? 1.0f / static_cast<float>(spine.size()) : 0.0f;
+    PathJoint to{head[i], share, 0.0f, share, 0.0f};
+    if (i >= body.neck_at) {
+      to.of_head = static_cast<float>(i < joints - 1 ? kNeckShare / necks
+                                      : necks > 0    ? 1.0 - kNeckShare
+                                                     : 1.0);
+      to.of_chest -= to.of_head;
+      to.of_look = static_cast<float>(i == joints - 1 ? 1.0
+                                                      : kNeckShare * (i - body.neck_at + 1) /
+                                                            (joints - 1 - body.neck_at));
+    }
+    tables.path.push_back(to);
+  }
+  for (int side : {0, 1}) {
+    const ArmBuild& arm = body.arm[side];
+    if (!arm.is_there) continue;
+    std::vector<int>& path = tables.arm[side].path;
+    for (const int joint : arm.path) {
+      path.push_back(joint);
+      if (joint == model.cycle.pelvis) path.clear();
+      if (joint == arm.joints.shoulder) break;
+    }
+  }
+  tables.chest_standing = wxyz(body.chest_standing);
+  tables.head_standing = wxyz(body.head_standing);
+  const auto plain = std::bit_cast<std::array<double, kBodyNumbers>>(UpperBodyParams{});
+  for (int n = 0; n < kBodyNumbers; ++n) tables.plain_body[n] = static_cast<float>(plain[n]);
+}
+
+void fill_upper_body(const WalkModel& model, Tables& tables) {
+  const GaitCycle& cycle = model.cycle;
+  fill_path(model, tables);
+  const auto is_on_path = [&](int joint) {
+    return std::any_of(tables.path.begin(), tables.path.end(),
+                       [&](const PathJoint& p) { return p.joint == joint; });
+  };
+  // Joints that are still in the data may turn on the path.
+  std::vector<int> moved = model.above.joint;
+  for (const int joint : model.above.still)
+    (is_on_path(joint) ? moved : tables.still).push_back(joint);
+  const std::size_t joints = cycle.skeleton.joints.size(), count = moved.size();
+  tables.upper_rows.resize((kKnots + 3) * count * 4);
+  for (std::size_t i = 0; i < count; ++i) {
+    const int joint = moved[i];
+    UpperJoint to{joint, swing_of(model, joint), xyzw(cycle.standing_local[joint]), {}};
+    const ArmBuild& arm = model.body.arm[to.swings > 2];
+    const quat middle = to.swings % 2 == 1 ? arm.swing_shoulder : arm.swing_elbow;
+    to.middle = xyzw(middle);
+    std::array<std::array<double, kKnots>, 4> sample;
+    quat last = to.swings ? middle : cycle.standing_local[joint];
+    for (int k = 0; k < kKnots; ++k) {
+      const Stencil at = stencil_at(double(k) / kKnots);
+      quat sum(0.0, 0.0, 0.0, 0.0);
+      for (int m = 0; m < 4; ++m) {
+        const quat& q = cycle.local[static_cast<std::size_t>(at.index[m]) * joints + joint];
+        sum = sum + q * (glm::dot(q, last) < 0.0 ? -at.weight[m] : at.weight[m]);
+      }
+      last = glm::normalize(sum);
+      sample[0][k] = last.x, sample[1][k] = last.y, sample[2][k] = last.z, sample[3][k] = last.w;
+    }
+    for (int n = 0; n < 4; ++n) {
+      const auto knots = knots_through(sample[n]);
+      for (int row = 0; row < kKnots + 3; ++row)
+        tables.upper_rows[(row * count + i) * 4 + n] = static_cast<float>(knots[knot_of_row(row)]);
+    }
+    tables.upper.push_back(to);
+  }
+  for (int side : {0, 1})
+    tables.most_elbow_swing[side] = static_cast<float>(model.body.arm[side].most_elbow_swing);
+  for (const int j : model.kept) tables.kept.emplace_back(j, cycle.standing_local[j]);
+  tables.joints = static_cast<int>(joints);
+  tables.pelvis = cycle.pelvis;
+  tables.pelvis_standing = wxyz(cycle.pelvis_standing);
+}
+
+Filter filter(double time_constant_s, double tick_s) {
+  const Damping damping(time_constant_s, tick_s);
+  return {static_cast<float>(damping.pull), static_cast<float>(damping.keep),
+          static_cast<float>(tick_s)};
+}
+
+}  // namespace
+
+std::unique_ptr<const Tables> tables_of(const WalkModel& model, double tick_s) {
+  auto tables = std::make_unique<Tables>();
+  fill_strides(model, false, tables->forward);
+  fill_strides(model, true, tables->back);
+  fill_footprints(model.forward, tables->footprints, tables->most_ratio);
+  fill_footprints(model.back, tables->back_footprints, tables->most_back_ratio);
+  fill_harmonics(model, *tables);
+  fill_legs(model, *tables);
+  fill_upper_body(model, *tables);
+  for (int k = 0; k < 4; ++k) tables->stage_share[k] = static_cast<float>(model.share[k]);
+  tables->size = static_cast<float>(model.size);
+  tables->time_scale = static_cast<float>(model.time_scale);
+  tables->stand_m = static_cast<float>(model.stand_m);
+  tables->stand_roll_rad = static_cast<float>(model.stand_roll_rad);
+  tables->rest_lead_m = static_cast<float>(model.rest_lead_m);
+  tables->source_step_m = static_cast<float>(model.source_step_m);
+  tables->own_step_s = static_cast<float>(model.body.own_step_s);
+  // Time constants in seconds at the reference leg: what jumps with the stick is felt as delay
+  // beyond these, and seen as a jerk below.
+  const auto of = [&](double time_constant_s) {
+    return filter(time_constant_s * model.time_scale, tick_s);
+  };
+  tables->step = of(0.12);
+  tables->first_step = of(0.05);
+  tables->turn_goal = of(0.02);
+  tables->turn = of(0.10);
+  tables->bounce = of(0.30);
+  tables->lean = of(0.12);
+  tables->posture = of(0.06);
+  tables->chest = of(0.10);
+  tables->head = of(0.07);
+  tables->room = of(0.04);
+  tables->ground = of(0.30);
+  tables->slope_lean = of(0.30);
+  tables->weights = of(0.15);
+  tables->loosens = of(0.04);  // a foot that stood flat, when a walk begins
+  tables->lowers = of(0.03);
+  tables->body = of(0.22);
+  const double mean_s = 0.5 * model.time_scale;
+  tables->mean_pull = static_cast<float>(tick_s / (mean_s + tick_s));
+  tables->tick_s = static_cast<float>(tick_s);
+  tables->leg_m = static_cast<float>(model.leg_length_m);
+  if (!is_flat(*model.terrain)) tables->terrain = model.terrain;
+  return tables;
+}
+
+}  // namespace gaitpad::anew

@@ -1,0 +1,118 @@
+// What does not change while characters of one build walk, in floats: the strides' tables, the body
+// above the legs, the legs' bones, and the filters of one tick length. Made from a WalkModel.
+#pragma once
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "gaitpad/walk_model.h"
+#include "walk/state.h"
+
+namespace gaitpad::anew {
+
+// A stride at one knot of its periodic cubic B-spline in phase, at one ratio; in the character's
+// metres and radians, 0 when standing (StrideCellOf). Numbers are neighbours so that what is read
+// together is summed together.
+struct StrideRow {
+  std::array<std::array<float, 3>, 2> heel_m;  // by Side; travel frame
+  std::array<float, 2> pitch_rad;
+  std::array<std::array<float, 2>, 2> edge_rad;  // twist and roll
+  std::array<float, 3> pelvis_m;
+  float pelvis_yaw_rad;
+  std::array<float, 3> pelvis_tilt_rad;
+  std::array<std::array<float, kLegAngles>, 2> leg_rad;
+  std::array<float, 2> pelvis_span_m;  // its lowest and highest place in the stride
+  std::array<float, 5> none;
+};
+inline constexpr int kRowNumbers = sizeof(StrideRow) / sizeof(float), kHeelNumbers = 8;
+static_assert(kRowNumbers == 40);
+
+// As many as a StrideFamily has: half of them are off by 0.17 degrees RMS of a knee, at the
+// lift-off.
+inline constexpr int kKnots = 128, kRatios = 8, kHarmonics = 2;
+template <std::size_t kOf>
+using RowsOf = std::array<std::array<StrideRow, kOf>, kKnots + 3>;  // one before, two after
+using StrideRows = RowsOf<kRatios>;
+using BackRows = RowsOf<kBackRatios>;
+
+// Where strides go: exactly linear in their ratio.
+struct FootprintLines {
+  std::array<std::array<float, 3>, 2> at_zero_m, per_ratio_m;  // by Side
+  float stride_at_zero_m, stride_per_ratio_m;
+};
+
+// A critically damped filter of one time constant at one tick length (Damping of curve.h).
+struct Filter {
+  float pull, keep, tick_s;
+};
+
+struct LegBones {
+  std::array<float, 3> hip_m, heel_m, toe_m, forward, side, ball_m, tip_m;  // LegBuild
+  float thigh_m, shank_m, elevation_rad, foot_m, toe_rest_m, half_width_m, track_m;
+  std::array<float, kLegAngles> stand_rad;
+  float own_step_m;
+  float stance_m;  // where its heel stands at rest, to the left: below the hip, or on the track
+  std::array<int, 4> joint;                           // hip, knee, ankle, toe; -1: none
+  std::array<std::array<float, 4>, 4> before, after;  // w, x, y, z
+};
+
+// A joint that the legs do not set.
+struct UpperJoint {
+  int joint;
+  int swings;                             // 0 not; 1, 2: left shoulder, elbow; 3, 4: right ones
+  std::array<float, 4> standing, middle;  // x, y, z, w; the middle of an arm's swing
+};
+
+// A joint on the way from the pelvis to the head, and its share of what chest and head are ahead.
+struct PathJoint {
+  int joint;
+  float of_chest, of_head;
+  float bends, of_look;  // shares of the trunk's bend; of the head's turn, with what is below it
+};
+
+// An arm, from the pelvis on: the joints above the shoulder, then it.
+struct ArmBones {
+  std::vector<int> path;
+};
+
+struct Tables {
+  alignas(64) StrideRows forward;
+  alignas(64) BackRows back;
+  FootprintLines footprints, back_footprints;
+  // Of the legs' angles over a stride ahead, by Side: mean, then cosine and sine of each harmonic.
+  std::array<std::array<std::array<std::array<float, 1 + 2 * kHarmonics>, kLegAngles>, 2>, kRatios>
+      leg_harmonics;
+  std::array<LegBones, 2> leg;
+  std::array<IkChain, 2> chain;  // of paper mode, by Side
+  std::array<float, 4>
+      stage_share;  // of the phase: roll right, flight left, roll left, flight right
+  float most_ratio, most_back_ratio, size, time_scale, stand_m, stand_roll_rad, rest_lead_m,
+      source_step_m, own_step_s;
+  bool legs_are_plain;  // no joint of a leg has a turn before or after its own
+
+  std::vector<UpperJoint> upper;
+  std::vector<float> upper_rows;  // (kKnots + 3) x upper.size() x 4: x, y, z, w
+  std::vector<PathJoint> path;    // from the pelvis on
+  std::array<ArmBones, 2> arm;
+  std::array<float, 4> chest_standing, head_standing;  // w, x, y, z
+  std::array<float, kBodyNumbers> plain_body;          // UpperBodyParams of no style
+  std::array<float, 2> most_elbow_swing;
+  std::vector<int> still;                  // always the identity
+  std::vector<std::pair<int, quat>> kept;  // twist joints in the legs
+  int joints, pelvis;
+  std::array<float, 4> pelvis_standing;  // w, x, y, z
+
+  std::shared_ptr<const Terrain> terrain;  // none where the ground is level
+  float leg_m;                             // thigh and shank
+
+  float tick_s;
+  Filter room, ground, slope_lean;  // of uneven ground
+  Filter step, first_step, turn_goal, turn, bounce, lean, posture, chest, head;
+  Filter weights, loosens, lowers, body;
+  float mean_pull;  // of the two filters that a leg's running mean goes through
+};
+
+// Of a tick of `tick_s` seconds.
+std::unique_ptr<const Tables> tables_of(const WalkModel& model, double tick_s);
+
+}  // namespace gaitpad::anew

@@ -1,0 +1,407 @@
+// One tick of the walks of a block, in the order of its data.
+#pragma once
+#include "walk/ankle.h"
+#include "walk/ground_plan.h"
+#include "walk/paper.h"
+#include "walk/pose.h"
+#include "walk/rest.h"
+#include "walk/walk.h"
+
+namespace gaitpad::anew {
+namespace {
+
+// The step frame of the walks that strike goes to the new footprint.
+template <int kWidth>
+void move_frame(const Landing<Floats<kWidth>>& landing, const Mask<Floats<kWidth>>& strikes,
+                Block<kWidth>& block) noexcept {
+  using V = Floats<kWidth>;
+  State<V>& state = block.state;
+  const Way<V> frame = {
+      state.frame_sine, state.frame_cosine, 2.0f * state.frame_sine * state.frame_cosine,
+      state.frame_cosine * state.frame_cosine - state.frame_sine * state.frame_sine};
+  const Vec<V> moved = frame * Vec<V>{landing.x_m, V{}, landing.z_m};
+  const V is = chosen<V>(strikes, 1.0f, 0.0f);
+  V half_rad{};
+  for (int w = 0; w < kWidth; ++w) {
+    Origin& origin = block.origin[w];
+    if (lane(is, w) != 0.0f) {
+      origin.x_m += lane(moved.x, w);
+      origin.z_m += lane(moved.z, w);
+      origin.y_m += lane(block.footing.landing_y_m, w);
+      origin.heading_rad += lane(landing.rad, w);
+    }
+    set_lane(static_cast<float>(0.5 * wrapped(origin.heading_rad)), w, half_rad);
+  }
+  V sine, cosine;
+  sin_cos(half_rad, sine, cosine);
+  state.frame_sine = strikes ? sine : state.frame_sine;
+  state.frame_cosine = strikes ? cosine : state.frame_cosine;
+}
+
+// A stand that is asked for very little waits whether it is meant: a stick that is touched in
+// passing would else cost two slow steps.
+template <class V>
+Mask<V> is_meant(const Tables& tables, const State<V>& state, const Change<V>& change) noexcept {
+  constexpr float kHesitation_s = 0.2f;  // for next to nothing; less for more, none from
+  constexpr float kSureRatio = 0.3f, kSureTurn_rad_s = 0.15f;  // this stride or turn on
+  const V ratio = asked_ratio(tables, state),
+          sure = most(V(ratio * (1.0f / kSureRatio)),
+                      V(size(state.asked.turn_rad_s) * (1.0f / kSureTurn_rad_s)));
+  return change.asked_ticks * tables.tick_s >=
+         kHesitation_s * tables.time_scale * (1.0f - least(sure, all<V>(1.0f)));
+}
+
+// Where one that stands is to walk: the foot on the side of the turn goes first.
+template <int kWidth>
+void begin_walks(const Tables& tables, Block<kWidth>& block) noexcept {
+  using V = Floats<kWidth>;
+  State<V>& state = block.state;
+  Change<V>& change = block.change;
+  const auto asked = both(change.stands != V{}, state.asked.walks != V{});
+  if (!any(either(asked, change.asked_ticks != V{}))) return;
+  change.asked_ticks = asked ? V(change.asked_ticks + 1.0f) : V{};
+  const auto begins = both(asked, is_meant(tables, state, change));
+  if (!any(begins)) return;
+  change.asked_ticks = begins ? V{} : change.asked_ticks;
+  const auto right = state.right_swings != V{},
+             other = both(begins, right != (state.asked.turn_rad_s < V{}));
+  if (any(other)) {
+    Landing<V> beside{state.print_x_m, state.print_z_m, state.print_rad, way_of(state.print_rad)};
+    Feet<V> feet;
+    feet.flat_toe_m = sole_of<V>(tables, no(right)).line_m;
+    Footing<V>& footing = block.footing;
+    if (is_uneven(tables)) {
+      feet.flat_toe_m = tilt_of(footing.stand) * feet.flat_toe_m;
+      footing.landing = chosen(other, footing.print, footing.landing);
+      footing.landing_y_m = other ? footing.print_y_m : footing.landing_y_m;
+    }
+    move_frame<kWidth>(beside, other, block);
+    if (is_uneven(tables)) change_footing(beside, other, feet.flat_toe_m.y, footing);
+    change_feet(beside, other, feet, Stride<V>{}, state);
+    change_weighted_legs(other, block.weighted);
+    state.right_swings = other ? V(1.0f - state.right_swings) : state.right_swings;
+  }
+  const auto set = [&](const V& to, V& number) { number = begins ? to : number; };
+  const auto first = state.right_swings != V{};
+  const auto& share = tables.stage_share;
+  const V begin = chosen<V>(first, share[0] + share[1], 0.0f),
+          middle = 0.5f * chosen<V>(first, share[2] + share[3], share[0] + share[1]);
+  set(state.asked.backward, state.backward);
+  set(V{}, change.stands), set(all<V>(1.0f), change.starting), set(all<V>(1.0f), change.led);
+  set(all<V>(1.0f), change.is_new);
+  set(V{}, change.was_led), set(V{}, change.off_phase.x), set(V{}, change.off_ticks);
+  // The tables' hips are over the foot that stands in the middle of its support.
+  set(V(begin + middle), change.phase), set(V{}, change.phase_rate);
+  set(begin, state.phase), set(V{}, state.phase_rate), set(V{}, state.strike_rate);
+  set(V{}, state.tick), set(V{}, state.flies), set(V{}, state.late_s);
+  set(V{}, state.ratio_behind), set(V{}, state.stand_pitch_rad);
+  for (Smoothed<V>& length_m : state.length_m) set(V{}, length_m.x), set(V{}, length_m.v);
+  go_on_from_here(tables, begins, state, change);
+}
+
+// Where both feet stand no clock runs, and nothing is left of the last step.
+template <class V>
+void rest(const Tables& tables, const Change<V>& change, State<V>& state) noexcept {
+  const auto stands = change.stands != V{};
+  const auto set = [&](float to, V& number) { number = stands ? all<V>(to) : number; };
+  set(1.0f, state.roll_ticks), set(1.0f, state.flight_ticks), set(0.0f, state.stand_pitch_rad);
+  set(0.0f, state.ratio_behind), set(0.0f, state.phase), set(0.0f, state.phase_rate);
+  const LegBones& left = tables.leg[0];
+  set(std::abs(left.stance_m) - std::abs(left.track_m), state.wider_m);
+}
+
+// What is rare is done for one walk after the other.
+template <int kWidth, class Work>
+void one_by_one(const Mask<Floats<kWidth>>& where, Block<kWidth>& block,
+                const Work& work) noexcept {
+  if (!any(where)) return;
+  if constexpr (kWidth == 1) {
+    work(block, 0);
+  } else {
+    const Floats<kWidth> is = chosen<Floats<kWidth>>(where, 1.0f, 0.0f);
+    for (int w = 0; w < kWidth; ++w) {
+      if (lane(is, w) == 0.0f) continue;
+      Block<1> one;
+      copy_walk(block, w, one, 0);
+      work(one, w);
+      copy_walk(one, 0, block, w);
+    }
+  }
+}
+
+// Where one that walks is to come to rest, or to go on after all.
+template <int kWidth>
+void change_ends(const Tables& tables, Block<kWidth>& block) noexcept {
+  using V = Floats<kWidth>;
+  const auto walks = is_to_walk(block.state), stops = block.change.stops != V{},
+             moves = block.change.stands == V{};
+  one_by_one<kWidth>(both(moves, both(no(walks), no(stops))), block,
+                     [&](Block<1>& one, int) { plan_rest(tables, one.state, one.change); });
+  one_by_one<kWidth>(both(moves, both(walks, stops)), block,
+                     [&](Block<1>& one, int) { walk_on(tables, one.state, one.change); });
+}
+
+// Whether a flight is asked to be followed by another pace than was known; from time to time.
+template <class V>
+Mask<V> is_unforeseen(const Tables& tables, const State<V>& state,
+                      const Change<V>& change) noexcept {
+  constexpr float kOther = 0.1f;
+  const V asked_m = state.asked.length_m[0] + state.asked.length_m[1],
+          part = state.tick / static_cast<float>(sink_knot_ticks(tables));
+  return both(size(V(asked_m - change.foreseen_m)) > kOther * asked_m,
+              both(state.flies != V{}, part == floored(part)));
+}
+
+// Where the landing on level ground has moved, the ground is asked for another one.
+template <int kWidth>
+void choose_footholds(const Tables& tables, const Time<Floats<kWidth>>& time,
+                      const AskedStep<Floats<kWidth>>& asked, Block<kWidth>& block) noexcept {
+  using V = Floats<kWidth>;
+  constexpr float kMoved = 2e-5f;        // metres, radians
+  constexpr float kPieceSettles = 0.6f;  // of the roll: until then a step may still go elsewhere
+  const State<V>& state = block.state;
+  Footing<V>& footing = block.footing;
+  const auto begins = both(no(time.flies), state.tick == all<V>(1.0f)),
+             settles = both(no(time.flies), state.tick <= kPieceSettles * state.roll_ticks);
+  const V moved = most(most(size(V(footing.level_x_m - footing.asked_x_m)),
+                            size(V(footing.level_z_m - footing.asked_z_m))),
+                       size(V(state.landing_rad - footing.asked_rad)));
+  const auto asks = both(block.change.stands == V{}, either(begins, moved > all<V>(kMoved)));
+  if (!any(asks)) return;
+  footing.asked_x_m = asks ? footing.level_x_m : footing.asked_x_m;
+  footing.asked_z_m = asks ? footing.level_z_m : footing.asked_z_m;
+  footing.asked_rad = asks ? state.landing_rad : footing.asked_rad;
+  const V is_first = chosen<V>(begins, 1.0f, 0.0f),
+          is_open = chosen<V>(either(begins, settles), 1.0f, 0.0f);
+  one_by_one<kWidth>(asks, block, [&](Block<1>& one, int w) {
+    const AskedFoothold step{
+        lane(asked.along.sine, w), lane(asked.along.cosine, w),
+        lane(asked.length_m, w),   lane(is_first, w) != 0.0f,
+        lane(is_open, w) != 0.0f,  is_to_walk(one.state) && one.change.closing == 0.0f};
+    choose_foothold(tables, step, one);
+  });
+}
+
+// Where a flight begins, or its landing has moved, it is planned how it keeps clear of the ground.
+template <int kWidth>
+void plan_rooms(const Tables& tables, const Mask<Floats<kWidth>>& lifts,
+                Block<kWidth>& block) noexcept {
+  using V = Floats<kWidth>;
+  const State<V>& state = block.state;
+  const Vec<V> off = block.footing.room_for_m -
+                     Vec<V>{state.landing_x_m, block.footing.landing_y_m, state.landing_z_m};
+  const float most_m = kReplan_m * tables.size;
+  const auto moved = both(state.flies != V{}, dot(off, off) > all<V>(most_m * most_m));
+  const auto plans = either(lifts, moved);
+  if (!any(plans)) return;
+  const V begins = chosen<V>(lifts, 1.0f, 0.0f);
+  one_by_one<kWidth>(
+      plans, block, [&](Block<1>& one, int w) { plan_room(tables, lane(begins, w) != 0.0f, one); });
+}
+
+// What was asked of a landing is over; a push that came too late for it goes on.
+template <class V>
+void end_aims(const Landing<V>& landing, const Mask<V>& strikes, Change<V>& change) noexcept {
+  const Way<V>& way = landing.way;
+  const V x_m = change.push_x_m * change.push_waits, z_m = change.push_z_m * change.push_waits;
+  change.is_aimed = strikes ? V{} : change.is_aimed;
+  change.push_x_m = strikes ? V(way.cosine * x_m - way.sine * z_m) : change.push_x_m;
+  change.push_z_m = strikes ? V(way.cosine * z_m + way.sine * x_m) : change.push_z_m;
+  change.push_waits = strikes ? V{} : change.push_waits;
+}
+
+// `footing`: the block's, or none. kPaper: with the paper's own solver, of one walk; the body leans
+// into nothing then.
+template <int kWidth, bool kPaper, class F>
+void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Poses& poses,
+                bool looks_ahead = true) noexcept;
+
+// Walks ahead, to know when legs will be at their reach: hips sink before that.
+template <bool kPaper>
+void look_ahead(const Tables& tables, Block<1>& block) noexcept {
+  Change<float>& change = block.change;
+  const int knot = sink_knot_ticks(tables), all_ticks = (kSinkKnots - 3) * knot,
+            left = static_cast<int>(change.sink_ticks), at = left > 0 ? all_ticks - left : 0,
+            first = at / knot, gone = at - first * knot;
+  std::array<float, kSinkKnots> wants_m{};  // between knots, the most
+  Block<1> ahead = block;
+  NoFooting level;
+  ahead.change.sink_ticks = 0.0f;
+  for (int tick = gone; tick < all_ticks; ++tick) {
+    advance_on<1, kPaper>(tables, ahead, level, Poses{nullptr, nullptr, 0}, false);
+    float& most_m = wants_m[tick / knot];
+    most_m = most(most_m, ahead.change.wants_m);
+  }
+  // Knot k stands at the beginning of part k - 1: it takes the most of the parts before and after
+  // that. The four that act now stay.
+  std::array<float, kSinkKnots> knots_m{};
+  bool sinks = false;
+  for (int k = 0; k < kSinkKnots; ++k) {
+    if (k < 4 && left > 0)
+      knots_m[k] = change.sink_m[first + k];
+    else if (k >= 4 && k < kSinkKnots - 3)
+      knots_m[k] = most(wants_m[k - 2], wants_m[k - 1]);
+    sinks |= knots_m[k] != 0.0f;
+  }
+  for (int k = 0; k < kSinkKnots; ++k) change.sink_m[k] = knots_m[k];
+  change.foreseen_m = block.state.asked.length_m[0] + block.state.asked.length_m[1];
+  change.sink_ticks = sinks ? static_cast<float>(all_ticks - gone) : 0.0f;
+}
+
+// On uneven ground a walk that is to end closes with the next step: a flight's landing has been
+// chosen, and room is made for it there.
+template <class V>
+void close_next(const Mask<V>& strikes, const State<V>& state, Change<V>& change) noexcept {
+  const auto ends = both(both(strikes, no(is_to_walk(state))), change.closing == V{});
+  change.stops = ends ? all<V>(1.0f) : change.stops;
+  for (V& length_m : change.length_m) length_m = ends ? V{} : length_m;
+}
+// Its hips rest as its foot lands.
+template <class V>
+void time_close(const Mask<V>& strikes, const State<V>& state, Change<V>& change) noexcept {
+  const auto closes = both(strikes, change.closing != V{});
+  const V ticks = state.roll_ticks + state.flight_ticks;
+  change.rest_ticks = closes ? ticks : change.rest_ticks;
+  change.closing_ticks = closes ? ticks : change.closing_ticks;
+}
+
+// Legs and upper body, and the root.
+template <int kWidth, bool kPaper, class F>
+void pose_walks(const Tables& tables, const Time<Floats<kWidth>>& time,
+                const Hips<Floats<kWidth>>& hips, const Stride<Floats<kWidth>>& stride,
+                const Pelvis<Floats<kWidth>>& pelvis, const Idle<Floats<kWidth>>& idle,
+                const Floats<kWidth>& phase, Block<kWidth>& block, const F& footing,
+                Feet<Floats<kWidth>>& feet, const Poses& poses) noexcept {
+  using V = Floats<kWidth>;
+  constexpr bool kUneven = kIsUneven<F>;
+  State<V>& state = block.state;
+  const Change<V>& change = block.change;
+  Leg<V> legs[2];
+  if constexpr (kPaper) {
+    solve_by_paper(tables, time, phase, change, feet, pelvis, state, block.weighted, legs);
+  } else {
+    V begun_rad[2][kLegAngles];
+    solve_legs(tables, time, stride, feet, pelvis, state, legs, kUneven ? begun_rad : nullptr);
+    if constexpr (kUneven)
+      ease_ankles(tables, time, stride, phase, pelvis, change, footing, state, feet, begun_rad,
+                  legs);
+    weigh_legs(tables, time, stride, feet, pelvis, phase, change, state, block.weighted, legs);
+  }
+  const V swing = kPaper ? all<V>(1.0f) : arm_swing(tables, state);
+  // The data's phase: walking backward is walking forward run back (Thorstensson 1986).
+  const auto& share = tables.stage_share;
+  write_upper_body(tables, hips, pelvis, idle,
+                   time.back ? V(share[0] + share[1] + share[2] - phase) : phase, change.shown,
+                   swing, state, block.styled, poses);
+  write_legs(tables, time, feet, legs, poses);
+  write_root<kWidth>(tables, pelvis, block, poses);
+}
+
+template <int kWidth, bool kPaper, class F>
+void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Poses& poses,
+                bool looks_ahead) noexcept {
+  using V = Floats<kWidth>;
+  State<V>& state = block.state;
+  Change<V>& change = block.change;
+  constexpr bool kUneven = kIsUneven<F>;
+  const auto follows = change.is_new != V{};  // for a step has begun
+  begin_walks(tables, block);
+  if constexpr (!kUneven) change_ends(tables, block);
+  const auto is_new = both(no(follows), change.is_new != V{}),
+             is_short = either(either(change.starting != V{}, change.stops != V{}),
+                               change.catch_ticks != V{});
+  if constexpr (kUneven) lean_into_slope(tables, change, footing);
+  V left = all<V>(1.0f);
+  if constexpr (kUneven) left = footing.left.x;
+  smooth_asked(tables, change, left, state);
+  if constexpr (kPaper) state.lean_rad = state.chest_ahead_rad = state.head_ahead_rad = {};
+  const Time<V> time = advance_clock(tables, change, state);
+  const AskedStep<V> asked = plan_landing(tables, time, change, state, footing);
+  if constexpr (kUneven) choose_footholds<kWidth>(tables, time, asked, block);
+  Landing<V> landing = planned_landing(tables, time, asked.to, change, state);
+  if constexpr (kUneven) {
+    follow_ground(tables, time, asked, change, state, footing, landing);
+    move_hips_ground(tables, time, landing, change, state, footing);
+    plan_rooms<kWidth>(tables, Mask<V>{}, block);
+  }
+  const Stride<V> by_clock =
+      read_by_clock(tables, time, landing, state.phase, time.share, time.u, change, state);
+  Hips<V> hips = move_hips(tables, time, landing, by_clock, change, state);
+  Stride<V> stride;
+  const V phase = lead_hips(tables, time, landing, by_clock, state, change, hips, stride);
+  keep_pelvis(hips, state);
+  Feet<V> feet = plan_feet(tables, time, landing, by_clock, stride, hips, change, state, footing);
+  Pelvis<V> pelvis = pelvis_over(tables, time, hips, stride, state, footing);
+  Idle<V> idle;
+  if constexpr (!kPaper) {
+    idle = advance_idle(tables, change, state, block.styled);
+    sway(idle, hips.heading, pelvis);
+  }
+  V asked_rad[2]{};
+  keep_heels_low(tables, time, phase, stride, change, state, block.styled, pelvis, feet, asked_rad);
+  const Vec<V> ankle_m[2] = {ankle_of(feet.foot[0], feet.sole[0]),
+                             ankle_of(feet.foot[1], feet.sole[1])};
+  sink(tables, time, stride, ankle_m, state, change, pelvis);
+  reach_with_toe(tables, time, change, pelvis, feet);
+  if (looks_ahead)  // nobody sees a walk that is walked ahead
+    pose_walks<kWidth, kPaper>(tables, time, hips, stride, pelvis, idle, phase, block, footing,
+                               feet, poses);
+
+  take_back(asked_rad, feet);
+  const auto lifts = both(no(time.flies), state.tick >= state.roll_ticks),
+             strikes = both(time.flies, state.tick >= state.flight_ticks);
+  if (any(lifts))
+    lift_off(tables, time, lifts, landing, hips, feet, by_clock, change, state, footing);
+  keep_swing(feet.foot[0], state);
+  if constexpr (kUneven)
+    footing.last_rise_m[1] = footing.last_rise_m[0], footing.last_rise_m[0] = footing.rise_m;
+  if (any(strikes)) {
+    move_frame<kWidth>(landing, strikes, block);
+    if constexpr (kUneven) {
+      change_footing(landing, strikes, feet.flat_toe_m.y, footing);
+      const V slow = slowness_of(tables, no(time.right), state, footing);
+      change.slowness = strikes ? slow : change.slowness;
+      close_next(strikes, state, change);
+    }
+    change_feet(landing, strikes, feet, stride, state);
+    change_weighted_legs(strikes, block.weighted);
+    change_styled_feet(strikes, block.styled);
+    end_aims(landing, strikes, change);
+    const auto keeps = either(change.led != V{}, change.off_phase.x != V{});
+    const V rate = keeps ? change.phase_rate : state.phase_rate;
+    begin_lead(tables, strikes, phase, rate, state, change);
+    begin_step(tables, time, strikes, change, state);
+    if constexpr (kUneven) {
+      time_close(strikes, state, change);
+    } else {
+      one_by_one<kWidth>(both(strikes, change.closing != V{}), block, [&](Block<1>& one, int) {
+        time_closing_step(tables, one.state, one.change);
+      });
+    }
+    rest(tables, change, state);
+    if constexpr (kUneven) footing.next_rise = change.stands != V{} ? V{} : footing.next_rise;
+  }
+  if (any(lifts)) {
+    begin_flight(tables, time, lifts, change, state);
+    if constexpr (kUneven) plan_rooms<kWidth>(tables, lifts, block);
+  }
+  if constexpr (!kUneven) {
+    if (!looks_ahead) return;
+    const auto looks = either(either(is_new, both(either(lifts, strikes), is_short)),
+                              both(is_to_walk(state), is_unforeseen(tables, state, change)));
+    one_by_one<kWidth>(looks, block, [&](Block<1>& one, int) { look_ahead<kPaper>(tables, one); });
+  }
+}
+
+template <int kWidth, bool kPaper = false>
+void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& poses) noexcept {
+  NoFooting level;
+  if (is_uneven(tables)) {
+    advance_on<kWidth, kPaper>(tables, block, block.footing, poses);
+  } else {
+    advance_on<kWidth, kPaper>(tables, block, level, poses);
+  }
+}
+
+}  // namespace
+}  // namespace gaitpad::anew

@@ -1,0 +1,477 @@
+// Fifth, where a style has weights: equation (5) from the stride's mean pose. The pose of even
+// weights is solved first. A joint of weight w is pulled from it to its running mean by 1 - w, and
+// a weighted step meets the sole's planted point again: the toe in support, the heel in roll and in
+// late flight, a point that moves along the sole in between. The foot gives way where it may turn:
+// its pitch with the heel's rise and in flight, its yaw and roll in flight. The walk itself sees
+// even legs alone, so weights change no footprint and cannot drift.
+#pragma once
+#include <cstddef>
+
+#include "walk/leg_solve.h"
+#include "walk/reach.h"
+
+namespace gaitpad::anew {
+namespace {
+
+inline constexpr float kLeastW = 0.09f;              // of a locked joint
+inline constexpr float kMostPull_rad = 0.31415927f;  // 18 degrees
+inline constexpr float kHeldPull = 0.3f;  // what acts of the pull where the foot may not turn
+inline constexpr float kFootLever_m = 0.2f;
+// Of the flight: until here the toe is the planted point, from here on the heel; from here on the
+// foot turns back to its plan, and is as good as landed.
+inline constexpr float kToeUntil = 0.15f, kOnHeel = 0.6f, kToLand = 0.4f, kLanded = 0.95f;
+// Until here it becomes free to turn aside, from here on no longer.
+inline constexpr float kAsideFrom = 0.35f, kAsideTo = 0.6f;
+// How far a foot gives way: squared radians that cost as much as one of a joint's.
+inline constexpr float kGiveAside = 0.15f, kGiveFlying = 0.5f, kGiveRolling = 0.05f;
+inline constexpr float kTight_rad = 0.05235988f;  // 3 degrees: with less room it hardly gives way
+inline constexpr float kFloorRoom_m = 0.0003f;
+inline constexpr float kBentKnee = 0.65f, kLeastSoft_rad = 0.0017453293f;
+inline constexpr float kEvenSpread = 1e-6f;  // weights closer to each other than this are even
+// The exact rows are closed in every step, this share of the rest: with all of it some walks swing
+// between two poses.
+inline constexpr float kShareStep = 0.5f, kMostShareStep_rad = 0.6f;
+inline constexpr float kSharedNear_rad = 8.7266463e-4f, kSharedNear_m = 0.001f;
+inline constexpr int kMostShareSteps = 8;
+inline constexpr float kExactRow_m2 = 1e-10f;  // a pivot above the rounding of floats
+inline constexpr float kKneeSpring = 100.0f;
+inline constexpr float kRoomUsed = 0.8f;  // of a foot's pitch: beyond it gives way no further
+
+// A leg to be shared: what its weights ask for, and what comes of it. All of these are numbers of
+// legs side by side.
+template <class V>
+struct LegToShare {
+  V thigh_m{}, shank_m{};                               // 0: none
+  V weight[kLegAngles]{}, reference_rad[kLegAngles]{};  // W, and the pose that it pulls to
+  V give_aside{}, give_pitch{};                         // how far the foot gives way, rad^2
+  V room_down_rad{}, room_up_rad{};                     // how far it may pitch away from its plan
+  V knee_rad{};                // a knee that is straighter than this is bent
+  Vec<V> point_m, goal_m;      // the planted point: in the foot from the ankle; where it is to be
+  Vec<V> line, side;           // of the foot, in its own frame
+  Turn<V> planned;             // the foot's, in the pelvis' frame
+  V angles_rad[kLegAngles]{};  // from the even pose and what the weights added to it, to theirs
+  Turn<V> hip, ankle;
+  V knee_cosine{}, knee_sine{};  // of half of it
+  V more_pitch_rad{};
+};
+inline constexpr int kShareTakes = offsetof(LegToShare<float>, hip) / sizeof(float),
+                     kShareGives = offsetof(LegToShare<float>, angles_rad) / sizeof(float),
+                     kShareNumbers = sizeof(LegToShare<float>) / sizeof(float);
+
+// One leg in one pose, seen from its hip joint in the pelvis' frame.
+template <class V>
+struct LegPlace {
+  V hs[kLegAngles], hc[kLegAngles];  // sines and cosines of half its angles
+  Vec<V> axis[kLegAngles], knee_m, ankle_m, point_m, line, side;
+  Vec<V> goal_side, goal_across, goal_along;  // axes of the planned foot: rows' directions
+  V error[6];
+};
+
+template <class V>
+void place_leg(const LegToShare<V>& leg, float lever_m, LegPlace<V>& place) noexcept {
+  V s[kLegAngles], c[kLegAngles];
+  for (int j = 0; j < kLegAngles; ++j) {
+    V &hs = place.hs[j], &hc = place.hc[j];
+    sin_cos_small(V(0.5f * leg.angles_rad[j]), hs, hc);
+    s[j] = 2.0f * hs * hc;
+    c[j] = 1.0f - 2.0f * hs * hs;
+  }
+  const V one = all<V>(1.0f);
+  Vec<V> x{c[1], s[1] * c[0], s[1] * s[0]}, y{-s[1], c[1] * c[0], c[1] * s[0]}, z{V{}, -s[0], c[0]};
+  place.axis[0] = {one, V{}, V{}};
+  place.axis[1] = z;
+  place.axis[2] = y;
+  turn_axes(z, x, s[2], c[2]);
+  place.knee_m = y * -leg.thigh_m;
+  place.axis[3] = x;
+  turn_axes(y, z, s[3], c[3]);
+  place.ankle_m = place.knee_m - y * leg.shank_m;
+  place.axis[4] = x;
+  turn_axes(y, z, s[4], c[4]);
+  place.axis[5] = z;
+  turn_axes(x, y, s[5], c[5]);
+  place.axis[6] = y;
+  turn_axes(z, x, s[6], c[6]);
+  const auto turned = [&](const Vec<V>& p) { return x * p.x + y * p.y + z * p.z; };
+  place.point_m = place.ankle_m + turned(leg.point_m);
+  place.line = turned(leg.line), place.side = turned(leg.side);
+  const Vec<V> off_m = leg.goal_m - place.point_m;
+  const Vec<V>&side = place.goal_side, &across = place.goal_across, &along = place.goal_along;
+  place.error[0] = dot(side, off_m);
+  place.error[1] = dot(across, off_m);
+  place.error[2] = dot(along, off_m);
+  place.error[3] = lever_m * (dot(leg.side, leg.line) - dot(side, place.line));
+  place.error[4] = -lever_m * dot(across, place.line);
+  place.error[5] = -lever_m * dot(across, place.side);
+}
+
+// Of the rows, by angle.
+template <class V>
+void set_columns(float lever_m, const LegPlace<V>& place, V (&column)[kLegAngles][6]) noexcept {
+  const Vec<V>* const rows[3] = {&place.goal_side, &place.goal_across, &place.goal_along};
+  const Vec<V> of_knee = place.point_m - place.knee_m, of_ankle = place.point_m - place.ankle_m;
+  Vec<V> moment[3][3], turns[3];
+  for (int r = 0; r < 3; ++r) {
+    moment[0][r] = cross(place.point_m, *rows[r]);
+    moment[1][r] = cross(of_knee, *rows[r]);
+    moment[2][r] = cross(of_ankle, *rows[r]);
+  }
+  turns[0] = cross(place.line, place.goal_side) * lever_m;
+  turns[1] = cross(place.line, place.goal_across) * lever_m;
+  turns[2] = cross(place.side, place.goal_across) * lever_m;
+  for (int j = 0; j < kLegAngles; ++j) {
+    const int through = j < 3 ? 0 : j == 3 ? 1 : 2;
+    for (int r = 0; r < 3; ++r) {
+      column[j][r] = dot(place.axis[j], moment[through][r]);
+      column[j][3 + r] = dot(place.axis[j], turns[r]);
+    }
+  }
+}
+
+// (J W J^T + a diagonal) y = b, by L D L^T; b becomes y.
+template <class V>
+void solve_rows(const V (&column)[kLegAngles][6], const V (&weight)[kLegAngles], const V (&give)[6],
+                V (&b)[6]) noexcept {
+  V m[6][6];
+  for (int r = 0; r < 6; ++r)
+    for (int s = 0; s <= r; ++s) m[r][s] = (weight[0] * column[0][r]) * column[0][s];
+  for (int j = 1; j < kLegAngles; ++j) {
+    for (int r = 0; r < 6; ++r) {
+      const V weighted = weight[j] * column[j][r];
+      for (int s = 0; s <= r; ++s) m[r][s] = m[r][s] + weighted * column[j][s];
+    }
+  }
+  for (int r = 0; r < 6; ++r) m[r][r] = m[r][r] + give[r];
+  V reciprocal[6];
+  for (int k = 0; k < 6; ++k) {
+    reciprocal[k] = 1.0f / m[k][k];
+    for (int r = k + 1; r < 6; ++r) {
+      const V l = m[k][r] = m[r][k] * reciprocal[k];
+      for (int s = k + 1; s <= r; ++s) m[r][s] = m[r][s] - l * m[s][k];
+    }
+  }
+  for (int k = 0; k < 6; ++k)
+    for (int r = k + 1; r < 6; ++r) b[r] = b[r] - m[k][r] * b[k];
+  for (int k = 0; k < 6; ++k) b[k] = b[k] * reciprocal[k];
+  for (int k = 5; k > 0; --k)
+    for (int r = 0; r < k; ++r) b[r] = b[r] - m[r][k] * b[k];
+}
+
+// A step towards the least sum of (angle - reference)^2 / W and of the squares of the rows that
+// give way over what they give, under the exact rows.
+template <class V>
+void step_of(const LegToShare<V>& leg, float lever_m, const LegPlace<V>& place,
+             V (&step_rad)[kLegAngles]) noexcept {
+  V column[kLegAngles][6], weight[kLegAngles], first_rad[kLegAngles], b[6], give[6];
+  set_columns(lever_m, place, column);
+  // Down positive. Near the floor, and near a toe's, a turn counts more and more.
+  const V down = place.error[4] * (1.0f / lever_m);
+  const auto goes_down = down > V{};
+  const V room = goes_down ? leg.room_down_rad : leg.room_up_rad, far = size(down),
+          t = least(V(far / room), all<V>(kRoomUsed)), left = 1.0f / (1.0f - t),
+          steep = left * left, bent = t * room * left + steep * (far - t * room);
+  for (auto& of_angle : column) of_angle[4] = steep * of_angle[4];
+  for (int r : {0, 1, 2}) {
+    b[r] = place.error[r];
+    give[r] = all<V>(kExactRow_m2);
+  }
+  const float lever2 = lever_m * lever_m;
+  give[3] = give[5] = kExactRow_m2 + lever2 * leg.give_aside;
+  give[4] = kExactRow_m2 + lever2 * leg.give_pitch;
+  b[3] = kShareStep * place.error[3];
+  b[4] = (kShareStep * lever_m) * (goes_down ? bent : V(-bent));
+  b[5] = kShareStep * place.error[5];
+  for (int j = 0; j < kLegAngles; ++j) {
+    weight[j] = leg.weight[j];
+    first_rad[j] = leg.reference_rad[j] - leg.angles_rad[j];
+  }
+  // A straight knee is bent by a spring that does nothing to the knee of even weights.
+  const V knee = leg.angles_rad[3],
+          soft = most(V(leg.knee_rad - kLeastKnee_rad), all<V>(kLeastSoft_rad)),
+          bend = most(V(leg.knee_rad - knee), V{}), q = bend + soft,
+          push = kKneeSpring * bend * bend / q,
+          stiff = kKneeSpring * bend * (bend + 2.0f * soft) / (q * q),
+          free = weight[3] / (1.0f + weight[3] * stiff);
+  first_rad[3] = free * (leg.reference_rad[3] / weight[3] + push + stiff * knee) - knee;
+  weight[3] = free;
+  for (int j = 0; j < kLegAngles; ++j) {
+    first_rad[j] = kShareStep * first_rad[j];
+    for (int r = 0; r < 6; ++r) b[r] = b[r] - column[j][r] * first_rad[j];
+  }
+  solve_rows(column, weight, give, b);
+  for (int j = 0; j < kLegAngles; ++j) {
+    V sum = column[j][0] * b[0];
+    for (int r = 1; r < 6; ++r) sum = sum + column[j][r] * b[r];
+    step_rad[j] = first_rad[j] + weight[j] * sum;
+  }
+}
+
+// Rx(x) Rz(z) Ry(y) of the three angles from `x` on.
+template <class V>
+Turn<V> turn_xzy(const LegPlace<V>& at, int x) noexcept {
+  const V xs = at.hs[x], xc = at.hc[x], zs = at.hs[x + 1], zc = at.hc[x + 1], ys = at.hs[x + 2],
+          yc = at.hc[x + 2];
+  const V w = xc * zc, i = xs * zc, j = -xs * zs, k = xc * zs;
+  return {w * yc - j * ys, i * yc - k * ys, w * ys + j * yc, k * yc + i * ys};
+}
+
+template <class V>
+void share_leg(float lever_m, LegToShare<V>& leg) noexcept {
+  LegPlace<V> place;
+  place.goal_side = leg.planned * leg.side;
+  place.goal_along = leg.planned * leg.line;
+  place.goal_across = cross(place.goal_along, place.goal_side);
+  V step_rad[kLegAngles];
+  auto open = leg.thigh_m != V{};
+  for (int steps = 0; steps < kMostShareSteps && any(open); ++steps) {
+    place_leg(leg, lever_m, place);
+    step_of(leg, lever_m, place, step_rad);
+    V greatest{};
+    for (const V& turn : step_rad) greatest = most(greatest, size(turn));
+    const V share = kMostShareStep_rad / most(greatest, all<V>(kMostShareStep_rad));
+    const Vec<V> pitches = cross(place.line, place.goal_across);
+    V pitched = arc_sine(V(-dot(place.goal_across, place.line)));
+    for (int j = 0; j < kLegAngles; ++j) {
+      const V turn = share * step_rad[j];
+      leg.angles_rad[j] = open ? V(leg.angles_rad[j] + turn) : leg.angles_rad[j];
+      pitched = pitched - turn * dot(place.axis[j], pitches);
+    }
+    leg.more_pitch_rad = open ? pitched : leg.more_pitch_rad;
+    // The point was near enough before a step this small.
+    const V off_m2 = place.error[0] * place.error[0] + place.error[1] * place.error[1] +
+                     place.error[2] * place.error[2];
+    const auto settles =
+        both(greatest < all<V>(kSharedNear_rad), off_m2 < all<V>(kSharedNear_m * kSharedNear_m));
+    open = both(open, no(settles));
+  }
+  for (int j = 0; j < kLegAngles; ++j)
+    sin_cos_small(V(0.5f * leg.angles_rad[j]), place.hs[j], place.hc[j]);
+  leg.hip = turn_xzy(place, 0);
+  leg.knee_cosine = place.hc[3], leg.knee_sine = place.hs[3];
+  leg.ankle = turn_xzy(place, 4);
+}
+
+// Only those legs of a block that are uneven, close together in registers.
+template <class V>
+void share_legs(float lever_m, const Mask<V> (&uneven)[2], LegToShare<V> (&legs)[2]) noexcept {
+  constexpr int kWidth = kLanes<V>, kTogether = kWidth < 4 ? 4 : kWidth;
+  const V is[2] = {chosen<V>(uneven[0], 1.0f, 0.0f), chosen<V>(uneven[1], 1.0f, 0.0f)};
+  float* places[2 * kWidth];
+  int count = 0;
+  for (int w = 0; w < kWidth; ++w) {
+    for (int k : {0, 1})
+      if (lane(is[k], w) != 0.0f) places[count++] = reinterpret_cast<float*>(&legs[k]) + w;
+  }
+  for (int begin = 0; begin < count; begin += kTogether) {
+    LegToShare<Floats<kTogether>> together;
+    float* to = reinterpret_cast<float*>(&together);
+    const int here = std::min(kTogether, count - begin);
+    for (int i = 0; i < here; ++i) {
+      const float* from = places[begin + i];
+      for (int n = 0; n < kShareTakes; ++n) to[n * kTogether + i] = from[n * kWidth];
+    }
+    share_leg(lever_m, together);
+    for (int i = 0; i < here; ++i) {
+      float* from = places[begin + i];
+      for (int n = kShareGives; n < kShareNumbers; ++n) from[n * kWidth] = to[n * kTogether + i];
+    }
+  }
+}
+
+// The running means start as they are in a walk that takes the strides that this one takes now: the
+// filters leave the angles' mean, and little of their first harmonics.
+template <class V>
+void begin_weights(const Tables& tables, const Mask<V>& begins, const Time<V>& time, const V& phase,
+                   const V (&even_rad)[2][kLegAngles], const Change<V>& change,
+                   const State<V>& state, Weighted<V>& weighted) noexcept {
+  constexpr float kTurn_rad = 6.2831853f, kLast = kRatios - 1;
+  // Of a harmonic: 1 / (1 + i w T), once and twice, times its turn.
+  V once[kHarmonics][2], twice[kHarmonics][2];
+  const V lag = state.phase_rate * (kTurn_rad * (1.0f / tables.mean_pull - 1.0f));
+  for (int h = 0; h < kHarmonics; ++h) {
+    const float n = static_cast<float>(h + 1);
+    V sine, cosine;
+    sin_cos(V((n * kTurn_rad) * phase), sine, cosine);
+    const V wt = n * lag, q = 1.0f / (1.0f + wt * wt);
+    once[h][0] = (cosine + wt * sine) * q, once[h][1] = (sine - wt * cosine) * q;
+    twice[h][0] = (once[h][0] + wt * once[h][1]) * q;
+    twice[h][1] = (once[h][1] - wt * once[h][0]) * q;
+  }
+  const V y = within(V(state.ratio_behind * float(1.0 / kRatioStep)), 0.0f, kLast),
+          first = least(floored(y), all<V>(kLast - 1.0f)), share = y - first;
+  for (int k : {0, 1}) {
+    const auto right = k == 0 ? time.right : no(time.right);
+    const V side = chosen<V>(right, 1.0f, 0.0f);
+    for (int j = 0; j < kLegAngles; ++j) {
+      V of[1 + 2 * kHarmonics];
+      for (int w = 0; w < kLanes<V>; ++w) {
+        const int r = static_cast<int>(lane(first, w)), s = static_cast<int>(lane(side, w));
+        const auto &a = tables.leg_harmonics[r][s][j], &b = tables.leg_harmonics[r + 1][s][j];
+        for (int n = 0; n < 1 + 2 * kHarmonics; ++n)
+          set_lane(a[n] + (b[n] - a[n]) * lane(share, w), w, of[n]);
+      }
+      V lagging = of[0], mean = of[0];
+      for (int h = 0; h < kHarmonics; ++h) {
+        lagging = lagging + (of[1 + 2 * h] * once[h][0] + of[2 + 2 * h] * once[h][1]);
+        mean = mean + (of[1 + 2 * h] * twice[h][0] + of[2 + 2 * h] * twice[h][1]);
+      }
+      const V stands = chosen<V>(right, tables.leg[1].stand_rad[j], tables.leg[0].stand_rad[j]);
+      const auto rests = change.stands != V{};
+      const auto begin = [&](const V& of_walk, V& number) {
+        const V goal = rests ? even_rad[k][j] : V(stands + change.shown * of_walk);
+        number = begins ? goal : number;
+      };
+      begin(lagging, weighted.lagging_rad[k][j]), begin(mean, weighted.mean_rad[k][j]);
+      weighted.shift_rad[k][j] = begins ? V{} : weighted.shift_rad[k][j];
+      weighted.last_shift_rad[k][j] = begins ? V{} : weighted.last_shift_rad[k][j];
+    }
+  }
+}
+
+// Brings the weights in force nearer to those asked for. True where any is not 1.
+template <class V>
+Mask<V> smooth_weights(const Tables& tables, Weighted<V>& weighted) noexcept {
+  constexpr float kAsGoodAsEven = 1e-5f;
+  const V one = all<V>(1.0f);
+  const auto asked = weighted.asked != V{}, acted = weighted.acts != V{};
+  auto acts = asked;
+  for (int side : {0, 1}) {
+    for (int j = 0; j < kLegAngles; ++j) {
+      Smoothed<V>& in_force = weighted.weight[side][j];
+      const V goal = asked ? weighted.goal[side][j] : one;
+      Smoothed<V> weight{acted ? in_force.x : one, acted ? in_force.v : V{}};
+      follow(goal, tables.weights, weight);
+      const auto even = both(goal == one, size(V(weight.x - one)) < all<V>(kAsGoodAsEven));
+      in_force = {even ? one : weight.x, even ? V{} : weight.v};
+      acts = either(acts, both(acted, no(even)));
+    }
+  }
+  return acts;
+}
+
+template <class V>
+void weigh_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stride,
+                const Feet<V>& feet, const Pelvis<V>& pelvis, const V& phase,
+                const Change<V>& change, const State<V>& state, Weighted<V>& weighted,
+                Leg<V> (&legs)[2]) noexcept {
+  if (!any(either(weighted.asked != V{}, weighted.acts != V{}))) return;
+  const V one = all<V>(1.0f), zero{};
+  V even_rad[2][kLegAngles];
+  for (int k : {0, 1}) {
+    set_table_angles(tables, k == 0 ? time.right : no(time.right), stride, k, even_rad[k]);
+    for (int j = 0; j < kLegAngles; ++j) even_rad[k][j] = even_rad[k][j] + state.leg_rad[k][j];
+  }
+  const auto acted = weighted.acts != zero, acts = smooth_weights(tables, weighted),
+             begins = both(acts, no(acted));
+  if (any(begins)) begin_weights(tables, begins, time, phase, even_rad, change, state, weighted);
+  weighted.acts = chosen<V>(acts, 1.0f, 0.0f);
+  const auto keep = [&](const V& to, V& number) { number = acts ? to : number; };
+
+  const Turn<V> to_pelvis = back(pelvis.turn);
+  const Mask<V> none{};
+  Mask<V> uneven[2];
+  LegToShare<V> shared[2];
+  for (int k : {0, 1}) {
+    const auto right = k == 0 ? time.right : no(time.right), flies = k == 0 ? time.flies : none,
+               rolls = k == 1 ? no(time.flies) : none;
+    const Foot<V>& foot = feet.foot[k];
+    const Sole<V>& sole = feet.sole[k];
+    LegToShare<V>& leg = shared[k];
+    const V risen = heel_rise(tables, time, right, phase, k == 1 ? no(none) : none, change);
+    const auto may_turn = either(flies, both(no(rolls), risen != zero));
+    const V turns = chosen<V>(may_turn, 1.0f, 0.0f);
+    Smoothed<V> loose{begins ? turns : weighted.loose[k].x, begins ? zero : weighted.loose[k].v};
+    follow(turns, tables.loosens, loose);
+    keep(loose.x, weighted.loose[k].x), keep(loose.v, weighted.loose[k].v);
+    const V u = flies ? time.u : zero, rolled = state.tick / state.roll_ticks, lifts = loose.x,
+            rise = lifts * risen;
+    const auto by_mode = [&](const V& flying, const V& rolling, const V& standing) {
+      const V planted = rolls ? rolling : standing;
+      return V(flies ? flying : planted);
+    };
+    const V lands = smoother(V((u - kToLand) * (1.0f / (kLanded - kToLand)))),
+            freely = by_mode(V(lifts * (1.0f - lands)), zero, rise),
+            pitches =
+                by_mode(V(lifts * (1.0f - (1.0f - kGiveFlying) * smoother(V(u * (1.0f / kToLand))) -
+                                   (kGiveFlying - kGiveRolling) * lands)),
+                        V(kGiveRolling * (1.0f - smoother(V(rolled * (1.0f / kRollEnd))))), rise),
+            aside = flies ? V(smoother(V(u * (1.0f / kAsideFrom))) *
+                              (1.0f - smoother(V((u - kAsideTo) * (1.0f / (1.0f - kAsideTo))))))
+                          : zero,
+            on_heel =
+                by_mode(smoother(V((u - kToeUntil) * (1.0f / (kOnHeel - kToeUntil)))), one, zero);
+    V largest = all<V>(1e-9f), smallest = one, in_force[kLegAngles];
+    for (int j = 0; j < kLegAngles; ++j) {
+      in_force[j] = right ? weighted.weight[1][j].x : weighted.weight[0][j].x;
+      largest = most(largest, in_force[j]);
+    }
+    const V bent = kBentKnee * (even_rad[k][3] - kLeastKnee_rad), over = 1.0f / largest;
+    leg.knee_rad = kLeastKnee_rad + bent;
+    const V pull = change.shown * (kHeldPull + (1.0f - kHeldPull) * freely);
+    for (int j = 0; j < kLegAngles; ++j) {
+      const V even = even_rad[k][j], w = least(V(in_force[j] * over), one),
+              shift = weighted.shift_rad[k][j];
+      smallest = least(smallest, w);
+      const V lagging = mix(weighted.lagging_rad[k][j], even, all<V>(tables.mean_pull)),
+              mean = mix(weighted.mean_rad[k][j], lagging, all<V>(tables.mean_pull));
+      const V way = (1.0f - w) * (mean - even), share = way * (1.0f / kMostPull_rad);
+      leg.reference_rad[j] = even + pull * way / root(V(1.0f + share * share));
+      leg.weight[j] = kLeastW + (1.0f - kLeastW) * w;
+      // What the weights change goes on as it did.
+      leg.angles_rad[j] = even + shift + (shift - weighted.last_shift_rad[k][j]);
+      keep(lagging, weighted.lagging_rad[k][j]), keep(mean, weighted.mean_rad[k][j]);
+      keep(shift, weighted.last_shift_rad[k][j]);
+    }
+    // How far the foot may turn about the planted point, until toe or heel is on its floor.
+    const auto room = [](const V& over_m, const V& arm_m) {
+      return V((most(over_m, V{}) + kFloorRoom_m) / (arm_m + kFloorRoom_m));
+    };
+    const V base_m = k == 0 ? feet.base_m : zero;
+    leg.room_down_rad = room(V(foot.toe_m.y - base_m - sole.toe_rest_m), V(sole.foot_m * on_heel));
+    leg.room_up_rad = room(V(foot.heel_m.y - base_m), V(sole.foot_m * (1.0f - on_heel)));
+    const V down2 = leg.room_down_rad * leg.room_down_rad;
+    leg.give_aside = kGiveAside * aside;
+    leg.give_pitch = change.shown * pitches * (down2 / (down2 + kTight_rad * kTight_rad));
+    leg.line = sole.line_m * V(1.0f / sole.foot_m);
+    leg.side = sole.side;
+    leg.point_m = sole.heel_m + sole.line_m * V(1.0f - on_heel);
+    leg.planned = to_pelvis * foot.turn;
+    const Vec<V> planted_m = foot.toe_m + (foot.heel_m - foot.toe_m) * on_heel;
+    leg.goal_m = to_pelvis * (planted_m - pelvis.place_m - pelvis.hip_m[k]);
+    const LegBones &l = tables.leg[0], &r = tables.leg[1];
+    leg.thigh_m = chosen<V>(right, r.thigh_m, l.thigh_m);
+    leg.shank_m = chosen<V>(right, r.shank_m, l.shank_m);
+    uneven[k] = both(acts, smallest < all<V>(1.0f - kEvenSpread));
+  }
+  share_legs<V>(kFootLever_m * tables.size, uneven, shared);
+  for (int k : {0, 1}) {
+    const LegToShare<V>& leg = shared[k];
+    legs[k].hip = chosen(uneven[k], leg.hip, legs[k].hip);
+    legs[k].knee =
+        chosen(uneven[k], Turn<V>{leg.knee_cosine, leg.knee_sine, zero, zero}, legs[k].knee);
+    legs[k].ankle = chosen(uneven[k], leg.ankle, legs[k].ankle);
+    legs[k].more_pitch_rad = uneven[k] ? leg.more_pitch_rad : zero;
+    for (int j = 0; j < kLegAngles; ++j)
+      keep(uneven[k] ? V(leg.angles_rad[j] - even_rad[k][j]) : zero, weighted.shift_rad[k][j]);
+  }
+}
+
+// At a strike.
+template <class V>
+void change_weighted_legs(const Mask<V>& strikes, Weighted<V>& weighted) noexcept {
+  const auto changes = both(strikes, weighted.acts != V{});
+  if (!any(changes)) return;
+  const auto swap = [&](V& swing_number, V& stand_number) {
+    const V swing = swing_number, stand = stand_number;
+    swing_number = changes ? stand : swing;
+    stand_number = changes ? swing : stand;
+  };
+  for (auto* of :
+       {&weighted.lagging_rad, &weighted.mean_rad, &weighted.shift_rad, &weighted.last_shift_rad})
+    for (int j = 0; j < kLegAngles; ++j) swap((*of)[0][j], (*of)[1][j]);
+  swap(weighted.loose[0].x, weighted.loose[1].x);
+  swap(weighted.loose[0].v, weighted.loose[1].v);
+}
+
+}  // namespace
+}  // namespace gaitpad::anew

@@ -1,0 +1,155 @@
+// Processor time of a walk's tick, new and old, over bare playback of its motion.
+#include <ctime>
+
+#include "gaitpad/config_files.h"
+#include "gaitpad/crowd.h"
+#include "motion/stencil.h"
+#include "tests/animation/made_walker.h"
+#include "tests/folders.h"
+#include "tests/walk/old_walk.h"
+
+namespace gaitpad::anew {
+namespace {
+
+constexpr int kMoments = 256;
+
+double now_s() {
+  timespec time{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &time);
+  return static_cast<double>(time.tv_sec) + 1e-9 * static_cast<double>(time.tv_nsec);
+}
+// The quickest of seven turns, nanoseconds a call.
+template <class Work>
+double quickest_ns(int calls, const Work& work) {
+  double best = 1e9;
+  for (int turn = 0; turn < 7; ++turn) {
+    const double begin = now_s();
+    for (int i = 0; i < calls; ++i) work();
+    best = std::min(best, (now_s() - begin) / calls);
+  }
+  return best * 1e9;
+}
+
+GaitParams params_of(double x, double y) {
+  Stick stick;
+  stick.left = vec2(x, y);
+  return gait_params(stick, StyleValues{}, gait_limits(adult()));
+}
+
+// The peer of `gaitpad bench`: one joint after another, Catmull-Rom through four samples.
+void play_back(const GaitCycle& cycle, double phase, Pose& pose) {
+  const Stencil at = stencil_at(phase);
+  const std::size_t joints = cycle.standing_local.size();
+  const quat* row[4];
+  for (int k = 0; k < 4; ++k)
+    row[k] = cycle.local.data() + static_cast<std::size_t>(at.index[k]) * joints;
+  for (std::size_t j = 0; j < joints; ++j) {
+    quat sum = row[1][j] * at.weight[1];
+    for (const int k : {0, 2, 3}) {
+      const double sign = glm::dot(row[k][j], row[1][j]) < 0.0 ? -1.0 : 1.0;
+      sum = sum + row[k][j] * (sign * at.weight[k]);
+    }
+    pose.local[j] = glm::normalize(sum);
+  }
+}
+double playback_ns() {
+  Pose pose;
+  double phase = 0.0;
+  return quickest_ns(20000, [&] {
+    play_back(adult().cycle, phase, pose);
+    phase += 1.0 / 268.0;
+    asm volatile("" : : "r"(&pose) : "memory");
+  });
+}
+
+// Walks of many moments, which turn or go straight, some of them quicker.
+template <int kWidth>
+double new_ns(const Tables& tables, const std::vector<Block<1>>& moments, int walks) {
+  const int blocks = (walks + kWidth - 1) / kWidth, joints = tables.joints;
+  std::vector<Block<kWidth>> block(blocks);
+  std::vector<quat> local(static_cast<std::size_t>(blocks) * kWidth * joints);
+  std::vector<vec3> root_m(static_cast<std::size_t>(blocks) * kWidth);
+  std::vector<quat*> locals;
+  std::vector<vec3*> roots;
+  for (int i = 0; i < blocks * kWidth; ++i) {
+    copy_walk(moments[(i * 37) % moments.size()], 0, block[i / kWidth], i % kWidth);
+    locals.push_back(local.data() + static_cast<std::size_t>(i) * joints);
+    roots.push_back(root_m.data() + i);
+  }
+  return quickest_ns(std::max(8, 20000 / walks),
+                     [&] {
+                       for (int b = 0; b < blocks; ++b)
+                         advance(
+                             tables, block[b],
+                             Poses{locals.data() + b * kWidth, roots.data() + b * kWidth, kWidth});
+                     }) /
+         walks;
+}
+
+void measure() {
+  const auto tables = tables_of(adult(), kDt);
+  std::vector<Block<1>> moments;
+  Pose pose;
+  const GaitParams params = params_of(0.0, 0.8);
+  WalkState old = standing(adult(), vec3(0.0), pose);
+  const auto step_old = [&] { gaitpad::advance(adult(), params, IkMode::robust, kDt, old, pose); };
+  for (int tick = 0; tick < 4 * kRate || !has_just_struck(old); ++tick) step_old();
+  Block<1> walk = taken_over(old, params);
+  quat* local = pose.local.data();
+  vec3* root = &pose.root_m;
+  for (int i = 0; i < kMoments; ++i) {
+    advance(*tables, walk, Poses{&local, &root, 1});
+    moments.push_back(walk);
+    if (i % 4 == 1) moments.back().state.asked.length_m[i / 4 % 2] *= 1.05f;
+    if (i % 4 == 3) moments.back().state.asked.turn_rad_s = 0.3f;
+  }
+  const double playback = playback_ns();
+  const auto row = [&](const char* name, double ns) {
+    std::printf("%-28s %7.1f ns  %5.2f x playback\n", name, ns, ns / playback);
+  };
+  row("playback", playback);
+  row("old, alone", quickest_ns(5000, step_old));
+  row("new, alone", new_ns<1>(*tables, {moments[0]}, 1));
+  constexpr int kCrowd = 1000;
+  row("new, 1,000 in lanes of 1", new_ns<1>(*tables, moments, kCrowd));
+  row("new, 1,000 in lanes of 4", new_ns<4>(*tables, moments, kCrowd));
+  if (__builtin_cpu_supports("avx2"))
+    row("new, 1,000 in lanes of 8", new_ns<8>(*tables, moments, kCrowd));
+  if (__builtin_cpu_supports("avx512dq"))
+    row("new, 1,000 in lanes of 16", new_ns<16>(*tables, moments, kCrowd));
+  // Four walks of the styles of `gaitpad bench`, over four even ones; alone, and side by side.
+  std::vector<Block<1>> even, styled;
+  for (const char* name : {"even", "stiff_hip", "stiff_knee", "limp_left"}) {
+    const StyleValues style =
+        value_of(load_style(kSourceFolder + "/config/styles/" + name + ".toml"));
+    for (const bool is_styled : {false, true}) {
+      Stick stick;
+      stick.left = vec2(0.0, 0.8);
+      const GaitParams of_style =
+          gait_params(stick, is_styled ? style : StyleValues{}, gait_limits(adult()));
+      WalkState from = standing(adult(), vec3(0.0), pose);
+      const auto step = [&] {
+        gaitpad::advance(adult(), of_style, IkMode::robust, kDt, from, pose);
+      };
+      for (int tick = 0; tick < 4 * kRate || !has_just_struck(from); ++tick) step();
+      Block<1> block = taken_over(from, of_style);
+      take_style(from, of_style, block);
+      (is_styled ? styled : even).push_back(block);
+    }
+  }
+  std::printf("four styled over four even: alone %.2f, in lanes of 4 %.2f\n",
+              new_ns<1>(*tables, styled, 4) / new_ns<1>(*tables, even, 4),
+              new_ns<4>(*tables, styled, 4) / new_ns<4>(*tables, even, 4));
+  const auto model = std::make_shared<const WalkModel>(adult());
+  std::vector<CrowdMember> members(kCrowd);
+  for (CrowdMember& member : members) member.model = model;
+  Crowd crowd = value_of(Crowd::create(members, IkMode::robust));
+  for (int i = 0; i < kCrowd; ++i) crowd.params()[i] = params_of(i % 4 == 3 ? 0.3 : 0.0, 0.8);
+  for (int i = 0; i < 600; ++i) crowd.advance(kDt);
+  row("old, 1,000 in widest lanes", quickest_ns(20, [&] { crowd.advance(kDt); }) / kCrowd);
+}
+
+}  // namespace
+}  // namespace gaitpad::anew
+
+int main() { gaitpad::anew::measure(); }

@@ -211,8 +211,6 @@ def measure_bench(options, text=None):
     add("leg_robust_weighted", "one leg, robust, stiff hip or knee")
     add("playback", "bare playback of the skeleton, scalar: local rotations")
     add("playback_world", "the same and the world frames of all joints")
-    for stage in ("clock and plan", "sampling", "ik", "pose"):
-        add("stage", f"stage of the tick: {stage}", stage=stage)
     add("character_even", "one character, even")
     add("character_even", "the same over bare playback", "ratio")
     add("characters_styled", "four characters with styles, each")

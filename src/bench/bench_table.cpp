@@ -19,7 +19,6 @@ std::string time_text(double ns) {
 const char* heading_of(const std::string& name) {
   if (name.starts_with("leg")) return "one leg, the solve alone";
   if (name.starts_with("playback")) return "bare playback of the skeleton";
-  if (name == "stage") return "one character's tick, by stage";
   if (name.ends_with("60_hz")) return "a character, at 60 Hz";
   if (name.starts_with("char") || name == "step") return "a character, at the trace's 240 Hz";
   if (name == "crowd_alone") return "members of the crowd below, each walking alone";
@@ -67,7 +66,7 @@ std::vector<std::string> bench_lines(const std::vector<BenchRow>& rows, const or
     const std::string next = heading_of(row.work->name);
     if (next != heading) lines.push_back(next);
     heading = next;
-    const std::string label = row.stage >= 0 ? kStages[row.stage] : row.work->label;
+    const std::string& label = row.work->label;
     const std::string spread =
         fmt::format("{} - {}", time_text(json["ns_low"]), time_text(json["ns_high"]));
     std::string line = fmt::format("  {:34} {:>9}  {:>19}", label, time_text(json["ns"]), spread);

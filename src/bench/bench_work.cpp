@@ -9,8 +9,6 @@
 #include <filesystem>
 #include <random>
 
-#include "animation/leg_ik.h"
-#include "animation/walk_figure.h"
 #include "base/lanes.h"
 #include "drivers/threads.h"
 #include "files/stride_cache.h"
@@ -20,6 +18,7 @@
 #include "gaitpad/session_spec.h"
 #include "gaitpad/trace.h"
 #include "session/workers.h"
+#include "walk/leg_solve.h"
 
 namespace gaitpad {
 namespace {
@@ -104,6 +103,7 @@ IkAngles all_angles(const LegAngles& angles) {
 }
 
 // The constraint rows of the foot in a tick whose solution is `frame`.
+constexpr double kSideLever_m = 0.1;  // to the point whose height keeps a foot from rolling
 std::array<IkRow, 6> foot_rows(const LegBuild& leg, const IkFrame& frame, bool is_on_toe) {
   const vec3 effector = is_on_toe ? leg.model.toe_m : leg.model.heel_m;
   const vec3 other = is_on_toe ? leg.model.heel_m : leg.model.toe_m;
@@ -118,30 +118,31 @@ std::array<IkRow, 6> foot_rows(const LegBuild& leg, const IkFrame& frame, bool i
           row(other, across),   row(effector + kSideLever_m * leg.side, across)};
 }
 
-// Both legs of one tick, solved side by side as in the walk. They start at the walk's start angles
+// Both legs of one tick, solved by the walk's closed form. They start at the pose of the tick before
 // and move to the walk's solution.
-struct RobustLegs {
-  std::array<LegToClose, 2> legs;
-  std::array<LegAngles, 2> start_rad;
+struct RobustLeg {
+  anew::Vec<float> ankle_m;
+  anew::Turn<float> foot;
+  float thigh_m = 0.0f, shank_m = 0.0f;
+  std::array<float, kLegDofs> start_rad{};
 };
-Vec3Of<double> three(const vec3& v) { return {v.x, v.y, v.z}; }
-void add_legs(const Walker& before, const Walker& now, double dt_s, std::vector<RobustLegs>& legs) {
+using RobustLegs = std::array<RobustLeg, 2>;
+void add_legs(const Walker& before, const Walker& now, double, std::vector<RobustLegs>& legs) {
   RobustLegs& both = legs.emplace_back();
-  const StartAngle start(dt_s);
+  const auto last_rad = leg_angles(*before.model, before.pose),
+             solved_rad = leg_angles(*now.model, now.pose);
+  const auto number = [](double x) { return static_cast<float>(x); };
   for (const Side side : {kLeftSide, kRightSide}) {
     const LegBuild& leg = now.model->leg[side];
-    const LegState &last = before.state.legs, &solved = now.state.legs;
-    PlannedLeg<double>& planned = both.legs[side].planned;
-    for (int j = 0; j < kLegDofs; ++j) {
-      const double off = last.even_rad[side][j] - last.data_rad[side][j];
-      both.start_rad[side][j] = start(solved.data_rad[side][j], off, last.last_off_rad[side][j]);
-    }
-    set_limits<double>(leg, planned);
-    const IkFrame foot = end_frame(leg.chain, all_angles(solved.even_rad[side]));
-    planned.ankle_m = three(foot.position_m);
-    planned.foot_x = three(foot.rotation * kLeft);
-    planned.foot_y = three(foot.rotation * kUp);
-    planned.foot_z = three(foot.rotation * kForward);
+    const IkFrame foot = end_frame(leg.chain, all_angles(solved_rad[side]));
+    const vec3& p = foot.position_m;
+    const quat& q = foot.rotation;
+    RobustLeg& solve = both[side];
+    solve.ankle_m = {number(p.x), number(p.y), number(p.z)};
+    solve.foot = {number(q.w), number(q.x), number(q.y), number(q.z)};
+    solve.thigh_m = number(leg.model.thigh_m);
+    solve.shank_m = number(leg.model.shank_m);
+    for (int j = 0; j < kLegDofs; ++j) solve.start_rad[j] = number(last_rad[side][j]);
   }
 }
 
@@ -152,20 +153,20 @@ struct PaperLeg {
   IkAngles start{};
 };
 void add_legs(const Walker& before, const Walker& now, double, std::vector<PaperLeg>& legs) {
+  constexpr double kLow_m = 1e-5;  // a heel this low has not risen
+  const WalkFrame& frame = now.state.frame;
+  const auto last_rad = leg_angles(*before.model, before.pose),
+             solved_rad = leg_angles(*now.model, now.pose);
   for (const Side side : {kLeftSide, kRightSide}) {
     const LegBuild& leg = now.model->leg[side];
-    const FootMode mode = now.state.foot[side].mode;
+    const bool stands = frame.toe_planted[side], rolls = !stands && frame.heel_planted[side];
     PaperLeg& solve = legs.emplace_back();
     solve.chain = leg.chain;
-    for (int j = 0; j < kLegDofs; ++j) solve.chain.dof[j].weight = now.state.gait.weight[side][j].x;
-    solve.rows = foot_rows(leg, end_frame(leg.chain, all_angles(now.state.legs.angles_rad[side])),
-                           mode == FootMode::support);
-    const bool both =
-        mode == FootMode::roll ||
-        (mode == FootMode::support &&
-         heel_rise<double>(*now.model, moment_of(*now.model, now.state), side) == 0.0);
-    solve.row_count = both ? 5 : 3;
-    solve.start = all_angles(before.state.legs.angles_rad[side]);
+    for (int j = 0; j < kLegDofs; ++j) solve.chain.dof[j].weight = now.params.weight[side][j];
+    solve.rows = foot_rows(leg, end_frame(leg.chain, all_angles(solved_rad[side])), stands);
+    const bool is_low = frame.heel_m[side].y - frame.heel_ground_m[side] < kLow_m;
+    solve.row_count = rolls || (stands && is_low) ? 5 : 3;
+    solve.start = all_angles(last_rad[side]);
   }
 }
 
@@ -184,10 +185,17 @@ std::vector<Legs> solves_of(const Session& session, Simulation simulation,
 }
 
 int solve(RobustLegs& both) {
-  for (const Side side : {kLeftSide, kRightSide}) both.legs[side].angles_rad = both.start_rad[side];
-  close_two_legs(both.legs);
-  benchmark::DoNotOptimize(both.legs);
-  return static_cast<int>(both.legs[0].reached + both.legs[1].reached);
+  int reached = 0;
+  for (const RobustLeg& leg : both) {
+    float start_rad[kLegDofs], off_rad[kLegDofs]{};
+    std::copy(leg.start_rad.begin(), leg.start_rad.end(), start_rad);
+    const auto solved = anew::solve_leg<float>(leg.thigh_m, leg.shank_m, leg.ankle_m, leg.foot,
+                                               start_rad, off_rad);
+    reached += solved.short_m == 0.0f;
+    benchmark::DoNotOptimize(solved);
+    benchmark::DoNotOptimize(off_rad);
+  }
+  return reached;
 }
 int solve(PaperLeg& leg) {
   IkAngles angles = leg.start;
@@ -359,58 +367,6 @@ Work query_work() {
   work.pass = [grid, terrain] {
     for (int i = 0; i < kQueries; ++i)
       benchmark::DoNotOptimize(ground_at(*terrain, 0.01 * i, 0.02 * i));
-  };
-  return work;
-}
-
-// Processor time of this thread.
-double thread_s() { return 1e-9 * static_cast<double>(thread_time_ns()); }
-
-// Splits the tick into parts. Sixteen characters run each part together, so that reading the clock
-// costs little; no state is copied. The table reads of plan and pose are measured once more
-// separately and subtracted from them.
-Work stage_work(const Session& session, const Simulation& simulation,
-                const std::vector<Stick>& sticks) {
-  constexpr std::size_t kTogether = 16;
-  const auto walkers = std::make_shared<LiveWalkers>(session.dt_s(), simulation,
-                                                     std::vector<int>(kTogether, 0), sticks);
-  Work work;
-  work.name = "stage";
-  work.characters = 1;
-  work.units = kTogether;
-  work.stages = std::make_shared<StageTimes>();
-  const auto planned = std::make_shared<std::array<PlannedTick, kTogether>>();
-  work.pass = [walkers, planned, times = work.stages] {
-    walkers->read_sticks();
-    std::vector<LiveWalkers::One>& all = walkers->all;
-    std::array<double, 6> at;
-    std::array<std::optional<Tick>, kTogether> ticks;
-    at[0] = thread_s();
-    for (std::size_t i = 0; i < kTogether; ++i) {
-      ticks[i].emplace(Tick{*all[i].model, all[i].params, IkMode::robust, walkers->dt_s, true});
-      plan_tick(*ticks[i], all[i].state, (*planned)[i]);
-    }
-    at[1] = thread_s();
-    for (const PlannedTick& one : *planned) {
-      StridePlan plan;
-      plan_stride<double>(*one.tick, one.at, *one.state, plan);
-      benchmark::DoNotOptimize(plan);
-    }
-    at[2] = thread_s();
-    for (const PlannedTick& one : *planned) pose_legs(one);
-    at[3] = thread_s();
-    for (std::size_t i = 0; i < kTogether; ++i) {
-      const PlannedTick& one = (*planned)[i];
-      write_data<double>(one.tick->model, one.at, one.state->gait, {all[i].pose.local.data()});
-    }
-    at[4] = thread_s();
-    for (std::size_t i = 0; i < kTogether; ++i) finish_tick((*planned)[i], all[i].pose);
-    at[5] = thread_s();
-    const auto took = [&at](int i) { return at[i + 1] - at[i]; };
-    (*times)[0] += took(0) - took(1);
-    (*times)[1] += took(1) + took(3);
-    (*times)[2] += took(2);
-    (*times)[3] += took(4) - took(3);
   };
   return work;
 }
@@ -761,7 +717,6 @@ Result<std::vector<Work>> bench_work(int most_characters,
   list.push_back(playback_work(*one, PlaybackFrames::local));
   list.push_back(playback_work(*one, PlaybackFrames::world));
 
-  list.push_back(stage_work(*one, *one_walks, sticks));
   const auto live = [&](const Session& session, const Simulation& simulation,
                         const std::vector<int>& from) {
     return std::make_shared<LiveWalkers>(session.dt_s(), simulation, from, sticks);

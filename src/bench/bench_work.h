@@ -1,8 +1,6 @@
 // The works that `gaitpad bench` measures, each of a known size. measured.h runs them in turns.
 #pragma once
-#include <array>
 #include <functional>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -10,10 +8,6 @@
 #include "gaitpad/result.h"
 
 namespace gaitpad {
-
-// The stages of a tick, and the seconds spent in each since they were set to 0.
-inline constexpr std::array<const char*, 4> kStages = {"clock and plan", "sampling", "ik", "pose"};
-using StageTimes = std::array<double, kStages.size()>;
 
 struct Work {
   std::string name, label;  // the name in the list, and the words in the table
@@ -26,8 +20,6 @@ struct Work {
   bool is_on_all_cores = false;  // the elapsed time is measured instead of the thread's
   int every = 1;                 // runs in every n-th round
   std::function<void()> pass;
-  std::shared_ptr<StageTimes> stages;  // seconds of each stage, if the
-                                       // work splits its time
   // Further keys of the work's row.
   nlohmann::ordered_json notes = nlohmann::ordered_json::object();
 };

@@ -43,7 +43,6 @@ class Block : public benchmark::BenchmarkReporter {
 Block measured_block(const Work& work, std::int64_t passes) {
   benchmark::ClearRegisteredBenchmarks();
   auto* registered = benchmark::RegisterBenchmark("block", [&work](benchmark::State& state) {
-    if (work.stages) work.stages->fill(0.0);
     for (auto _ : state) work.pass();
   });
   if (work.is_on_all_cores) registered->UseRealTime();
@@ -58,7 +57,6 @@ Block measured_block(const Work& work, std::int64_t passes) {
 std::vector<BenchRow> measured(const std::vector<Work>& works, int rounds, const Cores& cores,
                                const std::function<void(double share)>& show) {
   std::vector<BenchRow> rows;
-  std::vector<std::size_t> first_row;
   std::vector<std::int64_t> passes;
   const auto block_of = [&](const Work& work, std::int64_t count) {
     work.is_on_all_cores ? cores.use_all() : cores.use_one();
@@ -66,10 +64,7 @@ std::vector<BenchRow> measured(const std::vector<Work>& works, int rounds, const
     return measured_block(work, count);
   };
   for (const Work& work : works) {
-    first_row.push_back(rows.size());
-    if (!work.stages) rows.push_back({&work, -1, {}});
-    for (std::size_t k = 0; work.stages && k < kStages.size(); ++k)
-      rows.push_back({&work, static_cast<int>(k), {}});
+    rows.push_back({&work, {}});
     passes.push_back(block_of(work, 0).passes);
   }
   for (int round = 0; round < rounds; ++round) {
@@ -78,11 +73,7 @@ std::vector<BenchRow> measured(const std::vector<Work>& works, int rounds, const
       const Work& work = works[i];
       if (round % work.every != 0) continue;
       const Block block = block_of(work, passes[i]);
-      if (!work.stages) rows[first_row[i]].ns.push_back(block.pass_ns / work.units);
-      for (std::size_t k = 0; work.stages && k < kStages.size(); ++k) {
-        const double pass_ns = 1e9 * (*work.stages)[k] / static_cast<double>(passes[i]);
-        rows[first_row[i] + k].ns.push_back(pass_ns / work.units);
-      }
+      rows[i].ns.push_back(block.pass_ns / work.units);
     }
   }
   cores.use_all();
@@ -123,7 +114,6 @@ ordered_json json_of(const BenchRow& row, const std::vector<BenchRow>& rows) {
   const double ns = row.median();
   ordered_json json = {{"name", work.name}, {"characters", work.characters}};
   if (work.width > 0) json["width"] = work.width;
-  if (row.stage >= 0) json["stage"] = kStages[row.stage];
   json["ns"] = ns;
   json["ns_low"] = row.quantile(0.25);
   json["ns_high"] = row.quantile(0.75);
@@ -170,13 +160,6 @@ ordered_json list_of(const std::vector<BenchRow>& rows, const std::string& proce
     ordered_json again = list.back();
     if (row.work->name == "load_clip") {
       again["name"] = "load";
-      list.push_back(again);
-    }
-    if (again.value("stage", "") == "ik") {
-      again.erase("stage");
-      again["name"] = "leg_ik";
-      for (const char* key : {"ns", "ns_low", "ns_high", "time_us"})
-        again[key] = 0.5 * again[key].get<double>();
       list.push_back(again);
     }
   }

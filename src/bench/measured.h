@@ -40,10 +40,9 @@ class Cores {
   int core_ = -1;
 };
 
-// Times of a unit of a work or of one of its stages.
+// Times of a unit of a work.
 struct BenchRow {
   const Work* work = nullptr;
-  int stage = -1;          // number of the stage in kStages; -1: the whole work
   std::vector<double> ns;  // a unit's time in each round
   // The smallest value that at least this share of the rounds do not exceed.
   double quantile(double share) const;

@@ -346,16 +346,16 @@ Above above_the_hips(const WalkModel& model, IkMode mode) {
   double before = 0.0;
   bool was_whole = false;
   straight(model, {}, mode, kPaperStick, 7.0, [&](const WalkState& s, const Pose& pose) {
-    const bool is_whole = presence(s) >= 1.0 && s.clock.stage != Stage::idle;
+    const bool is_whole = presence(s) >= 1.0 && s.frame.stage != Stage::idle;
     if (is_whole) {
-      sample_local(model.cycle, s.clock.phase, source);
+      sample_local(model.cycle, shown_phase(s), source);
       for (const int j : upper) {
         found.apart_deg = std::max(found.apart_deg, apart_deg(source.local[j], pose.local[j]));
       }
-      const double move = s.clock.phase - before;
+      const double move = shown_phase(s) - before;
       found.back += was_whole && !(move - std::floor(move + 0.5) > 0.0);
     }
-    before = s.clock.phase;
+    before = shown_phase(s);
     was_whole = is_whole;
   });
   return found;
@@ -404,21 +404,22 @@ void run(Simulation& simulation, int ticks, const std::vector<Report>& first) {
 // Largest second difference of a leg angle over the ticks, degrees; the stick moves to `raw` at the
 // first tick.
 double second_difference(Simulation& simulation, const vec2& raw, int ticks) {
-  const WalkState& state = simulation.walkers()[0].state;
-  std::array<LegAngles, 2> last = state.legs.angles_rad, before_last = last;
+  const Walker& walker = simulation.walkers()[0];
+  const auto angles_rad = [&] { return leg_angles(*walker.model, walker.pose); };
+  std::array<LegAngles, 2> last = angles_rad(), before_last = last;
   simulation.step({});
-  before_last = last, last = state.legs.angles_rad;
+  before_last = last, last = angles_rad();
   double most = 0.0;
   for (int k = 0; k < ticks; ++k) {
     simulation.step(k == 0 ? std::vector<Report>{paper_report(raw)} : std::vector<Report>{});
+    const std::array<LegAngles, 2> now = angles_rad();
     for (const Side side : {kLeftSide, kRightSide}) {
       for (int j = 0; j < kLegDofs; ++j) {
-        const double d =
-            state.legs.angles_rad[side][j] - 2.0 * last[side][j] + before_last[side][j];
+        const double d = now[side][j] - 2.0 * last[side][j] + before_last[side][j];
         most = std::max(most, std::fabs(d) / kDegree);
       }
     }
-    before_last = last, last = state.legs.angles_rad;
+    before_last = last, last = now;
   }
   return most;
 }

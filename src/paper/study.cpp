@@ -16,7 +16,7 @@ void keep_joints(const WalkModel& model, const WalkState& state, const Pose& pos
   sample.joints_m.assign(frames.position_m.begin(), frames.position_m.begin() + pose.joint_count);
   const quat pelvis =
       frames.rotation[model.cycle.pelvis] * glm::inverse(model.cycle.pelvis_standing);
-  sample.pelvis_yaw_rad = wrapped(heading_of(pelvis * kForward) - state.path.heading_rad);
+  sample.pelvis_yaw_rad = wrapped(heading_of(pelvis * kForward) - state.root.heading_rad);
 }
 
 vec2 stick_at(const std::vector<StickAt>& stick, double time_s) {
@@ -135,9 +135,9 @@ Walk walked(const WalkCase& what, const EachTick& each) {
             pose);
     WalkSample& sample = walk.samples[static_cast<std::size_t>(tick)];
     sample.frame = state.frame;
-    sample.angles_rad = state.legs.angles_rad;
-    sample.phase = state.clock.phase;
-    sample.hips_m = state.path.hips_m;
+    sample.angles_rad = leg_angles(model, pose);
+    sample.phase = shown_phase(state);
+    sample.hips_m = state.root.place_m;
     if (what.keeps_joints) keep_joints(model, state, pose, frames, sample);
     if (each) each(state, pose);
   }

@@ -160,10 +160,10 @@ GaitParams Followers::params_of(int member, const GaitParams& first, const WalkS
                                 const vec3& ahead) const noexcept {
   const Kind& kind = kinds_[kind_[static_cast<std::size_t>(member)]];
   if (!first.walking) return gait_params(Stick{}, kind.values, kind.limits);
-  const PathState& path = crowd_.state(member).path;
+  const Placement root = crowd_.root(member);
   // Vector from the member to its place in the formation.
-  const vec3 off_m = (first_state.path.hips_m - first_m_) -
-                     (path.hips_m - start_m_[static_cast<std::size_t>(member)]);
+  const vec3 off_m = (first_state.root.place_m - first_m_) -
+                     (root.place_m - start_m_[static_cast<std::size_t>(member)]);
   const double behind_m = glm::dot(vec3(off_m.x, 0.0, off_m.z), ahead);
   // Distance from the way, + to the left.
   const double beside_m = off_m.x * ahead.z - off_m.z * ahead.x;
@@ -183,10 +183,10 @@ GaitParams Followers::params_of(int member, const GaitParams& first, const WalkS
     limits.max_speed_m_s =
         std::max(limits.max_speed_m_s, first.backward ? wanted_m_s / kBackwardShare : wanted_m_s);
     set(overrides, GaitKey::speed_m_s, way * wanted_m_s);
-    const double aim_rad = first_state.path.heading_rad +
+    const double aim_rad = first_state.root.heading_rad +
                            std::clamp(way * beside_m * kAim_rad_m, -kMostAim_rad, kMostAim_rad);
     turn_rate_rad_s +=
-        std::clamp((aim_rad - path.heading_rad) * kTurn_1_s, -kMostTurn_rad_s, kMostTurn_rad_s);
+        std::clamp((aim_rad - root.heading_rad) * kTurn_1_s, -kMostTurn_rad_s, kMostTurn_rad_s);
   }
   set(overrides, GaitKey::turn_rate_rad_s, turn_rate_rad_s);
   return gait_params(Stick{}, kind.values, overrides, limits);
@@ -195,7 +195,7 @@ GaitParams Followers::params_of(int member, const GaitParams& first, const WalkS
 void Followers::advance(const GaitParams& first, const WalkState& first_state,
                         double dt_s) noexcept {
   if (size() == 0) return;
-  const vec3 ahead = heading_direction(first_state.path.heading_rad);
+  const vec3 ahead = heading_direction(first_state.root.heading_rad);
   const std::span<GaitParams> params = crowd_.params();
   for (int i = 0; i < size(); ++i)
     params[static_cast<std::size_t>(i)] = params_of(i, first, first_state, ahead);
@@ -228,10 +228,7 @@ void Followers::keep_shown() noexcept {
 
 std::size_t Followers::bytes() const noexcept {
   if (size() == 0) return 0;
-  const std::size_t member = sizeof(GaitParams) + sizeof(WalkState) + 2 * sizeof(vec3) +
-                             crowd_.local(0).size() * sizeof(quat);
-  return static_cast<std::size_t>(size()) * member +
-         shown_.local.size() * 2 * sizeof(shown_.local[0]);
+  return crowd_.bytes() + shown_.local.size() * 2 * sizeof(shown_.local[0]);
 }
 
 }  // namespace gaitpad

@@ -14,12 +14,9 @@ void copy_walker(const Walker& walker, WalkerFrame& frame) noexcept {
   frame.style = walker.values;
   frame.style_index = walker.style;
   frame.overrides = walker.overrides;
-  frame.angles_rad = state.legs.angles_rad;
-  frame.phase = state.clock.phase;
+  frame.angles_rad = leg_angles(*walker.model, walker.pose);
+  frame.phase = shown_phase(state);
   frame.presence = presence(state);
-  for (const Side side : {kLeftSide, kRightSide})
-    frame.lift_m[side] = to_world(state.placed, state.foot[side].lift_m);
-  frame.landing_m = to_world(state.placed, state.path.landing_m);
   frame.ik_failures = walker.ik_failures;
 }
 
@@ -79,13 +76,15 @@ void copy_sample(const Simulation& simulation, TickSample& sample) noexcept {
   sample.stick_x = static_cast<float>(simulation.stick().left.x);
   sample.stick_y = static_cast<float>(simulation.stick().left.y);
   for (std::size_t i = 0; i < walkers.size(); ++i) {
-    const WalkFrame& walk = walkers[i].state.frame;
+    const Walker& walker = walkers[i];
+    const WalkFrame& walk = walker.state.frame;
+    const std::array<LegAngles, 2> angles_rad = leg_angles(*walker.model, walker.pose);
     WalkerSample& s = sample.walkers[i];
     for (const Side side : {kLeftSide, kRightSide}) {
       for (std::size_t j = 0; j < kShownJoints.size(); ++j) {
         // In a sample flexion is positive at every joint; in the model hip and ankle flexion is
         // negative.
-        const double angle_rad = walkers[i].state.legs.angles_rad[side][kShownJoints[j]];
+        const double angle_rad = angles_rad[side][kShownJoints[j]];
         s.joint_rad[side][j] =
             static_cast<float>(kShownJoints[j] == kKneeX ? angle_rad : -angle_rad);
       }

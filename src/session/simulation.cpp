@@ -62,7 +62,7 @@ void choose_style(Walker& w, int style, std::span<const Style> styles) noexcept 
 void follow_zones(Walker& w, const Terrain& terrain, std::span<const int> zone_styles,
                   std::span<const Style> styles) noexcept {
   if (terrain.zones.empty()) return;
-  const int zone = zone_at(terrain, w.state.path.hips_m);
+  const int zone = zone_at(terrain, w.state.root.place_m);
   if (zone == w.zone.index) return;
   // When a walker goes from one zone directly into another, keep the style from before both.
   const bool has_own = w.zone.gives_back;
@@ -283,12 +283,12 @@ void Simulation::step(std::span<const Report> reports) noexcept {
     copy_pose(w.pose, w.before);
     follow_zones(w, *terrain_, *zone_styles_, styles());
     const Stick stick = stick_means_ == StickMeans::points
-                            ? pointed_stick(stick_, w.state.path.heading_rad, camera_rad_, w.limits)
+                            ? pointed_stick(stick_, w.state.root.heading_rad, camera_rad_, w.limits)
                             : stick_;
     w.params = gait_params(stick, advance_style(w, dt_s_), w.overrides, w.limits);
-    const vec3 before_m = w.state.path.hips_m;
+    const vec3 before_m = w.state.root.place_m;
     advance(*w.model, w.params, ik_, dt_s_, w.state, w.pose);
-    const vec3 way_m = w.state.path.hips_m - before_m;
+    const vec3 way_m = w.state.root.place_m - before_m;
     const double walked_m = glm::length(vec2(way_m.x, way_m.z));
     w.walked_m += walked_m;
     w.tired = tired(w.tired, w.values, walked_m, w.state.frame.stage == Stage::idle, dt_s_);

@@ -307,10 +307,10 @@ ExportedFollower::ExportedFollower(const Simulation& simulation, int member)
 
 void ExportedFollower::follow(const Simulation& simulation) noexcept {
   const Crowd& crowd = simulation.followers().crowd();
-  const vec3 before_m = walker_->state.path.hips_m;
+  const vec3 before_m = walker_->state.root.place_m;
   walker_->state = crowd.state(member_);
   crowd.copy_pose(member_, walker_->pose);
-  const vec3 way_m = walker_->state.path.hips_m - before_m;
+  const vec3 way_m = walker_->state.root.place_m - before_m;
   walker_->walked_m += glm::length(vec2(way_m.x, way_m.z));
   for (const bool failed : walker_->state.frame.ik_failed) walker_->ik_failures += failed;
 }

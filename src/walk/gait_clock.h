@@ -1,6 +1,6 @@
 // First of a tick: what is asked for, smoothed; how far the step has come.
 #pragma once
-#include "walk/state.h"
+#include "walk/block.h"
 #include "walk/tables.h"
 
 namespace gaitpad::anew {

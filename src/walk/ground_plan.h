@@ -1,7 +1,7 @@
 // Uneven ground of one walk, in doubles: where its foot may land, and what keeps it clear of what
 // lies between two footholds. Asked where a landing is planned or moves, never else.
 #pragma once
-#include "walk/state.h"
+#include "walk/block.h"
 #include "walk/tables.h"
 
 namespace gaitpad::anew {

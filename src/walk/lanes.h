@@ -6,27 +6,18 @@
 #include <cmath>
 #include <cstring>
 
+#include "gaitpad/walk_state.h"
+
 namespace gaitpad::anew {
 
 template <int kWidth>
 struct FloatsOf {
   using Type __attribute__((vector_size(4 * kWidth))) = float;
 };
-template <>
-struct FloatsOf<1> {
-  using Type = float;
-};
-template <int kWidth>
-using Floats = typename FloatsOf<kWidth>::Type;
 template <class V>
 inline constexpr int kLanes = sizeof(V) / sizeof(float);
 template <class V>
 using Mask = decltype(V{} < V{});  // bool of one walk
-
-template <class V>
-struct Vec {
-  V x{}, y{}, z{};
-};
 
 template <class V>
 struct Turn {  // a unit quaternion

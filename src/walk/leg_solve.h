@@ -12,7 +12,9 @@ namespace {
 template <class V>
 struct Leg {
   Turn<V> hip, knee, ankle;
-  Mask<V> short_of{};  // the ankle is out of the leg's reach
+  V short_m{};         // by which the ankle is out of the leg's reach
+  V iterations{};      // of the paper's solve
+  Mask<V> failed{};    // it did not converge
   V more_pitch_rad{};  // by which the weights pitch the foot beyond its plan
 };
 
@@ -66,9 +68,13 @@ Leg<V> solve_leg(const V& thigh_m, const V& shank_m, const Vec<V>& ankle_m, cons
   const V square = dot(ankle_m, ankle_m),
           bends = (square - (thigh_m * thigh_m + shank_m * shank_m)) / (2.0f * thigh_m * shank_m);
   Leg<V> leg;
-  leg.short_of = either(bends > all<V>(kStraightCosine), bends < all<V>(kFoldedCosine));
-  const V knee_c = within(bends, kFoldedCosine, kStraightCosine),
-          knee_hc = root(V(0.5f + 0.5f * knee_c)), knee_hs = root(V(0.5f - 0.5f * knee_c)),
+  const V knee_c = within(bends, kFoldedCosine, kStraightCosine);
+  if (any(knee_c != bends)) {
+    const V reach = root(V(thigh_m * (thigh_m + 2.0f * shank_m * knee_c) + shank_m * shank_m)),
+            off_m = size(V(root(square) - reach));
+    leg.short_m = knee_c != bends ? off_m : V{};
+  }
+  const V knee_hc = root(V(0.5f + 0.5f * knee_c)), knee_hs = root(V(0.5f - 0.5f * knee_c)),
           knee_s = 2.0f * knee_hc * knee_hs, knee_turns = knee_s * c[3] - knee_c * s[3];
   // The least turn of the hip that brings the ankle to its place, and what is left of the foot's
   // turn for the ankle.

@@ -52,7 +52,11 @@ inline void solve_by_paper(const Tables& tables, const Time<float>& time, float 
       angles_rad[j] = state.leg_rad[k][j];
       if (weighs) chain.dof[j].weight = weighted.weight[right][j].x;
     }
-    solve_paper(chain, {rows.data(), both_ends ? 5u : 3u}, kPaper, angles_rad);
+    const IkResult solved =
+        solve_paper(chain, {rows.data(), both_ends ? 5u : 3u}, kPaper, angles_rad);
+    legs[k].iterations = static_cast<float>(solved.iterations);
+    legs[k].short_m = static_cast<float>(solved.error_m);
+    legs[k].failed = solved.status != IkStatus::converged;
     for (int j = 0; j < kLegAngles; ++j) state.leg_rad[k][j] = static_cast<float>(angles_rad[j]);
     const auto& a = angles_rad;
     legs[k].hip = narrow(rotation_xzy({a[0], a[1], a[2]}));

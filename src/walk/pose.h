@@ -51,10 +51,18 @@ void write_legs(const Tables& tables, const Time<V>& time, const Feet<V>& feet,
   }
 }
 
-// A skeleton's root is its pelvis.
+// Joints between root and pelvis turn with the heading and else move as in the data.
+inline void turn_pelvis_below(const Tables& tables, const quat& heading, quat* local) noexcept {
+  local[0] = heading * local[0];
+  quat above = kIdentity;
+  for (const int joint : tables.above) above = local[joint] * above;
+  local[tables.pelvis] = glm::conjugate(above) * local[tables.pelvis];
+}
+
 template <int kWidth>
 void write_root(const Tables& tables, const Pelvis<Floats<kWidth>>& pelvis,
-                const Block<kWidth>& block, const Poses& poses) noexcept {
+                const Turn<Floats<kWidth>>& heading, const Block<kWidth>& block,
+                const Poses& poses) noexcept {
   using V = Floats<kWidth>;
   const State<V>& state = block.state;
   const V sine = 2.0f * state.frame_sine * state.frame_cosine,
@@ -68,13 +76,24 @@ void write_root(const Tables& tables, const Pelvis<Floats<kWidth>>& pelvis,
   }
   const Turn<V> frame{state.frame_cosine, V{}, state.frame_sine, V{}};
   write_joint(frame * pelvis.turn * same<V>(tables.pelvis_standing), tables.pelvis, poses);
+  if (tables.pelvis != 0) {
+    const Turn<V> turn = frame * heading;
+    for (int w = 0; w < poses.walks; ++w)
+      turn_pelvis_below(tables, quat(lane(turn.w, w), 0.0, lane(turn.y, w), 0.0), poses.local[w]);
+  }
   for (int w = 0; block.is_placed && w < poses.walks; ++w) {
     const Placement& placed = block.placed[w];
     if (placed == Placement{}) continue;
     *poses.root_m[w] = to_world(placed, *poses.root_m[w]);
-    quat& root = poses.local[w][tables.pelvis];
+    quat& root = poses.local[w][0];
     root = rotation_y(placed.heading_rad) * root;
   }
+}
+
+// Joints that never move.
+inline void write_still(const Tables& tables, quat* local) noexcept {
+  for (const int joint : tables.still) local[joint] = kIdentity;
+  for (const auto& [joint, standing] : tables.kept) local[joint] = standing;
 }
 
 }  // namespace

@@ -61,7 +61,7 @@ std::array<double, kRowNumbers> numbers_of(const StridePlace& place) {
   return all;
 }
 
-void fill_harmonics(const WalkModel& model, Tables& tables) {
+void fill_harmonics(const WalkModel& model, BuildTables& tables) {
   for (int r = 0; r < kRatios; ++r) {
     for (auto& side : tables.leg_harmonics[r])
       for (auto& numbers : side) numbers.fill(0.0f);
@@ -104,7 +104,7 @@ void fill_footprints(const FootprintLine& line, FootprintLines& lines, float& mo
   most_ratio = static_cast<float>(line.most_ratio);
 }
 
-void fill_legs(const WalkModel& model, Tables& tables) {
+void fill_legs(const WalkModel& model, BuildTables& tables) {
   tables.legs_are_plain = true;
   for (int side : {0, 1}) {
     const LegBuild& from = model.leg[side];
@@ -153,7 +153,7 @@ int swing_of(const WalkModel& model, int joint) {
 // Chest and head turn ahead: the spine's joints share the chest's turn, and neck and head what the
 // head is ahead of the chest, the neck by its share.
 constexpr double kNeckShare = 0.45;  // of what the head turns beside the chest
-void fill_path(const WalkModel& model, Tables& tables) {
+void fill_path(const WalkModel& model, BuildTables& tables) {
   const UpperBodyModel& body = model.body;
   const std::vector<int>&spine = body.joints.spine, &head = body.head_path;
   const int joints = static_cast<int>(head.size()), necks = joints - 1 - body.neck_at;
@@ -190,17 +190,20 @@ void fill_path(const WalkModel& model, Tables& tables) {
   for (int n = 0; n < kBodyNumbers; ++n) tables.plain_body[n] = static_cast<float>(plain[n]);
 }
 
-void fill_upper_body(const WalkModel& model, Tables& tables) {
+void fill_upper_body(const WalkModel& model, BuildTables& tables) {
   const GaitCycle& cycle = model.cycle;
   fill_path(model, tables);
   const auto is_on_path = [&](int joint) {
     return std::any_of(tables.path.begin(), tables.path.end(),
                        [&](const PathJoint& p) { return p.joint == joint; });
   };
-  // Joints that are still in the data may turn on the path.
+  // Joints that are still in the data may turn on the path, and a root above the pelvis does.
+  const auto turns = [&](int joint) {
+    return is_on_path(joint) || (joint == 0 && cycle.pelvis != 0);
+  };
   std::vector<int> moved = model.above.joint;
   for (const int joint : model.above.still)
-    (is_on_path(joint) ? moved : tables.still).push_back(joint);
+    (turns(joint) ? moved : tables.still).push_back(joint);
   const std::size_t joints = cycle.skeleton.joints.size(), count = moved.size();
   tables.upper_rows.resize((kKnots + 3) * count * 4);
   for (std::size_t i = 0; i < count; ++i) {
@@ -233,6 +236,8 @@ void fill_upper_body(const WalkModel& model, Tables& tables) {
   for (const int j : model.kept) tables.kept.emplace_back(j, cycle.standing_local[j]);
   tables.joints = static_cast<int>(joints);
   tables.pelvis = cycle.pelvis;
+  for (int j = cycle.skeleton.joints[cycle.pelvis].parent; j >= 0; j = cycle.skeleton.joints[j].parent)
+    tables.above.push_back(j);
   tables.pelvis_standing = wxyz(cycle.pelvis_standing);
 }
 
@@ -242,10 +247,51 @@ Filter filter(double time_constant_s, double tick_s) {
           static_cast<float>(tick_s)};
 }
 
+// Time constants in seconds at the reference leg: what jumps with the stick is felt as delay beyond
+// these, and seen as a jerk below.
+Filters filters_of(double time_scale, double tick_s) noexcept {
+  const auto of = [&](double time_constant_s) {
+    return filter(time_constant_s * time_scale, tick_s);
+  };
+  Filters filters;
+  filters.tick_s = static_cast<float>(tick_s);
+  filters.step = of(0.12);
+  filters.first_step = of(0.05);
+  filters.turn_goal = of(0.02);
+  filters.turn = of(0.10);
+  filters.bounce = of(0.30);
+  filters.lean = of(0.12);
+  filters.posture = of(0.06);
+  filters.chest = of(0.10);
+  filters.head = of(0.07);
+  filters.room = of(0.04);
+  filters.ground = of(0.30);
+  filters.slope_lean = of(0.30);
+  filters.weights = of(0.15);
+  filters.loosens = of(0.04);  // a foot that stood flat, when a walk begins
+  filters.lowers = of(0.03);
+  filters.body = of(0.22);
+  const double mean_s = 0.5 * time_scale;
+  filters.mean_pull = static_cast<float>(tick_s / (mean_s + tick_s));
+  return filters;
+}
+
+// The last filters that a thread asked for: mostly all walks have one tick and one size.
+const Filters& kept_filters(double time_scale, double tick_s) noexcept {
+  struct Kept {
+    double time_scale, tick_s;
+    Filters filters;
+  };
+  static thread_local Kept kept{};
+  if (kept.time_scale != time_scale || kept.tick_s != tick_s)
+    kept = {time_scale, tick_s, filters_of(time_scale, tick_s)};
+  return kept.filters;
+}
+
 }  // namespace
 
-std::unique_ptr<const Tables> tables_of(const WalkModel& model, double tick_s) {
-  auto tables = std::make_unique<Tables>();
+std::shared_ptr<const BuildTables> build_tables(const WalkModel& model) {
+  auto tables = std::make_shared<BuildTables>();
   fill_strides(model, false, tables->forward);
   fill_strides(model, true, tables->back);
   fill_footprints(model.forward, tables->footprints, tables->most_ratio);
@@ -261,33 +307,35 @@ std::unique_ptr<const Tables> tables_of(const WalkModel& model, double tick_s) {
   tables->rest_lead_m = static_cast<float>(model.rest_lead_m);
   tables->source_step_m = static_cast<float>(model.source_step_m);
   tables->own_step_s = static_cast<float>(model.body.own_step_s);
-  // Time constants in seconds at the reference leg: what jumps with the stick is felt as delay
-  // beyond these, and seen as a jerk below.
-  const auto of = [&](double time_constant_s) {
-    return filter(time_constant_s * model.time_scale, tick_s);
-  };
-  tables->step = of(0.12);
-  tables->first_step = of(0.05);
-  tables->turn_goal = of(0.02);
-  tables->turn = of(0.10);
-  tables->bounce = of(0.30);
-  tables->lean = of(0.12);
-  tables->posture = of(0.06);
-  tables->chest = of(0.10);
-  tables->head = of(0.07);
-  tables->room = of(0.04);
-  tables->ground = of(0.30);
-  tables->slope_lean = of(0.30);
-  tables->weights = of(0.15);
-  tables->loosens = of(0.04);  // a foot that stood flat, when a walk begins
-  tables->lowers = of(0.03);
-  tables->body = of(0.22);
-  const double mean_s = 0.5 * model.time_scale;
-  tables->mean_pull = static_cast<float>(tick_s / (mean_s + tick_s));
-  tables->tick_s = static_cast<float>(tick_s);
   tables->leg_m = static_cast<float>(model.leg_length_m);
-  if (!is_flat(*model.terrain)) tables->terrain = model.terrain;
   return tables;
+}
+
+Tables tables_of(const WalkModel& model, double tick_s) noexcept {
+  const BuildTables& of = *model.tables;
+  return {of,
+          kept_filters(model.time_scale, tick_s),
+          of.forward,
+          of.back,
+          of.footprints,
+          of.back_footprints,
+          of.leg_harmonics,
+          of.leg,
+          of.chain,
+          of.stage_share,
+          of.upper,
+          of.upper_rows,
+          of.path,
+          of.arm,
+          of.chest_standing,
+          of.head_standing,
+          of.plain_body,
+          of.most_elbow_swing,
+          of.still,
+          of.above,
+          of.kept,
+          of.pelvis_standing,
+          is_flat(*model.terrain) ? nullptr : model.terrain.get()};
 }
 
 }  // namespace gaitpad::anew

@@ -1,12 +1,12 @@
 // What does not change while characters of one build walk, in floats: the strides' tables, the body
-// above the legs, the legs' bones, and the filters of one tick length. Made from a WalkModel.
+// above the legs and the legs' bones. A WalkModel has them.
 #pragma once
 #include <array>
 #include <memory>
 #include <vector>
 
 #include "gaitpad/walk_model.h"
-#include "walk/state.h"
+#include "walk/block.h"
 
 namespace gaitpad::anew {
 
@@ -75,7 +75,17 @@ struct ArmBones {
   std::vector<int> path;
 };
 
-struct Tables {
+// Numbers of a build.
+struct BuildNumbers {
+  float most_ratio, most_back_ratio, size, time_scale, stand_m, stand_roll_rad, rest_lead_m,
+      source_step_m, own_step_s;
+  float leg_m;          // thigh and shank
+  bool legs_are_plain;  // no joint of a leg has a turn before or after its own
+  int joints, pelvis;
+};
+
+// What is the same at all ticks' lengths; a WalkModel has it.
+struct BuildTables : BuildNumbers {
   alignas(64) StrideRows forward;
   alignas(64) BackRows back;
   FootprintLines footprints, back_footprints;
@@ -86,9 +96,6 @@ struct Tables {
   std::array<IkChain, 2> chain;  // of paper mode, by Side
   std::array<float, 4>
       stage_share;  // of the phase: roll right, flight left, roll left, flight right
-  float most_ratio, most_back_ratio, size, time_scale, stand_m, stand_roll_rad, rest_lead_m,
-      source_step_m, own_step_s;
-  bool legs_are_plain;  // no joint of a leg has a turn before or after its own
 
   std::vector<UpperJoint> upper;
   std::vector<float> upper_rows;  // (kKnots + 3) x upper.size() x 4: x, y, z, w
@@ -99,12 +106,12 @@ struct Tables {
   std::array<float, 2> most_elbow_swing;
   std::vector<int> still;                  // always the identity
   std::vector<std::pair<int, quat>> kept;  // twist joints in the legs
-  int joints, pelvis;
-  std::array<float, 4> pelvis_standing;  // w, x, y, z
+  std::vector<int> above;                  // the joints above the pelvis, from it to the root
+  std::array<float, 4> pelvis_standing;    // w, x, y, z
+};
 
-  std::shared_ptr<const Terrain> terrain;  // none where the ground is level
-  float leg_m;                             // thigh and shank
-
+// The filters of a build at one tick's length.
+struct Filters {
   float tick_s;
   Filter room, ground, slope_lean;  // of uneven ground
   Filter step, first_step, turn_goal, turn, bounce, lean, posture, chest, head;
@@ -112,7 +119,30 @@ struct Tables {
   float mean_pull;  // of the two filters that a leg's running mean goes through
 };
 
-// Of a tick of `tick_s` seconds.
-std::unique_ptr<const Tables> tables_of(const WalkModel& model, double tick_s);
+// All that a tick reads beside the walks: a build, its ground, and the filters of the tick's length.
+struct Tables : BuildNumbers, Filters {
+  const StrideRows& forward;
+  const BackRows& back;
+  const FootprintLines &footprints, &back_footprints;
+  const decltype(BuildTables::leg_harmonics)& leg_harmonics;
+  const std::array<LegBones, 2>& leg;
+  const std::array<IkChain, 2>& chain;
+  const std::array<float, 4>& stage_share;
+  const std::vector<UpperJoint>& upper;
+  const std::vector<float>& upper_rows;
+  const std::vector<PathJoint>& path;
+  const std::array<ArmBones, 2>& arm;
+  const std::array<float, 4>&chest_standing, &head_standing;
+  const std::array<float, kBodyNumbers>& plain_body;
+  const std::array<float, 2>& most_elbow_swing;
+  const std::vector<int>&still, &above;
+  const std::vector<std::pair<int, quat>>& kept;
+  const std::array<float, 4>& pelvis_standing;
+  const Terrain* terrain;  // none where the ground is level
+};
+
+std::shared_ptr<const BuildTables> build_tables(const WalkModel& model);
+// Of a model with its tables, and of a tick of `tick_s` seconds. No heap.
+Tables tables_of(const WalkModel& model, double tick_s) noexcept;
 
 }  // namespace gaitpad::anew

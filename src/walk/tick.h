@@ -265,6 +265,56 @@ void time_close(const Mask<V>& strikes, const State<V>& state, Change<V>& change
   change.closing_ticks = closes ? ticks : change.closing_ticks;
 }
 
+template <class V>
+void keep_solves(const Time<V>& time, const Leg<V> (&legs)[2], Told<V>& told) noexcept {
+  constexpr float kReached_m = 1e-4f;
+  for (int side : {0, 1}) {
+    const auto swings = side == 1 ? time.right : no(time.right);
+    told.iterations[side] = swings ? legs[0].iterations : legs[1].iterations;
+    told.error_m[side] = swings ? legs[0].short_m : legs[1].short_m;
+    const auto failed = either(both(swings, legs[0].failed), both(no(swings), legs[1].failed));
+    told.failed[side] =
+        chosen<V>(either(failed, told.error_m[side] > all<V>(kReached_m)), 1.0f, 0.0f);
+  }
+}
+// The landings, and what the step was, where one ends.
+template <class V>
+void count_step(const Time<V>& time, const Landing<V>& landing, const Way<V>& to,
+                const Mask<V>& strikes, const State<V>& state, const V& overhangs,
+                Told<V>& told) noexcept {
+  const V length_m = landing.x_m * to.sine + landing.z_m * to.cosine;
+  for (int side : {0, 1}) {
+    const auto steps = both(strikes, side == 1 ? time.right : no(time.right));
+    told.steps[side] = steps ? V(told.steps[side] + 1.0f) : told.steps[side];
+    told.stride_m[side] = steps ? length_m : told.stride_m[side];
+  }
+  told.overhangs = strikes ? V(told.overhangs + overhangs) : told.overhangs;
+  told.step_ticks[1] = strikes ? told.step_ticks[0] : told.step_ticks[1];
+  told.step_ticks[0] = strikes ? V(state.roll_ticks + state.flight_ticks) : told.step_ticks[0];
+}
+template <class V>
+void end_report(const Change<V>& change, Told<V>& told) noexcept {
+  const auto stands = change.stands != V{};
+  const auto set = [&](V& number) { number = stands ? V{} : number; };
+  set(told.stride_m[0]), set(told.stride_m[1]), set(told.step_ticks[0]), set(told.step_ticks[1]);
+}
+
+// A walk may change its solver: the paper's one starts from whole angles.
+template <bool kPaper>
+void change_solver(const Tables& tables, const Time<float>& time, const Stride<float>& stride,
+                   State<float>& state, Change<float>& change) noexcept {
+  if ((change.by_paper != 0.0f) == kPaper) return;
+  change.by_paper = kPaper ? 1.0f : 0.0f;
+  for (int k : {0, 1}) {
+    float table_rad[kLegAngles];
+    set_table_angles(tables, k == 0 ? time.right : no(time.right), stride, k, table_rad);
+    for (int j = 0; j < kLegAngles; ++j) {
+      state.leg_rad[k][j] += kPaper ? table_rad[j] : -table_rad[j];
+      state.last_leg_rad[k][j] = state.leg_rad[k][j];
+    }
+  }
+}
+
 // Legs and upper body, and the root.
 template <int kWidth, bool kPaper, class F>
 void pose_walks(const Tables& tables, const Time<Floats<kWidth>>& time,
@@ -276,6 +326,7 @@ void pose_walks(const Tables& tables, const Time<Floats<kWidth>>& time,
   constexpr bool kUneven = kIsUneven<F>;
   State<V>& state = block.state;
   const Change<V>& change = block.change;
+  if constexpr (kWidth == 1) change_solver<kPaper>(tables, time, stride, state, block.change);
   Leg<V> legs[2];
   if constexpr (kPaper) {
     solve_by_paper(tables, time, phase, change, feet, pelvis, state, block.weighted, legs);
@@ -294,7 +345,8 @@ void pose_walks(const Tables& tables, const Time<Floats<kWidth>>& time,
                    time.back ? V(share[0] + share[1] + share[2] - phase) : phase, change.shown,
                    swing, state, block.styled, poses);
   write_legs(tables, time, feet, legs, poses);
-  write_root<kWidth>(tables, pelvis, block, poses);
+  write_root<kWidth>(tables, pelvis, hips.heading.turn(), block, poses);
+  keep_solves(time, legs, block.told);
 }
 
 template <int kWidth, bool kPaper, class F>
@@ -330,6 +382,7 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
   Stride<V> stride;
   const V phase = lead_hips(tables, time, landing, by_clock, state, change, hips, stride);
   keep_pelvis(hips, state);
+  block.told.pelvis_x_m = stride.pelvis_m.x, block.told.pelvis_z_m = stride.pelvis_m.z;
   Feet<V> feet = plan_feet(tables, time, landing, by_clock, stride, hips, change, state, footing);
   Pelvis<V> pelvis = pelvis_over(tables, time, hips, stride, state, footing);
   Idle<V> idle;
@@ -356,6 +409,9 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
   if constexpr (kUneven)
     footing.last_rise_m[1] = footing.last_rise_m[0], footing.last_rise_m[0] = footing.rise_m;
   if (any(strikes)) {
+    V overhangs{};
+    if constexpr (kUneven) overhangs = footing.overhangs;
+    count_step(time, landing, asked.to, strikes, state, overhangs, block.told);
     move_frame<kWidth>(landing, strikes, block);
     if constexpr (kUneven) {
       change_footing(landing, strikes, feet.flat_toe_m.y, footing);
@@ -379,6 +435,7 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
       });
     }
     rest(tables, change, state);
+    end_report(change, block.told);
     if constexpr (kUneven) footing.next_rise = change.stands != V{} ? V{} : footing.next_rise;
   }
   if (any(lifts)) {

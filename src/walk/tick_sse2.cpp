@@ -66,6 +66,7 @@ void stand(const Tables& tables, const Origin& place, Block<1>& block) noexcept 
     state.pelvis_z_m[k] = tables.rest_lead_m;
   }
   state.wider_m = std::abs(left.stance_m) - std::abs(left.track_m);
+  block.footing.toe_y_m = left.toe_rest_m;
   if (tables.terrain != nullptr) stand_on_ground(tables, block);
   state.roll_ticks = state.flight_ticks = 1.0f;
   state.lift[0].x = state.lift[1].x = state.bounce.x = state.sway.x = 1.0f;

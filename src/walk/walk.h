@@ -4,7 +4,7 @@
 #include <cstdint>
 
 #include "walk/pose_places.h"
-#include "walk/state.h"
+#include "walk/block.h"
 #include "walk/tables.h"
 
 namespace gaitpad::anew {

@@ -1,5 +1,7 @@
 #include "walk/walk_frame.h"
 
+#include "animation/floor.h"
+#include "motion/leg_pose.h"
 #include "walk/feet.h"
 #include "walk/ground_plan.h"
 
@@ -25,6 +27,12 @@ Moment moment_of(const Block<1>& block) noexcept {
   return at;
 }
 
+// Whether the hips lead or have led: else a walk is where its clock is.
+bool runs_by_hips(const Moment& at, const Block<1>& block) noexcept {
+  const Change<float>& change = block.change;
+  return change.was_led != 0.0f || (!at.struck && change.led != 0.0f) || change.off_ticks != 0.0f;
+}
+
 // The step that runs: along the heading at its landing.
 float step_m(const Tables& tables, const State<float>& state) noexcept {
   const float ticks = state.flies != 0.0f ? state.flight_ticks : state.roll_ticks,
@@ -33,95 +41,123 @@ float step_m(const Tables& tables, const State<float>& state) noexcept {
   return state.landing_x_m * to.sine + state.landing_z_m * to.cosine;
 }
 
-// The hips without the tables' oscillation, on the ground of the step frame.
-Vec<float> hips_of(const Tables& tables, const Moment& at, const Block<1>& block) noexcept {
-  const State<float>& state = block.state;
-  const Change<float>& change = block.change;
-  const bool led = change.was_led != 0.0f || (!at.struck && change.led != 0.0f),
-             runs = led || change.off_ticks != 0.0f;
-  const Time<float> time = time_of(tables, state);
-  float ahead = state.ratio_behind, share = 1.0f;
-  if (!at.struck && !at.stands) {
-    const Way<float> to = way_of(heading_ahead(tables, state, time.to_strike + 1.0f));
-    ahead = is_uneven(tables) ? ratio_on_ground(change, state, block.footing)
-                              : planned_landing(tables, time, to, change, state).ratio;
-    share = planned_over(time, change) + change.off_over.x;
+// A joint in the frame of its pose.
+struct JointFrame {
+  vec3 place_m;
+  quat turn;
+};
+JointFrame joint_frame(const Skeleton& skeleton, const vec3& root_m, std::span<const quat> local,
+                       int joint) noexcept {
+  JointFrame frame{vec3(0.0), local[joint]};
+  for (; joint > 0; ) {
+    const Joint& of = skeleton.joints[joint];
+    frame.place_m = of.offset_m + local[joint] * frame.place_m;
+    joint = of.parent;
+    frame.turn = local[joint] * frame.turn;
   }
-  const float shown = at.stands ? 0.0f : runs ? change.shown : 1.0f;
-  const Vec<float> off =
-      way_of(state.heading_rad) * (read_pelvis(tables, time, runs ? change.phase : state.phase,
-                                               state.ratio_behind, ahead, share) *
-                                   shown);
-  return {state.pelvis_x_m[0] - off.x, 0.0f, state.pelvis_z_m[0] - off.z};
+  frame.place_m = root_m + local[0] * frame.place_m;
+  return frame;
 }
 
 void report_feet(const WalkModel& model, const Tables& tables, const Placement& placed,
-                 const Pose& pose, WalkFrame& frame) noexcept {
-  JointFrames joints;
-  forward_kinematics(model.cycle.skeleton, pose, joints);
+                 const vec3& root_m, std::span<const quat> local, WalkFrame& frame) noexcept {
   for (const Side side : {kLeftSide, kRightSide}) {
     const LegModel& leg = model.leg[side].model;
-    const quat foot = joints.rotation[leg.joints.ankle] * glm::conjugate(leg.standing[2]);
-    const vec3& ankle_m = joints.position_m[leg.joints.ankle];
-    frame.heel_m[side] = ankle_m + foot * leg.heel_m;
-    frame.toe_m[side] = ankle_m + foot * leg.toe_m;
-    const auto ground_m = [&](const vec3& place_m) {
-      return ground_height(tables, placed, from_world(placed, place_m)) + placed.place_m.y;
-    };
-    frame.heel_ground_m[side] = ground_m(frame.heel_m[side]);
-    frame.toe_ground_m[side] = ground_m(frame.toe_m[side]);
+    const JointFrame ankle = joint_frame(model.cycle.skeleton, root_m, local, leg.joints.ankle);
+    const quat foot = ankle.turn * glm::conjugate(leg.standing[2]);
+    frame.heel_m[side] = ankle.place_m + foot * leg.heel_m;
+    frame.toe_m[side] = ankle.place_m + foot * leg.toe_m;
+  }
+  if (!is_uneven(tables)) {
+    frame.heel_ground_m = frame.toe_ground_m = {placed.place_m.y, placed.place_m.y};
+    return;
+  }
+  const std::array<double, 4> ground = heights_at<4>(
+      Floor{*tables.terrain, placed},
+      {from_world(placed, frame.heel_m[0]), from_world(placed, frame.heel_m[1]),
+       from_world(placed, frame.toe_m[0]), from_world(placed, frame.toe_m[1])});
+  for (const int side : {0, 1}) {
+    frame.heel_ground_m[side] = ground[side] + placed.place_m.y;
+    frame.toe_ground_m[side] = ground[2 + side] + placed.place_m.y;
   }
 }
 
 }  // namespace
 
-void report(const WalkModel& model, const Tables& tables, const Block<1>& block, const Pose& pose,
-            Report& report) noexcept {
+Placement root_of(const Block<1>& block) noexcept {
   const State<float>& state = block.state;
+  const Told<float>& told = block.told;
   const Origin& origin = block.origin[0];
+  const Vec<float> beside =
+      way_of(state.heading_rad) * Vec<float>{told.pelvis_x_m, 0.0f, told.pelvis_z_m};
+  const vec3 hips_m(state.pelvis_x_m[0] - beside.x, 0.0, state.pelvis_z_m[0] - beside.z);
+  return {to_world({vec3(origin.x_m, 0.0, origin.z_m), origin.heading_rad}, hips_m),
+          origin.heading_rad + static_cast<double>(state.heading_rad)};
+}
+
+float phase_of(const Block<1>& block) noexcept {
+  return runs_by_hips(moment_of(block), block) ? block.change.phase : block.state.phase;
+}
+
+void report(const WalkModel& model, const Tables& tables, const Block<1>& block,
+            const Placement& before, const vec3& root_m, std::span<const quat> local,
+            WalkFrame& frame) noexcept {
+  const State<float>& state = block.state;
+  const Told<float>& told = block.told;
   const Placement& placed = block.placed[0];
   const Moment at = moment_of(block);
-  WalkFrame& frame = report.frame;
-  const Stage stage = at.stands ? Stage::idle : at.flies ? Stage::flight : Stage::roll;
-  if (frame.stage == Stage::flight && stage != Stage::flight) {
-    ++frame.steps[frame.swing];
-    frame.overhangs += report.overhangs;
-    report.last_step_ticks = report.step_ticks;
+  frame.stage = at.stands ? Stage::idle : at.flies ? Stage::flight : Stage::roll;
+  // Of one that stands: the foot that has landed last.
+  frame.swing = at.stands ? side_of(!at.right) : side_of(at.flies == at.right);
+  int step_ticks = at.ticks, last_ticks = static_cast<int>(told.step_ticks[0]);
+  if (at.struck) {  // the step that has ended is still shown
+    step_ticks = last_ticks;
+    last_ticks = static_cast<int>(told.step_ticks[1]);
   }
-  frame.stage = stage;
-  if (!at.stands) frame.swing = side_of(at.flies == at.right);
   for (const Side side : {kLeftSide, kRightSide}) {
-    const bool swings = frame.swing == side;
-    frame.heel_planted[side] = at.stands || (stage == Stage::roll && swings);
+    const bool swings = frame.swing == side, counts = at.struck && swings;
+    frame.heel_planted[side] = at.stands || (frame.stage == Stage::roll && swings);
     frame.toe_planted[side] = at.stands || !swings;
+    frame.steps[side] = static_cast<int>(told.steps[side]) - counts;
+    frame.stride_m[side] = told.stride_m[side];
+    frame.ik_iterations[side] = static_cast<int>(told.iterations[side]);
+    frame.ik_error_m[side] = told.error_m[side];
+    frame.ik_failed[side] = told.failed[side] != 0.0f;
   }
-  if (at.stands) {
-    frame.stride_m = {};
-    report.step_ticks = report.last_step_ticks = 0;
-  } else if (!at.struck) {
-    frame.stride_m[side_of(at.right)] = step_m(tables, state);
-    report.step_ticks = at.ticks;
-    report.overhangs = block.footing.overhangs != 0.0f;
-  }
-  const int before = report.last_step_ticks > 0 ? report.last_step_ticks : report.step_ticks;
-  frame.speed_m_s = at.stands
-                        ? 0.0
-                        : (frame.stride_m[0] + frame.stride_m[1]) /
-                              ((report.step_ticks + before) * static_cast<double>(tables.tick_s));
-  const Vec<float> hips = hips_of(tables, at, block);
-  const vec3 hips_m =
-      to_world({vec3(origin.x_m, 0.0, origin.z_m), origin.heading_rad}, vec3(hips.x, 0.0, hips.z));
-  const double heading_rad = origin.heading_rad + static_cast<double>(state.heading_rad);
-  const Placement was = report.has_root ? report.root : Placement{hips_m, heading_rad};
-  frame.root_moved_m = from_world({vec3(0.0), was.heading_rad}, hips_m - was.place_m);
-  frame.root_turned_rad = heading_rad - was.heading_rad;
-  report.root = {hips_m, heading_rad};
-  report.has_root = true;
-  frame.root_m = to_world(placed, hips_m);
-  frame.heading_rad = placed.heading_rad + heading_rad;
+  if (!at.stands && !at.struck) frame.stride_m[side_of(at.right)] = step_m(tables, state);
+  frame.overhangs = static_cast<int>(told.overhangs);
+  const int ticks = step_ticks + (last_ticks > 0 ? last_ticks : step_ticks);
+  frame.speed_m_s = at.stands ? 0.0
+                              : (frame.stride_m[0] + frame.stride_m[1]) /
+                                    (ticks * static_cast<double>(tables.tick_s));
+  const Placement root = root_of(block);
+  frame.root_moved_m =
+      from_world({vec3(0.0), before.heading_rad}, root.place_m - before.place_m);
+  frame.root_turned_rad = root.heading_rad - before.heading_rad;
+  frame.root_m = to_world(placed, root.place_m);
+  frame.heading_rad = placed.heading_rad + root.heading_rad;
   frame.turn_rate_rad_s = state.turn_rad_s.x;
-  frame.pelvis_m = pose.root_m;
-  report_feet(model, tables, placed, pose, frame);
+  frame.pelvis_m = root_m;
+  report_feet(model, tables, placed, root_m, local, frame);
 }
 
 }  // namespace gaitpad::anew
+
+namespace gaitpad {
+
+std::array<LegAngles, 2> leg_angles(const WalkModel& model, const Pose& pose) noexcept {
+  std::array<LegAngles, 2> angles_rad{};
+  for (const int side : {0, 1}) {
+    const auto turn = [&](int j) {
+      const LegJointFrame& frame = model.leg[side].joint[j];
+      return glm::conjugate(frame.before) * pose.local[frame.joint] *
+             glm::conjugate(frame.after);
+    };
+    const AnglesXzy hip = angles_xzy(turn(0)), knee = angles_xzy(turn(1)),
+                    ankle = angles_xzy(turn(2));
+    angles_rad[side] = {hip.x, hip.z, hip.y, knee.x, ankle.x, ankle.z, ankle.y};
+  }
+  return angles_rad;
+}
+
+}  // namespace gaitpad

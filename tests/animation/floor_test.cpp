@@ -81,11 +81,13 @@ TEST(AskedGround, MayRiseInAnyDirection) {
 }
 
 // The place of the sole below the toe joint.
-vec3 ball_of(const WalkModel& model, const WalkState& state, Side side) {
+vec3 ball_of(const WalkModel& model, const Pose& pose, Side side) {
   const LegBuild& leg = model.leg[side];
-  const FootPose& pose = state.foot[side].pose;
-  return to_world(state.placed,
-                  pose.heel_m + pose.tilt * pose.yaw * (leg.ball_m - leg.model.heel_m));
+  static JointFrames joints;
+  forward_kinematics(model.cycle.skeleton, pose, joints);
+  const int ankle = leg.model.joints.ankle;
+  return joints.position_m[ankle] +
+         joints.rotation[ankle] * glm::conjugate(leg.model.standing[2]) * leg.ball_m;
 }
 
 // Walks in circles and moves the walk by a whole number of waves: planted feet do not move, and
@@ -118,7 +120,7 @@ TEST(AskedGround, IsTheGroundOfThePlaceThatAWalkIsPutTo) {
       if (frame.heel_planted[side])
         off_m = std::max(off_m, std::abs(heel.y - frame.heel_ground_m[side]));
       if (frame.heel_planted[side] && frame.toe_planted[side]) {
-        const vec3 ball = ball_of(model, state, static_cast<Side>(side));
+        const vec3 ball = ball_of(model, pose, static_cast<Side>(side));
         ball_off_m =
             std::max(ball_off_m, std::abs(ball.y - ask_waves(nullptr, ball.x, ball.z).height_m));
       }

@@ -56,7 +56,7 @@ class MadeWalker {
     for (int i = 0; i < ticks; ++i) {
       advance(model_, params, mode_, kDt, state_, pose_);
       frames_.push_back(state_.frame);
-      angles_rad_.push_back(state_.legs.angles_rad);
+      angles_rad_.push_back(leg_angles(model_, pose_));
     }
   }
   const WalkModel& model() const { return model_; }

@@ -1,6 +1,6 @@
 // Feeds numbers out of range to every function that takes run-time inputs: none crashes, none
 // reaches a pose, each is counted.
-#include "animation/sound_input.h"
+#include "walk/sound_input.h"
 
 #include <gtest/gtest.h>
 
@@ -94,7 +94,7 @@ TEST(SoundInput, ABadPlaceIsCountedAsTheOrigin) {
     const WalkState state = standing(adult(), vec3(bad, bad, 2.0), pose);
     EXPECT_EQ(state.frame.bad_inputs, 1) << bad;
     EXPECT_TRUE(is_finite(pose)) << bad;
-    EXPECT_NEAR(state.path.hips_m.z, 2.0, 1e-9);
+    EXPECT_NEAR(state.root.place_m.z, 2.0, 1e-9);
   }
 }
 

@@ -33,7 +33,7 @@ class TerrainJudge {
     const WalkFrame& frame = state.frame;
     pose_skeleton(pose);
     for (Side side : {kLeftSide, kRightSide}) see_foot(frame, side);
-    see_smoothness(state, pose);
+    see_smoothness(pose);
     for (bool failed : frame.ik_failed) worst.failures += failed;
     worst.landings = frame.steps[0] + frame.steps[1];
     worst.end_z_m = pose.root_m.z;
@@ -133,10 +133,11 @@ class TerrainJudge {
           std::max({worst.overhang_mm, 1e3 * (piece.from_m - p.z), 1e3 * (p.z - piece.to_m)});
   }
 
-  void see_smoothness(const WalkState& state, const Pose& pose) {
+  void see_smoothness(const Pose& pose) {
+    const std::array<LegAngles, 2> angles_rad = leg_angles(model_, pose);
     for (int side : {0, 1}) {
       for (int j = 0; j < kLegDofs; ++j) {
-        const double now = state.legs.angles_rad[side][j];
+        const double now = angles_rad[side][j];
         if (j == kKneeX) {
           worst.knee_min_deg = std::min(worst.knee_min_deg, now / kDegree);
           worst.knee_max_deg = std::max(worst.knee_max_deg, now / kDegree);
@@ -151,7 +152,7 @@ class TerrainJudge {
       worst.pelvis_mm =
           std::max(worst.pelvis_mm, 1e3 * glm::length(pose.root_m - 2.0 * root_[0] + root_[1]));
     }
-    angles_ = {state.legs.angles_rad, angles_[0]};
+    angles_ = {angles_rad, angles_[0]};
     root_ = {pose.root_m, root_[0]};
   }
 

@@ -61,7 +61,7 @@ class MadeBody : public MadeWalker {
   // Angle of the upper arm against the walker's vertical, forward positive.
   double swing(Side side) const {
     const ArmChain& j = model().body.arm[side].joints;
-    const vec3 upper = rotation_y(-state().path.heading_rad) * (at(j.elbow) - at(j.shoulder));
+    const vec3 upper = rotation_y(-state().root.heading_rad) * (at(j.elbow) - at(j.shoulder));
     return gaitpad::atan2(upper.z, -upper.y) / kDegree;
   }
 
@@ -118,9 +118,9 @@ TEST(WalkBody, ALeadingHeadIsAheadOfTheTurn) {
   MadeBody plain, leads;
   plain.walk(1200, {}, 0.6, 0.5);
   leads.walk(1200, style({{"head.lead", 1.0}}), 0.6, 0.5);
-  EXPECT_LT(leads.state().gait.turn_rate.x, 0.0);
+  EXPECT_LT(leads.state().frame.turn_rate_rad_s, 0.0);
   const double ahead = wrapped(heading_of(leads.gaze()) - heading_of(plain.gaze()));
-  EXPECT_NEAR(ahead, 0.6 * leads.state().gait.turn_rate.x, 1.0 * kDegree);
+  EXPECT_NEAR(ahead, 0.6 * leads.state().frame.turn_rate_rad_s, 1.0 * kDegree);
 }
 
 TEST(WalkBody, SpineWeightsMoveTheBendAndNotTheNeck) {
@@ -328,7 +328,7 @@ TEST(WalkBody, ARailRisesEvenlyOverStairs) {
   int on_stairs = 0;
   for (int i = 0; i < 4800; ++i) {
     walker.step(rail, 0.5);
-    const vec3 hips = walker.state().path.hips_m;
+    const vec3 hips = walker.state().root.place_m;
     if (hips.z < 4.0 || hips.z > 5.5) continue;
     ++on_stairs;
     const double line = 0.17 / 0.28 * (hips.z - 3.0) + 0.085;  // the mean height of the treads
@@ -372,7 +372,6 @@ TEST(WalkBody, ArmsSwingFartherWithLongerAndWithQuickerSteps) {
 TEST(WalkBody, AtTheDatasPaceArmsSwingAsInTheData) {
   MadeBody walker;
   walker.pace(2400, adult().source_step_m, adult().body.own_step_s);
-  EXPECT_NEAR(walker.state().gait.arm_swing[0], 1.0, 1e-6);
   const double arc = arm_arc(adult().source_step_m, adult().body.own_step_s).width();
   EXPECT_GT(arc, 24.6);  // degrees: people's arc of the arm at free speed
   EXPECT_LT(arc, 32.0);
@@ -426,7 +425,7 @@ TEST(WalkBody, InPaperModeItIsTheDatas) {
   walker.walk(2000, {}, 0.8);
   ASSERT_NEAR(presence(walker.state()), 1.0, 1e-9);
   Pose data;
-  sample_local(adult().cycle, walker.state().clock.phase, data);
+  sample_local(adult().cycle, shown_phase(walker.state()), data);
   for (const ArmBuild& arm : adult().body.arm) {
     for (const int j : {arm.joints.shoulder, arm.joints.elbow, arm.joints.wrist}) {
       EXPECT_LT(

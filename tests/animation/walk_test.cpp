@@ -268,10 +268,10 @@ RateRun run_at(int rate_hz, const vec2& stick) {
   const GaitLimits limits = gait_limits(adult());
   for (int tick = 1; tick <= 20 * rate_hz; ++tick) {
     const Stick asks{.left = tick <= 16 * rate_hz ? stick : vec2(0.0)};
-    const vec3 before_m = state.path.hips_m;
+    const vec3 before_m = state.root.place_m;
     advance(adult(), gait_params(asks, StyleValues{}, limits), IkMode::robust, 1.0 / rate_hz, state,
             pose);
-    run.walked_m += glm::distance(state.path.hips_m, before_m);
+    run.walked_m += glm::distance(state.root.place_m, before_m);
     if (tick * 10 % rate_hz == 0) run.poses.push_back(pose);
   }
   EXPECT_EQ(state.frame.bad_inputs, 0);

@@ -14,7 +14,7 @@ Work work(const char* name, double most_ratio = 0.0) {
 }
 
 TEST(BenchRow, QuantilesLieBetweenTheRounds) {
-  const BenchRow row{nullptr, -1, {40.0, 10.0, 30.0, 20.0, 50.0}};
+  const BenchRow row{nullptr, {40.0, 10.0, 30.0, 20.0, 50.0}};
   EXPECT_DOUBLE_EQ(row.median(), 30.0);
   EXPECT_DOUBLE_EQ(row.quantile(0.25), 20.0);
   EXPECT_DOUBLE_EQ(row.quantile(0.0), 10.0);
@@ -25,23 +25,11 @@ TEST(BenchRow, QuantilesLieBetweenTheRounds) {
 TEST(BenchList, ARowTellsItsRatioToItsPeerAndWhetherItsBoundIsMet) {
   const Work peer = work("playback"), met = work("fast", 2.0), missed = work("slow", 2.0);
   const std::vector<BenchRow> rows = {
-      {&peer, -1, {100.0}}, {&met, -1, {200.0}}, {&missed, -1, {201.0}}};
+      {&peer, {100.0}}, {&met, {200.0}}, {&missed, {201.0}}};
   EXPECT_FALSE(json_of(rows[0], rows).contains("met"));
   EXPECT_DOUBLE_EQ(json_of(rows[1], rows)["ratio"], 2.0);
   EXPECT_TRUE(json_of(rows[1], rows)["met"].get<bool>());
   EXPECT_FALSE(json_of(rows[2], rows)["met"].get<bool>());
-}
-
-// A tick solves two legs, so a leg's share is half of the stage.
-TEST(BenchList, AStageOfTheTickIsALegsShareToo) {
-  const Work stages = work("stage");
-  const std::vector<BenchRow> rows = {{&stages, 2, {60.0}}};
-  const auto list = list_of(rows, "a processor");
-  ASSERT_EQ(list.size(), 2u);
-  EXPECT_EQ(list[0]["stage"], "ik");
-  EXPECT_EQ(list[1]["name"], "leg_ik");
-  EXPECT_DOUBLE_EQ(list[1]["ns"], 30.0);
-  EXPECT_EQ(list[1]["processor"], "a processor");
 }
 
 // Each work runs in each round, except those with a larger `every`.

@@ -167,16 +167,16 @@ TEST(RunMeter, MeasuresWhatThePosesShow) {
   constexpr int kTicks_ = 1200;
   std::array<double, 2> way_m{}, moving_ticks{};
   std::array<vec3, 2> last_m;
-  for (int i = 0; i < 2; ++i) last_m[i] = simulation.walkers()[i].state.path.hips_m;
+  for (int i = 0; i < 2; ++i) last_m[i] = simulation.walkers()[i].state.root.place_m;
   for (int tick = 0; tick < kTicks_; ++tick) {
     const auto reports = tick == 120 ? std::vector{made_report(0x80, 0x10)} : std::vector<Report>();
     simulation.step(reports);
     meter.look(simulation);
     for (int i = 0; i < 2; ++i) {
       const Walker& walker = simulation.walkers()[i];
-      const vec3 step_m = walker.state.path.hips_m - last_m[i];
+      const vec3 step_m = walker.state.root.place_m - last_m[i];
       way_m[i] += std::hypot(step_m.x, step_m.z);
-      last_m[i] = walker.state.path.hips_m;
+      last_m[i] = walker.state.root.place_m;
       moving_ticks[i] += walker.state.frame.stage != Stage::idle;
     }
   }

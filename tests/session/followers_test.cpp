@@ -28,7 +28,7 @@ Simulation walked_varied(const SimulationConfig& config, int ticks) {
 }
 
 const vec3& hips_m(const Simulation& simulation, int member) {
-  return simulation.followers().crowd().state(member).path.hips_m;
+  return simulation.followers().crowd().state(member).root.place_m;
 }
 
 double on_floor_m(const vec3& a, const vec3& b) { return std::hypot(a.x - b.x, a.z - b.z); }
@@ -38,7 +38,7 @@ double least_distance_m(const Simulation& simulation) {
   const int size = simulation.followers().size();
   for (int i = 0; i < size; ++i) {
     for (const Walker& walker : simulation.walkers())
-      least_m = std::min(least_m, on_floor_m(hips_m(simulation, i), walker.state.path.hips_m));
+      least_m = std::min(least_m, on_floor_m(hips_m(simulation, i), walker.state.root.place_m));
     for (int j = 0; j < i; ++j)
       least_m = std::min(least_m, on_floor_m(hips_m(simulation, i), hips_m(simulation, j)));
   }
@@ -83,7 +83,7 @@ TEST(Followers, KeepTheirPlacesWhileTheFirstWalksAndTurns) {
     const Walker& first = simulation.walkers().front();
     for (int i = 0; i < 40; ++i) {
       const vec3 way_m = hips_m(simulation, i) - simulation.followers().start_m(i);
-      ASSERT_LT(on_floor_m(way_m, first.state.path.hips_m), 0.9) << tick << " " << i;
+      ASSERT_LT(on_floor_m(way_m, first.state.root.place_m), 0.9) << tick << " " << i;
     }
   }
 }

@@ -43,7 +43,7 @@ std::uint64_t print_of(const SessionFrame& frame) {
         for (int k = 0; k < 4; ++k) hash.add(pose->local[j][k]);
       }
     }
-    add(w.landing_m);
+    for (const vec3& heel_m : w.walk.heel_m) add(heel_m);
     add({w.phase, w.params.hip_sway, w.style.fatigue});
   }
   for (const double x :

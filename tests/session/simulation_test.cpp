@@ -339,8 +339,8 @@ TEST(Simulation, AResetRestoresTheStart) {
   step(s, {made_command("style 1 even"), made_report(0x60, 0x00), made_command("reset")}, 600);
   for (std::size_t i = 0; i < 3; ++i) {
     const Walker &w = s.walkers()[i], &f = fresh.walkers()[i];
-    EXPECT_EQ(w.state.path.hips_m, f.state.path.hips_m) << i;
-    EXPECT_EQ(w.state.path.heading_rad, f.state.path.heading_rad) << i;
+    EXPECT_EQ(w.state.root.place_m, f.state.root.place_m) << i;
+    EXPECT_EQ(w.state.root.heading_rad, f.state.root.heading_rad) << i;
     for (int j = 0; j < w.pose.joint_count; ++j) ASSERT_EQ(w.pose.local[j], f.pose.local[j]);
     EXPECT_EQ(w.overrides.is_set, GaitOverrides().is_set);
     EXPECT_TRUE(w.values == s.styles()[w.style]);
@@ -505,8 +505,8 @@ SimulationConfig zoned(int walkers = 1) {
 
 void walk_to(Simulation& s, double z_m) {
   s.take_report(made_report(0x80, 0x00));
-  for (int k = 0; k < 10000 && s.walkers()[0].state.path.hips_m.z < z_m; ++k) s.step({});
-  EXPECT_GE(s.walkers()[0].state.path.hips_m.z, z_m);
+  for (int k = 0; k < 10000 && s.walkers()[0].state.root.place_m.z < z_m; ++k) s.step({});
+  EXPECT_GE(s.walkers()[0].state.root.place_m.z, z_m);
 }
 std::string style_of(const Simulation& s, int walker = 0) {
   return s.styles()[s.walkers()[walker].style].name;
@@ -653,7 +653,7 @@ TEST(Builds, ChangeTheKneeAngle) {
     std::vector<double> knee_rad;
     for (int k = 0; k < 720; ++k) {
       s.step({});
-      knee_rad.push_back(s.walkers()[0].state.legs.angles_rad[kLeftSide][kKneeX]);
+      knee_rad.push_back(leg_angles(*s.walkers()[0].model, s.walkers()[0].pose)[kLeftSide][kKneeX]);
     }
     EXPECT_EQ(s.walkers()[0].ik_failures, 0);
     return knee_rad;

@@ -86,7 +86,7 @@ Straightness straightness(const StickCalibration& calibration, int ticks, const 
     simulation.step(std::vector<Report>{report_of(raw(tick))});
     const WalkState& state = simulation.walkers()[0].state;
     if (!simulation.heel_struck() || state.frame.swing != kLeftSide) continue;
-    const double at_m = state.path.hips_m.x;
+    const double at_m = state.root.place_m.x;
     if (is_begun) {
       ++found.strides;
       found.longest_m = std::max(found.longest_m, std::fabs(at_m - last_m));

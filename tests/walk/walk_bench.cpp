@@ -1,12 +1,9 @@
-// Processor time of a walk's tick, new and old, over bare playback of its motion.
+// Processor time of a walk's tick over bare playback of its motion.
 #include <ctime>
 
-#include "gaitpad/config_files.h"
 #include "gaitpad/crowd.h"
 #include "motion/stencil.h"
-#include "tests/animation/made_walker.h"
-#include "tests/folders.h"
-#include "tests/walk/old_walk.h"
+#include "tests/walk/made_block.h"
 
 namespace gaitpad::anew {
 namespace {
@@ -28,12 +25,6 @@ double quickest_ns(int calls, const Work& work) {
     best = std::min(best, (now_s() - begin) / calls);
   }
   return best * 1e9;
-}
-
-GaitParams params_of(double x, double y) {
-  Stick stick;
-  stick.left = vec2(x, y);
-  return gait_params(stick, StyleValues{}, gait_limits(adult()));
 }
 
 // The peer of `gaitpad bench`: one joint after another, Catmull-Rom through four samples.
@@ -87,19 +78,13 @@ double new_ns(const Tables& tables, const std::vector<Block<1>>& moments, int wa
 }
 
 void measure() {
-  const auto tables = tables_of(adult(), kDt);
+  Alone walk;
+  const Tables& tables = walk.tables;
+  walk.walk(params_of(0.0, 0.8), 4 * kRate);
   std::vector<Block<1>> moments;
-  Pose pose;
-  const GaitParams params = params_of(0.0, 0.8);
-  WalkState old = standing(adult(), vec3(0.0), pose);
-  const auto step_old = [&] { gaitpad::advance(adult(), params, IkMode::robust, kDt, old, pose); };
-  for (int tick = 0; tick < 4 * kRate || !has_just_struck(old); ++tick) step_old();
-  Block<1> walk = taken_over(old, params);
-  quat* local = pose.local.data();
-  vec3* root = &pose.root_m;
   for (int i = 0; i < kMoments; ++i) {
-    advance(*tables, walk, Poses{&local, &root, 1});
-    moments.push_back(walk);
+    walk.step();
+    moments.push_back(walk.block);
     if (i % 4 == 1) moments.back().state.asked.length_m[i / 4 % 2] *= 1.05f;
     if (i % 4 == 3) moments.back().state.asked.turn_rad_s = 0.3f;
   }
@@ -108,45 +93,38 @@ void measure() {
     std::printf("%-28s %7.1f ns  %5.2f x playback\n", name, ns, ns / playback);
   };
   row("playback", playback);
-  row("old, alone", quickest_ns(5000, step_old));
-  row("new, alone", new_ns<1>(*tables, {moments[0]}, 1));
+  row("tick, alone", new_ns<1>(tables, {moments[0]}, 1));
+  Pose pose;
+  WalkState state = standing(adult(), vec3(0.0), pose);
+  const GaitParams params = params_of(0.0, 0.8);
+  const auto step = [&] { gaitpad::advance(adult(), params, IkMode::robust, kDt, state, pose); };
+  for (int tick = 0; tick < 4 * kRate; ++tick) step();
+  row("advance(), alone", quickest_ns(5000, step));
   constexpr int kCrowd = 1000;
-  row("new, 1,000 in lanes of 1", new_ns<1>(*tables, moments, kCrowd));
-  row("new, 1,000 in lanes of 4", new_ns<4>(*tables, moments, kCrowd));
-  if (__builtin_cpu_supports("avx2"))
-    row("new, 1,000 in lanes of 8", new_ns<8>(*tables, moments, kCrowd));
+  row("1,000 in lanes of 1", new_ns<1>(tables, moments, kCrowd));
+  row("1,000 in lanes of 4", new_ns<4>(tables, moments, kCrowd));
+  if (__builtin_cpu_supports("avx2")) row("1,000 in lanes of 8", new_ns<8>(tables, moments, kCrowd));
   if (__builtin_cpu_supports("avx512dq"))
-    row("new, 1,000 in lanes of 16", new_ns<16>(*tables, moments, kCrowd));
+    row("1,000 in lanes of 16", new_ns<16>(tables, moments, kCrowd));
   // Four walks of the styles of `gaitpad bench`, over four even ones; alone, and side by side.
   std::vector<Block<1>> even, styled;
   for (const char* name : {"even", "stiff_hip", "stiff_knee", "limp_left"}) {
-    const StyleValues style =
-        value_of(load_style(kSourceFolder + "/config/styles/" + name + ".toml"));
     for (const bool is_styled : {false, true}) {
-      Stick stick;
-      stick.left = vec2(0.0, 0.8);
-      const GaitParams of_style =
-          gait_params(stick, is_styled ? style : StyleValues{}, gait_limits(adult()));
-      WalkState from = standing(adult(), vec3(0.0), pose);
-      const auto step = [&] {
-        gaitpad::advance(adult(), of_style, IkMode::robust, kDt, from, pose);
-      };
-      for (int tick = 0; tick < 4 * kRate || !has_just_struck(from); ++tick) step();
-      Block<1> block = taken_over(from, of_style);
-      take_style(from, of_style, block);
-      (is_styled ? styled : even).push_back(block);
+      Alone of_style;
+      of_style.walk(params_of(0.0, 0.8, is_styled ? shipped(name) : StyleValues{}), 4 * kRate);
+      (is_styled ? styled : even).push_back(of_style.block);
     }
   }
   std::printf("four styled over four even: alone %.2f, in lanes of 4 %.2f\n",
-              new_ns<1>(*tables, styled, 4) / new_ns<1>(*tables, even, 4),
-              new_ns<4>(*tables, styled, 4) / new_ns<4>(*tables, even, 4));
+              new_ns<1>(tables, styled, 4) / new_ns<1>(tables, even, 4),
+              new_ns<4>(tables, styled, 4) / new_ns<4>(tables, even, 4));
   const auto model = std::make_shared<const WalkModel>(adult());
   std::vector<CrowdMember> members(kCrowd);
   for (CrowdMember& member : members) member.model = model;
   Crowd crowd = value_of(Crowd::create(members, IkMode::robust));
   for (int i = 0; i < kCrowd; ++i) crowd.params()[i] = params_of(i % 4 == 3 ? 0.3 : 0.0, 0.8);
   for (int i = 0; i < 600; ++i) crowd.advance(kDt);
-  row("old, 1,000 in widest lanes", quickest_ns(20, [&] { crowd.advance(kDt); }) / kCrowd);
+  row("Crowd, 1,000 in widest lanes", quickest_ns(20, [&] { crowd.advance(kDt); }) / kCrowd);
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 // One call moves all of them on by one tick, to the same bits as advance() of gaitpad/walk.h moves
 // each of them, whatever the width of the processor's registers and the number of threads.
 #pragma once
+#include <cstddef>
 #include <memory>
 #include <span>
 #include <vector>
@@ -17,6 +18,8 @@
 
 namespace gaitpad {
 
+class WalkBlock;  // walks that are computed side by side
+
 struct CrowdMember {
   std::shared_ptr<const WalkModel> model;  // never null; members may share one
   vec3 place_m{0.0};  // place at the beginning, in the world, within kFarthest_m; it faces +z
@@ -26,14 +29,20 @@ struct CrowdMember {
 // call with another index has no effect.
 class Crowd {
  public:
-  Crowd() = default;  // Has no members.
+  Crowd() noexcept;  // Has no members.
   // Makes a crowd in which all members stand. Error: `members[3].model is null`, or a place that is
   // not finite or too far.
   static Result<Crowd> create(std::span<const CrowdMember> members, IkMode mode = IkMode::robust);
   // Makes a crowd of members that create() would accept.
   explicit Crowd(std::span<const CrowdMember> members, IkMode mode = IkMode::robust);
 
-  int size() const noexcept { return static_cast<int>(states_.size()); }
+  Crowd(const Crowd& from);
+  Crowd& operator=(const Crowd& from);
+  Crowd(Crowd&& from) noexcept;
+  Crowd& operator=(Crowd&& from) noexcept;
+  ~Crowd();
+
+  int size() const noexcept { return static_cast<int>(models_.size()); }
   // The parameters of each member in the next ticks; at the beginning all stand.
   std::span<GaitParams> params() noexcept { return params_; }
   // Advances all members by one tick of `dt_s` seconds, a constant of the run. No heap, lock or
@@ -45,7 +54,11 @@ class Crowd {
   void advance_block(int number, double dt_s) noexcept;
 
   const WalkModel& model(int member) const noexcept { return *models_[member]; }
-  const WalkState& state(int member) const noexcept { return states_[member]; }
+  // The state that advance() of one would have. It is put together here: ask for it where it is
+  // needed, not for each member in each tick.
+  WalkState state(int member) const noexcept;
+  // WalkState::root of a member.
+  Placement root(int member) const noexcept;
   // The pose of the last tick: the place of joint 0 in the world, and each joint's local rotation.
   const vec3& root_m(int member) const noexcept { return roots_m_[member]; }
   std::span<const quat> local(int member) const noexcept {
@@ -59,17 +72,28 @@ class Crowd {
   void move(int member, const Placement& by) noexcept;
   void put(int member, const vec3& place_m, double heading_rad) noexcept;
 
+  // Bytes of the members' states, parameters and poses.
+  std::size_t bytes() const noexcept;
+
  private:
+  // Where a member's walk is.
+  struct Lane {
+    int block = 0, lane = 0;
+  };
   bool has(int member) const noexcept { return member >= 0 && member < size(); }
   void store_pose(int member, const Pose& pose) noexcept;
+  void put_state(int member, const WalkState& state) noexcept;
 
   IkMode mode_ = IkMode::robust;
-  std::vector<int> order_;  // members in the order in which they are advanced: grouped by model
-  std::vector<int> block_begin_{
-      0};  // index of each block's first entry in `order_`, then the end; a block has one model
+  // Members of one model stand in blocks, in their order.
+  std::vector<std::unique_ptr<WalkBlock>> blocks_;
+  std::vector<int> order_;        // members, by block and lane
+  std::vector<int> block_begin_;  // index of each block's first entry in `order_`
+  std::vector<Lane> lane_;
   std::vector<std::shared_ptr<const WalkModel>> models_;
   std::vector<GaitParams> params_;
-  std::vector<WalkState> states_;
+  std::vector<Placement> placed_;
+  std::vector<int> bad_inputs_;
   std::vector<vec3> roots_m_;
   std::vector<std::size_t> first_joint_{0};  // index of each member's first joint in `local_`, then
                                              // the end

@@ -50,8 +50,6 @@ struct WalkerFrame {
   double phase = 0.0;            // phase of the source's cycle, 0 .. 1 from the right heel strike
                                  // on
   double presence = 0.0;         // share of the source's motion that shows: 0 standing .. 1 walking
-  std::array<vec3, 2> lift_m{};  // where the heel was when its present or last flight began, world
-  vec3 landing_m{0.0};           // where the heel of the present or last step lands, world
   std::int64_t ik_failures = 0;
 };
 

@@ -119,6 +119,10 @@ struct FootprintLine {
   double most_ratio = 0.0;  // largest ratio of the tables
 };
 
+namespace anew {
+struct BuildTables;
+}
+
 // A character's model; walk_model() fills it. A program may replace `terrain` before the first walk
 // stands on it, by one that check() accepts. Lengths are the character's, in metres.
 struct WalkModel {
@@ -144,6 +148,7 @@ struct WalkModel {
   std::vector<int> kept;  // twist joints in the legs, which keep their standing rotation
   PoseRows above;         // the data's rotations of all joints that the legs do not set
   UpperBodyModel body;
+  std::shared_ptr<const anew::BuildTables> tables;  // all of this as a tick reads it
 };
 
 // Retargets a cycle by the ratio of the leg lengths: lengths grow with the leg, times with the

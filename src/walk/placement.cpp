@@ -1,5 +1,5 @@
 // Places a walk in the world, and lets it follow a body that an engine moves.
-#include "animation/placement.h"
+#include "walk/placement.h"
 
 #include <cmath>
 #include <limits>
@@ -35,14 +35,6 @@ void place_in_world(const Placement& placed, WalkFrame& frame, vec3& root_m, qua
   }
 }
 
-void report_root(const RootBefore& before, WalkState& state) noexcept {
-  WalkFrame& frame = state.frame;
-  const PathState& path = state.path;
-  frame.root_m = path.hips_m;
-  frame.root_turned_rad = path.heading_rad - before.heading_rad;
-  frame.root_moved_m = from_world({vec3(0.0), before.heading_rad}, path.hips_m - before.hips_m);
-}
-
 namespace {
 
 // True if each number is finite and at most kFarthest_m; counts those that are not.
@@ -73,8 +65,8 @@ void move_walk(const Placement& by, WalkState& state, Pose& pose) noexcept {
 void put_walk(const vec3& place_m, double heading_rad, WalkState& state, Pose& pose) noexcept {
   if (!is_sound_move(place_m, heading_rad, state)) return;
   Placement by;
-  by.heading_rad = heading_rad - (state.placed.heading_rad + state.path.heading_rad);
-  by.place_m = place_m - to_world(by, to_world(state.placed, state.path.hips_m));
+  by.heading_rad = heading_rad - (state.placed.heading_rad + state.root.heading_rad);
+  by.place_m = place_m - to_world(by, to_world(state.placed, state.root.place_m));
   place_walk(by, state, pose);
 }
 

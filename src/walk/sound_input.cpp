@@ -1,6 +1,7 @@
-#include "animation/sound_input.h"
+#include "walk/sound_input.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstring>
 
@@ -9,13 +10,7 @@
 
 namespace gaitpad {
 
-bool is_same(const UpperBodyParams& a, const UpperBodyParams& b) noexcept {
-  // Doubles alone, without padding: equal bytes are equal numbers.
-  // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
-  return std::memcmp(&a, &b, sizeof a) == 0 || a == b;
-}
-
-bool is_sound(const GaitParams& params, const WalkState& state) noexcept {
+bool is_sound(const GaitParams& params) noexcept {
   using Pair = Lanes<2>;
   const ParamsRange& range = params_range();
   const auto pair = [](const GaitParams& of, std::size_t k) {
@@ -23,15 +18,10 @@ bool is_sound(const GaitParams& params, const WalkState& state) noexcept {
     std::memcpy(&two, numbers_of(of).data() + k, sizeof two);
     return two;
   };
-  // The body's numbers come last; they are many and seldom change, so they are checked only after a
-  // change.
-  constexpr std::size_t kBody = sizeof(UpperBodyParams) / sizeof(double);
-  const bool same = is_same(params.body, state.body.goal);
-  const std::size_t count = same ? kParamsNumbers - kBody : kParamsNumbers;
   MaskOf<Pair> outside{};
-  for (std::size_t k = 0; k < count; k += 2) {
+  for (std::size_t k = 0; k < kParamsNumbers; k += 2) {
     // Pairs of numbers; the last pair of an odd count overlaps the one before.
-    const std::size_t at = std::min(k, count - 2);
+    const std::size_t at = std::min(k, kParamsNumbers - 2);
     const Pair x = pair(params, at);
     outside |= ~((x >= pair(range.least, at)) & (x <= pair(range.most, at)));
   }
@@ -39,23 +29,29 @@ bool is_sound(const GaitParams& params, const WalkState& state) noexcept {
 }
 
 GaitParams mended_params(const GaitParams& params, WalkState& state) noexcept {
+  const anew::State<float>& walk = state.walk.state;
   GaitParams in_force;
   for (const int side : {0, 1}) {
-    in_force.stride[side] = {state.gait.length_m[side].x, state.gait.time_s[side],
-                             state.gait.flight_height[side].x};
-    for (int j = 0; j < kLegDofs; ++j) in_force.weight[side][j] = state.gait.weight[side][j].x;
+    in_force.stride[side] = {walk.length_m[side].x, walk.asked.time_s[side], walk.lift[side].x};
+    if (state.walk.weighted.acts != 0.0f)
+      for (int j = 0; j < kLegDofs; ++j)
+        in_force.weight[side][j] = state.walk.weighted.weight[side][j].x;
   }
-  in_force.turn_rate_rad_s = state.gait.turn_goal.x;
-  in_force.hip_sway = state.gait.sway.x;
-  in_force.hip_bounce = state.gait.bounce.x;
-  in_force.body = state.body.goal;
+  in_force.turn_rate_rad_s = walk.turn_goal_rad_s.x;
+  in_force.hip_sway = walk.sway.x;
+  in_force.hip_bounce = walk.bounce.x;
+  if (state.walk.styled.asked != 0.0f) {
+    std::array<double, anew::kBodyNumbers> body;
+    std::copy_n(state.walk.styled.goal, body.size(), body.begin());
+    in_force.body = std::bit_cast<UpperBodyParams>(body);
+  }
   const ParamsRange& range = params_range();
   GaitParams mended = params;
   if (std::isnan(params.stride[0].length_m + params.stride[1].length_m) &&
       std::isnan(params.turn_rate_rad_s)) {
     // A stick that is not a number does not tell whether to walk, so the walk goes on as before.
-    mended.walking = state.clock.started && !state.clock.stopping;
-    mended.backward = state.clock.backward;
+    mended.walking = state.walk.state.asked.walks != 0.0f;
+    mended.backward = walk.backward != 0.0f;
   }
   const auto numbers = numbers_of(mended);
   for (std::size_t k = 0; k < kParamsNumbers; ++k) {
@@ -69,7 +65,7 @@ GaitParams mended_params(const GaitParams& params, WalkState& state) noexcept {
 
 double mended_tick(WalkState& state) noexcept {
   ++state.frame.bad_inputs;
-  return state.clock.tick_s;
+  return state.tick_s;
 }
 
 double mended_place(double place_m, WalkState& state) noexcept {

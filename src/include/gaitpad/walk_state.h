@@ -1,4 +1,5 @@
-// All that a walk remembers between two ticks. Numbers of W walks stand side by side and stay so.
+// All that a walk remembers between two ticks. V is a number of one walk (float), or a register of
+// those of several walks side by side. Callers copy and keep it; the walk alone writes it.
 //
 // Places are in the *step frame*: its origin is the heel of the foot that stands, on the ground,
 // its z axis where that foot points, x to the left, y up. So the standing foot needs no numbers,
@@ -6,11 +7,25 @@
 // frame. A step is the roll of the foot that has landed (*stand*) and the flight of the other one
 // (*swing*). Rates are per tick, phases in cycles from the right foot's strike in the data.
 #pragma once
+#include "gaitpad/placement.h"
 #include "gaitpad/terrain.h"
-#include "gaitpad/walk.h"
-#include "walk/lanes.h"
 
 namespace gaitpad::anew {
+
+// A number of each of kWidth walks.
+template <int kWidth>
+struct FloatsOf;
+template <>
+struct FloatsOf<1> {
+  using Type = float;
+};
+template <int kWidth>
+using Floats = typename FloatsOf<kWidth>::Type;
+
+template <class V>
+struct Vec {
+  V x{}, y{}, z{};
+};
 
 inline constexpr int kLegAngles = 7;  // hip x, z, y; knee; ankle x, z, y
 
@@ -115,6 +130,7 @@ struct Change {
   V pitch_begin{}, pitch_lasts{};
   V asked_ticks{};          // how long one that stands has been asked to walk
   V slowness = V{} + 1.0f;  // factor on the step's times: on stairs steps take longer
+  V by_paper{};  // 1: State::leg_rad are whole angles, as IkMode::paper solves them
   // What is asked of the coming landing. 1: it is to be here; else a push moves it by so much, and
   // 1: the landing after it.
   V is_aimed{}, aim_x_m{}, aim_z_m{}, aim_rad{}, push_x_m{}, push_z_m{}, push_waits{};
@@ -207,16 +223,17 @@ struct Footing {
   Smoothed<V> raise[kRoomKnots], shift[kRoomKnots];
 };
 
-// In its place where the ground is level.
-struct NoFooting {};
-template <class F>
-inline constexpr bool kIsUneven = !std::is_same_v<F, NoFooting>;
-
+// What a tick leaves for the report (WalkFrame). No tick reads it. By Side.
 template <class V>
-inline constexpr int kStateNumbers = (sizeof(State<V>) + sizeof(Change<V>) + sizeof(Weighted<V>) +
-                                      sizeof(Styled<V>) + sizeof(Footing<V>)) /
-                                     sizeof(V);
-static_assert(sizeof(State<float>) <= 512);
+struct Told {
+  // Landings so far, of which so many overhang an edge; the length of each foot's last step; ticks
+  // of the last step and of the one before it.
+  V steps[2]{}, overhangs{}, stride_m[2]{}, step_ticks[2]{};
+  // Where the pelvis is beside the hips' even way, to the left and ahead.
+  V pelvis_x_m{}, pelvis_z_m{};
+  // The legs' solves: iterations, the last one's error, 1: it did not reach its goal.
+  V iterations[2]{}, error_m[2]{}, failed[2]{};
+};
 
 // The step frame in the walk's own coordinates. Doubles, written at strikes alone.
 struct Origin {
@@ -226,28 +243,17 @@ struct Origin {
 // A block of walks of one build. Aligned here, for g++ 12 forgets that of registers in a template's
 // arguments.
 template <int kWidth>
-struct alignas(64) Block {
+struct alignas(kWidth == 1 ? alignof(double) : 64) Block {
   State<Floats<kWidth>> state;
   Change<Floats<kWidth>> change;
   Weighted<Floats<kWidth>> weighted;
   Styled<Floats<kWidth>> styled;
   Footing<Floats<kWidth>> footing;
+  Told<Floats<kWidth>> told;
   Origin origin[kWidth];
   Placement placed[kWidth];  // of the walk's own coordinates in the world
   Stretch piece[kWidth];     // of uneven ground: where the swinging foot lands
   bool is_placed = false;    // a walk of them is placed
 };
-
-// Copies a walk from a lane of one block to a lane of another.
-template <int kFrom, int kTo>
-void copy_walk(const Block<kFrom>& from, int from_lane, Block<kTo>& to, int to_lane) noexcept {
-  for (int n = 0; n < kStateNumbers<float>; ++n)
-    reinterpret_cast<float*>(&to)[n * kTo + to_lane] =
-        reinterpret_cast<const float*>(&from)[n * kFrom + from_lane];
-  to.origin[to_lane] = from.origin[from_lane];
-  to.placed[to_lane] = from.placed[from_lane];
-  to.is_placed |= from.is_placed;
-  to.piece[to_lane] = from.piece[from_lane];
-}
 
 }  // namespace gaitpad::anew

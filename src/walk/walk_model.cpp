@@ -4,6 +4,7 @@
 #include "motion/leg_pose.h"
 #include "motion/pose_rows.h"
 #include "motion/stride_lanes.h"
+#include "walk/tables.h"
 
 namespace gaitpad {
 namespace {
@@ -481,6 +482,7 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
     arm.shoulder_column = column(arm.joints.shoulder);
     arm.elbow_column = column(arm.joints.elbow);
   }
+  model.tables = anew::build_tables(model);
   return model;
 }
 

@@ -4,12 +4,8 @@
 
 namespace gaitpad {
 
-// True if a == b; fast for equal bits, the usual case.
-bool is_same(const UpperBodyParams& a, const UpperBodyParams& b) noexcept;
-
-// True if all numbers are finite and within their ranges (control/params_range.h), or equal to
-// those of the last tick, which were.
-bool is_sound(const GaitParams& params, const WalkState& state) noexcept;
+// True if all numbers are finite and within their ranges (control/params_range.h).
+bool is_sound(const GaitParams& params) noexcept;
 inline bool is_sound_tick(double dt_s) noexcept {
   return dt_s >= kLeastTick_s && dt_s <= kMostTick_s;
 }

@@ -8,10 +8,10 @@
 namespace gaitpad {
 namespace {
 
-// The foot whose step runs. After the last landing of a stop the roll belongs to no step.
-std::optional<Side> steps_of(Stage stage, Side swing, bool goes_on) noexcept {
+// The foot whose step runs.
+std::optional<Side> steps_of(Stage stage, Side swing) noexcept {
   if (stage == Stage::flight) return swing;
-  if (stage == Stage::roll && goes_on) return other(swing);
+  if (stage == Stage::roll) return other(swing);
   return std::nullopt;
 }
 
@@ -32,17 +32,27 @@ int bones_of(std::span<const int> joints, std::span<float> out, std::size_t floa
 WalkEvents walk_events(const WalkFrame& before, const WalkState& state) noexcept {
   const WalkFrame& now = state.frame;
   WalkEvents events;
+  // Where a foot stands or stood last: the step's stand foot, and the other one's heel or toe.
+  const anew::Block<1>& walk = state.walk;
+  const anew::Origin& origin = walk.origin[0];
+  const Placement step{vec3(origin.x_m, origin.y_m, origin.z_m), origin.heading_rad};
+  const auto planted_m = [&](WalkEventKind kind, Side side) {
+    const bool swings = (side == kRightSide) == (walk.state.right_swings != 0.0f);
+    if (!swings) return step.place_m;
+    return to_world(step, kind == WalkEventKind::toe_off
+                              ? vec3(walk.state.toe_x_m, walk.footing.toe_y_m, walk.state.toe_z_m)
+                              : vec3(walk.state.print_x_m, walk.footing.print_y_m,
+                                     walk.state.print_z_m));
+  };
   const auto add = [&](WalkEventKind kind, Side side) {
-    const FootState& foot = state.foot[side];
-    const vec3& place_m = kind == WalkEventKind::toe_off ? foot.toe_anchor_m : foot.heel_anchor_m;
-    events.event[events.count++] = {kind, side, to_world(state.placed, place_m)};
+    events.event[events.count++] = {kind, side, to_world(state.placed, planted_m(kind, side))};
   };
   for (const Side side : {kLeftSide, kRightSide}) {
     if (now.steps[side] > before.steps[side]) add(WalkEventKind::heel_strike, side);
   }
-  const auto steps = steps_of(now.stage, now.swing, state.clock.started);
+  const auto steps = steps_of(now.stage, now.swing);
   if (!steps) return events;
-  if (steps != steps_of(before.stage, before.swing, true)) add(WalkEventKind::step_begin, *steps);
+  if (steps != steps_of(before.stage, before.swing)) add(WalkEventKind::step_begin, *steps);
   const bool flew = before.stage == Stage::flight && before.swing == now.swing;
   if (now.stage == Stage::flight && !flew) add(WalkEventKind::toe_off, *steps);
   return events;

@@ -1,8 +1,0 @@
-// Compiled for processors with AVX-512 only (base/lanes.h asks for them).
-#include "animation/walk_lanes.h"
-
-namespace gaitpad {
-
-template void advance_lanes<8>(const WalkModel&, double, std::span<const Walking>) noexcept;
-
-}  // namespace gaitpad

@@ -1,0 +1,329 @@
+#include "gaitpad/crowd.h"
+
+#include <algorithm>
+#include <cstring>
+#include <map>
+
+#include "base/lanes.h"
+#include "base/ranges.h"
+#include "walk/pose.h"
+#include "walk/sound_input.h"
+#include "walk/steer.h"
+#include "walk/walk.h"
+#include "walk/walk_frame.h"
+
+namespace gaitpad {
+
+// Walks side by side. Lanes that have no walk repeat the last one.
+class WalkBlock {
+ public:
+  virtual ~WalkBlock() = default;
+  virtual std::unique_ptr<WalkBlock> clone() const = 0;
+  virtual std::size_t bytes() const noexcept = 0;
+  virtual void put(const WalkState& state, int lane) noexcept = 0;
+  virtual anew::Block<1> walk(int lane) const noexcept = 0;
+  // Its root before the last tick.
+  virtual Placement root_before(int lane) const noexcept = 0;
+  virtual void ask(const GaitParams& params, int lane) noexcept = 0;
+  virtual void place(const Placement& placed, int lane) noexcept = 0;
+  virtual void keep_root() noexcept = 0;
+  virtual void advance(const anew::Tables& tables, IkMode mode,
+                       const anew::Poses& poses) noexcept = 0;
+  double tick_s = 1.0 / 240.0;  // length of the last tick
+};
+
+namespace {
+
+// What a root is made of.
+template <int kWidth>
+struct RootNumbers {
+  anew::Floats<kWidth> heading_rad{}, pelvis_x_m{}, pelvis_z_m{}, beside_x_m{}, beside_z_m{};
+  anew::Origin origin[kWidth];
+};
+
+template <int kWidth>
+class BlockOf final : public WalkBlock {
+ public:
+  explicit BlockOf(int walks) : walks_(walks) {}
+  std::unique_ptr<WalkBlock> clone() const override { return std::make_unique<BlockOf>(*this); }
+  std::size_t bytes() const noexcept override { return sizeof *this; }
+
+  void put(const WalkState& state, int lane) noexcept override {
+    tick_s = state.tick_s;
+    for_lanes(lane, [&](int w) {
+      copy_walk(state.walk, 0, block_, w);
+      asked_[w] = {};
+    });
+    keep_root();
+  }
+  anew::Block<1> walk(int lane) const noexcept override {
+    anew::Block<1> one;
+    copy_walk(block_, lane, one, 0);
+    return one;
+  }
+  Placement root_before(int lane) const noexcept override {
+    anew::Block<1> one = walk(lane);
+    one.state.heading_rad = anew::lane(before_.heading_rad, lane);
+    one.state.pelvis_x_m[0] = anew::lane(before_.pelvis_x_m, lane);
+    one.state.pelvis_z_m[0] = anew::lane(before_.pelvis_z_m, lane);
+    one.told.pelvis_x_m = anew::lane(before_.beside_x_m, lane);
+    one.told.pelvis_z_m = anew::lane(before_.beside_z_m, lane);
+    one.origin[0] = before_.origin[lane];
+    return root_of(one);
+  }
+  void ask(const GaitParams& params, int lane) noexcept override {
+    Asked& asked = asked_[lane];
+    // Equal bytes are equal parameters; others are asked for once more.
+    // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
+    if (asked.is_known && std::memcmp(&asked.params, &params, sizeof params) == 0) return;
+    std::memcpy(&asked.params, &params, sizeof params);
+    asked.is_known = true;
+    for_lanes(lane, [&](int w) { anew::ask(params, w, block_); });
+  }
+  void place(const Placement& placed, int lane) noexcept override {
+    for_lanes(lane, [&](int w) { anew::place(placed, w, block_); });
+  }
+  void keep_root() noexcept override {
+    const auto& state = block_.state;
+    before_.heading_rad = state.heading_rad;
+    before_.pelvis_x_m = state.pelvis_x_m[0];
+    before_.pelvis_z_m = state.pelvis_z_m[0];
+    before_.beside_x_m = block_.told.pelvis_x_m;
+    before_.beside_z_m = block_.told.pelvis_z_m;
+    std::copy_n(block_.origin, kWidth, before_.origin);
+  }
+  void advance(const anew::Tables& tables, IkMode mode,
+               const anew::Poses& poses) noexcept override {
+    if constexpr (kWidth == 1) {
+      if (mode == IkMode::paper) {
+        anew::advance_by_paper(tables, block_, poses);
+        return;
+      }
+    }
+    anew::advance(tables, block_, poses);
+  }
+
+ private:
+  struct Asked {
+    GaitParams params;
+    bool is_known = false;
+  };
+  template <class Work>
+  void for_lanes(int lane, const Work& work) noexcept {
+    work(lane);
+    for (int w = walks_; lane == walks_ - 1 && w < kWidth; ++w) work(w);
+  }
+  anew::Block<kWidth> block_{};
+  RootNumbers<kWidth> before_;
+  std::array<Asked, kWidth> asked_;
+  int walks_;
+};
+
+constexpr std::array<int, 4> kWidths = {16, 8, 4, 1};
+std::unique_ptr<WalkBlock> make_block(int width, int walks) {
+  switch (width) {
+    case 16:
+      return std::make_unique<BlockOf<16>>(walks);
+    case 8:
+      return std::make_unique<BlockOf<8>>(walks);
+    case 4:
+      return std::make_unique<BlockOf<4>>(walks);
+    default:
+      return std::make_unique<BlockOf<1>>(walks);
+  }
+}
+// The narrowest block for so many walks, no wider than the widest one.
+int width_for(int walks, int widest) noexcept {
+  int width = widest;
+  for (const int narrower : kWidths)
+    if (narrower < width && narrower >= walks) width = narrower;
+  return width;
+}
+// The program counts lanes of doubles; a register has twice as many floats.
+int widest_block(IkMode mode) noexcept {
+  const int lanes = lanes_in_use();
+  return mode == IkMode::paper || lanes == 1 ? 1 : 2 * lanes;
+}
+
+}  // namespace
+
+Crowd::Crowd() noexcept = default;
+Crowd::~Crowd() = default;
+Crowd::Crowd(Crowd&& from) noexcept = default;
+Crowd& Crowd::operator=(Crowd&& from) noexcept = default;
+Crowd::Crowd(const Crowd& from)
+    : mode_(from.mode_),
+      order_(from.order_),
+      block_begin_(from.block_begin_),
+      lane_(from.lane_),
+      models_(from.models_),
+      params_(from.params_),
+      placed_(from.placed_),
+      bad_inputs_(from.bad_inputs_),
+      roots_m_(from.roots_m_),
+      first_joint_(from.first_joint_),
+      local_(from.local_) {
+  for (const auto& block : from.blocks_) blocks_.push_back(block->clone());
+}
+Crowd& Crowd::operator=(const Crowd& from) {
+  if (this != &from) *this = Crowd(from);
+  return *this;
+}
+
+Crowd::Crowd(std::span<const CrowdMember> members, IkMode mode)
+    : mode_(mode),
+      lane_(members.size()),
+      params_(members.size()),
+      placed_(members.size()),
+      bad_inputs_(members.size()),
+      roots_m_(members.size()) {
+  models_.reserve(members.size());
+  first_joint_.reserve(members.size() + 1);
+  for (const CrowdMember& member : members) {
+    models_.push_back(member.model);
+    first_joint_.push_back(first_joint_.back() + member.model->cycle.skeleton.joints.size());
+  }
+  local_.resize(first_joint_.back());
+  std::map<const WalkModel*, std::vector<int>> by_model;
+  for (std::size_t i = 0; i < members.size(); ++i)
+    by_model[members[i].model.get()].push_back(static_cast<int>(i));
+  const int widest = widest_block(mode);
+  for (const auto& [model, numbers] : by_model) {
+    for (std::size_t i = 0; i < numbers.size();) {
+      const int left = static_cast<int>(numbers.size() - i), width = width_for(left, widest),
+                walks = std::min(width, left);
+      block_begin_.push_back(static_cast<int>(order_.size()));
+      for (int lane = 0; lane < walks; ++lane, ++i) {
+        lane_[numbers[i]] = {static_cast<int>(blocks_.size()), lane};
+        order_.push_back(numbers[i]);
+      }
+      blocks_.push_back(make_block(width, walks));
+    }
+  }
+  block_begin_.push_back(static_cast<int>(order_.size()));
+  for (std::size_t i = 0; i < members.size(); ++i) restart(static_cast<int>(i), members[i].place_m);
+}
+
+Result<Crowd> Crowd::create(std::span<const CrowdMember> members, IkMode mode) {
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const std::string member = "members[" + std::to_string(i) + "]";
+    if (!members[i].model) return Error{member + ".model is null"};
+    if (auto problem = vector_problem(member + ".place_m", members[i].place_m, kFarthest_m))
+      return *problem;
+  }
+  return Crowd(members, mode);
+}
+
+WalkState Crowd::state(int member) const noexcept {
+  const auto [block, lane] = lane_[member];
+  WalkState state;
+  state.walk = blocks_[block]->walk(lane);
+  state.placed = placed_[member];
+  state.tick_s = blocks_[block]->tick_s;
+  state.root = anew::root_of(state.walk);
+  const WalkModel& model = *models_[member];
+  anew::place(state.placed, 0, state.walk);
+  anew::report(model, anew::tables_of(model, state.tick_s / tick_parts(state.tick_s)), state.walk,
+               blocks_[block]->root_before(lane), roots_m_[member], local(member), state.frame);
+  state.frame.bad_inputs = bad_inputs_[member];
+  return state;
+}
+
+Placement Crowd::root(int member) const noexcept {
+  return anew::root_of(blocks_[lane_[member].block]->walk(lane_[member].lane));
+}
+
+void Crowd::put_state(int member, const WalkState& state) noexcept {
+  blocks_[lane_[member].block]->put(state, lane_[member].lane);
+  placed_[member] = state.placed;
+  bad_inputs_[member] = state.frame.bad_inputs;
+}
+
+void Crowd::restart(int member, const vec3& place_m) noexcept {
+  if (!has(member)) return;
+  Pose pose;
+  put_state(member, standing(*models_[member], place_m, pose));
+  store_pose(member, pose);
+}
+
+void Crowd::move(int member, const Placement& by) noexcept {
+  if (!has(member)) return;
+  Pose pose;
+  copy_pose(member, pose);
+  WalkState moving = state(member);
+  move_walk(by, moving, pose);
+  placed_[member] = moving.placed;
+  bad_inputs_[member] = moving.frame.bad_inputs;
+  store_pose(member, pose);
+}
+
+void Crowd::put(int member, const vec3& place_m, double heading_rad) noexcept {
+  if (!has(member)) return;
+  Pose pose;
+  copy_pose(member, pose);
+  WalkState moving = state(member);
+  put_walk(place_m, heading_rad, moving, pose);
+  placed_[member] = moving.placed;
+  bad_inputs_[member] = moving.frame.bad_inputs;
+  store_pose(member, pose);
+}
+
+void Crowd::store_pose(int member, const Pose& pose) noexcept {
+  roots_m_[member] = pose.root_m;
+  std::copy_n(pose.local.begin(), pose.joint_count,
+              local_.begin() + static_cast<std::ptrdiff_t>(first_joint_[member]));
+}
+
+void Crowd::copy_pose(int member, Pose& pose) const noexcept {
+  if (!has(member)) return;
+  pose.root_m = roots_m_[member];
+  const std::span<const quat> from = local(member);
+  pose.joint_count = static_cast<int>(from.size());
+  std::copy(from.begin(), from.end(), pose.local.begin());
+}
+
+std::size_t Crowd::bytes() const noexcept {
+  std::size_t sum = models_.size() * (sizeof(GaitParams) + sizeof(Placement) + sizeof(vec3)) +
+                    local_.size() * sizeof(quat);
+  for (const auto& block : blocks_) sum += block->bytes();
+  return sum;
+}
+
+int Crowd::blocks() const noexcept { return static_cast<int>(blocks_.size()); }
+
+void Crowd::advance_block(int number, double dt_s) noexcept {
+  if (number < 0 || number >= blocks()) return;
+  WalkBlock& block = *blocks_[number];
+  const std::span<const int> members(order_.data() + block_begin_[number],
+                                     order_.data() + block_begin_[number + 1]);
+  if (!is_sound_tick(dt_s)) {
+    for (const int member : members) ++bad_inputs_[member];
+    dt_s = block.tick_s;
+  }
+  block.tick_s = dt_s;
+  std::array<quat*, kWidths[0]> locals;
+  std::array<vec3*, kWidths[0]> roots_m;
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    const int member = members[i], lane = static_cast<int>(i);
+    if (!is_sound(params_[member])) {
+      WalkState in_force = state(member);
+      params_[member] = mended_params(params_[member], in_force);
+      bad_inputs_[member] = in_force.frame.bad_inputs;
+    }
+    block.ask(params_[member], lane);
+    block.place(placed_[member], lane);
+    locals[i] = local_.data() + first_joint_[member];
+    roots_m[i] = &roots_m_[member];
+  }
+  const int parts = tick_parts(dt_s);
+  const anew::Tables tables = anew::tables_of(*models_[members[0]], dt_s / parts);
+  const anew::Poses poses{locals.data(), roots_m.data(), static_cast<int>(members.size())};
+  block.keep_root();
+  for (int part = 0; part < parts; ++part) block.advance(tables, mode_, poses);
+}
+
+void Crowd::advance(double dt_s) noexcept {
+  for (int block = 0; block < blocks(); ++block) advance_block(block, dt_s);
+}
+
+}  // namespace gaitpad

@@ -1,0 +1,53 @@
+// What a walk is asked for, as its tick reads it.
+#pragma once
+#include <bit>
+
+#include "gaitpad/gait_params.h"
+#include "walk/block.h"
+
+namespace gaitpad::anew {
+
+// A walk that is to end keeps its steps' times and lengths.
+template <int kWidth>
+void ask(const GaitParams& params, int walk, Block<kWidth>& block) noexcept {
+  using V = Floats<kWidth>;
+  const auto set = [walk](double number, V& of) {
+    set_lane(static_cast<float>(number), walk, of);
+  };
+  Asked<V>& asked = block.state.asked;
+  set(params.walking, asked.walks);
+  if (params.walking) {
+    for (const int side : {0, 1}) {
+      set(params.stride[side].length_m, asked.length_m[side]);
+      set(params.stride[side].time_s, asked.time_s[side]);
+      set(params.stride[side].flight_height, asked.lift[side]);
+    }
+    set(params.backward, asked.backward);
+    set(params.turn_rate_rad_s, asked.turn_rad_s);
+    set(params.hip_bounce, asked.bounce);
+    set(params.hip_sway, asked.sway);
+  }
+  Styled<V>& styled = block.styled;
+  set(!(params.body == UpperBodyParams{}), styled.asked);
+  const auto body = std::bit_cast<std::array<double, kBodyNumbers>>(params.body);
+  for (int n = 0; n < kBodyNumbers; ++n) set(body[n], styled.goal[n]);
+  Weighted<V>& weighted = block.weighted;
+  bool is_even = true;
+  for (const int side : {0, 1}) {
+    for (int j = 0; j < kLegAngles; ++j) {
+      const double weight = params.weight[side][j];
+      set(weight, weighted.goal[side][j]);
+      is_even &= weight == 1.0;
+    }
+  }
+  set(!is_even, weighted.asked);
+}
+inline void ask(const GaitParams& params, Block<1>& block) noexcept { ask(params, 0, block); }
+
+template <int kWidth>
+void place(const Placement& placed, int walk, Block<kWidth>& block) noexcept {
+  block.placed[walk] = placed;
+  block.is_placed |= !(placed == Placement{});
+}
+
+}  // namespace gaitpad::anew

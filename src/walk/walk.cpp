@@ -1,0 +1,80 @@
+// The walk as callers see it: one walk in their memory, moved on by the tick that crowds have, too.
+#include "gaitpad/walk.h"
+
+#include <bit>
+
+#include "walk/pose.h"
+#include "walk/sound_input.h"
+#include "walk/steer.h"
+#include "walk/walk.h"
+#include "walk/walk_frame.h"
+
+namespace gaitpad {
+namespace {
+
+std::span<const quat> locals_of(const WalkModel& model, const Pose& pose) noexcept {
+  return {pose.local.data(), model.cycle.skeleton.joints.size()};
+}
+
+// Ticks of `tables`, one after another.
+void advance_by(const anew::Tables& tables, IkMode mode, int parts, WalkState& state,
+                Pose& pose) noexcept {
+  pose.joint_count = tables.joints;
+  quat* const local = pose.local.data();
+  vec3* const root_m = &pose.root_m;
+  anew::write_still(tables, local);
+  const anew::Poses poses{&local, &root_m, 1};
+  anew::place(state.placed, 0, state.walk);
+  for (int part = 0; part < parts; ++part) {
+    if (mode == IkMode::paper) {
+      anew::advance_by_paper(tables, state.walk, poses);
+    } else {
+      anew::advance(tables, state.walk, poses);
+    }
+  }
+}
+
+}  // namespace
+
+WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noexcept {
+  return standing(model, place_m, 0.0, pose);
+}
+
+WalkState standing(const WalkModel& model, const vec3& place_m, double heading_rad,
+                   Pose& pose) noexcept {
+  WalkState state;
+  const double yaw_rad = wrapped(mended_place(heading_rad, state)),
+               x_m = mended_place(place_m.x, state), z_m = mended_place(place_m.z, state);
+  const anew::Tables tables = anew::tables_of(model, state.tick_s);
+  anew::stand(tables, {x_m, z_m, yaw_rad}, state.walk);
+  advance_by(tables, IkMode::robust, 1, state, pose);
+  state.root = anew::root_of(state.walk);
+  anew::report(model, tables, state.walk, state.root, pose.root_m, locals_of(model, pose),
+               state.frame);
+  return state;
+}
+
+void advance(const WalkModel& model, const GaitParams& params, IkMode mode, double dt_s,
+             WalkState& state, Pose& pose) noexcept {
+  if (!is_sound_tick(dt_s)) return advance(model, params, mode, mended_tick(state), state, pose);
+  if (!is_sound(params))
+    return advance(model, mended_params(params, state), mode, dt_s, state, pose);
+  state.tick_s = dt_s;
+  const int parts = tick_parts(dt_s);
+  const anew::Tables tables = anew::tables_of(model, dt_s / parts);
+  anew::ask(params, state.walk);
+  advance_by(tables, mode, parts, state, pose);
+  const Placement before = state.root;
+  state.root = anew::root_of(state.walk);
+  anew::report(model, tables, state.walk, before, pose.root_m, locals_of(model, pose),
+               state.frame);
+}
+
+double presence(const WalkState& state) noexcept {
+  const float shown = state.walk.change.shown, posture = state.walk.state.posture.x;
+  return std::clamp(shown, 0.0f, 1.0f) * std::clamp(posture, 0.0f, 1.0f);
+}
+
+double shown_phase(const WalkState& state) noexcept { return anew::phase_of(state.walk); }
+
+}  // namespace gaitpad

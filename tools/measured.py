@@ -220,7 +220,7 @@ def measure_bench(options, text=None):
     add("ground_query", "one question to a height field")
     add("step", "four characters with the session around them, each", characters=4)
     add("crowd_alone", "a member of the crowd, mixed builds and styles, at 60 Hz, alone")
-    for width in (8, 4, 2, 1):
+    for width in (16, 8, 4, 1):
         add("crowd", f"crowd of 1,000 in {width} lanes, each", characters=1000, width=width)
         add("crowd", "the same over bare playback", "ratio", characters=1000, width=width)
         add("crowd", "the same over its members alone", "ratio_alone", characters=1000, width=width)

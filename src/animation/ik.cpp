@@ -5,11 +5,36 @@
 #include <string>
 #include <utility>
 
-#include "animation/robust_solver.h"
 #include "base/ranges.h"
 
 namespace gaitpad {
 namespace {
+
+// The robust solver: theta += W J^T (J W J^T + l^2 I)^-1 dX inside joint limits, where
+// l^2 = damping^2 + growth |dX|^2 (after Sugihara 2011, "Solvability-unconcerned inverse kinematics
+// by the Levenberg-Marquardt method"); growth rises where a step makes the error greater.
+constexpr double kLeastDampingSquared = 1e-20;
+constexpr double kGrowth = 0.1;
+constexpr double kGrowthUp = 8.0, kGrowthDown = 0.25;
+constexpr double kFarthest = 0.5;  // the largest |dX| that one step uses, metres
+// The error counts as constant if kPatience iterations together reduce it by less than the share
+// kLeastGain of itself, or of kGainFrom metres if that is larger.
+constexpr int kPatience = 6;
+constexpr double kLeastGain = 0.001;
+constexpr double kGainFrom = 0.1;
+
+// Turns a frame about its own first axis: (y, z) are the other two, in cyclic order.
+void turn(vec3& y, vec3& z, double sine, double cosine) noexcept {
+  const vec3 old = y;
+  y = cosine * old + sine * z;
+  z = cosine * z - sine * old;
+}
+
+// An entry of the Jacobian is d . (a x (p - q)), for direction d, point p and an axis a through q.
+// It equals a . m + n . d with the moments m = p x d and n = q x a.
+double jacobian_entry(const vec3& a, const vec3& n, const vec3& d, const vec3& m) noexcept {
+  return (a.x * m.x + a.y * m.y) + (a.z * m.z + n.x * d.x) + (n.y * d.y + n.z * d.z);
+}
 
 // --- The chain in one pose -----------------------------------------------------------------------
 
@@ -360,41 +385,115 @@ IkDofValues relative_weights(const IkChain& chain) noexcept {
   return w;
 }
 
-// A chain in the form of the robust solver. kRowCount is even; a row beyond the given ones is zero.
-template <int kRowCount>
-struct ChainSystem {
-  using V = double;
-  static constexpr int kRows = kRowCount, kDofs = kMaxIkDofs;
-  static constexpr bool kWeighted = false;
-  struct Place : IkErrors {
-    IkPose pose;
-  };
-  const Problem& p;
-  const IkDofValues &weight = p.weight, &min_rad = p.min_rad, &max_rad = p.max_rad;
-  const int dofs = p.chain.dofs;
+template <int kRows>
+using RowsOf = std::array<double, kRows>;
+template <int kRows>
+using ColumnsOf = std::array<RowsOf<kRows>, kMaxIkDofs>;
 
-  void place(const IkAngles& angles_rad, Place& place) const noexcept {
-    pose_chain(p.chain, angles_rad, place.pose);
-    measure_errors(place.pose, p.rows, place);
-    for (std::size_t r = p.rows.size(); r < kRows; ++r) place.dx[r] = 0.0;
-  }
-  void set_columns(const Place& place, ColumnsIn<ChainSystem>& column) const noexcept {
-    std::array<vec3, kRows> direction{}, moment{};
-    for (std::size_t r = 0; r < p.rows.size(); ++r) {
-      direction[r] = p.rows[r].direction;
-      moment[r] = glm::cross(place.point_m[r], direction[r]);
-    }
-    for (int j = 0; j < dofs; ++j) {
-      const vec3& a = place.pose.axis[j];
-      const vec3 n = glm::cross(place.pose.pivot_m[j], a);
-      for (int r = 0; r < kRows; ++r) column[j][r] = jacobian_entry(a, n, direction[r], moment[r]);
-    }
-  }
-  static void keep(bool, const Place& place, Place& best) noexcept { best = place; }
-  void trace(const IkAngles& angles_rad, double squares) const noexcept {
-    if (p.trace != nullptr) add_trace_row(p.trace, angles_rad, std::sqrt(squares));
-  }
+// The linear system of one step.
+template <int kRows>
+struct Step {
+  IkDofValues weight;
+  double damping;
+  RowsOf<kRows> error;  // what is left to close
 };
+
+// Solves (J W J^T + damping I) y = b by L D L^T. No pivot is less than the damping, so none is
+// checked.
+template <int kRows>
+void solve_rows(const ColumnsOf<kRows>& column, int dofs, const Step<kRows>& step,
+                RowsOf<kRows>& y) noexcept {
+  constexpr int n = kRows;
+  std::array<RowsOf<n>, n> m;
+  for (int r = 0; r < n; ++r) {
+    for (int s = 0; s <= r; ++s) m[r][s] = (step.weight[0] * column[0][r]) * column[0][s];
+  }
+  for (int j = 1; j < dofs; ++j) {
+    for (int r = 0; r < n; ++r) {
+      const double weighted = step.weight[j] * column[j][r];
+      for (int s = 0; s <= r; ++s) m[r][s] += weighted * column[j][s];
+    }
+  }
+  for (int r = 0; r < n; ++r) m[r][r] += step.damping;
+  RowsOf<n> reciprocal;
+  for (int k = 0; k < n; ++k) {
+    reciprocal[k] = 1.0 / m[k][k];
+    for (int r = k + 1; r < n; ++r) {
+      const double l = m[k][r] = m[r][k] * reciprocal[k];
+      for (int s = k + 1; s <= r; ++s) m[r][s] -= l * m[s][k];
+    }
+  }
+  y = step.error;
+  for (int k = 0; k < n; ++k) {
+    for (int r = k + 1; r < n; ++r) y[r] -= m[k][r] * y[k];
+  }
+  for (int k = 0; k < n; ++k) y[k] *= reciprocal[k];
+  for (int k = n - 1; k > 0; --k) {
+    for (int r = 0; r < k; ++r) y[r] -= m[r][k] * y[k];
+  }
+}
+
+// A column of J^T times y.
+template <std::size_t kRows>
+double product(const std::array<double, kRows>& column,
+               const std::array<double, kRows>& y) noexcept {
+  double even = column[0] * y[0], odd = column[1] * y[1];
+  for (std::size_t r = 2; r < kRows; r += 2)
+    even += column[r] * y[r], odd += column[r + 1] * y[r + 1];
+  return even + odd;
+}
+
+// Solves for a step within the limits. A DOF that the step would carry past a limit moves exactly
+// to the limit, its column leaves the system, and the system is solved again for the others. The
+// result depends continuously on goal and pose.
+template <int kRows>
+void limited_step(const Problem& p, const ColumnsOf<kRows>& column, Step<kRows>& step,
+                  const IkAngles& angles_rad, IkDofValues& delta) noexcept {
+  const int dofs = p.chain.dofs;
+  RowsOf<kRows> y;
+  for (int j = 0; j < dofs; ++j) delta[j] = 0.0;
+  for (int round = 0; round <= dofs; ++round) {
+    solve_rows<kRows>(column, dofs, step, y);
+    bool frozen = false;
+    for (int j = 0; j < dofs; ++j) {
+      if (step.weight[j] == 0.0) continue;
+      delta[j] = step.weight[j] * product(column[j], y);
+      const double wanted = angles_rad[j] + delta[j],
+                   allowed = std::min(std::max(wanted, p.min_rad[j]), p.max_rad[j]);
+      if (allowed == wanted) continue;
+      frozen = true;
+      delta[j] = allowed - angles_rad[j];
+      step.weight[j] = 0.0;
+      for (int r = 0; r < kRows; ++r) step.error[r] -= column[j][r] * delta[j];
+    }
+    if (!frozen) return;
+  }
+}
+
+// A chain's pose, its errors, and their columns of the Jacobian. kRows is even; a row beyond the
+// given ones is zero.
+struct Place : IkErrors {
+  IkPose pose;
+};
+template <int kRows>
+void place_chain(const Problem& p, const IkAngles& angles_rad, Place& place) noexcept {
+  pose_chain(p.chain, angles_rad, place.pose);
+  measure_errors(place.pose, p.rows, place);
+  for (std::size_t r = p.rows.size(); r < kRows; ++r) place.dx[r] = 0.0;
+}
+template <int kRows>
+void set_columns(const Problem& p, const Place& place, ColumnsOf<kRows>& column) noexcept {
+  std::array<vec3, kRows> direction{}, moment{};
+  for (std::size_t r = 0; r < p.rows.size(); ++r) {
+    direction[r] = p.rows[r].direction;
+    moment[r] = glm::cross(place.point_m[r], direction[r]);
+  }
+  for (int j = 0; j < p.chain.dofs; ++j) {
+    const vec3& a = place.pose.axis[j];
+    const vec3 n = glm::cross(place.pose.pivot_m[j], a);
+    for (int r = 0; r < kRows; ++r) column[j][r] = jacobian_entry(a, n, direction[r], moment[r]);
+  }
+}
 
 struct Try {
   IkAngles angles_rad;  // the best angles so far
@@ -402,14 +501,50 @@ struct Try {
   int iterations;
 };
 
+// Iterates from `start` until the tolerance is met, the error no longer falls or the iterations are
+// used up.
 template <int kRows>
 Try one_try(const Problem& p, const IkAngles& start, int max_iterations) noexcept {
-  ChainSystem<kRows> system{p};
-  typename ChainSystem<kRows>::Place best;
-  IkAngles angles_rad = start;
-  const auto [squares, iterations] =
-      iterate(system, p.options, max_iterations, true, angles_rad, best);
-  return {angles_rad, squares, static_cast<int>(iterations)};
+  constexpr double kInfinite = std::numeric_limits<double>::infinity(),
+                   kMost = kFarthest * kFarthest;
+  const int dofs = p.chain.dofs;
+  const double enough = p.options.tolerance_m * p.options.tolerance_m;
+  IkAngles angles_rad = start, next = start;
+  Place place, best;
+  double growth = kGrowth, seen_m = kInfinite;
+  int seen_at = 0;
+  for (int k = 0;; ++k) {
+    place_chain<kRows>(p, next, k == 0 ? best : place);
+    if (k > 0) {
+      const bool better = place.squares < best.squares;
+      growth = better ? std::max(growth * kGrowthDown, kGrowth) : growth * kGrowthUp;
+      if (better) angles_rad = next, best = place;
+    }
+    if (p.trace != nullptr) add_trace_row(p.trace, angles_rad, std::sqrt(best.squares));
+    if (best.squares <= enough || k >= max_iterations) return {angles_rad, best.squares, k};
+    const double error_m = std::sqrt(best.squares);
+    if (error_m < seen_m - kLeastGain * std::min(error_m, kGainFrom)) seen_at = k, seen_m = error_m;
+    if (k - seen_at >= kPatience || !(best.squares < kInfinite))
+      return {angles_rad, best.squares, k};
+
+    ColumnsOf<kRows> column;
+    set_columns<kRows>(p, best, column);
+    const double share = best.squares > kMost ? kFarthest / error_m : 1.0;
+    Step<kRows> step;
+    step.weight = p.weight;
+    step.damping = std::max(p.options.damping * p.options.damping, kLeastDampingSquared) +
+                   growth * std::min(best.squares, kMost);
+    for (int r = 0; r < kRows; ++r) step.error[r] = share * best.dx[r];
+    IkDofValues delta;
+    limited_step<kRows>(p, column, step, angles_rad, delta);
+    double greatest = 0.0;
+    for (int j = 0; j < dofs; ++j) greatest = std::max(greatest, std::abs(delta[j]));
+    const double cap = greatest > p.options.max_step_rad ? p.options.max_step_rad / greatest : 1.0;
+    for (int j = 0; j < dofs; ++j) {
+      const double wanted = angles_rad[j] + cap * delta[j];
+      next[j] = std::min(std::max(wanted, p.min_rad[j]), p.max_rad[j]);
+    }
+  }
 }
 
 // Start number k: a sequence that fills the box of the limits evenly (Weyl: multiples of an
@@ -497,7 +632,7 @@ IkResult solve_robust(const IkChain& chain, std::span<const IkRow> rows,
   for (int j = 0; j < chain.dofs; ++j) {
     p.min_rad[j] = chain.dof[j].min_rad;
     p.max_rad[j] = chain.dof[j].max_rad;
-    start[j] = min_of(max_of(start[j], p.min_rad[j]), p.max_rad[j]);
+    start[j] = std::min(std::max(start[j], p.min_rad[j]), p.max_rad[j]);
   }
   IkAngles answer = start;
   const IkResult result =

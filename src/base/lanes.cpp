@@ -14,21 +14,22 @@ int widest_lanes() noexcept {
 #ifdef GAITPAD_WIDE_LANES
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
       __builtin_cpu_supports("avx512vl"))
-    return 8;
-  if (__builtin_cpu_supports("avx2")) return 4;
+    return 16;
+  if (__builtin_cpu_supports("avx2")) return 8;
 #endif
-  return 2;
+  return 4;
 }
 
 int lanes_in_use() noexcept {
   const int lanes = g_lanes.load(std::memory_order_relaxed);
   if (lanes != 0) return lanes;
-  use_lanes(8);
+  use_lanes(16);
   return g_lanes.load(std::memory_order_relaxed);
 }
 
 void use_lanes(int lanes) noexcept {
-  g_lanes.store(std::clamp(lanes, 1, widest_lanes()), std::memory_order_relaxed);
+  const int most = std::min(lanes, widest_lanes());
+  g_lanes.store(most >= 16 ? 16 : most >= 8 ? 8 : most >= 4 ? 4 : 1, std::memory_order_relaxed);
 }
 
 }  // namespace gaitpad

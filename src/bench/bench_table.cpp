@@ -49,7 +49,7 @@ std::string bounds_text(const ordered_json& row) {
 }  // namespace
 
 std::string lanes_text(int lanes) {
-  const char* set = lanes >= 8 ? "AVX-512" : lanes >= 4 ? "AVX2" : "128 bits";
+  const char* set = lanes >= 16 ? "AVX-512" : lanes >= 8 ? "AVX2" : "128 bits";
   return fmt::format("{} lanes ({})", lanes, set);
 }
 

@@ -554,7 +554,7 @@ Work crowd_work(std::shared_ptr<const CrowdCast> cast, int size, int lanes, Crow
     return work;
   }
   if (size == 1000) {
-    work.most_ratio = lanes >= 8 ? 0.6 : lanes >= 4 ? 0.9 : lanes >= 2 ? 1.5 : 0.0;
+    work.most_ratio = lanes >= 16 ? 0.6 : lanes >= 8 ? 0.9 : lanes >= 4 ? 1.5 : 0.0;
   }
   work.pass = [crowd] { crowd->advance_all(nullptr); };
   return work;
@@ -764,7 +764,7 @@ Result<std::vector<Work>> bench_work(int most_characters,
   sizes.push_back(most_characters);
   const int widest = widest_lanes();
   const auto workers = std::make_shared<Workers>(machine_threads());
-  for (int lanes = widest; lanes >= 1; lanes /= 2)
+  for (int lanes = widest; lanes >= 1; lanes = lanes > 4 ? lanes / 2 : lanes - 3)
     for (const int size : sizes)
       if (size <= 1000 || lanes == widest)
         list.push_back(crowd_work(cast, size, lanes, CrowdCores::one, workers));

@@ -9,15 +9,13 @@
 namespace gaitpad {
 
 // Catmull-Rom weights of four neighbours, between the second and the third.
-template <class V>
-std::array<V, 4> cubic_weights(const V& t) noexcept {
+inline std::array<double, 4> cubic_weights(double t) noexcept {
   return {0.5 * t * (-1.0 + t * (2.0 - t)), 1.0 + 0.5 * t * t * (3.0 * t - 5.0),
           0.5 * t * (1.0 + t * (4.0 - 3.0 * t)), 0.5 * t * t * (t - 1.0)};
 }
 // Weights of four neighbouring knots of a uniform cubic B-spline.
-template <class V>
-std::array<V, 4> spline_weights(const V& t) noexcept {
-  const V s = 1.0 - t;
+inline std::array<double, 4> spline_weights(double t) noexcept {
+  const double s = 1.0 - t;
   return {s * s * s / 6.0, (4.0 + t * t * (3.0 * t - 6.0)) / 6.0,
           (4.0 + s * s * (3.0 * s - 6.0)) / 6.0, t * t * t / 6.0};
 }

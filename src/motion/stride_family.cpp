@@ -1,7 +1,9 @@
 #include "gaitpad/stride_family.h"
 
-#include "gaitpad/curve.h"
-#include "motion/stride_lanes.h"
+#include <algorithm>
+#include <cmath>
+
+#include "motion/stencil.h"
 
 namespace gaitpad {
 namespace {
@@ -19,6 +21,12 @@ void add(StrideCell& sum, const StrideCell& cell, double weight) noexcept {
   double* to = &sum.pelvis_m.x;
   const double* from = &cell.pelvis_m.x;
   for (std::size_t k = 0; k < sizeof(StrideCell) / sizeof(double); ++k) to[k] += weight * from[k];
+}
+void add(StrideTrack& sum, const StrideTrack& track, double weight) noexcept {
+  sum.stride_m += weight * track.stride_m;
+  for (int side : {0, 1}) sum.footprint_m[side] += weight * track.footprint_m[side];
+  sum.low_m += weight * track.low_m;
+  sum.high_m += weight * track.high_m;
 }
 
 }  // namespace
@@ -60,10 +68,31 @@ std::array<StrideCell, kCycleSamples> knots_through(
 }
 
 StridePlace stride_at(const std::vector<StrideTable>& tables, double phase, double ratio) noexcept {
+  // Four neighbouring tables; beyond the ends they are extrapolated linearly.
+  const double last = static_cast<double>(tables.size() - 1),
+               y = std::clamp(ratio / kRatioStep, 0.0, last),
+               r = std::min(std::floor(y), last - 1.0);
+  const int first = static_cast<int>(r) - 1;
+  std::array<double, 4> by_table = cubic_weights(y - r);
+  if (first < 0) {
+    by_table[1] += 2.0 * by_table[0], by_table[2] -= by_table[0], by_table[0] = 0.0;
+  }
+  if (r == last - 1.0) {
+    by_table[2] += 2.0 * by_table[3], by_table[1] -= by_table[3], by_table[3] = 0.0;
+  }
+  const double x = (phase - std::floor(phase)) * kCycleSamples,
+               i = std::min(std::floor(x), kCycleSamples - 1.0);
+  const std::array<double, 4> by_knot = spline_weights(x - i);
   StridePlace place;
-  const RatiosOf<double> at = ratios_at<double>({&tables}, ratio);
-  track_at<double>(at, place.track);
-  stride_between<double>(at, at, 0.0, knots_at(phase), place.cell);
+  for (int n = 0; n < 4; ++n) {
+    if (by_table[n] == 0.0) continue;
+    const StrideTable& table = tables[first + n];
+    add(place.track, table, by_table[n]);
+    for (int m = 0; m < 4; ++m) {
+      const int knot = (static_cast<int>(i) + m - 1 + kCycleSamples) % kCycleSamples;
+      add(place.cell, table.knot[knot], by_table[n] * by_knot[m]);
+    }
+  }
   return place;
 }
 

@@ -139,11 +139,7 @@ int width_for(int walks, int widest) noexcept {
     if (narrower < width && narrower >= walks) width = narrower;
   return width;
 }
-// The program counts lanes of doubles; a register has twice as many floats.
-int widest_block(IkMode mode) noexcept {
-  const int lanes = lanes_in_use();
-  return mode == IkMode::paper || lanes == 1 ? 1 : 2 * lanes;
-}
+int widest_block(IkMode mode) noexcept { return mode == IkMode::paper ? 1 : lanes_in_use(); }
 
 }  // namespace
 

@@ -5,27 +5,18 @@
 #include <cmath>
 #include <cstring>
 
-#include "base/lanes.h"
 #include "control/params_range.h"
 
 namespace gaitpad {
 
 bool is_sound(const GaitParams& params) noexcept {
-  using Pair = Lanes<2>;
   const ParamsRange& range = params_range();
-  const auto pair = [](const GaitParams& of, std::size_t k) {
-    Pair two;
-    std::memcpy(&two, numbers_of(of).data() + k, sizeof two);
-    return two;
-  };
-  MaskOf<Pair> outside{};
-  for (std::size_t k = 0; k < kParamsNumbers; k += 2) {
-    // Pairs of numbers; the last pair of an odd count overlaps the one before.
-    const std::size_t at = std::min(k, kParamsNumbers - 2);
-    const Pair x = pair(params, at);
-    outside |= ~((x >= pair(range.least, at)) & (x <= pair(range.most, at)));
-  }
-  return !any(outside);
+  const auto numbers = numbers_of(params), least = numbers_of(range.least),
+             most = numbers_of(range.most);
+  int inside = 0;
+  for (std::size_t k = 0; k < kParamsNumbers; ++k)
+    inside += (numbers[k] >= least[k]) & (numbers[k] <= most[k]);
+  return inside == static_cast<int>(kParamsNumbers);
 }
 
 GaitParams mended_params(const GaitParams& params, WalkState& state) noexcept {

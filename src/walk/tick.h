@@ -95,6 +95,9 @@ void begin_walks(const Tables& tables, Block<kWidth>& block) noexcept {
   set(begin, state.phase), set(V{}, state.phase_rate), set(V{}, state.strike_rate);
   set(V{}, state.tick), set(V{}, state.flies), set(V{}, state.late_s);
   set(V{}, state.ratio_behind), set(V{}, state.stand_pitch_rad);
+  for (V* number : {&block.told.stride_m[0], &block.told.stride_m[1], &block.told.step_ticks[0],
+                    &block.told.step_ticks[1]})
+    set(V{}, *number);
   for (Smoothed<V>& length_m : state.length_m) set(V{}, length_m.x), set(V{}, length_m.v);
   go_on_from_here(tables, begins, state, change);
 }
@@ -292,12 +295,6 @@ void count_step(const Time<V>& time, const Landing<V>& landing, const Way<V>& to
   told.step_ticks[1] = strikes ? told.step_ticks[0] : told.step_ticks[1];
   told.step_ticks[0] = strikes ? V(state.roll_ticks + state.flight_ticks) : told.step_ticks[0];
 }
-template <class V>
-void end_report(const Change<V>& change, Told<V>& told) noexcept {
-  const auto stands = change.stands != V{};
-  const auto set = [&](V& number) { number = stands ? V{} : number; };
-  set(told.stride_m[0]), set(told.stride_m[1]), set(told.step_ticks[0]), set(told.step_ticks[1]);
-}
 
 // A walk may change its solver: the paper's one starts from whole angles.
 template <bool kPaper>
@@ -408,6 +405,7 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
   keep_swing(feet.foot[0], state);
   if constexpr (kUneven)
     footing.last_rise_m[1] = footing.last_rise_m[0], footing.last_rise_m[0] = footing.rise_m;
+  block.told.struck = chosen<V>(strikes, 1.0f, 0.0f);
   if (any(strikes)) {
     V overhangs{};
     if constexpr (kUneven) overhangs = footing.overhangs;
@@ -435,7 +433,6 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
       });
     }
     rest(tables, change, state);
-    end_report(change, block.told);
     if constexpr (kUneven) footing.next_rise = change.stands != V{} ? V{} : footing.next_rise;
   }
   if (any(lifts)) {

@@ -18,9 +18,9 @@ struct Moment {
 Moment moment_of(const Block<1>& block) noexcept {
   const State<float>& state = block.state;
   Moment at;
-  at.stands = block.change.stands != 0.0f;
+  at.struck = block.told.struck != 0.0f;
+  at.stands = block.change.stands != 0.0f && !at.struck;
   const bool turned = !at.stands && state.tick == 0.0f;  // a stage has ended
-  at.struck = turned && state.flies == 0.0f;
   at.flies = at.struck || (!turned && state.flies != 0.0f);
   at.right = (state.right_swings != 0.0f) != at.struck;
   at.ticks = static_cast<int>(state.roll_ticks + state.flight_ticks);
@@ -119,7 +119,7 @@ void report(const WalkModel& model, const Tables& tables, const Block<1>& block,
     frame.heel_planted[side] = at.stands || (frame.stage == Stage::roll && swings);
     frame.toe_planted[side] = at.stands || !swings;
     frame.steps[side] = static_cast<int>(told.steps[side]) - counts;
-    frame.stride_m[side] = told.stride_m[side];
+    frame.stride_m[side] = at.stands ? 0.0 : told.stride_m[side];
     frame.ik_iterations[side] = static_cast<int>(told.iterations[side]);
     frame.ik_error_m[side] = told.error_m[side];
     frame.ik_failed[side] = told.failed[side] != 0.0f;

@@ -2,8 +2,6 @@
 
 #include "base/ranges.h"
 #include "motion/leg_pose.h"
-#include "motion/pose_rows.h"
-#include "motion/stride_lanes.h"
 #include "walk/tables.h"
 
 namespace gaitpad {
@@ -334,6 +332,44 @@ bool has_overlong_leg(const GaitCycle& cycle) {
   return false;
 }
 
+// A place relative to the pelvis, turned with the pelvis.
+vec3 pelvis_turned(const vec3& place_m, double yaw_rad, const vec3& tilt) noexcept {
+  return rotation_y(yaw_rad) * (from_rotation_vector(tilt) * place_m);
+}
+
+void scale_footprints(const StrideScale& to, Footprints& track) noexcept {
+  if (to.length == 1.0 && to.pelvis == 1.0) return;
+  track.stride_m *= to.length;
+  for (int side : {0, 1})
+    track.footprint_m[side] = track.footprint_m[side] * to.length + to.apart_m[side];
+}
+
+// Scales the pelvis of the motion's stride to the character (StrideScale). The legs keep their
+// angles: a wider pelvis turns and rolls less, by `length / pelvis`, and the middle of the hips
+// follows its scaled path.
+void scale_pelvis(const StrideScale& to, StrideCell& cell) noexcept {
+  if (to.length == to.pelvis) {
+    cell.pelvis_m *= to.length;
+    return;
+  }
+  const double turns = to.length / to.pelvis;
+  const auto hips_m = [&](double share, const vec3& standing_m) {
+    vec3 tilt = cell.pelvis_tilt;
+    tilt.z = share * (tilt.z + to.stand_roll_rad);
+    return pelvis_turned(to.hips_m, share * cell.pelvis_yaw_rad, tilt) - standing_m;
+  };
+  cell.pelvis_m = to.length * (cell.pelvis_m + hips_m(1.0, to.standing_m[0])) -
+                  to.pelvis * hips_m(turns, to.standing_m[1]);
+  cell.pelvis_yaw_rad *= turns;
+  cell.pelvis_tilt.z *= turns;
+}
+void scale_stride(const StrideScale& to, StrideCell& cell) noexcept {
+  if (to.length == 1.0 && to.pelvis == 1.0) return;
+  for (int side : {0, 1})
+    cell.foot[side].heel_m = cell.foot[side].heel_m * to.length + to.apart_m[side];
+  scale_pelvis(to, cell);
+}
+
 StrideScale stride_scale(const GaitCycle& cycle, double scale, double ratio) noexcept {
   StrideScale to;
   to.length = ratio;
@@ -342,8 +378,8 @@ StrideScale stride_scale(const GaitCycle& cycle, double scale, double ratio) noe
   to.stand_roll_rad = cycle.strides->stand_roll_rad;
   const double turns = ratio / scale;
   to.standing_m = {
-      pelvis_turned<double>(to.hips_m, 0.0, vec3(0.0, 0.0, to.stand_roll_rad)),
-      pelvis_turned<double>(to.hips_m, 0.0, vec3(0.0, 0.0, turns * to.stand_roll_rad))};
+      pelvis_turned(to.hips_m, 0.0, vec3(0.0, 0.0, to.stand_roll_rad)),
+      pelvis_turned(to.hips_m, 0.0, vec3(0.0, 0.0, turns * to.stand_roll_rad))};
   for (int side : {0, 1})
     to.apart_m[side] = vec3(cycle.leg[side].hip_m.x, 0.0, to.hips_m.z) * (scale - ratio);
   return to;
@@ -355,7 +391,7 @@ FootprintLine footprint_line(const std::vector<StrideTable>& tables,
   line.most_ratio = kRatioStep * static_cast<double>(tables.size() - 1);
   line.at_zero = tables.front();
   Footprints most = tables.back();
-  for (Footprints* at : {&line.at_zero, &most}) scale_footprints<double>(scale, *at);
+  for (Footprints* at : {&line.at_zero, &most}) scale_footprints(scale, *at);
   line.per_ratio.stride_m = (most.stride_m - line.at_zero.stride_m) / line.most_ratio;
   for (int side : {0, 1})
     line.per_ratio.footprint_m[side] =
@@ -384,9 +420,10 @@ void lay_out_legs(WalkModel& model) {
   }
 }
 
-// Lays out the rows that a tick samples, without the legs' joints, which the inverse kinematics
-// sets, and without the joints that keep their rotation.
-void lay_out_rows(WalkModel& model) {
+// Lists the joints that the data set: those that move, and those that are always the identity.
+void list_joints(WalkModel& model) {
+  const GaitCycle& cycle = model.cycle;
+  const std::size_t joints = cycle.standing_local.size();
   std::array<bool, kMaxJoints> is_set{};
   for (const int j : model.kept) is_set[j] = true;
   for (const LegBuild& leg : model.leg) {
@@ -394,7 +431,13 @@ void lay_out_rows(WalkModel& model) {
       if (frame.joint >= 0) is_set[frame.joint] = true;
     }
   }
-  model.above = pose_rows(model.cycle, {is_set.data(), model.cycle.skeleton.joints.size()});
+  for (std::size_t j = 0; j < joints; ++j) {
+    if (is_set[j]) continue;
+    bool is_still = cycle.standing_local[j] == kIdentity;
+    for (std::size_t i = j; i < cycle.local.size(); i += joints)
+      is_still = is_still && cycle.local[i] == kIdentity;
+    (is_still ? model.still : model.moving).push_back(static_cast<int>(j));
+  }
 }
 
 // Keeps the joints above the pelvis, except the legs, as upright as if the pelvis did not roll.
@@ -471,17 +514,8 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
   keep_trunk_upright(stand.roll_rad, model.cycle);
   collect_kept_joints(model);
   lay_out_legs(model);
-  lay_out_rows(model);
+  list_joints(model);
   model.body = upper_body_model(model.cycle, ratio, model.stand_m);
-  for (ArmBuild& arm : model.body.arm) {
-    const auto column = [&model](int joint) {
-      const auto& joints = model.above.joint;
-      const auto at = std::find(joints.begin(), joints.end(), joint);
-      return at == joints.end() ? -1 : static_cast<int>(at - joints.begin());
-    };
-    arm.shoulder_column = column(arm.joints.shoulder);
-    arm.elbow_column = column(arm.joints.elbow);
-  }
   model.tables = anew::build_tables(model);
   return model;
 }
@@ -489,10 +523,10 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
 StridePlace stride_of(const WalkModel& model, bool backward, double phase, double ratio) noexcept {
   const StrideFamily& family = *model.cycle.strides;
   StridePlace place = stride_at(backward ? family.back : family.table, phase, ratio);
-  scale_footprints<double>(model.stride_scale, place.track);
+  scale_footprints(model.stride_scale, place.track);
   place.track.low_m *= model.stride_scale.length;
   place.track.high_m *= model.stride_scale.length;
-  scale_stride<double>(model.stride_scale, place.cell);
+  scale_stride(model.stride_scale, place.cell);
   return place;
 }
 

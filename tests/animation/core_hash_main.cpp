@@ -94,7 +94,7 @@ void walk_everywhere(const char* name, const GaitCycle& cycle) {
 }
 
 void walk_crowd() {
-  use_lanes(2);  // two doubles in a register, which every processor has or can imitate
+  use_lanes(4);  // four floats in a register, which every processor has or can imitate
   MadeCrowd made(16);
   WordHash hash;
   for (int tick = 0; tick < 20 * kCrowdRate; ++tick) {

@@ -6,7 +6,6 @@
 #include <limits>
 #include <random>
 
-#include "base/lanes.h"
 
 namespace gaitpad {
 namespace {
@@ -49,24 +48,6 @@ TEST(SinCos, AreWithinTwoUlpOfTheStandardOnes) {
     const SinCos s = sin_cos(a);
     EXPECT_LE(ulps(s.sin, std::sin(a)), 2.0) << a;
     EXPECT_LE(ulps(s.cos, std::cos(a)), 2.0) << a;
-  }
-}
-
-// Near odd multiples of pi/4 both neighbouring quarter turns are equally near.
-TEST(SinCos, HaveTheSameBitsInLanes) {
-  Chance chance;
-  std::vector<double> angles;
-  for (int k = -60; k <= 60; ++k) {
-    double a = k * kPi / 4.0;
-    for (int n = 0; n < 4; ++n) a = std::nextafter(a, -1e9);
-    for (int n = 0; n < 9; ++n, a = std::nextafter(a, 1e9)) angles.push_back(a);
-  }
-  for (int i = 0; i < 2000; ++i) angles.push_back(chance.in(-30.0, 30.0));
-  for (const double a : angles) {
-    Lanes<2> sine, cosine;
-    sin_cos_of(Lanes<2>{a, 1.0}, sine, cosine);
-    EXPECT_EQ(sine[0], sin_cos(a).sin) << a;
-    EXPECT_EQ(cosine[0], sin_cos(a).cos) << a;
   }
 }
 

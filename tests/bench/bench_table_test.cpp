@@ -50,9 +50,9 @@ TEST(BenchTable, AMissedBoundIsSaid) {
 
 // AVX-512 holds 8 doubles, AVX2 four.
 TEST(BenchTable, LanesAreNamedByTheirInstructions) {
-  EXPECT_EQ(lanes_text(8), "8 lanes (AVX-512)");
-  EXPECT_EQ(lanes_text(4), "4 lanes (AVX2)");
-  EXPECT_EQ(lanes_text(2), "2 lanes (128 bits)");
+  EXPECT_EQ(lanes_text(16), "16 lanes (AVX-512)");
+  EXPECT_EQ(lanes_text(8), "8 lanes (AVX2)");
+  EXPECT_EQ(lanes_text(4), "4 lanes (128 bits)");
 }
 
 }  // namespace

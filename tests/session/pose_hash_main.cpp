@@ -66,7 +66,7 @@ Result<GaitCycle> cycle_through_file(const std::string& path) {
 // Walks 64 characters for a minute, at every lane width up to the widest of this build and
 // processor.
 void walk_crowd() {
-  for (const int lanes : {2, 4, 8}) {
+  for (const int lanes : {4, 8, 16}) {
     use_lanes(lanes);
     MadeCrowd made(64);
     WordHash hash;

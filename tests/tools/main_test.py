@@ -91,7 +91,7 @@ def test_bench_lists_each_measurement(benched):
                           "ground_query", "step", "crowd", "crowd_alone",
                           "crowd_memory", "load_built_in", "load_clip", "load_cached", "load", "replay", "replay_files"}
     assert all(0 < r["ns_low"] <= r["ns"] <= r["ns_high"] for r in benched if r["name"] != "stage")
-    assert all(r["processor"] and r["lanes"] in (2, 4, 8) for r in benched)
+    assert all(r["processor"] and r["lanes"] in (4, 8, 16) for r in benched)
     assert {r["stage"] for r in benched if r["name"] == "stage"} == {"clock and plan", "sampling", "ik", "pose"}
     widest = benched[0]["lanes"]
     assert {(r["characters"], r["width"]) for r in benched if r["name"] == "crowd"} == {

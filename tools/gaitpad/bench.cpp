@@ -50,7 +50,7 @@ std::optional<Error> write_plot(const std::string& path, const std::vector<Bench
   for (const BenchRow& row : rows)
     if (row.work->name == "crowd") largest = std::max(largest, double(row.work->characters));
   std::vector<CrowdCurve> curves;
-  for (int lanes = widest_lanes(); lanes >= 1; lanes /= 2) {
+  for (int lanes = widest_lanes(); lanes >= 1; lanes = lanes > 4 ? lanes / 2 : lanes - 3) {
     CrowdCurve& curve = curves.emplace_back();
     curve.name = lanes_text(lanes);
     curve.colour = kColours[(curves.size() - 1) % kColours.size()];

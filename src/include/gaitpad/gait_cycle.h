@@ -106,18 +106,6 @@ struct GaitCycle {
 // numbers are finite.
 std::optional<Error> check(const GaitCycle& cycle);
 
-// The local rotations of some of a cycle's joints as rows of numbers: for each sample w, x, y and z
-// of one joint after the other.
-struct PoseRows {
-  int joint_count = 0;     // number of joints of the skeleton
-  std::vector<int> joint;  // joints whose rotations are in the columns, four columns each
-  std::vector<int> still;  // further joints, whose rotation is always the identity
-  int stride = 0;          // number of columns, a multiple of eight; columns beyond the joints' are
-                           // padding
-  std::vector<double> value;
-  std::vector<double> standing;  // the standing pose as one more row
-};
-
 // Interpolates the cycle at any phase, also beyond 0 .. 1: Catmull-Rom between samples. No
 // allocation.
 CycleSample sample_at(const GaitCycle& cycle, double phase) noexcept;

@@ -35,24 +35,6 @@ inline const vec3 kLeft = vec3(1.0, 0.0, 0.0);
 inline const vec3 kUp = vec3(0.0, 1.0, 0.0);       // y axis of the world
 inline const vec3 kForward = vec3(0.0, 0.0, 1.0);  // z axis of the world, forward
 
-// These types for numbers V of several walkers side by side, one in each lane of a register
-// (base/lanes.h); for doubles they are the types above. In memory their parts have the same order.
-template <class V>
-struct Vec3Of {
-  V x, y, z;
-};
-template <class V>
-struct QuatOf {
-  V x, y, z, w;
-  QuatOf() noexcept = default;
-  QuatOf(const V& qw, const V& qx, const V& qy, const V& qz) noexcept
-      : x(qx), y(qy), z(qz), w(qw) {}
-};
-template <class V>
-using Vec = std::conditional_t<std::is_same_v<V, double>, vec3, Vec3Of<V>>;
-template <class V>
-using Quat = std::conditional_t<std::is_same_v<V, double>, quat, QuatOf<V>>;
-
 struct SinCos {
   double sin, cos;
 };

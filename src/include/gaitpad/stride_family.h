@@ -23,45 +23,35 @@ inline constexpr double kMostRatio = kRatioStep * (kStrideRatios - 1);
 // Ratios of backward strides, 0 .. 0.8: backward steps are shorter.
 inline constexpr int kBackRatios = 5;
 
-// Structs that consist of numbers only may hold those of several walks side by side (V as in
-// gaitpad/math.h).
-template <class V>
-struct StrideFootOf {
-  Vec<V> heel_m{};
+struct StrideFoot {
+  vec3 heel_m{0.0};
   // The foot's rotation from flat and straight ahead: first about its transverse axis (toe down
   // positive), then, in the turned foot, by the rotation vector whose parts are about its upward
   // axis and along its length.
-  V pitch_rad{}, twist_rad{}, roll_rad{};
+  double pitch_rad{}, twist_rad{}, roll_rad{};
 };
 
 // A stride at one phase, relative to standing: the pelvis' place from the standing pelvis over the
 // path, angles from the standing pose's.
-template <class V>
-struct StrideCellOf {
-  Vec<V> pelvis_m{};
-  V pelvis_yaw_rad{};
+struct StrideCell {
+  vec3 pelvis_m{0.0};
+  double pelvis_yaw_rad{};
   // The rest of the pelvis' rotation from its standing roll, as a rotation vector.
-  Vec<V> pelvis_tilt{};
-  std::array<StrideFootOf<V>, 2> foot{};
-  std::array<std::array<V, kLegDofs>, 2> leg_rad{};
+  vec3 pelvis_tilt{0.0};
+  std::array<StrideFoot, 2> foot{};
+  std::array<std::array<double, kLegDofs>, 2> leg_rad{};
 };
-using StrideFoot = StrideFootOf<double>;
-using StrideCell = StrideCellOf<double>;
 
 // The length of a stride and the places of its footprints.
-template <class V>
-struct FootprintsOf {
-  V stride_m{};
+struct Footprints {
+  double stride_m{};
   // The places of the standing heels along the path: the left foot's after its strike near phase
   // 0.5, the right foot's after phase 0.
-  std::array<Vec<V>, 2> footprint_m{};
+  std::array<vec3, 2> footprint_m{};
 };
-using Footprints = FootprintsOf<double>;
-template <class V>
-struct StrideTrackOf : FootprintsOf<V> {
-  V low_m{}, high_m{};  // lowest and highest place of the pelvis, as in StrideCell
+struct StrideTrack : Footprints {
+  double low_m{}, high_m{};  // lowest and highest place of the pelvis, as in StrideCell
 };
-using StrideTrack = StrideTrackOf<double>;
 
 // Scales strides of the motion to the character: lengths of the pelvis by `pelvis`, all others by
 // `length`.
@@ -93,12 +83,10 @@ struct StrideFamily {
 };
 
 // A stride at one phase and ratio.
-template <class V>
-struct StridePlaceOf {
-  StrideTrackOf<V> track;
-  StrideCellOf<V> cell;
+struct StridePlace {
+  StrideTrack track;
+  StrideCell cell;
 };
-using StridePlace = StridePlaceOf<double>;
 // Knots of the spline through these samples of a cycle.
 std::array<StrideCell, kCycleSamples> knots_through(
     const std::array<StrideCell, kCycleSamples>& samples) noexcept;

@@ -44,8 +44,6 @@ struct ArmBuild {
   bool is_there = false;  // false: the skeleton has no such arm, and no other member is set
   ArmChain joints;
   std::vector<int> path;  // joints from the root to the wrist
-  // Columns in WalkModel::above; -1: the joint never moves.
-  int shoulder_column = -1, elbow_column = -1;
   // Local rotations in the middle of the data's swing.
   quat swing_shoulder = kIdentity, swing_elbow = kIdentity;
   // Largest factor on the data's swing that does not stretch the elbow.
@@ -146,7 +144,8 @@ struct WalkModel {
   // Shares of the cycle in walking order: roll right, flight left, roll left, flight right.
   std::array<double, 4> share{};
   std::vector<int> kept;  // twist joints in the legs, which keep their standing rotation
-  PoseRows above;         // the data's rotations of all joints that the legs do not set
+  // Of the joints that the data set: those that move, and those that are always the identity.
+  std::vector<int> moving, still;
   UpperBodyModel body;
   std::shared_ptr<const anew::BuildTables> tables;  // all of this as a tick reads it
 };

@@ -229,6 +229,7 @@ struct Told {
   // Landings so far, of which so many overhang an edge; the length of each foot's last step; ticks
   // of the last step and of the one before it.
   V steps[2]{}, overhangs{}, stride_m[2]{}, step_ticks[2]{};
+  V struck{};  // 1: a foot has landed in this tick, which still shows its flight
   // Where the pelvis is beside the hips' even way, to the left and ahead.
   V pelvis_x_m{}, pelvis_z_m{};
   // The legs' solves: iterations, the last one's error, 1: it did not reach its goal.

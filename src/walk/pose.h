@@ -51,10 +51,10 @@ void write_legs(const Tables& tables, const Time<V>& time, const Feet<V>& feet,
   }
 }
 
-// A skeleton's root is its pelvis.
 template <int kWidth>
-void write_root(const Tables& tables, const Pelvis<Floats<kWidth>>& pelvis,
-                const Block<kWidth>& block, const Poses& poses) noexcept {
+void write_root(const Tables& tables, const Hips<Floats<kWidth>>& hips,
+                const Pelvis<Floats<kWidth>>& pelvis, const Block<kWidth>& block,
+                const Poses& poses) noexcept {
   using V = Floats<kWidth>;
   const State<V>& state = block.state;
   const V sine = 2.0f * state.frame_sine * state.frame_cosine,
@@ -67,12 +67,23 @@ void write_root(const Tables& tables, const Pelvis<Floats<kWidth>>& pelvis,
         vec3(origin.x_m + lane(x_m, w), origin.y_m + lane(p.y, w), origin.z_m + lane(z_m, w));
   }
   const Turn<V> frame{state.frame_cosine, V{}, state.frame_sine, V{}};
-  write_joint(frame * pelvis.turn * same<V>(tables.pelvis_standing), tables.pelvis, poses);
+  Turn<V> turn = frame * pelvis.turn * same<V>(tables.pelvis_standing);
+  if (!tables.above_pelvis.empty()) {
+    // Joints between root and pelvis turn with the heading and else move as in the data.
+    Turn<V> above = frame * hips.heading.turn();
+    for (std::size_t i = 0; i < tables.above_pelvis.size(); ++i) {
+      const int joint = tables.above_pelvis[i].joint;
+      above = above * read_joint<V>(joint, all<V>(1.0f), poses);
+      if (i == 0) write_joint(above, joint, poses);
+    }
+    turn = back(above) * turn;
+  }
+  write_joint(turn, tables.pelvis, poses);
   for (int w = 0; block.is_placed && w < poses.walks; ++w) {
     const Placement& placed = block.placed[w];
     if (placed == Placement{}) continue;
     *poses.root_m[w] = to_world(placed, *poses.root_m[w]);
-    quat& root = poses.local[w][tables.pelvis];
+    quat& root = poses.local[w][0];
     root = rotation_y(placed.heading_rad) * root;
   }
 }

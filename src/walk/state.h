@@ -166,6 +166,24 @@ struct Styled {
   V idle_ticks{}, idle_share{};
   // Swing and stand: how low a foot's heel is kept where it would rise.
   Smoothed<V> low[2];
+  Smoothed<V> rail_ground_m[2];  // by Side: of the ground under a rail, over the step frame
+};
+
+// A turn whose second difference is bounded (trunk.h): in this tick, and since the one before; what
+// it is off its goal, which fades in `ticks`.
+template <class V>
+struct Eased {
+  Vec<V> at, rate;
+  Off<V> off[3];
+  V ticks{};
+};
+// How chest and head are carried while a walk changes.
+template <class V>
+struct Poise {
+  V acts{};                         // 1 or 0: they were eased a tick ago
+  V unsteady_ticks{};               // until the walk is steady
+  Smoothed<V> speed_m_s, push_rad;  // mean speed; lean into another one, forwards
+  Eased<V> chest, head;
 };
 
 // How a plane rises along x and along z.
@@ -214,7 +232,7 @@ inline constexpr bool kIsUneven = !std::is_same_v<F, NoFooting>;
 
 template <class V>
 inline constexpr int kStateNumbers = (sizeof(State<V>) + sizeof(Change<V>) + sizeof(Weighted<V>) +
-                                      sizeof(Styled<V>) + sizeof(Footing<V>)) /
+                                      sizeof(Styled<V>) + sizeof(Footing<V>) + sizeof(Poise<V>)) /
                                      sizeof(V);
 static_assert(sizeof(State<float>) <= 512);
 
@@ -232,6 +250,7 @@ struct alignas(64) Block {
   Weighted<Floats<kWidth>> weighted;
   Styled<Floats<kWidth>> styled;
   Footing<Floats<kWidth>> footing;
+  Poise<Floats<kWidth>> poise;
   Origin origin[kWidth];
   Placement placed[kWidth];  // of the walk's own coordinates in the world
   Stretch piece[kWidth];     // of uneven ground: where the swinging foot lands

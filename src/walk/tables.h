@@ -63,16 +63,36 @@ struct UpperJoint {
   std::array<float, 4> standing, middle;  // x, y, z, w; the middle of an arm's swing
 };
 
-// A joint on the way from the pelvis to the head, and its share of what chest and head are ahead.
+// A joint on the way from the pelvis to the head, or to the chest of a skeleton without one, and
+// its share of what chest and head are ahead.
 struct PathJoint {
-  int joint;
+  int joint, upper;  // its place among those that the legs do not set
   float of_chest, of_head;
   float bends, of_look;  // shares of the trunk's bend; of the head's turn, with what is below it
+  std::array<float, 3> offset_m;  // Joint
 };
 
-// An arm, from the pelvis on: the joints above the shoulder, then it.
+// A joint of the spine that shares its bend by weight (SpineJoint).
+struct SpineBone {
+  int at;                         // in the path
+  std::array<float, 4> standing;  // w, x, y, z
+  float upper;
+};
+
+// An arm (ArmBuild): its joints from the pelvis to the wrist.
+inline constexpr int kArmAngles = 6;  // shoulder x, z, y; elbow x; wrist x, z
 struct ArmBones {
-  std::vector<int> path;
+  struct Link {
+    int joint;
+    std::array<float, 3> offset_m;
+  };
+  std::vector<Link> path;               // none: the skeleton has no such arm
+  int shoulder, elbow;                  // in the path
+  int on_trunk;                         // so many of its first joints are the trunk's, too
+  bool turns_wrist;                     // the last joint is one that turns
+  std::array<float, 4> hanging, chest;  // w, x, y, z
+  std::array<float, 3> grip_m;
+  std::array<float, kArmAngles> min_rad, max_rad, middle_rad;
 };
 
 struct Tables {
@@ -93,13 +113,21 @@ struct Tables {
   std::vector<UpperJoint> upper;
   std::vector<float> upper_rows;  // (kKnots + 3) x upper.size() x 4: x, y, z, w
   std::vector<PathJoint> path;    // from the pelvis on
+  std::vector<SpineBone> spine;   // none: it does not bend by weights
   std::array<ArmBones, 2> arm;
-  std::array<float, 4> chest_standing, head_standing;  // w, x, y, z
-  std::array<float, kBodyNumbers> plain_body;          // UpperBodyParams of no style
+  bool has_head;                                                   // it ends the path
+  std::array<float, 4> chest_standing, head_standing, spine_base;  // w, x, y, z
+  std::array<float, 3> neck_m;
+  float arm_m, shoulder_height_m;  // UpperBodyModel
+  // How hard chest and head may turn while a walk changes, radians/s^2.
+  float most_chest_s2, most_head_s2;
+  std::array<float, kBodyNumbers> plain_body;  // UpperBodyParams of no style
   std::array<float, 2> most_elbow_swing;
   std::vector<int> still;                  // always the identity
   std::vector<std::pair<int, quat>> kept;  // twist joints in the legs
   int joints, pelvis;
+  std::vector<ArmBones::Link> above_pelvis;  // from the root to its parent; none: it is the root
+  std::array<float, 3> pelvis_offset_m;
   std::array<float, 4> pelvis_standing;  // w, x, y, z
 
   std::shared_ptr<const Terrain> terrain;  // none where the ground is level
@@ -108,7 +136,7 @@ struct Tables {
   float tick_s;
   Filter room, ground, slope_lean;  // of uneven ground
   Filter step, first_step, turn_goal, turn, bounce, lean, posture, chest, head;
-  Filter weights, loosens, lowers, body;
+  Filter weights, loosens, lowers, body, speed, push, rail;
   float mean_pull;  // of the two filters that a leg's running mean goes through
 };
 

@@ -55,6 +55,8 @@ inline Block<1> taken_over(const WalkState& old, const GaitParams& params) {
   smoothed(gait.step_time_s, to.step_time_s);
   smoothed(old.body.chest_ahead_rad, to.chest_ahead_rad);
   smoothed(old.body.head_ahead_rad, to.head_ahead_rad);
+  smoothed(old.body.speed_m_s, block.poise.speed_m_s);
+  smoothed(old.body.push_rad, block.poise.push_rad);
   to.right_swings = swing == kRightSide ? 1.0f : 0.0f;
   to.roll_ticks = static_cast<float>(old.clock.roll_ticks);
   to.backward = old.clock.backward ? 1.0f : 0.0f;

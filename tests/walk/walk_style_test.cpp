@@ -191,11 +191,7 @@ TEST_P(Shipped, StyleWalksAsInTheOldWalk) {
     const Differences off = walk(walks, 4 * kRate);
     print(off);
     expect_same_legs(off);
-    // Hands that hold something and weights of arms and spine are still missing.
-    constexpr std::array<std::string_view, 4> kMissing = {"carry", "rail_left", "stiff_arms",
-                                                          "muscular"};
-    if (std::find(kMissing.begin(), kMissing.end(), GetParam()) == kMissing.end())
-      expect_same_body(off);
+    expect_same_body(off);
   }
 }
 INSTANTIATE_TEST_SUITE_P(Of, Shipped,

@@ -14,7 +14,8 @@ inline constexpr bool kIsUneven = !std::is_same_v<F, NoFooting>;
 
 template <class V>
 inline constexpr int kStateNumbers = (sizeof(State<V>) + sizeof(Change<V>) + sizeof(Weighted<V>) +
-                                      sizeof(Styled<V>) + sizeof(Footing<V>) + sizeof(Told<V>)) /
+                                      sizeof(Styled<V>) + sizeof(Footing<V>) + sizeof(Poise<V>) +
+                                      sizeof(Told<V>)) /
                                      sizeof(V);
 static_assert(sizeof(State<float>) <= 512);
 

@@ -434,6 +434,16 @@ void lean_pelvis(const Tables& tables, const Turn<V>& upright, const Turn<V>& tu
   pelvis.turn = leans;
 }
 
+// The pelvis' turn in the upright body.
+template <class V>
+Turn<V> tilted(const Tables& tables, const Stride<V>& stride, const State<V>& state) noexcept {
+  Vec<V> tilt = stride.pelvis_tilt_rad;
+  tilt.z = tilt.z + tables.stand_roll_rad;
+  V sine, cosine;
+  sin_cos_small(V(0.5f * state.sway.x * stride.pelvis_yaw_rad), sine, cosine);
+  return Turn<V>{cosine, V{}, sine, V{}} * turn_by(tilt);
+}
+
 template <class V, class F>
 Pelvis<V> pelvis_over(const Tables& tables, const Time<V>& time, const Hips<V>& hips,
                       const Stride<V>& stride, const State<V>& state, const F& footing) noexcept {
@@ -449,12 +459,8 @@ Pelvis<V> pelvis_over(const Tables& tables, const Time<V>& time, const Hips<V>& 
   pelvis.place_m = {hips.x_m + hips.heading.cosine * left_m,
                     height_m * (1.0f - 2.0f * half_sine * half_sine),
                     hips.z_m - hips.heading.sine * left_m};
-  Vec<V> tilt = stride.pelvis_tilt_rad;
-  tilt.z = tilt.z + tables.stand_roll_rad;
-  V sine, cosine;
-  sin_cos_small(V(0.5f * state.sway.x * stride.pelvis_yaw_rad), sine, cosine);
-  const Turn<V> lean{half_cosine, V{}, V{}, -half_sine}, sway{cosine, V{}, sine, V{}};
-  const Turn<V> upright = hips.heading.turn() * lean, turned = sway * turn_by(tilt);
+  const Turn<V> lean{half_cosine, V{}, V{}, -half_sine};
+  const Turn<V> upright = hips.heading.turn() * lean, turned = tilted(tables, stride, state);
   pelvis.turn = upright * turned;
   if constexpr (kIsUneven<F>) lean_pelvis(tables, upright, turned, footing, pelvis);
   pelvis.hip_m[0] = pelvis.turn * by_side<V>(time.right, tables.leg[0].hip_m, tables.leg[1].hip_m);

@@ -54,23 +54,15 @@ void glance(const V& time_s, const V& amount, const V& outwards, Idle<V>& idle) 
   idle.nod_rad = amount * turned * kMostNod_rad * (draw[3] - 0.3f);
 }
 
+// What shows after so many ticks of the stand.
 template <class V>
-Idle<V> advance_idle(const Tables& tables, const Change<V>& change, const State<V>& state,
-                     Styled<V>& styled) noexcept {
-  constexpr float kBeginsAfter_s = 1.0f, kBegins_s = 2.0f, kEnds_s = 0.8f;
+Idle<V> idle_at(const Tables& tables, const V& ticks, const State<V>& state,
+                const Styled<V>& styled) noexcept {
   // 14 breaths a minute raise the trunk by so much (people at rest: 12 to 18).
   constexpr float kBreath_Hz = 0.235f, kBreath_rad = 0.010471976f;
   Idle<V> idle;
-  const auto stands = change.stands != V{}, acts = either(stands, styled.idle_share != V{});
-  if (!any(either(acts, styled.idle_ticks != V{}))) return idle;
-  const float dt = tables.tick_s;
-  const V time_s = styled.idle_ticks * dt;
-  const V begins = time_s >= all<V>(kBeginsAfter_s) ? all<V>(dt / kBegins_s) : V{};
-  styled.idle_share =
-      within(V(styled.idle_share + (stands ? begins : all<V>(-dt / kEnds_s))), 0.0f, 1.0f);
-  const auto goes_on = either(stands, styled.idle_share > V{});
-  styled.idle_ticks = goes_on ? V(styled.idle_ticks + 1.0f) : V{};
-  const V asked = styled.acts != V{} ? styled.body[kIdle].x : all<V>(1.0f),
+  const V time_s = ticks * tables.tick_s,
+          asked = styled.acts != V{} ? styled.body[kIdle].x : all<V>(1.0f),
           amount = smoother(styled.idle_share) * asked;
   if (!any(amount != V{})) return idle;
   idle.breath_rad =
@@ -87,6 +79,22 @@ Idle<V> advance_idle(const Tables& tables, const Change<V>& change, const State<
   idle.ahead_m = size_m * (swings(0.0030f, 0.19f, 2.0f) + swings(0.0015f, 0.43f, 0.5f));
   idle.left_m = size_m * outwards * (swings(0.0035f, 0.13f, 0.0f) + swings(0.0020f, 0.31f, 1.0f));
   return idle;
+}
+
+template <class V>
+Idle<V> advance_idle(const Tables& tables, const Change<V>& change, const State<V>& state,
+                     Styled<V>& styled) noexcept {
+  constexpr float kBeginsAfter_s = 1.0f, kBegins_s = 2.0f, kEnds_s = 0.8f;
+  const auto stands = change.stands != V{}, acts = either(stands, styled.idle_share != V{});
+  if (!any(either(acts, styled.idle_ticks != V{}))) return {};
+  const float dt = tables.tick_s;
+  const V ticks = styled.idle_ticks,
+          begins = ticks * dt >= all<V>(kBeginsAfter_s) ? all<V>(dt / kBegins_s) : V{};
+  styled.idle_share =
+      within(V(styled.idle_share + (stands ? begins : all<V>(-dt / kEnds_s))), 0.0f, 1.0f);
+  const auto goes_on = either(stands, styled.idle_share > V{});
+  styled.idle_ticks = goes_on ? V(ticks + 1.0f) : V{};
+  return idle_at(tables, ticks, state, styled);
 }
 
 // Moves the hips over the feet.

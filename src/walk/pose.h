@@ -51,17 +51,9 @@ void write_legs(const Tables& tables, const Time<V>& time, const Feet<V>& feet,
   }
 }
 
-// Joints between root and pelvis turn with the heading and else move as in the data.
-inline void turn_pelvis_below(const Tables& tables, const quat& heading, quat* local) noexcept {
-  local[0] = heading * local[0];
-  quat above = kIdentity;
-  for (const int joint : tables.above) above = local[joint] * above;
-  local[tables.pelvis] = glm::conjugate(above) * local[tables.pelvis];
-}
-
 template <int kWidth>
-void write_root(const Tables& tables, const Pelvis<Floats<kWidth>>& pelvis,
-                const Turn<Floats<kWidth>>& heading, const Block<kWidth>& block,
+void write_root(const Tables& tables, const Hips<Floats<kWidth>>& hips,
+                const Pelvis<Floats<kWidth>>& pelvis, const Block<kWidth>& block,
                 const Poses& poses) noexcept {
   using V = Floats<kWidth>;
   const State<V>& state = block.state;
@@ -75,12 +67,18 @@ void write_root(const Tables& tables, const Pelvis<Floats<kWidth>>& pelvis,
         vec3(origin.x_m + lane(x_m, w), origin.y_m + lane(p.y, w), origin.z_m + lane(z_m, w));
   }
   const Turn<V> frame{state.frame_cosine, V{}, state.frame_sine, V{}};
-  write_joint(frame * pelvis.turn * same<V>(tables.pelvis_standing), tables.pelvis, poses);
-  if (tables.pelvis != 0) {
-    const Turn<V> turn = frame * heading;
-    for (int w = 0; w < poses.walks; ++w)
-      turn_pelvis_below(tables, quat(lane(turn.w, w), 0.0, lane(turn.y, w), 0.0), poses.local[w]);
+  Turn<V> turn = frame * pelvis.turn * same<V>(tables.pelvis_standing);
+  if (!tables.above_pelvis.empty()) {
+    // Joints between root and pelvis turn with the heading and else move as in the data.
+    Turn<V> above = frame * hips.heading.turn();
+    for (std::size_t i = 0; i < tables.above_pelvis.size(); ++i) {
+      const int joint = tables.above_pelvis[i].joint;
+      above = above * read_joint<V>(joint, all<V>(1.0f), poses);
+      if (i == 0) write_joint(above, joint, poses);
+    }
+    turn = back(above) * turn;
   }
+  write_joint(turn, tables.pelvis, poses);
   for (int w = 0; block.is_placed && w < poses.walks; ++w) {
     const Placement& placed = block.placed[w];
     if (placed == Placement{}) continue;
@@ -88,12 +86,6 @@ void write_root(const Tables& tables, const Pelvis<Floats<kWidth>>& pelvis,
     quat& root = poses.local[w][0];
     root = rotation_y(placed.heading_rad) * root;
   }
-}
-
-// Joints that never move.
-inline void write_still(const Tables& tables, quat* local) noexcept {
-  for (const int joint : tables.still) local[joint] = kIdentity;
-  for (const auto& [joint, standing] : tables.kept) local[joint] = standing;
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 
 namespace gaitpad::anew {
 
-// Joints that never move, and those of the legs' twists, are the caller's to write once.
 struct Poses {
   quat* const* local;  // of each walk, by joint
   vec3* const* root_m;

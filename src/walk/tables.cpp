@@ -155,44 +155,92 @@ int swing_of(const WalkModel& model, int joint) {
 constexpr double kNeckShare = 0.45;  // of what the head turns beside the chest
 void fill_path(const WalkModel& model, BuildTables& tables) {
   const UpperBodyModel& body = model.body;
-  const std::vector<int>&spine = body.joints.spine, &head = body.head_path;
-  const int joints = static_cast<int>(head.size()), necks = joints - 1 - body.neck_at;
+  const std::vector<Joint>& all = model.cycle.skeleton.joints;
+  tables.has_head = !body.head_path.empty();
+  const std::vector<int>&spine = body.joints.spine,
+        &path = tables.has_head ? body.head_path : body.spine_path;
+  const int joints = static_cast<int>(path.size()),
+            neck_at = tables.has_head ? body.neck_at : joints, necks = joints - 1 - neck_at;
   for (int i = 0; i < joints; ++i) {
-    if (head[i] == model.cycle.pelvis) tables.path.clear();
-    if (head[i] == model.cycle.pelvis) continue;
-    const bool bends = std::find(spine.begin(), spine.end(), head[i]) != spine.end();
+    if (path[i] == model.cycle.pelvis) tables.path.clear();
+    if (path[i] == model.cycle.pelvis) continue;
+    const bool bends = std::find(spine.begin(), spine.end(), path[i]) != spine.end();
     const float share = bends ? 1.0f / static_cast<float>(spine.size()) : 0.0f;
-    PathJoint to{head[i], share, 0.0f, share, 0.0f};
-    if (i >= body.neck_at) {
+    PathJoint to{path[i], -1, share, 0.0f, share, 0.0f, floats(all[path[i]].offset_m)};
+    if (i >= neck_at) {
       to.of_head = static_cast<float>(i < joints - 1 ? kNeckShare / necks
                                       : necks > 0    ? 1.0 - kNeckShare
                                                      : 1.0);
       to.of_chest -= to.of_head;
-      to.of_look = static_cast<float>(i == joints - 1 ? 1.0
-                                                      : kNeckShare * (i - body.neck_at + 1) /
-                                                            (joints - 1 - body.neck_at));
+      to.of_look =
+          static_cast<float>(i == joints - 1 ? 1.0 : kNeckShare * (i - neck_at + 1) / necks);
     }
     tables.path.push_back(to);
   }
-  for (int side : {0, 1}) {
-    const ArmBuild& arm = body.arm[side];
-    if (!arm.is_there) continue;
-    std::vector<int>& path = tables.arm[side].path;
-    for (const int joint : arm.path) {
-      path.push_back(joint);
-      if (joint == model.cycle.pelvis) path.clear();
-      if (joint == arm.joints.shoulder) break;
-    }
-  }
   tables.chest_standing = wxyz(body.chest_standing);
   tables.head_standing = wxyz(body.head_standing);
+  for (const SpineJoint& joint : body.spine) {
+    const auto at = std::find_if(tables.path.begin(), tables.path.end(),
+                                 [&](const PathJoint& p) { return p.joint == joint.joint; });
+    if (at == tables.path.end()) continue;
+    tables.spine.push_back({static_cast<int>(at - tables.path.begin()), wxyz(joint.standing),
+                            static_cast<float>(joint.upper)});
+  }
+  if (tables.spine.size() < 2) tables.spine.clear();
+  tables.spine_base = wxyz(body.spine_base);
+  tables.neck_m = floats(body.neck_m);
+}
+
+void fill_arms(const WalkModel& model, BuildTables& tables) {
+  const UpperBodyModel& body = model.body;
+  const std::vector<Joint>& all = model.cycle.skeleton.joints;
+  for (int side : {0, 1}) {
+    const ArmBuild& from = body.arm[side];
+    ArmBones& arm = tables.arm[side];
+    if (!from.is_there) continue;
+    for (const int joint : from.path) {
+      if (joint == model.cycle.pelvis) arm.path.clear();
+      if (joint == model.cycle.pelvis) continue;
+      if (joint == from.joints.shoulder) arm.shoulder = static_cast<int>(arm.path.size());
+      if (joint == from.joints.elbow) arm.elbow = static_cast<int>(arm.path.size());
+      arm.path.push_back({joint, floats(all[joint].offset_m)});
+    }
+    arm.on_trunk = 0;
+    while (arm.on_trunk < static_cast<int>(std::min(arm.path.size(), tables.path.size())) &&
+           arm.path[arm.on_trunk].joint == tables.path[arm.on_trunk].joint)
+      ++arm.on_trunk;
+    arm.turns_wrist = !all[from.joints.wrist].is_end_site;
+    arm.hanging = wxyz(from.hanging);
+    arm.chest = wxyz(from.chest);
+    arm.grip_m = floats(from.grip_m);
+    for (int j = 0; j < kArmAngles; ++j) {
+      arm.min_rad[j] = static_cast<float>(from.min_rad[j]);
+      arm.max_rad[j] = static_cast<float>(from.max_rad[j]);
+      arm.middle_rad[j] = static_cast<float>(from.middle_rad[j]);
+    }
+  }
+  tables.arm_m = static_cast<float>(body.arm_m);
+  tables.shoulder_height_m = static_cast<float>(body.shoulder_height_m);
   const auto plain = std::bit_cast<std::array<double, kBodyNumbers>>(UpperBodyParams{});
   for (int n = 0; n < kBodyNumbers; ++n) tables.plain_body[n] = static_cast<float>(plain[n]);
+}
+
+// What is between a skeleton's root and its pelvis.
+void fill_root(const WalkModel& model, BuildTables& tables) {
+  const std::vector<Joint>& all = model.cycle.skeleton.joints;
+  const int pelvis = model.cycle.pelvis;
+  for (int j = all[pelvis].parent; j >= 0; j = all[j].parent)
+    tables.above_pelvis.insert(tables.above_pelvis.begin(), {j, floats(all[j].offset_m)});
+  tables.pelvis = pelvis;
+  tables.pelvis_offset_m = floats(all[pelvis].offset_m);
+  tables.pelvis_standing = wxyz(model.cycle.pelvis_standing);
 }
 
 void fill_upper_body(const WalkModel& model, BuildTables& tables) {
   const GaitCycle& cycle = model.cycle;
   fill_path(model, tables);
+  fill_arms(model, tables);
+  fill_root(model, tables);
   const auto is_on_path = [&](int joint) {
     return std::any_of(tables.path.begin(), tables.path.end(),
                        [&](const PathJoint& p) { return p.joint == joint; });
@@ -229,16 +277,58 @@ void fill_upper_body(const WalkModel& model, BuildTables& tables) {
       for (int row = 0; row < kKnots + 3; ++row)
         tables.upper_rows[(row * count + i) * 4 + n] = static_cast<float>(knots[knot_of_row(row)]);
     }
+    for (PathJoint& on_path : tables.path)
+      if (on_path.joint == joint) on_path.upper = static_cast<int>(i);
     tables.upper.push_back(to);
   }
   for (int side : {0, 1})
     tables.most_elbow_swing[side] = static_cast<float>(model.body.arm[side].most_elbow_swing);
   for (const int j : model.kept) tables.kept.emplace_back(j, cycle.standing_local[j]);
   tables.joints = static_cast<int>(joints);
-  tables.pelvis = cycle.pelvis;
-  for (int j = cycle.skeleton.joints[cycle.pelvis].parent; j >= 0; j = cycle.skeleton.joints[j].parent)
-    tables.above.push_back(j);
-  tables.pelvis_standing = wxyz(cycle.pelvis_standing);
+}
+
+// Chest and head turn at most this much harder while a walk changes than in the data at their own
+// pace; and at least as hard as in the built-in walk, for which that is below twice the steady
+// one's.
+constexpr double kHarderChest = 1.7, kHarderHead = 1.9, kLeastChest_s2 = 252.0 * kDegree,
+                 kLeastHead_s2 = 139.0 * kDegree;
+void fill_hardness(const WalkModel& model, BuildTables& tables) {
+  const GaitCycle& cycle = model.cycle;
+  const std::size_t joints = cycle.skeleton.joints.size();
+  const int neck =
+      static_cast<int>(std::find_if(tables.path.begin(), tables.path.end(),
+                                    [](const PathJoint& joint) { return joint.of_look > 0.0f; }) -
+                       tables.path.begin());
+  // By phase: turns from standing.
+  std::array<std::array<quat, kKnots>, 2> turn;
+  for (int k = 0; k < kKnots; ++k) {
+    const double phase = double(k) / kKnots;
+    const StrideCell cell = stride_of(model, false, phase, 1.0).cell;
+    const Stencil at = stencil_at(phase);
+    quat above = rotation_y(cell.pelvis_yaw_rad) *
+                 from_rotation_vector(cell.pelvis_tilt + vec3(0.0, 0.0, model.stand_roll_rad)) *
+                 cycle.pelvis_standing;
+    turn[0][k] = turn[1][k] = above;
+    for (int i = 0; i < static_cast<int>(tables.path.size()); ++i) {
+      above = above *
+              cycle.local[static_cast<std::size_t>(at.index[1]) * joints + tables.path[i].joint];
+      (i < neck ? turn[0][k] : turn[1][k]) = above;
+    }
+  }
+  constexpr int kApart = 2;  // knots
+  const double between_s = 2.0 * model.body.own_step_s * kApart / kKnots;
+  std::array<double, 2> most{};
+  for (int part : {0, 1}) {
+    for (int k = 0; k < kKnots; ++k) {
+      const quat &a = turn[part][k], &b = turn[part][(k + kApart) % kKnots],
+                 &c = turn[part][(k + 2 * kApart) % kKnots];
+      const vec3 bend =
+          rotation_vector(c * glm::conjugate(b)) - rotation_vector(b * glm::conjugate(a));
+      most[part] = std::max(most[part], glm::length(bend) / (between_s * between_s));
+    }
+  }
+  tables.most_chest_s2 = static_cast<float>(std::max(kLeastChest_s2, kHarderChest * most[0]));
+  tables.most_head_s2 = static_cast<float>(std::max(kLeastHead_s2, kHarderHead * most[1]));
 }
 
 Filter filter(double time_constant_s, double tick_s) {
@@ -271,6 +361,9 @@ Filters filters_of(double time_scale, double tick_s) noexcept {
   filters.loosens = of(0.04);  // a foot that stood flat, when a walk begins
   filters.lowers = of(0.03);
   filters.body = of(0.22);
+  filters.speed = of(0.15);
+  filters.push = of(0.04);
+  filters.rail = of(0.06);
   const double mean_s = 0.5 * time_scale;
   filters.mean_pull = static_cast<float>(tick_s / (mean_s + tick_s));
   return filters;
@@ -299,6 +392,7 @@ std::shared_ptr<const BuildTables> build_tables(const WalkModel& model) {
   fill_harmonics(model, *tables);
   fill_legs(model, *tables);
   fill_upper_body(model, *tables);
+  fill_hardness(model, *tables);
   for (int k = 0; k < 4; ++k) tables->stage_share[k] = static_cast<float>(model.share[k]);
   tables->size = static_cast<float>(model.size);
   tables->time_scale = static_cast<float>(model.time_scale);
@@ -326,14 +420,18 @@ Tables tables_of(const WalkModel& model, double tick_s) noexcept {
           of.upper,
           of.upper_rows,
           of.path,
+          of.spine,
           of.arm,
           of.chest_standing,
           of.head_standing,
+          of.spine_base,
+          of.neck_m,
           of.plain_body,
           of.most_elbow_swing,
           of.still,
-          of.above,
           of.kept,
+          of.above_pelvis,
+          of.pelvis_offset_m,
           of.pelvis_standing,
           is_flat(*model.terrain) ? nullptr : model.terrain.get()};
 }

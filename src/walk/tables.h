@@ -63,16 +63,36 @@ struct UpperJoint {
   std::array<float, 4> standing, middle;  // x, y, z, w; the middle of an arm's swing
 };
 
-// A joint on the way from the pelvis to the head, and its share of what chest and head are ahead.
+// A joint on the way from the pelvis to the head, or to the chest of a skeleton without one, and
+// its share of what chest and head are ahead.
 struct PathJoint {
-  int joint;
+  int joint, upper;  // its place among those that the legs do not set
   float of_chest, of_head;
   float bends, of_look;  // shares of the trunk's bend; of the head's turn, with what is below it
+  std::array<float, 3> offset_m;  // Joint
 };
 
-// An arm, from the pelvis on: the joints above the shoulder, then it.
+// A joint of the spine that shares its bend by weight (SpineJoint).
+struct SpineBone {
+  int at;                         // in the path
+  std::array<float, 4> standing;  // w, x, y, z
+  float upper;
+};
+
+// An arm (ArmBuild): its joints from the pelvis to the wrist.
+inline constexpr int kArmAngles = 6;  // shoulder x, z, y; elbow x; wrist x, z
 struct ArmBones {
-  std::vector<int> path;
+  struct Link {
+    int joint;
+    std::array<float, 3> offset_m;
+  };
+  std::vector<Link> path;               // none: the skeleton has no such arm
+  int shoulder, elbow;                  // in the path
+  int on_trunk;                         // so many of its first joints are the trunk's, too
+  bool turns_wrist;                     // the last joint is one that turns
+  std::array<float, 4> hanging, chest;  // w, x, y, z
+  std::array<float, 3> grip_m;
+  std::array<float, kArmAngles> min_rad, max_rad, middle_rad;
 };
 
 // Numbers of a build.
@@ -81,7 +101,11 @@ struct BuildNumbers {
       source_step_m, own_step_s;
   float leg_m;          // thigh and shank
   bool legs_are_plain;  // no joint of a leg has a turn before or after its own
+  bool has_head;        // it ends the path
   int joints, pelvis;
+  float arm_m, shoulder_height_m;  // UpperBodyModel
+  // How hard chest and head may turn while a walk changes, radians/s^2.
+  float most_chest_s2, most_head_s2;
 };
 
 // What is the same at all ticks' lengths; a WalkModel has it.
@@ -100,14 +124,17 @@ struct BuildTables : BuildNumbers {
   std::vector<UpperJoint> upper;
   std::vector<float> upper_rows;  // (kKnots + 3) x upper.size() x 4: x, y, z, w
   std::vector<PathJoint> path;    // from the pelvis on
+  std::vector<SpineBone> spine;   // none: it does not bend by weights
   std::array<ArmBones, 2> arm;
-  std::array<float, 4> chest_standing, head_standing;  // w, x, y, z
-  std::array<float, kBodyNumbers> plain_body;          // UpperBodyParams of no style
+  std::array<float, 4> chest_standing, head_standing, spine_base;  // w, x, y, z
+  std::array<float, 3> neck_m;
+  std::array<float, kBodyNumbers> plain_body;  // UpperBodyParams of no style
   std::array<float, 2> most_elbow_swing;
   std::vector<int> still;                  // always the identity
   std::vector<std::pair<int, quat>> kept;  // twist joints in the legs
-  std::vector<int> above;                  // the joints above the pelvis, from it to the root
-  std::array<float, 4> pelvis_standing;    // w, x, y, z
+  std::vector<ArmBones::Link> above_pelvis;  // from the root to its parent; none: it is the root
+  std::array<float, 3> pelvis_offset_m;
+  std::array<float, 4> pelvis_standing;  // w, x, y, z
 };
 
 // The filters of a build at one tick's length.
@@ -115,7 +142,7 @@ struct Filters {
   float tick_s;
   Filter room, ground, slope_lean;  // of uneven ground
   Filter step, first_step, turn_goal, turn, bounce, lean, posture, chest, head;
-  Filter weights, loosens, lowers, body;
+  Filter weights, loosens, lowers, body, speed, push, rail;
   float mean_pull;  // of the two filters that a leg's running mean goes through
 };
 
@@ -131,12 +158,16 @@ struct Tables : BuildNumbers, Filters {
   const std::vector<UpperJoint>& upper;
   const std::vector<float>& upper_rows;
   const std::vector<PathJoint>& path;
+  const std::vector<SpineBone>& spine;
   const std::array<ArmBones, 2>& arm;
-  const std::array<float, 4>&chest_standing, &head_standing;
+  const std::array<float, 4>&chest_standing, &head_standing, &spine_base;
+  const std::array<float, 3>& neck_m;
   const std::array<float, kBodyNumbers>& plain_body;
   const std::array<float, 2>& most_elbow_swing;
-  const std::vector<int>&still, &above;
+  const std::vector<int>& still;
   const std::vector<std::pair<int, quat>>& kept;
+  const std::vector<ArmBones::Link>& above_pelvis;
+  const std::array<float, 3>& pelvis_offset_m;
   const std::array<float, 4>& pelvis_standing;
   const Terrain* terrain;  // none where the ground is level
 };

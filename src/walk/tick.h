@@ -76,6 +76,7 @@ void begin_walks(const Tables& tables, Block<kWidth>& block) noexcept {
       footing.landing_y_m = other ? footing.print_y_m : footing.landing_y_m;
     }
     move_frame<kWidth>(beside, other, block);
+    move_rails(other, footing.landing_y_m, block.styled);
     if (is_uneven(tables)) change_footing(beside, other, feet.flat_toe_m.y, footing);
     change_feet(beside, other, feet, Stride<V>{}, state);
     change_weighted_legs(other, block.weighted);
@@ -296,6 +297,16 @@ void count_step(const Time<V>& time, const Landing<V>& landing, const Way<V>& to
   told.step_ticks[0] = strikes ? V(state.roll_ticks + state.flight_ticks) : told.step_ticks[0];
 }
 
+// The last roll, until both feet count as flat.
+template <class V>
+void count_last_roll(const Tables& tables, const Mask<V>& strikes, const Change<V>& change,
+                     Told<V>& told) noexcept {
+  constexpr float kLastRoll_s = 0.17f;
+  const V last = all<V>(kLastRoll_s * tables.time_scale / tables.tick_s);
+  told.settle_ticks = both(strikes, change.stands != V{}) ? floored(V(last + 0.5f))
+                                                          : most(V(told.settle_ticks - 1.0f), V{});
+}
+
 // A walk may change its solver: the paper's one starts from whole angles.
 template <bool kPaper>
 void change_solver(const Tables& tables, const Time<float>& time, const Stride<float>& stride,
@@ -312,19 +323,19 @@ void change_solver(const Tables& tables, const Time<float>& time, const Stride<f
   }
 }
 
-// Legs and upper body, and the root.
+// Legs and upper body, and the root. `is_new`: the plan has changed in this tick.
 template <int kWidth, bool kPaper, class F>
-void pose_walks(const Tables& tables, const Time<Floats<kWidth>>& time,
-                const Hips<Floats<kWidth>>& hips, const Stride<Floats<kWidth>>& stride,
-                const Pelvis<Floats<kWidth>>& pelvis, const Idle<Floats<kWidth>>& idle,
-                const Floats<kWidth>& phase, Block<kWidth>& block, const F& footing,
+void pose_walks(const Tables& tables, const BodyTick<Floats<kWidth>>& tick,
+                const Mask<Floats<kWidth>>& is_new, Block<kWidth>& block, const F& footing,
                 Feet<Floats<kWidth>>& feet, const Poses& poses) noexcept {
   using V = Floats<kWidth>;
   constexpr bool kUneven = kIsUneven<F>;
   State<V>& state = block.state;
   const Change<V>& change = block.change;
+  const auto& [time, landing, hips, stride, pelvis, idle, phase, shown] = tick;
   if constexpr (kWidth == 1) change_solver<kPaper>(tables, time, stride, state, block.change);
   Leg<V> legs[2];
+  Mask<V> eases{};
   if constexpr (kPaper) {
     solve_by_paper(tables, time, phase, change, feet, pelvis, state, block.weighted, legs);
   } else {
@@ -334,15 +345,12 @@ void pose_walks(const Tables& tables, const Time<Floats<kWidth>>& time,
       ease_ankles(tables, time, stride, phase, pelvis, change, footing, state, feet, begun_rad,
                   legs);
     weigh_legs(tables, time, stride, feet, pelvis, phase, change, state, block.weighted, legs);
+    eases = advance_poise(tables, hips, is_new, change, state, block.poise);
   }
   const V swing = kPaper ? all<V>(1.0f) : arm_swing(tables, state);
-  // The data's phase: walking backward is walking forward run back (Thorstensson 1986).
-  const auto& share = tables.stage_share;
-  write_upper_body(tables, hips, pelvis, idle,
-                   time.back ? V(share[0] + share[1] + share[2] - phase) : phase, change.shown,
-                   swing, state, block.styled, poses);
+  write_upper_body<kWidth, kPaper>(tables, tick, swing, eases, block, poses);
   write_legs(tables, time, feet, legs, poses);
-  write_root<kWidth>(tables, pelvis, hips.heading.turn(), block, poses);
+  write_root<kWidth>(tables, hips, pelvis, block, poses);
   keep_solves(time, legs, block.told);
 }
 
@@ -394,8 +402,9 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
   sink(tables, time, stride, ankle_m, state, change, pelvis);
   reach_with_toe(tables, time, change, pelvis, feet);
   if (looks_ahead)  // nobody sees a walk that is walked ahead
-    pose_walks<kWidth, kPaper>(tables, time, hips, stride, pelvis, idle, phase, block, footing,
-                               feet, poses);
+    pose_walks<kWidth, kPaper>(
+        tables, BodyTick<V>{time, landing, hips, stride, pelvis, idle, phase, change.shown}, is_new,
+        block, footing, feet, poses);
 
   take_back(asked_rad, feet);
   const auto lifts = both(no(time.flies), state.tick >= state.roll_ticks),
@@ -412,6 +421,7 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
     count_step(time, landing, asked.to, strikes, state, overhangs, block.told);
     move_frame<kWidth>(landing, strikes, block);
     if constexpr (kUneven) {
+      move_rails(strikes, footing.landing_y_m, block.styled);
       change_footing(landing, strikes, feet.flat_toe_m.y, footing);
       const V slow = slowness_of(tables, no(time.right), state, footing);
       change.slowness = strikes ? slow : change.slowness;
@@ -435,6 +445,7 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
     rest(tables, change, state);
     if constexpr (kUneven) footing.next_rise = change.stands != V{} ? V{} : footing.next_rise;
   }
+  count_last_roll(tables, strikes, change, block.told);
   if (any(lifts)) {
     begin_flight(tables, time, lifts, change, state);
     if constexpr (kUneven) plan_rooms<kWidth>(tables, lifts, block);

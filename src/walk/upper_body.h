@@ -1,23 +1,11 @@
-// Sixth: the joints that the legs do not set, from the data at this phase.
+// Sixth: the joints that the legs do not set, from the data at this phase, and what of them is
+// asked to be otherwise.
 #pragma once
-#include "gaitpad/math.h"
-#include "walk/idle.h"
-#include "walk/pose_places.h"
-#include "walk/weights.h"
+#include "walk/arms.h"
+#include "walk/ground_plan.h"
 
 namespace gaitpad::anew {
 namespace {
-
-inline Four unit(const Four& q) noexcept {
-  const Four square = q * q, pairs = square + __builtin_shufflevector(square, square, 1, 0, 3, 2),
-             sum = pairs + __builtin_shufflevector(pairs, pairs, 2, 3, 0, 1);
-  return q / root(sum);
-}
-inline void store(const Four& q, quat& to) noexcept {
-  using Doubles __attribute__((vector_size(32))) = double;
-  const Doubles wide = __builtin_convertvector(q, Doubles);
-  std::memcpy(&to, &wide, sizeof wide);
-}
 
 // The factor on the data's arm swing: proportional to speed (Boulic et al. 1990), 1 at the data's
 // own pace, at most 1.4 by pace alone; below half the data's step the whole posture fades instead.
@@ -30,49 +18,28 @@ V arm_swing(const Tables& tables, const State<V>& state) noexcept {
   return 1.0f + (extra > V{} ? V(extra / (1.0f + extra * (1.0f / kMostExtra))) : extra);
 }
 
-template <class V>
-void write_joint(const Turn<V>& q, int joint, int w, const Poses& poses) noexcept {
-  store(Four{lane(q.x, w), lane(q.y, w), lane(q.z, w), lane(q.w, w)}, poses.local[w][joint]);
-}
-
-template <class V>
-Turn<V> read_joint(int joint, const Poses& poses) noexcept {
-  Turn<V> q;
-  for (int w = 0; w < poses.walks; ++w) {
-    const quat& from = poses.local[w][joint];
-    set_lane(static_cast<float>(from.w), w, q.w);
-    set_lane(static_cast<float>(from.x), w, q.x);
-    set_lane(static_cast<float>(from.y), w, q.y);
-    set_lane(static_cast<float>(from.z), w, q.z);
-  }
-  return q;
-}
-
 // Turns the joints from the pelvis to the head about the vertical, where chest and head are ahead:
 // each about its parent's upward axis, which that turn does not change.
 template <class V>
 void turn_ahead(const Tables& tables, const Pelvis<V>& pelvis, const State<V>& state,
-                const Mask<V>& is_styled, const Poses& poses) noexcept {
+                const Mask<V>& is_posed, const Poses& poses) noexcept {
   const V chest_rad = state.chest_ahead_rad.x, head_rad = state.head_ahead_rad.x;
-  const auto leads = both(no(is_styled), either(chest_rad != V{}, head_rad != V{}));
+  const auto leads = both(no(is_posed), either(chest_rad != V{}, head_rad != V{}));
   if (!any(leads)) return;
   const V is = chosen<V>(leads, 1.0f, 0.0f);
   const auto& s = tables.pelvis_standing;
   const Turn<V> standing{all<V>(s[0]), all<V>(s[1]), all<V>(s[2]), all<V>(s[3])};
   Vec<V> up = back(pelvis.turn * standing) * Vec<V>{V{}, all<V>(1.0f), V{}};
   for (const PathJoint& joint : tables.path) {
-    const Turn<V> q = read_joint<V>(joint.joint, poses);
+    const Turn<V> q = read_joint<V>(joint.joint, is, poses);
     const Turn<V> turned =
         turn_about(up, V(joint.of_chest * chest_rad + joint.of_head * head_rad)) * q;
-    for (int w = 0; w < poses.walks; ++w)
-      if (lane(is, w) != 0.0f) write_joint(turned, joint.joint, w, poses);
+    write_where(turned, joint.joint, is, poses);
     up = back(q) * up;
   }
 }
 
 // --- What a style asks of the upper body ---------------------------------------------------------
-
-inline constexpr float kRadians = 0.017453293f;  // a degree
 
 // Brings its numbers nearer to those asked for; those of no style are the data's.
 template <class V>
@@ -94,35 +61,6 @@ void smooth_body(const Tables& tables, const Mask<V>& is_styled, Styled<V>& styl
   styled.acts = chosen<V>(plain, 0.0f, 1.0f);
 }
 
-// From one rotation to another, the shorter way.
-template <class V>
-Turn<V> between(const Turn<V>& a, const Turn<V>& b, const V& share) noexcept {
-  const V along = a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z;
-  const auto other = along < V{};
-  const auto part = [&](const V& from, const V& to) {
-    return mix(from, other ? V(-to) : to, share);
-  };
-  return unit(Turn<V>{part(a.w, b.w), part(a.x, b.x), part(a.y, b.y), part(a.z, b.z)});
-}
-
-// A rotation about the x, y or z axis.
-template <class V>
-Turn<V> turn_x(const V& angle_rad) noexcept {
-  return turn_about(Vec<V>{all<V>(1.0f), V{}, V{}}, angle_rad);
-}
-template <class V>
-Turn<V> turn_y(const V& angle_rad) noexcept {
-  return turn_about(Vec<V>{V{}, all<V>(1.0f), V{}}, angle_rad);
-}
-template <class V>
-Turn<V> turn_z(const V& angle_rad) noexcept {
-  return turn_about(Vec<V>{V{}, V{}, all<V>(1.0f)}, angle_rad);
-}
-template <class V>
-Turn<V> every(const std::array<float, 4>& q) noexcept {
-  return {all<V>(q[0]), all<V>(q[1]), all<V>(q[2]), all<V>(q[3])};
-}
-
 // 1 in the middle of the time that a leg stands alone, 0 in that of the other.
 template <class V>
 V stands_alone(const Tables& tables, const V& phase, bool right) noexcept {
@@ -135,153 +73,328 @@ V stands_alone(const Tables& tables, const V& phase, bool right) noexcept {
   return half * half;
 }
 
-// The joints from the pelvis to the head, and how they are turned in the step frame.
-inline constexpr int kMostPath = 24;
-template <class V>
-struct Trunk {
-  Turn<V> own[kMostPath], turned[kMostPath];
-};
-
-// Turns neck and head: the neck by its share, the head by all of it.
-template <class V>
-void turn_head(const Tables& tables, const Turn<V>& turn, Trunk<V>& trunk) noexcept {
-  const Turn<V> none{all<V>(1.0f), V{}, V{}, V{}};
-  const int joints = static_cast<int>(tables.path.size());
-  for (int i = 0; i < joints; ++i) {
-    const float share = tables.path[i].of_look;
-    if (share > 0.0f) trunk.turned[i] = between(none, turn, all<V>(share)) * trunk.turned[i];
+// Moves a rail's height over the step frame. It rises evenly over stairs, so its height is that of
+// the mean ground along the way under the hand. The mean is taken as far ahead as the filter after
+// it lags.
+template <int kWidth>
+void follow_rails(const Tables& tables, const Vec<Floats<kWidth>>& hips_m,
+                  const Mask<Floats<kWidth>>& is_styled, Block<kWidth>& block) noexcept {
+  using V = Floats<kWidth>;
+  constexpr float kSmoothing_s = 0.06f, kProbe_m = 0.035f;
+  constexpr int kProbes = 15;  // on either side, 1.05 m in all: a mean over two treads rises evenly
+  const State<V>& state = block.state;
+  Styled<V>& styled = block.styled;
+  for (int side : {0, 1}) {
+    const V& held = of_hand(styled, side, kRail);
+    const auto follows =
+        both(is_styled, either(held > V{}, styled.goal[kHand + kHandNumbers * side + kRail] > V{}));
+    if (!any(follows)) continue;
+    const V is = chosen<V>(follows, 1.0f, 0.0f);
+    Smoothed<V>& ground_m = styled.rail_ground_m[side];
+    if (tables.terrain == nullptr) continue;
+    const float ahead = 2.0f * kSmoothing_s * tables.time_scale / tables.tick_s,
+                scale = tables.shoulder_height_m / static_cast<float>(kReferenceShoulder_m);
+    V mean_m{};
+    for (int w = 0; w < kWidth; ++w) {
+      if (lane(is, w) == 0.0f) continue;
+      const Origin& origin = block.origin[w];
+      const double heading = origin.heading_rad + static_cast<double>(lane(state.heading_rad, w));
+      const SinCos at = gaitpad::sin_cos(heading), frame = gaitpad::sin_cos(origin.heading_rad);
+      const double x = lane(hips_m.x, w) +
+                       ahead * (lane(state.pelvis_x_m[0], w) - lane(state.pelvis_x_m[1], w)),
+                   z = lane(hips_m.z, w) +
+                       ahead * (lane(state.pelvis_z_m[0], w) - lane(state.pelvis_z_m[1], w)),
+                   aside = (side == kLeftSide ? scale : -scale) *
+                           lane(of_hand(styled, side, kRailSide), w);
+      const vec3 under(origin.x_m + frame.cos * x + frame.sin * z + aside * at.cos, 0.0,
+                       origin.z_m + frame.cos * z - frame.sin * x - aside * at.sin);
+      double sum = 0.0, weights = 0.0;
+      for (int i = -kProbes; i <= kProbes; ++i) {
+        const double weight = kProbes + 1.0 - std::abs(i),
+                     along = i * static_cast<double>(kProbe_m * tables.size);
+        sum += weight *
+               ground_height(tables, block.placed[w], under + vec3(at.sin, 0.0, at.cos) * along);
+        weights += weight;
+      }
+      set_lane(static_cast<float>(sum / weights - origin.y_m), w, mean_m);
+    }
+    Smoothed<V> next = ground_m;
+    follow(mean_m, tables.rail, next);
+    // A rail that was not held yet has nothing to smooth.
+    const auto begins = held <= V{};
+    ground_m.x = follows ? (begins ? mean_m : next.x) : ground_m.x;
+    ground_m.v = follows ? (begins ? V{} : next.v) : ground_m.v;
   }
 }
 
-// The head's rotation when it looks along `direction`: upright, and within the limits of the neck.
-// `share` fades to 0 for goals that the head does not follow.
+// At a strike: they stay where they are in the world.
 template <class V>
-struct Gaze {
-  Turn<V> head;
-  V share;
+void move_rails(const Mask<V>& strikes, const V& up_m, Styled<V>& styled) noexcept {
+  for (Smoothed<V>& ground_m : styled.rail_ground_m)
+    ground_m.x = strikes ? V(ground_m.x - up_m) : ground_m.x;
+}
+
+// --- Trunk, arms and head ------------------------------------------------------------------------
+
+// The walk's own part of what the trunk does before a change of it.
+template <class V>
+Turn<V> data_turn(const Tables& tables, const PathJoint& joint, const Knots<V>& knots,
+                  const V& shown, const V& is) noexcept {
+  const std::size_t count = tables.upper.size();
+  Turn<V> turn{all<V>(1.0f), V{}, V{}, V{}};
+  for (int w = 0; w < kLanes<V>; ++w) {
+    if (lane(is, w) == 0.0f) continue;
+    const float* from = tables.upper_rows.data() +
+                        (static_cast<int>(lane(knots.first, w)) * count + joint.upper) * 4;
+    Four q{};
+    for (int k = 0; k < 4; ++k) q = q + part<Four>(from + 4 * k * count) * lane(knots.weight[k], w);
+    const Four stand = part<Four>(tables.upper[joint.upper].standing.data());
+    q = unit(stand + (unit(q) - stand) * lane(shown, w));
+    set_lane(q[0], w, turn.x), set_lane(q[1], w, turn.y), set_lane(q[2], w, turn.z);
+    set_lane(q[3], w, turn.w);
+  }
+  return turn;
+}
+
+// Where the pelvis' joint is: over the root, as the data turn the joints between.
+template <class V>
+Vec<V> pelvis_place(const Tables& tables, const Turn<V>& heading, const Vec<V>& root_m, const V& is,
+                    const Poses& poses) noexcept {
+  Vec<V> place_m = root_m;
+  Turn<V> turn = heading;
+  for (std::size_t i = 0; i < tables.above_pelvis.size(); ++i) {
+    if (i > 0) place_m = place_m + turn * every<V>(tables.above_pelvis[i].offset_m);
+    turn = turn * read_joint<V>(tables.above_pelvis[i].joint, is, poses);
+  }
+  return tables.above_pelvis.empty() ? place_m : place_m + turn * every<V>(tables.pelvis_offset_m);
+}
+
+// What a tick knows when it poses the upper body.
+template <class V>
+struct BodyTick {
+  const Time<V>& time;
+  const Landing<V>& landing;
+  const Hips<V>& hips;
+  const Stride<V>& stride;
+  const Pelvis<V>& pelvis;
+  const Idle<V>& idle;
+  V phase, shown;  // that are shown
 };
 template <class V>
-Gaze<V> gaze(const Tables& tables, const Turn<V>& chest, const Vec<V>& direction) noexcept {
-  constexpr float kMostYaw_rad = 70 * kRadians, kMostPitch_rad = 40 * kRadians,
-                  kSoftYaw_rad = 6 * kRadians, kSoftHeadPitch_rad = 4 * kRadians;
-  // It does not follow a goal behind it, for turning left and right would be equally far, nor one
-  // straight above or below.
-  constexpr float kBeside_rad = 105 * kRadians, kBehind_rad = 150 * kRadians, kLevelFrom = 0.15f,
-                  kLevelTo = 0.4f;
-  const auto limited = [](const V& x, float most, float soft) {
-    const V below = soft_least(x, all<V>(most), all<V>(soft));
-    return V(below + soft_positive(V(-most - below), all<V>(soft)));
+V data_phase(const Tables& tables, const Time<V>& time, const V& phase) noexcept {
+  // Walking backward is walking forward run back (Thorstensson 1986).
+  const auto& share = tables.stage_share;
+  return time.back ? V(share[0] + share[1] + share[2] - phase) : phase;
+}
+
+// How chest and head were turned in the two ticks before they are eased: a walk that is steady, and
+// one that stands, keep no account of it.
+template <class V>
+void begin_easing(const Tables& tables, const BodyTick<V>& tick, const Bearing<V> (&before)[2],
+                  const Mask<V>& begins, const Change<V>& change, const State<V>& state,
+                  Poise<V>& poise) noexcept {
+  const V is = chosen<V>(begins, 1.0f, 0.0f), over = planned_over(tick.time, change),
+          rate = either(change.stands != V{}, change.starting != V{}) ? V{} : state.phase_rate;
+  const Turn<V> heading = tick.hips.heading.turn(),
+                upright = tick.pelvis.turn * back(tilted(tables, tick.stride, state));
+  Vec<V> chest[2], head[2];
+  for (int k : {0, 1}) {
+    const V phase = tick.phase - static_cast<float>(k + 1) * rate;
+    Stride<V> stride =
+        read_stride(tables, tick.time, phase, state.ratio_behind, tick.landing.ratio, over);
+    show(change.shown, stride);
+    Trunk<V> trunk;
+    trunk.base = upright * tilted(tables, stride, state) * every<V>(tables.pelvis_standing);
+    const Knots<V> knots = knots_at(data_phase(tables, tick.time, phase));
+    for (int i = 0; i < joints_of_path(tables); ++i)
+      trunk.own[i] = data_turn(tables, tables.path[i], knots, tick.shown, is);
+    lean_trunk(tables, heading, before[k], trunk);
+    chest[k] = chest_turn(tables, heading, trunk);
+    nod(tables, heading, before[k], trunk);
+    head[k] = head_turn(tables, heading, trunk);
+  }
+  const auto begin = [&](const Vec<V>(&turn)[2], Eased<V>& eased) {
+    eased.at = chosen(begins, turn[0], eased.at);
+    eased.rate = chosen(begins, turn[0] - turn[1], eased.rate);
+    eased.ticks = begins ? V{} : eased.ticks;
   };
-  const Vec<V> d = back(chest) * direction;
-  const V level = root(V(d.x * d.x + d.z * d.z)), over = 1.0f / most(level, all<V>(1e-6f)),
-          yaw = angle_of(V(d.x * over), V(d.z * over)), pitch = angle_of(d.y, level);
-  Gaze<V> to;
-  to.share =
-      (1.0f - smooth(kBeside_rad, kBehind_rad, size(yaw))) * smooth(kLevelFrom, kLevelTo, level);
-  V ys, yc, ps, pc;
-  sin_cos(limited(yaw, kMostYaw_rad, kSoftYaw_rad), ys, yc);
-  sin_cos(limited(pitch, kMostPitch_rad, kSoftHeadPitch_rad), ps, pc);
-  const Vec<V> ahead = chest * Vec<V>{pc * ys, ps, pc * yc};
-  // Its left stays level: half angles of its heading, then of its pitch.
-  const V flat = root(V(ahead.x * ahead.x + ahead.z * ahead.z)),
-          turns = 1.0f / most(flat, all<V>(1e-6f));
-  const auto half = [](const V& sine, const V& cosine, V& half_sine, V& half_cosine) {
-    half_cosine = root(V(0.5f + 0.5f * most(cosine, all<V>(-0.9999f))));
-    half_sine = 0.5f * sine / half_cosine;
-  };
-  V hys, hyc, hps, hpc;
-  half(V(ahead.x * turns), V(ahead.z * turns), hys, hyc);
-  half(ahead.y, flat, hps, hpc);
-  to.head =
-      Turn<V>{hyc, V{}, hys, V{}} * Turn<V>{hpc, -hps, V{}, V{}} * every<V>(tables.head_standing);
+  begin(chest, poise.chest), begin(head, poise.head);
+}
+
+// What a walk is asked for above its hips, beside the data.
+template <class V>
+Bearing<V> bearing_of(const Tables& tables, const BodyTick<V>& tick, const Mask<V>& is_styled,
+                      const V& chest_rad, const V& head_rad, const V& push_rad,
+                      const Styled<V>& styled) noexcept {
+  constexpr float kHeadStays = 0.8f;  // of the trunk's lean: the head stays so upright
+  const auto of = [&](int number) -> const V& { return styled.body[number].x; };
+  const Idle<V>& idle = tick.idle;
+  Bearing<V> to;
+  const V phase = data_phase(tables, tick.time, tick.phase);
+  to.forward_rad = push_rad - idle.breath_rad;
+  if (any(is_styled)) {
+    const V lean_rad = kRadians * of(kLean_deg) + to.forward_rad,
+            left_rad = kRadians * tick.shown *
+                       (of(kOverLeft_deg) * stands_alone(tables, phase, false) -
+                        of(kOverRight_deg) * stands_alone(tables, phase, true));
+    to.forward_rad = is_styled ? lean_rad : to.forward_rad;
+    to.left_rad = is_styled ? left_rad : V{};
+  }
+  to.ahead_rad = chest_rad;
+  to.turns_rad = head_rad - chest_rad + idle.glance_rad;
+  to.nods_rad = kHeadStays * (push_rad - idle.breath_rad) - idle.nod_rad;
   return to;
 }
 
-// Leans the trunk, spreads the arms, and turns the head to where it is to look.
-template <class V>
-void pose_style(const Tables& tables, const Hips<V>& hips, const Pelvis<V>& pelvis,
-                const Idle<V>& idle, const V& phase, const V& shown, const Mask<V>& is_styled,
-                const State<V>& state, const Styled<V>& styled, const Poses& poses) noexcept {
-  constexpr float kHeadStays = 0.8f;  // of the trunk's breath: the head stays so upright
-  constexpr float kLead_s = 0.6f;     // how far ahead of the walk a leading head looks
-  const auto of = [&](int number) -> const V& { return styled.body[number].x; };
-  const V is = chosen<V>(is_styled, 1.0f, 0.0f);
-  const auto write = [&](const Turn<V>& q, int joint) {
-    for (int w = 0; w < poses.walks; ++w)
-      if (lane(is, w) != 0.0f) write_joint(q, joint, w, poses);
-  };
-  const Turn<V> heading = hips.heading.turn(), from_heading = back(heading);
+// Where `is_posed`: the trunk leans, arms are spread and posed, the head turns. `eases`: chest and
+// head turn no harder than in a steady walk.
+template <int kWidth, bool kPaper>
+void pose_body(const Tables& tables, const BodyTick<Floats<kWidth>>& tick,
+               const Mask<Floats<kWidth>>& is_posed, const Mask<Floats<kWidth>>& is_styled,
+               const Mask<Floats<kWidth>>& eases, Block<kWidth>& block,
+               const Poses& poses) noexcept {
+  using V = Floats<kWidth>;
+  // Radians a second^2 by the square of the turn's rate, for the body's own turn is a part of
+  // chest's and head's; the head leads.
+  constexpr float kMoreTurning = 110.0f * kRadians, kMostTurning = 260.0f * kRadians,
+                  kChestLess = 0.8f;
+  const State<V>& state = block.state;
+  Styled<V>& styled = block.styled;
+  Poise<V>& poise = block.poise;
+  const V is = chosen<V>(is_posed, 1.0f, 0.0f);
+  const Turn<V> heading = tick.hips.heading.turn(), from_heading = back(heading),
+                none{all<V>(1.0f), V{}, V{}, V{}};
   const auto seen = [&](const Turn<V>& turn) { return heading * turn * from_heading; };
-  const V forward_rad = kRadians * of(kLean_deg) - idle.breath_rad,
-          left_rad = kRadians * shown *
-                     (of(kOverLeft_deg) * stands_alone(tables, phase, false) -
-                      of(kOverRight_deg) * stands_alone(tables, phase, true));
-  const V chest_rad = state.chest_ahead_rad.x;
-  // The spine's joints share the lean.
-  const int joints = static_cast<int>(tables.path.size());
+  Bearing<V> bearing = bearing_of(tables, tick, is_styled, state.chest_ahead_rad.x,
+                                  state.head_ahead_rad.x, poise.push_rad.x, styled);
+  if constexpr (kPaper) bearing.forward_rad = bearing.left_rad = V{};
   Trunk<V> trunk;
-  const Turn<V> base = pelvis.turn * every<V>(tables.pelvis_standing);
-  Turn<V> above = base;
-  for (int i = 0; i < joints; ++i) {
-    const PathJoint& joint = tables.path[i];
-    Turn<V> q = read_joint<V>(joint.joint, poses);
-    if (joint.bends > 0.0f) {
-      const V share = all<V>(joint.bends);
-      const Turn<V> bends = seen(turn_y(V(share * chest_rad)) * turn_z(V(-share * left_rad)) *
-                                 turn_x(V(share * forward_rad)));
-      q = unit(back(above) * bends * above * q);
-    }
-    trunk.own[i] = q;
-    above = trunk.turned[i] = above * q;
-    if (joint.bends > 0.0f) write(q, joint.joint);
-  }
-  // Arms keep hanging as they did, and are spread.
+  trunk.base = tick.pelvis.turn * every<V>(tables.pelvis_standing);
+  trunk.base_m = pelvis_place(tables, heading, tick.pelvis.place_m, is, poses);
+  const int joints = joints_of_path(tables);
+  for (int i = 0; i < joints; ++i) trunk.own[i] = read_joint<V>(tables.path[i].joint, is, poses);
+  lean_trunk(tables, heading, bearing, trunk);
+  // Arms keep hanging as they did.
+  Turn<V> shoulder[2];
+  const auto turn_shoulder = [&](int side, const Turn<V>& turn) {
+    const ArmBones& bones = tables.arm[side];
+    Turn<V> above = below(trunk, bones.on_trunk);
+    for (int i = bones.on_trunk; i < bones.shoulder; ++i)
+      above = above * read_joint<V>(bones.path[i].joint, is, poses);
+    shoulder[side] = unit(back(above) * turn * above * shoulder[side]);
+  };
+  const bool has[2] = {!tables.arm[0].path.empty(), !tables.arm[1].path.empty()};
   for (int side : {0, 1}) {
-    const std::vector<int>& path = tables.arm[side].path;
-    if (path.empty()) continue;
-    above = base;
-    for (std::size_t i = 0; i + 1 < path.size(); ++i) above = above * read_joint<V>(path[i], poses);
-    const V out_rad = (side == 0 ? kRadians : -kRadians) * of(kArmOut_deg + side);
-    const Turn<V> turn = seen(turn_z(out_rad) * turn_x(V(-forward_rad)) * turn_z(left_rad));
-    write(unit(back(above) * turn * above * read_joint<V>(path.back(), poses)), path.back());
+    if (!has[side]) continue;
+    const ArmBones& bones = tables.arm[side];
+    shoulder[side] = read_joint<V>(bones.path[bones.shoulder].joint, is, poses);
+    turn_shoulder(side, seen(turn_x(V(-bearing.forward_rad)) * turn_z(bearing.left_rad)));
   }
-  // The head.
-  if (joints == 0) return;
-  const int head = joints - 1;
-  int neck = 0;
-  while (neck < head && tables.path[neck].of_look == 0.0f) ++neck;
-  const Turn<V> below = neck > 0 ? trunk.turned[neck - 1] : base;
-  const V turns = state.head_ahead_rad.x - chest_rad + idle.glance_rad,
-          nods = -kHeadStays * idle.breath_rad - idle.nod_rad;
-  turn_head(tables, seen(turn_y(turns) * turn_x(V(-nods))), trunk);
-  turn_head(tables, turn_y(V(kLead_s * of(kLead) * state.turn_rad_s.x)), trunk);
-  const auto looks = of(kLook) != V{};
-  if (any(looks)) {
-    V ys, yc, ps, pc;
-    sin_cos(V(state.heading_rad + kRadians * of(kLookYaw_deg)), ys, yc);
-    sin_cos(V(kRadians * of(kLookPitch_deg)), ps, pc);
-    const Gaze<V> to = gaze<V>(tables, below * back(every<V>(tables.chest_standing)),
-                               Vec<V>{pc * ys, ps, pc * yc});
-    const Turn<V> wanted =
-        between(trunk.turned[head], to.head, V(within(of(kLook), 0.0f, 1.0f) * to.share));
-    Trunk<V> looking = trunk;
-    turn_head(tables, wanted * back(trunk.turned[head]), looking);
-    for (int i = neck; i < joints; ++i)
-      trunk.turned[i] = chosen(looks, looking.turned[i], trunk.turned[i]);
+  // What is not steady does not jump.
+  const float dt = tables.tick_s;
+  const auto acts = either(eases, either(poise.chest.ticks > V{}, poise.head.ticks > V{}));
+  const bool may_ease = !kPaper && tables.has_head && any(acts);
+  const V turns_rad = state.turn_rad_s.v * (dt * dt), asked = state.asked.turn_rad_s,
+          more = least(V(kMoreTurning * asked * asked), all<V>(kMostTurning)),
+          of_head = tables.most_head_s2 + more,
+          of_chest = most(all<V>(tables.most_chest_s2), V(kChestLess * of_head));
+  if (may_ease) {
+    const auto begins = both(acts, poise.acts == V{});
+    if (any(begins)) {
+      // Its lean, and what chest and head are ahead, were settled; breath and glances were not.
+      Bearing<V> before[2];
+      for (int k : {0, 1}) {
+        const V ticks = most(V(styled.idle_ticks - static_cast<float>(k + 2)), V{});
+        const Idle<V> idle = idle_at(tables, ticks, state, styled);
+        const BodyTick<V> then{tick.time,   tick.landing, tick.hips,  tick.stride,
+                               tick.pelvis, idle,         tick.phase, tick.shown};
+        const V ago_s = all<V>(dt * static_cast<float>(k + 1));
+        before[k] = bearing_of(
+            tables, then, is_styled, V(state.chest_ahead_rad.x - ago_s * state.chest_ahead_rad.v),
+            V(state.head_ahead_rad.x - ago_s * state.head_ahead_rad.v), V{}, styled);
+      }
+      begin_easing(tables, tick, before, begins, block.change, state, poise);
+    }
+    const Vec<V> goal = chest_turn(tables, heading, trunk),
+                 to = eased(tables, goal, V(of_chest * (dt * dt)), turns_rad, acts, eases,
+                            poise.chest);
+    const auto off = both(acts, poise.chest.ticks > V{});
+    if (any(off)) {
+      const Turn<V> turn = chosen(off, seen(turn_of(to) * back(turn_of(goal))), none);
+      Trunk<V> bent = trunk;
+      bend(
+          tables, [&](const V& share) { return between(none, turn, share); }, bent);
+      for (int i = 0; i < joints; ++i) {
+        trunk.own[i] = chosen(off, bent.own[i], trunk.own[i]);
+        trunk.turned[i] = chosen(off, bent.turned[i], trunk.turned[i]);
+      }
+    }
   }
-  for (int i = neck; i < joints; ++i) {
-    const Turn<V>& parent = i > 0 ? trunk.turned[i - 1] : base;
-    write(unit(back(parent) * trunk.turned[i]), tables.path[i].joint);
+  poise.acts = chosen<V>(acts, 1.0f, 0.0f);
+  for (int side : {0, 1}) {
+    const V out_rad = (side == 0 ? kRadians : -kRadians) * styled.body[kArmOut_deg + side].x;
+    if (has[side] && !kPaper) turn_shoulder(side, seen(turn_z(is_styled ? out_rad : V{})));
   }
+  // Arms and spine by their weights.
+  const Mask<V> arms[2] = {both(is_styled, is_arm_posed(styled, 0)),
+                           both(is_styled, is_arm_posed(styled, 1))};
+  const auto poses_arms = either(arms[0], arms[1]),
+             uneven = both(is_styled, has_uneven_spine(styled));
+  const bool shares = !tables.spine.empty() && any(uneven);
+  if (any(poses_arms) || shares) place_trunk(tables, 0, trunk);
+  Vec<V> own_m[2];
+  for (int side : {0, 1}) {
+    if (!has[side] || !any(both(arms[side], has_uneven_arm(styled, side)))) continue;
+    Arm<V> arm;
+    place_shoulder(tables.arm[side], trunk, is, poses, arm);
+    take_arm(tables.arm[side], shoulder[side], is, poses, arm);
+    own_m[side] = arm.hand_m;
+  }
+  if (shares) {
+    share_spine(tables, styled, uneven, trunk);
+    if (any(poses_arms)) place_trunk(tables, 0, trunk);
+  }
+  for (int side : {0, 1})
+    if (has[side])
+      write_where(shoulder[side], tables.arm[side].path[tables.arm[side].shoulder].joint, is,
+                  poses);
+  if (any(poses_arms)) {
+    const Vec<V> off_m = tick.hips.heading * tick.stride.pelvis_m,
+                 hips_m{V(tick.hips.x_m - off_m.x), V{}, V(tick.hips.z_m - off_m.z)};
+    follow_rails<kWidth>(tables, hips_m, is_styled, block);
+    pose_arms(tables, tick.hips, hips_m, trunk, arms, own_m, shoulder, styled, poses);
+  }
+  if (tables.has_head) {
+    nod(tables, heading, bearing, trunk);
+    if (may_ease) {
+      const Vec<V> goal = head_turn(tables, heading, trunk),
+                   to = eased(tables, goal, V(of_head * (dt * dt)), turns_rad, acts, eases,
+                              poise.head);
+      const auto off = both(acts, poise.head.ticks > V{});
+      if (any(off))
+        turn_head(tables, chosen(off, seen(turn_of(to) * back(turn_of(goal))), none), trunk);
+    }
+    if (any(is_styled)) look<kWidth>(tables, block, is_styled, trunk);
+  }
+  for (int i = 0; i < joints; ++i)
+    if (tables.path[i].bends > 0.0f || tables.path[i].of_look > 0.0f)
+      write_where(unit(back(below(trunk, i)) * trunk.turned[i]), tables.path[i].joint, is, poses);
 }
 
-template <class V>
-void write_upper_body(const Tables& tables, const Hips<V>& hips, const Pelvis<V>& pelvis,
-                      const Idle<V>& idle, const V& phase, const V& presence, const V& swing,
-                      const State<V>& state, Styled<V>& styled, const Poses& poses) noexcept {
+// `swing`: the factor on the arms' swing. `eases`: as advance_poise() says.
+template <int kWidth, bool kPaper>
+void write_upper_body(const Tables& tables, const BodyTick<Floats<kWidth>>& of,
+                      const Floats<kWidth>& swing, const Mask<Floats<kWidth>>& eases,
+                      Block<kWidth>& block, const Poses& poses) noexcept {
+  using V = Floats<kWidth>;
   constexpr float kSoftElbow = 0.1f;
-  const Knots<V> knots = knots_at(phase);
-  const V shown = presence * within(state.posture.x, 0.0f, 1.0f);
+  State<V>& state = block.state;
+  Styled<V>& styled = block.styled;
+  Poise<V>& poise = block.poise;
+  BodyTick<V> tick = of;
+  const Knots<V> knots = knots_at(data_phase(tables, tick.time, tick.phase));
+  const V shown = tick.shown * within(state.posture.x, 0.0f, 1.0f);
+  tick.shown = shown;
   const auto idles = styled.idle_share != V{},
              is_styled = either(either(styled.asked != V{}, styled.acts != V{}), idles);
   const bool any_style = any(is_styled);
@@ -319,10 +432,15 @@ void write_upper_body(const Tables& tables, const Hips<V>& hips, const Pelvis<V>
       }
       store(q, poses.local[w][joint.joint]);
     }
+    for (const int joint : tables.still) poses.local[w][joint] = kIdentity;
+    for (const auto& [joint, turn] : tables.kept) poses.local[w][joint] = turn;
   }
-  turn_ahead(tables, pelvis, state, is_styled, poses);
-  if (any_style)
-    pose_style(tables, hips, pelvis, idle, phase, shown, is_styled, state, styled, poses);
+  const auto is_posed =
+      either(either(is_styled, eases),
+             either(poise.acts != V{}, either(poise.chest.ticks > V{}, poise.head.ticks > V{})));
+  turn_ahead(tables, tick.pelvis, state, is_posed, poses);
+  if (any(is_posed))
+    pose_body<kWidth, kPaper>(tables, tick, is_posed, is_styled, eases, block, poses);
 }
 
 }  // namespace

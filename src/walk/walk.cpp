@@ -22,7 +22,6 @@ void advance_by(const anew::Tables& tables, IkMode mode, int parts, WalkState& s
   pose.joint_count = tables.joints;
   quat* const local = pose.local.data();
   vec3* const root_m = &pose.root_m;
-  anew::write_still(tables, local);
   const anew::Poses poses{&local, &root_m, 1};
   anew::place(state.placed, 0, state.walk);
   for (int part = 0; part < parts; ++part) {

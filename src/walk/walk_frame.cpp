@@ -12,7 +12,7 @@ Side side_of(bool right) noexcept { return right ? kRightSide : kLeftSide; }
 
 // Where a walk is in its step, as its last tick left it.
 struct Moment {
-  bool stands, struck, flies, right;  // the right foot swings, or has just landed
+  bool stands, settles, struck, flies, right;  // the right foot swings, or has just landed
   int ticks;                          // of the step
 };
 Moment moment_of(const Block<1>& block) noexcept {
@@ -20,6 +20,7 @@ Moment moment_of(const Block<1>& block) noexcept {
   Moment at;
   at.struck = block.told.struck != 0.0f;
   at.stands = block.change.stands != 0.0f && !at.struck;
+  at.settles = at.stands && block.told.settle_ticks > 0.0f;
   const bool turned = !at.stands && state.tick == 0.0f;  // a stage has ended
   at.flies = at.struck || (!turned && state.flies != 0.0f);
   at.right = (state.right_swings != 0.0f) != at.struck;
@@ -106,7 +107,9 @@ void report(const WalkModel& model, const Tables& tables, const Block<1>& block,
   const Told<float>& told = block.told;
   const Placement& placed = block.placed[0];
   const Moment at = moment_of(block);
-  frame.stage = at.stands ? Stage::idle : at.flies ? Stage::flight : Stage::roll;
+  frame.stage = at.flies                    ? Stage::flight
+                : at.stands && !at.settles ? Stage::idle
+                                           : Stage::roll;
   // Of one that stands: the foot that has landed last.
   frame.swing = at.stands ? side_of(!at.right) : side_of(at.flies == at.right);
   int step_ticks = at.ticks, last_ticks = static_cast<int>(told.step_ticks[0]);
@@ -116,10 +119,11 @@ void report(const WalkModel& model, const Tables& tables, const Block<1>& block,
   }
   for (const Side side : {kLeftSide, kRightSide}) {
     const bool swings = frame.swing == side, counts = at.struck && swings;
-    frame.heel_planted[side] = at.stands || (frame.stage == Stage::roll && swings);
-    frame.toe_planted[side] = at.stands || !swings;
+    const bool is_idle = frame.stage == Stage::idle;
+    frame.heel_planted[side] = is_idle || (frame.stage == Stage::roll && swings);
+    frame.toe_planted[side] = is_idle || !swings;
     frame.steps[side] = static_cast<int>(told.steps[side]) - counts;
-    frame.stride_m[side] = at.stands ? 0.0 : told.stride_m[side];
+    frame.stride_m[side] = is_idle ? 0.0 : told.stride_m[side];
     frame.ik_iterations[side] = static_cast<int>(told.iterations[side]);
     frame.ik_error_m[side] = told.error_m[side];
     frame.ik_failed[side] = told.failed[side] != 0.0f;

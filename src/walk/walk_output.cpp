@@ -51,7 +51,8 @@ WalkEvents walk_events(const WalkFrame& before, const WalkState& state) noexcept
     if (now.steps[side] > before.steps[side]) add(WalkEventKind::heel_strike, side);
   }
   const auto steps = steps_of(now.stage, now.swing);
-  if (!steps) return events;
+  // After the last landing of a stop the roll belongs to no step.
+  if (!steps || walk.change.stands != 0.0f) return events;
   if (steps != steps_of(before.stage, before.swing)) add(WalkEventKind::step_begin, *steps);
   const bool flew = before.stage == Stage::flight && before.swing == now.swing;
   if (now.stage == Stage::flight && !flew) add(WalkEventKind::toe_off, *steps);

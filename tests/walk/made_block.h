@@ -77,7 +77,6 @@ class Alone {
       : tables(tables_of(model, kDt)), mode_(mode) {
     stand(tables, place, block);
     pose.joint_count = tables.joints;
-    write_still(tables, pose.local.data());
   }
   void step(const GaitParams& params) {
     ask(params, block);
@@ -113,10 +112,8 @@ void expect_bits_of_one(const Tables& tables, std::vector<Block<1>> alone, int t
   Block<kWidth> block{};
   std::array<quat*, kWidth> local;
   std::array<vec3*, kWidth> root;
-  write_still(tables, one.local.data());
   for (int w = 0; w < kWidth; ++w) {
     local[w] = pose[w].local.data(), root[w] = &pose[w].root_m;
-    write_still(tables, local[w]);
   }
   for (int tick = 0; tick < ticks; ++tick) {
     for (int w = 0; w < kWidth; ++w) {

@@ -182,6 +182,24 @@ struct Styled {
   V idle_ticks{}, idle_share{};
   // Swing and stand: how low a foot's heel is kept where it would rise.
   Smoothed<V> low[2];
+  Smoothed<V> rail_ground_m[2];  // by Side: of the ground under a rail, over the step frame
+};
+
+// A turn whose second difference is bounded (trunk.h): in this tick, and since the one before; what
+// it is off its goal, which fades in `ticks`.
+template <class V>
+struct Eased {
+  Vec<V> at, rate;
+  Off<V> off[3];
+  V ticks{};
+};
+// How chest and head are carried while a walk changes.
+template <class V>
+struct Poise {
+  V acts{};                         // 1 or 0: they were eased a tick ago
+  V unsteady_ticks{};               // until the walk is steady
+  Smoothed<V> speed_m_s, push_rad;  // mean speed; lean into another one, forwards
+  Eased<V> chest, head;
 };
 
 // How a plane rises along x and along z.
@@ -230,6 +248,7 @@ struct Told {
   // of the last step and of the one before it.
   V steps[2]{}, overhangs{}, stride_m[2]{}, step_ticks[2]{};
   V struck{};  // 1: a foot has landed in this tick, which still shows its flight
+  V settle_ticks{};  // after the last landing, until the report says that the walk stands
   // Where the pelvis is beside the hips' even way, to the left and ahead.
   V pelvis_x_m{}, pelvis_z_m{};
   // The legs' solves: iterations, the last one's error, 1: it did not reach its goal.
@@ -250,6 +269,7 @@ struct alignas(kWidth == 1 ? alignof(double) : 64) Block {
   Weighted<Floats<kWidth>> weighted;
   Styled<Floats<kWidth>> styled;
   Footing<Floats<kWidth>> footing;
+  Poise<Floats<kWidth>> poise;
   Told<Floats<kWidth>> told;
   Origin origin[kWidth];
   Placement placed[kWidth];  // of the walk's own coordinates in the world

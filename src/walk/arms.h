@@ -1,0 +1,394 @@
+// The arms where a style's weights differ or a hand is held: six angles, weighted half-Jacobian IK,
+// the end-effector in the middle of the hand. Other arms swing as in the data. Arms of a block that
+// are posed are packed into full registers.
+#pragma once
+#include "walk/chain_solve.h"
+#include "walk/trunk.h"
+
+namespace gaitpad::anew {
+namespace {
+
+enum : int { kShoulderXAt, kShoulderZAt, kShoulderYAt, kElbowAt, kWristXAt, kWristZAt };
+inline constexpr float kEvenArm = 1e-6f;  // weights closer to each other than this are even
+// How far a hand goes from its shoulder and how near it comes, as shares of the stretched arm, and
+// the widths in which that is approached.
+inline constexpr float kFarthestHand = 0.985f, kSoftFarHand = 0.03f, kNearestHand = 0.3f,
+                       kSoftNearHand = 0.1f;
+inline constexpr float kRailAhead_m = 0.15f;  // ahead of the shoulder a hand holds a rail
+// Where the solver starts with a left shoulder: elbows point down and a little outwards when a tray
+// is carried, and back beside a rail.
+inline constexpr float kCarrying_rad[3] = {-15 * kRadians, 12 * kRadians, -15 * kRadians},
+                       kAtRail_rad[3] = {25 * kRadians, 4 * kRadians, 5 * kRadians};
+// Shoulder and elbow bring a held hand to its place; the wrist hardly takes part.
+inline constexpr float kHeldWeight[kArmAngles] = {1.0f, 1.0f, 0.7f, 1.0f, 0.25f, 0.25f};
+
+// An arm to be solved; all of these are numbers of arms side by side.
+template <class N>
+struct ArmChain {
+  using V = N;
+  static constexpr int kDofs = kArmAngles, dofs = kArmAngles;
+  V solves{};  // 1 or 0
+  Vec<V> upper_m, fore_m, grip_m, goal_m;
+  V has_height{};  // 1: the height of the goal counts, too
+  V weight[kArmAngles]{}, min_rad[kArmAngles]{}, max_rad[kArmAngles]{}, angle_rad[kArmAngles]{};
+
+  struct Place {
+    Vec<V> axis[kArmAngles], elbow_m, wrist_m, end_m;
+    V error_m[3];
+  };
+  void place(const V (&angle)[kArmAngles], Place& to) const noexcept {
+    V s[kArmAngles], c[kArmAngles];
+    for (int j = 0; j < kArmAngles; ++j) sin_cos(angle[j], s[j], c[j]);
+    Vec<V> x{c[1], s[1] * c[0], s[1] * s[0]}, y{-s[1], c[1] * c[0], c[1] * s[0]},
+        z{V{}, -s[0], c[0]};
+    const auto turned = [&](const Vec<V>& p) { return x * p.x + y * p.y + z * p.z; };
+    to.axis[0] = {all<V>(1.0f), V{}, V{}};
+    to.axis[1] = z;
+    to.axis[2] = y;
+    turn_axes(z, x, s[2], c[2]);
+    to.elbow_m = turned(upper_m);
+    to.axis[3] = x;
+    turn_axes(y, z, s[3], c[3]);
+    to.wrist_m = to.elbow_m + turned(fore_m);
+    to.axis[4] = x;
+    turn_axes(y, z, s[4], c[4]);
+    to.axis[5] = z;
+    turn_axes(x, y, s[5], c[5]);
+    to.end_m = to.wrist_m + turned(grip_m);
+    const Vec<V> off = goal_m - to.end_m;
+    to.error_m[0] = off.x, to.error_m[1] = off.y * has_height, to.error_m[2] = off.z;
+  }
+  void set_columns(const Place& at, V (&column)[kArmAngles][3]) const noexcept {
+    for (int j = 0; j < kArmAngles; ++j) {
+      const Vec<V> arm = j < 3 ? at.end_m : at.end_m - (j == 3 ? at.elbow_m : at.wrist_m),
+                   moves = cross(at.axis[j], arm);
+      column[j][0] = moves.x, column[j][1] = moves.y * has_height, column[j][2] = moves.z;
+    }
+  }
+  static void keep(const Mask<V>& where, const Place& from, Place& to) noexcept {
+    for (int j = 0; j < kArmAngles; ++j) to.axis[j] = chosen(where, from.axis[j], to.axis[j]);
+    to.elbow_m = chosen(where, from.elbow_m, to.elbow_m);
+    to.wrist_m = chosen(where, from.wrist_m, to.wrist_m);
+    to.end_m = chosen(where, from.end_m, to.end_m);
+    for (int r = 0; r < 3; ++r) to.error_m[r] = where ? from.error_m[r] : to.error_m[r];
+  }
+};
+
+// Both arms of the block's walks, close together in registers.
+template <class V>
+void solve_arms(ArmChain<V> (&arms)[2]) noexcept {
+  constexpr int kWidth = kLanes<V>, kTogether = kWidth < 4 ? 4 : kWidth,
+                kNumbers = sizeof(ArmChain<float>) / sizeof(float);
+  float* places[2 * kWidth];
+  int count = 0;
+  for (int w = 0; w < kWidth; ++w)
+    for (ArmChain<V>& arm : arms)
+      if (lane(arm.solves, w) != 0.0f) places[count++] = reinterpret_cast<float*>(&arm) + w;
+  for (int begin = 0; begin < count; begin += kTogether) {
+    ArmChain<Floats<kTogether>> together;
+    float* to = reinterpret_cast<float*>(&together);
+    const int here = std::min(kTogether, count - begin);
+    for (int i = 0; i < here; ++i)
+      for (int n = 0; n < kNumbers; ++n) to[n * kTogether + i] = places[begin + i][n * kWidth];
+    solve_chains(together, together.solves != Floats<kTogether>{}, together.angle_rad);
+    for (int i = 0; i < here; ++i)
+      for (int n = kNumbers - kArmAngles; n < kNumbers; ++n)
+        places[begin + i][n * kWidth] = to[n * kTogether + i];
+  }
+}
+
+// One arm of each walk in a pose, in the step frame.
+template <class V>
+struct Arm {
+  Turn<V> above, base, upper;    // above the shoulder; the walker's axes there; hanging axes
+  Turn<V> fore_rest, hand_rest;  // joint frames, from the forearm's hanging axes
+  Vec<V> shoulder_m, hand_m;
+  ArmChain<V> chain;
+};
+
+// Where the shoulder is, and how it is turned without its own joint.
+template <class V>
+void place_shoulder(const ArmBones& bones, const Trunk<V>& trunk, const V& is, const Poses& poses,
+                    Arm<V>& arm) noexcept {
+  const int begin = bones.on_trunk;
+  Turn<V> turn = begin > 0 ? trunk.turned[begin - 1] : trunk.base;
+  Vec<V> place_m = begin > 0 ? trunk.place_m[begin - 1] : trunk.base_m;
+  for (int i = begin; i <= bones.shoulder; ++i) {
+    place_m = place_m + turn * every<V>(bones.path[i].offset_m);
+    if (i < bones.shoulder) turn = turn * read_joint<V>(bones.path[i].joint, is, poses);
+  }
+  arm.above = turn;
+  arm.shoulder_m = place_m;
+}
+
+// The arm as the pose has it, which is written so far.
+template <class V>
+void take_arm(const ArmBones& bones, const Turn<V>& shoulder, const V& is, const Poses& poses,
+              Arm<V>& arm) noexcept {
+  const Turn<V> upper_joint = arm.above * shoulder;
+  Turn<V> turn = upper_joint, elbow{all<V>(1.0f), V{}, V{}, V{}};
+  Vec<V> place_m = arm.shoulder_m, elbow_m;
+  const int last = static_cast<int>(bones.path.size()) - 1;
+  for (int i = bones.shoulder + 1; i <= last; ++i) {
+    place_m = place_m + turn * every<V>(bones.path[i].offset_m);
+    turn = turn * read_joint<V>(bones.path[i].joint, is, poses);
+    if (i == bones.elbow) elbow_m = place_m, elbow = turn;
+  }
+  arm.hand_m = place_m + turn * every<V>(bones.grip_m);
+  arm.base = arm.above * every<V>(bones.chest);
+  arm.upper = upper_joint * every<V>(bones.hanging);
+  ArmChain<V>& chain = arm.chain;
+  V* const a = chain.angle_rad;
+  angles_xzy(back(arm.base) * arm.upper, a[kShoulderXAt], a[kShoulderZAt], a[kShoulderYAt]);
+  const Turn<V> to_upper = back(arm.upper);
+  chain.upper_m = to_upper * (elbow_m - arm.shoulder_m);
+  const Vec<V> fore_m = place_m - elbow_m, in_upper = to_upper * fore_m;
+  a[kElbowAt] = arc_of(V(-in_upper.z), V(-in_upper.y));
+  a[kWristXAt] = a[kWristZAt] = V{};
+  V sine, cosine;
+  sin_cos(V(0.5f * a[kElbowAt]), sine, cosine);
+  const Turn<V> to_fore = back(arm.upper * Turn<V>{cosine, sine, V{}, V{}});
+  chain.fore_m = to_fore * fore_m;
+  arm.fore_rest = to_fore * elbow;
+  arm.hand_rest = to_fore * turn;
+  chain.grip_m = arm.hand_rest * every<V>(bones.grip_m);
+  for (int j = 0; j < kArmAngles; ++j) {
+    chain.min_rad[j] = all<V>(bones.min_rad[j]);
+    chain.max_rad[j] = all<V>(bones.max_rad[j]);
+    chain.weight[j] = all<V>(1.0f);
+  }
+}
+
+template <class V>
+void write_arm(const ArmBones& bones, const V& is, const Arm<V>& arm, const Poses& poses) noexcept {
+  const V* const a = arm.chain.angle_rad;
+  const auto half_turn = [](const V& angle_rad, V& sine, V& cosine) {
+    sin_cos(V(0.5f * angle_rad), sine, cosine);
+  };
+  V es, ec, xs, xc, zs, zc;
+  half_turn(a[kElbowAt], es, ec), half_turn(a[kWristXAt], xs, xc), half_turn(a[kWristZAt], zs, zc);
+  const Turn<V> upper = arm.base * turn_xzy(a[kShoulderXAt], a[kShoulderZAt], a[kShoulderYAt]),
+                fore = upper * Turn<V>{ec, es, V{}, V{}},
+                hand = fore * Turn<V>{xc, xs, V{}, V{}} * Turn<V>{zc, V{}, V{}, zs};
+  Turn<V> above = arm.above;
+  const int last = static_cast<int>(bones.path.size()) - 1;
+  for (int i = bones.shoulder; i <= last; ++i) {
+    const int joint = bones.path[i].joint;
+    Turn<V> local;
+    if (i == bones.shoulder)
+      local = back(above) * upper * back(every<V>(bones.hanging));
+    else if (i == bones.elbow)
+      local = back(above) * fore * arm.fore_rest;
+    else if (i == last && bones.turns_wrist)
+      local = back(above) * hand * arm.hand_rest;
+    else
+      local = read_joint<V>(joint, is, poses);
+    local = unit(local);
+    write_where(local, joint, is, poses);
+    above = above * local;
+  }
+}
+
+// --- What is asked of arms -----------------------------------------------------------------------
+
+template <class V>
+Mask<V> has_uneven_arm(const Styled<V>& styled, int side) noexcept {
+  const Smoothed<V>* weight = styled.body + kArmWeight + kArmAngles * side;
+  V low = weight[0].x, high = low;
+  for (int j = 1; j < kArmAngles; ++j)
+    low = least(low, weight[j].x), high = most(high, weight[j].x);
+  return high - low >= all<V>(kEvenArm);
+}
+enum : int { kCarry, kCarryX, kCarryY, kCarryZ, kRail, kRailHeight, kRailSide, kHandNumbers };
+template <class V>
+const V& of_hand(const Styled<V>& styled, int side, int number) noexcept {
+  return styled.body[kHand + kHandNumbers * side + number].x;
+}
+// Arms that do not swing as in the data.
+template <class V>
+Mask<V> is_arm_posed(const Styled<V>& styled, int side) noexcept {
+  return either(has_uneven_arm(styled, side),
+                either(of_hand(styled, side, kCarry) > V{}, of_hand(styled, side, kRail) > V{}));
+}
+
+// Keeps joints of small weight near the middle of their swing. The others compensate, so that the
+// hand goes equally far forward and sideways. Its height is left free: with three rows the path
+// alone would determine the shoulder's angle.
+template <class V>
+void stiffen_arm(const ArmBones& bones, const Styled<V>& styled, int side, const Mask<V>& uneven,
+                 const Vec<V>& own_m, Arm<V>& arm) noexcept {
+  ArmChain<V>& chain = arm.chain;
+  for (int j = 0; j < kArmAngles; ++j)
+    chain.weight[j] = uneven ? styled.body[kArmWeight + kArmAngles * side + j].x : all<V>(1.0f);
+  make_relative(kArmAngles, chain.weight);
+  for (int j = 0; j < kArmAngles; ++j)
+    chain.angle_rad[j] = chain.angle_rad[j] +
+                         held_back(chain.weight[j]) * (bones.middle_rad[j] - chain.angle_rad[j]);
+  chain.goal_m = back(arm.base) * (own_m - arm.shoulder_m);
+  chain.has_height = V{};
+  chain.solves = chosen<V>(uneven, 1.0f, 0.0f);
+}
+
+// Moves a place to where the arm can reach it: neither too far from the shoulder nor too near.
+template <class V>
+Vec<V> within_reach(const Vec<V>& way_m, const V& full_m) noexcept {
+  const V far = root(dot(way_m, way_m)), nearest = kNearestHand * full_m,
+          near = nearest + soft_positive(V(far - nearest), V(kSoftNearHand * full_m)),
+          to = soft_least(near, V(kFarthestHand * full_m), V(kSoftFarHand * full_m));
+  return way_m * (to / most(far, all<V>(1e-6f)));
+}
+
+// Turns the whole arm at the shoulder towards its goal. The solver then starts near its answer and
+// leaves the wrist as it is.
+template <class V>
+void aim_arm(const Mask<V>& where, ArmChain<V>& chain) noexcept {
+  typename ArmChain<V>::Place at;
+  chain.place(chain.angle_rad, at);
+  const V far = root(dot(at.end_m, at.end_m)), goal_far = root(dot(chain.goal_m, chain.goal_m));
+  const Vec<V> from = at.end_m * (1.0f / most(far, all<V>(1e-6f))),
+               to = chain.goal_m * (1.0f / most(goal_far, all<V>(1e-6f))), axis = cross(from, to);
+  const Turn<V> turn =
+      unit(Turn<V>{most(V(1.0f + dot(from, to)), all<V>(1e-6f)), axis.x, axis.y, axis.z});
+  V *const a = chain.angle_rad, x, z, y;
+  angles_xzy(turn * turn_xzy(a[kShoulderXAt], a[kShoulderZAt], a[kShoulderYAt]), x, z, y);
+  const auto aims = both(where, both(far > all<V>(1e-6f), goal_far > all<V>(1e-6f)));
+  const V next_x = a[kShoulderXAt] + within_half_turn(V(x - a[kShoulderXAt])),
+          next_y = a[kShoulderYAt] + within_half_turn(V(y - a[kShoulderYAt]));
+  a[kShoulderXAt] = aims ? next_x : a[kShoulderXAt];
+  a[kShoulderZAt] = aims ? z : a[kShoulderZAt];
+  a[kShoulderYAt] = aims ? next_y : a[kShoulderYAt];
+}
+
+// Where hands are held: before the chest, in the upright frame that turns with the shoulders, so
+// that what both hands hold stays level; and on a rail along the hips' path.
+template <class V>
+struct Holds {
+  Vec<V> middle_m;  // between the shoulders
+  V sine, cosine;   // of their turn about the vertical
+  Vec<V> hips_m;    // on the ground, without the data's oscillation
+  Way<V> heading;
+};
+
+template <class V>
+void hold_hand(const Tables& tables, const Styled<V>& styled, int side, const Holds<V>& holds,
+               Arm<V>& arm) noexcept {
+  constexpr float kReferenceArm = static_cast<float>(kReferenceArm_m),
+                  kReferenceShoulder = static_cast<float>(kReferenceShoulder_m);
+  constexpr float kFullFrom = 0.1f;  // of what is held: the wrist's own weights are over
+  const float outwards = side == kLeftSide ? 1.0f : -1.0f;
+  const V carry = within(of_hand(styled, side, kCarry), 0.0f, 1.0f),
+          rail = within(of_hand(styled, side, kRail), 0.0f, 1.0f),
+          held = 1.0f - (1.0f - carry) * (1.0f - rail);
+  const auto holds_it = held > V{};
+  ArmChain<V>& chain = arm.chain;
+  chain.solves = chosen<V>(holds_it, 1.0f, 0.0f);
+  if (!any(holds_it)) return;
+  typename ArmChain<V>::Place at;
+  chain.place(chain.angle_rad, at);
+  const Vec<V> lower_m = chain.fore_m + chain.grip_m;
+  const V a = root(dot(chain.upper_m, chain.upper_m)), b = root(dot(lower_m, lower_m));
+  const Turn<V> to_base = back(arm.base);
+  const auto move_to = [&](const Vec<V>& place_m, const V& share, Vec<V>& goal_m) {
+    const Vec<V> to = within_reach(to_base * (place_m - arm.shoulder_m), V(a + b));
+    goal_m = goal_m + (to - goal_m) * share;
+  };
+  Vec<V> goal_m = at.end_m;
+  const float arm_scale = tables.arm_m / kReferenceArm,
+              rail_scale = tables.shoulder_height_m / kReferenceShoulder;
+  const V x_m = (outwards * arm_scale) * of_hand(styled, side, kCarryX),
+          y_m = arm_scale * of_hand(styled, side, kCarryY),
+          z_m = arm_scale * of_hand(styled, side, kCarryZ);
+  move_to(holds.middle_m + Vec<V>{V(holds.cosine * x_m + holds.sine * z_m), y_m,
+                                  V(holds.cosine * z_m - holds.sine * x_m)},
+          carry, goal_m);
+  const V aside_m = (outwards * rail_scale) * of_hand(styled, side, kRailSide),
+          over_m = styled.rail_ground_m[side].x + rail_scale * of_hand(styled, side, kRailHeight);
+  const Way<V>& way = holds.heading;
+  const V ahead_m = all<V>(kRailAhead_m * rail_scale);
+  move_to(Vec<V>{V(holds.hips_m.x + (way.cosine * aside_m + way.sine * ahead_m)), over_m,
+                 V(holds.hips_m.z + (way.cosine * ahead_m - way.sine * aside_m))},
+          rail, goal_m);
+  // The solver starts with the elbow outwards, bent as the place's distance asks.
+  const V far2 = dot(goal_m, goal_m),
+          cosine =
+              within(V((far2 - a * a - b * b) / most(V(2.0f * a * b), all<V>(1e-6f))), -1.0f, 1.0f),
+          bend = arc_of(V(root(V(1.0f - cosine * cosine))), cosine);
+  const V start[kArmAngles] = {
+      mix(all<V>(kCarrying_rad[0]), all<V>(kAtRail_rad[0]), rail),
+      outwards * mix(all<V>(kCarrying_rad[1]), all<V>(kAtRail_rad[1]), rail),
+      outwards * mix(all<V>(kCarrying_rad[2]), all<V>(kAtRail_rad[2]), rail),
+      -bend,
+      V{},
+      V{}};
+  const V shows = smooth(0.0f, kFullFrom, held);
+  for (int j = 0; j < kArmAngles; ++j) {
+    const V angle = chain.angle_rad[j] + held * (start[j] - chain.angle_rad[j]),
+            weight = chain.weight[j] * (1.0f + shows * (kHeldWeight[j] - 1.0f));
+    chain.angle_rad[j] = holds_it ? angle : chain.angle_rad[j];
+    chain.weight[j] = weight;
+  }
+  make_relative(kArmAngles, chain.weight);
+  chain.goal_m = goal_m;
+  chain.has_height = all<V>(1.0f);
+  aim_arm(holds_it, chain);
+}
+
+// Poses the arms of walks that `are`. `own_m`: where their hands would be in the data.
+template <class V>
+void pose_arms(const Tables& tables, const Hips<V>& hips, const Vec<V>& hips_m,
+               const Trunk<V>& trunk, const Mask<V> (&is_posed)[2], const Vec<V> (&own_m)[2],
+               const Turn<V> (&shoulder)[2], const Styled<V>& styled, const Poses& poses) noexcept {
+  const V some = chosen<V>(either(is_posed[0], is_posed[1]), 1.0f, 0.0f);
+  Arm<V> arms[2];
+  ArmChain<V> chains[2];
+  const bool has[2] = {!tables.arm[0].path.empty(), !tables.arm[1].path.empty()};
+  for (int side : {0, 1}) {
+    if (!has[side]) continue;
+    place_shoulder(tables.arm[side], trunk, some, poses, arms[side]);
+    take_arm(tables.arm[side], shoulder[side], some, poses, arms[side]);
+  }
+  Holds<V> holds{{}, V{}, all<V>(1.0f), hips_m, hips.heading};
+  Vec<V> across;  // to the left
+  if (has[0] && has[1]) {
+    holds.middle_m = (arms[0].shoulder_m + arms[1].shoulder_m) * 0.5f;
+    across = arms[0].shoulder_m - arms[1].shoulder_m;
+  } else {
+    const Arm<V>& only = arms[has[0] ? 0 : 1];
+    const Vec<V> ahead = only.base * Vec<V>{V{}, V{}, all<V>(1.0f)};
+    holds.middle_m = only.shoulder_m;
+    across = {ahead.z, V{}, -ahead.x};
+  }
+  const V over = 1.0f / most(V(root(V(across.x * across.x + across.z * across.z))), all<V>(1e-6f));
+  holds.cosine = across.x * over, holds.sine = -across.z * over;
+  Mask<V> uneven[2];
+  for (int side : {0, 1}) {
+    chains[side].solves = V{};
+    uneven[side] = both(is_posed[side], has_uneven_arm(styled, side));
+    if (!has[side] || !any(uneven[side])) continue;
+    stiffen_arm(tables.arm[side], styled, side, uneven[side], own_m[side], arms[side]);
+    chains[side] = arms[side].chain;
+  }
+  if (any(either(uneven[0], uneven[1]))) {
+    solve_arms(chains);
+    for (int side : {0, 1})
+      if (any(uneven[side]))
+        for (int j = 0; j < kArmAngles; ++j)
+          arms[side].chain.angle_rad[j] = chains[side].angle_rad[j];
+  }
+  for (int side : {0, 1}) {
+    chains[side].solves = V{};
+    if (!has[side] || !any(is_posed[side])) continue;
+    hold_hand(tables, styled, side, holds, arms[side]);
+    chains[side] = arms[side].chain;
+    chains[side].solves = both(is_posed[side], chains[side].solves != V{}) ? all<V>(1.0f) : V{};
+  }
+  solve_arms(chains);
+  for (int side : {0, 1}) {
+    if (!has[side] || !any(is_posed[side])) continue;
+    for (int j = 0; j < kArmAngles; ++j) arms[side].chain.angle_rad[j] = chains[side].angle_rad[j];
+    write_arm(tables.arm[side], chosen<V>(is_posed[side], 1.0f, 0.0f), arms[side], poses);
+  }
+}
+
+}  // namespace
+}  // namespace gaitpad::anew

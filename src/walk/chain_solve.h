@@ -1,0 +1,184 @@
+// The robust solver of ik.cpp in floats, of chains side by side with up to three rows:
+// theta += W J^T (J W J^T + l^2 I)^-1 dX inside joint limits (equation 5), until the point is where
+// it is to be.
+#pragma once
+#include "walk/lanes.h"
+
+namespace gaitpad::anew {
+namespace {
+
+inline constexpr float kLeastDamping_m2 = 1e-8f;  // above the rounding of floats
+inline constexpr float kSolved_m = 1e-6f, kMostTurn_rad = 0.3f, kFarthestStep_m = 0.5f;
+// l^2 grows with the error, and where a step has made it greater.
+inline constexpr float kGrowth = 0.1f, kGrowthUp = 8.0f, kGrowthDown = 0.25f;
+// A solve ends where this many steps have taken less than this of the error away.
+inline constexpr int kMostSolves = 40, kPatience = 6;
+inline constexpr float kLeastGain = 0.001f;
+
+// (J W J^T + damping) y = b, by L D L^T; b becomes y.
+template <class V, std::size_t kDofs>
+void solve_three(int dofs, const V (&column)[kDofs][3], const V (&weight)[kDofs], const V& damping,
+                 V (&b)[3]) noexcept {
+  V m[3][3];
+  for (int r = 0; r < 3; ++r)
+    for (int s = 0; s <= r; ++s) m[r][s] = r == s ? damping : V{};
+  for (int j = 0; j < dofs; ++j) {
+    for (int r = 0; r < 3; ++r) {
+      const V weighted = weight[j] * column[j][r];
+      for (int s = 0; s <= r; ++s) m[r][s] = m[r][s] + weighted * column[j][s];
+    }
+  }
+  V over[3];
+  for (int k = 0; k < 3; ++k) {
+    over[k] = 1.0f / most(m[k][k], all<V>(kLeastDamping_m2));
+    for (int r = k + 1; r < 3; ++r) {
+      const V l = m[r][k] * over[k];
+      for (int s = k + 1; s <= r; ++s) m[r][s] = m[r][s] - l * m[s][k];
+      m[k][r] = l;
+    }
+  }
+  b[1] = b[1] - m[0][1] * b[0];
+  b[2] = b[2] - m[0][2] * b[0] - m[1][2] * b[1];
+  for (int k = 0; k < 3; ++k) b[k] = b[k] * over[k];
+  b[1] = b[1] - m[1][2] * b[2];
+  b[0] = b[0] - m[0][1] * b[1] - m[0][2] * b[2];
+}
+
+// A step within the limits: an angle that it would carry past its limit goes there exactly, and the
+// others close what is left.
+template <class V, class Chain, std::size_t kDofs>
+void step_within(const Chain& chain, const V (&column)[kDofs][3], const V (&angle_rad)[kDofs],
+                 V (&error_m)[3], const V& damping, const Mask<V>& open,
+                 V (&turn_rad)[kDofs]) noexcept {
+  V weight[kDofs];
+  for (int j = 0; j < chain.dofs; ++j) weight[j] = chain.weight[j], turn_rad[j] = V{};
+  for (int round = 0; round <= chain.dofs; ++round) {
+    V y[3] = {error_m[0], error_m[1], error_m[2]};
+    solve_three(chain.dofs, column, weight, damping, y);
+    bool stopped = false;
+    for (int j = 0; j < chain.dofs; ++j) {
+      const auto moves = weight[j] != V{};
+      const V turn = weight[j] * (column[j][0] * y[0] + column[j][1] * y[1] + column[j][2] * y[2]);
+      turn_rad[j] = moves ? turn : turn_rad[j];
+      const V wanted = angle_rad[j] + turn_rad[j],
+              allowed = least(most(wanted, chain.min_rad[j]), chain.max_rad[j]);
+      const auto stops = both(both(open, moves), allowed != wanted);
+      if (!any(stops)) continue;
+      stopped = true;
+      turn_rad[j] = stops ? V(allowed - angle_rad[j]) : turn_rad[j];
+      weight[j] = stops ? V{} : weight[j];
+      for (int r = 0; r < 3; ++r)
+        error_m[r] = stops ? V(error_m[r] - column[j][r] * turn_rad[j]) : error_m[r];
+    }
+    if (!stopped) return;
+  }
+}
+
+// Chain: V; kDofs, the most, and dofs; weight (the greatest 1), min_rad, max_rad; a Place; place(),
+// its error_m of three rows (0 of rows that do not count); set_columns(). `open`: the chains that
+// are to be solved. Leaves the best angles.
+template <class Chain, class V, std::size_t kDofs>
+void solve_chains(const Chain& chain, Mask<V> open, V (&angle_rad)[kDofs]) noexcept {
+  typename Chain::Place place, best;
+  V next[kDofs], growth = all<V>(kGrowth), best_m2 = all<V>(1e30f), seen_m = all<V>(1e15f),
+                 patience = all<V>(kPatience);
+  for (int j = 0; j < chain.dofs; ++j)
+    next[j] = angle_rad[j] = least(most(angle_rad[j], chain.min_rad[j]), chain.max_rad[j]);
+  for (int k = 0;; ++k) {
+    chain.place(next, place);
+    const V* e = place.error_m;
+    const V m2 = e[0] * e[0] + e[1] * e[1] + e[2] * e[2];
+    const auto better = both(open, m2 < best_m2);
+    if (k > 0) {
+      const V down = most(V(growth * kGrowthDown), all<V>(kGrowth)), up = growth * kGrowthUp;
+      growth = better ? down : up;
+    }
+    for (int j = 0; j < chain.dofs; ++j) angle_rad[j] = better ? next[j] : angle_rad[j];
+    Chain::keep(better, place, best);
+    best_m2 = better ? m2 : best_m2;
+    open = both(open, best_m2 > all<V>(kSolved_m * kSolved_m));
+    const V error_m = root(best_m2);
+    const auto falls = error_m < seen_m - kLeastGain * least(error_m, all<V>(0.1f));
+    patience = falls ? all<V>(kPatience) : V(patience - 1.0f);
+    seen_m = falls ? error_m : seen_m;
+    open = both(open, patience > V{});
+    if (k >= kMostSolves || !any(open)) return;
+    V column[kDofs][3], error[3], turn[kDofs];
+    chain.set_columns(best, column);
+    const V share = kFarthestStep_m / most(error_m, all<V>(kFarthestStep_m));
+    for (int r = 0; r < 3; ++r) error[r] = share * best.error_m[r];
+    const V damping =
+        kLeastDamping_m2 + growth * least(best_m2, all<V>(kFarthestStep_m * kFarthestStep_m));
+    step_within(chain, column, angle_rad, error, damping, open, turn);
+    V greatest{};
+    for (int j = 0; j < chain.dofs; ++j) greatest = most(greatest, size(turn[j]));
+    const V cap = kMostTurn_rad / most(greatest, all<V>(kMostTurn_rad));
+    for (int j = 0; j < chain.dofs; ++j) {
+      const V wanted = angle_rad[j] + cap * turn[j];
+      next[j] = open ? least(most(wanted, chain.min_rad[j]), chain.max_rad[j]) : angle_rad[j];
+    }
+  }
+}
+
+// The greatest of some weights becomes 1.
+template <class V, std::size_t kDofs>
+void make_relative(int dofs, V (&weight)[kDofs]) noexcept {
+  V largest = all<V>(1e-6f);
+  for (int j = 0; j < dofs; ++j) largest = most(largest, weight[j]);
+  const V over = 1.0f / largest;
+  for (int j = 0; j < dofs; ++j) weight[j] = within(V(weight[j] * over), 0.0f, 1.0f);
+}
+// What a joint of relative weight w leaves to the others (walk_parts.h).
+template <class V>
+V held_back(const V& w) noexcept {
+  const V square = w * w;
+  return 0.8f * (1.0f - square * square);
+}
+
+// --- Angles --------------------------------------------------------------------------------------
+
+// The angle of any direction, within half a turn.
+template <class V>
+V arc_of(const V& y, const V& x) noexcept {
+  const V length = root(V(x * x + y * y)), over = 1.0f / most(length, all<V>(1e-12f)), s = y * over,
+          c = x * over;
+  // Tangents of a half, a quarter and an eighth of it, then its arc (Cephes, atanf).
+  const V behind = (1.0f - c) / (s < V{} ? least(s, all<V>(-1e-6f)) : most(s, all<V>(1e-6f))),
+          half = c < V{} ? behind : V(s / (1.0f + most(c, V{}))),
+          quarter = half / (1.0f + root(V(1.0f + half * half))),
+          t = quarter / (1.0f + root(V(1.0f + quarter * quarter))), z = t * t;
+  return 8.0f *
+         (t + t * z *
+                  (-3.33329491539e-1f +
+                   z * (1.99777106478e-1f + z * (-1.38776856032e-1f + z * 8.05374449538e-2f))));
+}
+
+// q = Rx(x) Rz(z) Ry(y), z within a quarter turn (leg_pose.h).
+template <class V>
+void angles_xzy(const Turn<V>& q, V& x, V& z, V& y) noexcept {
+  const Vec<V> up = q * Vec<V>{V{}, all<V>(1.0f), V{}};
+  x = arc_of(up.z, up.y);
+  z = arc_of(V(-up.x), V(root(V(up.y * up.y + up.z * up.z))));
+  V xs, xc, zs, zc;
+  sin_cos(V(0.5f * x), xs, xc);
+  sin_cos(V(0.5f * z), zs, zc);
+  const Turn<V> first = Turn<V>{xc, xs, V{}, V{}} * Turn<V>{zc, V{}, V{}, zs},
+                rest = back(first) * q;
+  const auto other = rest.w < V{};
+  y = 2.0f * arc_of(other ? V(-rest.y) : rest.y, other ? V(-rest.w) : rest.w);
+}
+template <class V>
+Turn<V> turn_xzy(const V& x, const V& z, const V& y) noexcept {
+  V xs, xc, zs, zc, ys, yc;
+  sin_cos(V(0.5f * x), xs, xc);
+  sin_cos(V(0.5f * z), zs, zc);
+  sin_cos(V(0.5f * y), ys, yc);
+  return Turn<V>{xc, xs, V{}, V{}} * Turn<V>{zc, V{}, V{}, zs} * Turn<V>{yc, V{}, ys, V{}};
+}
+template <class V>
+V within_half_turn(const V& angle_rad) noexcept {
+  return angle_rad - 6.2831853f * rounded(V(angle_rad * 0.15915494f));
+}
+
+}  // namespace
+}  // namespace gaitpad::anew

@@ -1,0 +1,538 @@
+// The upper body: what it does where a walk changes, what hands hold,
+// where the head looks, and which joints are written. Thumbs take 60 ms.
+#include <gtest/gtest.h>
+
+#include <vector>
+
+#include "tests/walk/made_block.h"
+
+namespace gaitpad::anew {
+namespace {
+
+constexpr int kThumb = kRate * 6 / 100, kMoments = 6;
+
+StyleValues style_of(std::initializer_list<std::pair<const char*, double>> values) {
+  StyleValues style;
+  for (const auto& [key, value] : values) EXPECT_TRUE(set_value(style, key, value)) << key;
+  return style;
+}
+
+vec3 turned_by(const quat& from, const quat& to) {
+  return rotation_vector(to * glm::conjugate(from));
+}
+
+// The greatest angular acceleration of a segment over 4 ticks, degrees/s^2.
+class Turning {
+ public:
+  void add(const quat& world) {
+    for (int i = 8; i > 0; --i) last_[i] = last_[i - 1];
+    last_[0] = world;
+    if (++ticks_ < 9) return;
+    const vec3 now = turned_by(last_[4], last_[0]), before = turned_by(last_[8], last_[4]);
+    most_deg_s2 = std::max(most_deg_s2, glm::length(now - before) * kRate * kRate / 16.0 / kDegree);
+  }
+  double most_deg_s2 = 0.0;
+
+ private:
+  std::array<quat, 9> last_;
+  int ticks_ = 0;
+};
+
+// A walk from a stand on, steered by a thumb.
+class Walker {
+ public:
+  explicit Walker(const StyleValues& style = {}, const WalkModel& model = adult())
+      : model_(model), style_(style), tables_(tables_of(model, kDt)) {
+    stand(tables_, Origin{}, block);
+    pose.joint_count = static_cast<int>(model.cycle.skeleton.joints.size());
+  }
+  void ask_for(const StyleValues& style) { style_ = style; }
+  void push(const vec2& to, const StyleValues& style) {
+    ask_for(style);
+    push(to);
+  }
+  // The thumb moves there.
+  void push(const vec2& to) {
+    const vec2 from = stick_;
+    for (int tick = 1; tick <= kThumb; ++tick) {
+      stick_ = from + (to - from) * smootherstep(double(tick) / kThumb);
+      step();
+    }
+  }
+  void hold(int ticks) {
+    for (int tick = 0; tick < ticks; ++tick) step();
+  }
+  void step() {
+    Stick stick;
+    stick.left = stick_;
+    const GaitParams params = gait_params(stick, style_, gait_limits(model_));
+    ask(params, block);
+    quat* local = pose.local.data();
+    vec3* root = &pose.root_m;
+    advance(tables_, block, Poses{&local, &root, 1});
+    forward_kinematics(model_.cycle.skeleton, pose, frames_);
+    of_chest.add(chest()), of_head.add(head()), of_pelvis.add(pelvis());
+  }
+  void forget() {
+    for (Turning* turning : {&of_chest, &of_head, &of_pelvis}) turning->most_deg_s2 = 0.0;
+  }
+
+  quat head() const { return frames_.rotation[model_.body.head_path.back()]; }
+  quat chest() const {
+    const UpperBodyModel& body = model_.body;
+    return frames_.rotation[model_.cycle.skeleton.joints[body.head_path[body.neck_at]].parent];
+  }
+  quat pelvis() const { return frames_.rotation[model_.cycle.pelvis]; }
+  vec3 at(int joint) const { return frames_.position_m[joint]; }
+  vec3 shoulder(Side side) const { return at(model_.body.arm[side].joints.shoulder); }
+  vec3 hand(Side side) const {
+    const ArmBuild& arm = model_.body.arm[side];
+    return at(arm.joints.wrist) + frames_.rotation[arm.joints.wrist] * arm.grip_m;
+  }
+  vec3 gaze() const { return head() * glm::conjugate(model_.body.head_standing) * kForward; }
+  double heading_rad() const {
+    return block.origin[0].heading_rad + static_cast<double>(block.state.heading_rad);
+  }
+  bool stands() const { return block.change.stands != 0.0f; }
+  Pose pose;
+  Block<1> block;
+  Turning of_chest, of_head, of_pelvis;
+
+ private:
+  const WalkModel& model_;
+  StyleValues style_;
+  Tables tables_;
+  JointFrames frames_;
+  vec2 stick_{0.0, 0.0};
+};
+
+// --- Where a walk changes ------------------------------------------------------------------------
+
+struct Accelerations {
+  double chest = 0.0, head = 0.0, pelvis = 0.0;
+  void add(const Walker& walker) {
+    chest = std::max(chest, walker.of_chest.most_deg_s2);
+    head = std::max(head, walker.of_head.most_deg_s2);
+    pelvis = std::max(pelvis, walker.of_pelvis.most_deg_s2);
+  }
+};
+Accelerations steady(const vec2& stick) {
+  Walker walker(style_of({{"idle", 0.0}}));
+  walker.push(stick);
+  walker.hold(4 * kRate);
+  walker.forget();
+  walker.hold(3 * kRate);
+  Accelerations most;
+  most.add(walker);
+  return most;
+}
+
+// From the one stick to the other, at some moments of a step; with a stand that does not move.
+Accelerations changing(const vec2& from, const vec2& to) {
+  Accelerations most;
+  for (int moment = 0; moment < kMoments; ++moment) {
+    Walker walker(style_of({{"idle", 0.0}}));
+    walker.push(from);
+    walker.hold(3 * kRate + moment * kRate * 11 / 10 / kMoments);
+    walker.forget();
+    walker.push(to);
+    walker.hold(3 * kRate);
+    most.add(walker);
+  }
+  return most;
+}
+
+class Changes : public testing::TestWithParam<std::array<vec2, 2>> {};
+
+TEST_P(Changes, TurnChestAndHeadAtMostTwiceAsHardAsTheSteadyWalk) {
+  constexpr double kMost = 2.0;
+  const auto [from, to] = GetParam();
+  const Accelerations changes = changing(from, to), before = steady(from), after = steady(to);
+  const double chest = std::max(before.chest, after.chest),
+               head = std::max(before.head, after.head);
+  std::printf("chest %.0f, steady %.0f; head %.0f, steady %.0f degrees/s^2\n", changes.chest, chest,
+              changes.head, head);
+  EXPECT_LE(changes.chest, kMost * chest);
+  EXPECT_LE(changes.head, kMost * head);
+}
+constexpr vec2 kRest(0.0, 0.0);
+INSTANTIATE_TEST_SUITE_P(
+    Start, Changes,
+    testing::Values(std::array{kRest, vec2(0.0, 0.3)}, std::array{kRest, vec2(0.0, 0.8)},
+                    std::array{kRest, vec2(0.0, 1.0)}, std::array{kRest, vec2(0.0, -1.0)},
+                    std::array{kRest, vec2(-0.3, 0.8)}, std::array{kRest, vec2(0.7, 0.7)}));
+INSTANTIATE_TEST_SUITE_P(
+    Stop, Changes,
+    testing::Values(std::array{vec2(0.0, 0.3), kRest}, std::array{vec2(0.0, 0.8), kRest},
+                    std::array{vec2(0.0, 1.0), kRest}, std::array{vec2(0.0, -1.0), kRest},
+                    std::array{vec2(-0.3, 0.8), kRest}, std::array{vec2(0.7, 0.7), kRest}));
+INSTANTIATE_TEST_SUITE_P(Other, Changes,
+                         testing::Values(std::array{vec2(0.0, 0.3), vec2(0.0, 1.0)},
+                                         std::array{vec2(0.0, 1.0), vec2(0.0, 0.3)},
+                                         std::array{vec2(0.0, 0.8), vec2(0.5, 0.8)},
+                                         std::array{vec2(-0.5, 0.8), vec2(0.5, 0.8)},
+                                         std::array{vec2(0.0, 1.0), vec2(0.0, -1.0)}));
+
+// The pelvis itself turns harder there than in any walk, and chest and head are ahead of it.
+TEST(TurnInPlace, TurnsChestAndHeadAtMostTwiceAsHardAsThePelvis) {
+  constexpr double kMost = 2.0;
+  for (const double x : {0.9, -0.4}) {
+    for (const bool starts : {true, false}) {
+      const vec2 turn(x, 0.0);
+      const Accelerations most = starts ? changing(kRest, turn) : changing(turn, kRest);
+      std::printf("chest %.0f, head %.0f, pelvis %.0f degrees/s^2\n", most.chest, most.head,
+                  most.pelvis);
+      EXPECT_LE(most.chest, kMost * most.pelvis);
+      EXPECT_LE(most.head, kMost * most.pelvis);
+    }
+  }
+}
+
+// A walk that begins in the middle of a glance: the head goes on from how it moves.
+TEST(Glance, EndsInAWalkWithoutAJump) {
+  constexpr double kGlance_deg_s2 = 420.0;  // of a glance itself
+  Accelerations most;
+  for (int wait = kRate; wait < 9 * kRate; wait += kRate / 4) {
+    Walker walker;
+    walker.hold(wait);
+    walker.forget();
+    walker.push(vec2(0.0, 0.8));
+    walker.hold(2 * kRate);
+    most.add(walker);
+  }
+  std::printf("head %.0f degrees/s^2\n", most.head);
+  EXPECT_LE(most.head, kGlance_deg_s2);
+}
+
+TEST(UpperBody, ShowsAPushWithinATenthOfASecond) {
+  constexpr double kSeen = kDegree, kMost_s = 0.1;
+  for (const vec2& stick : {vec2(0.0, 0.3), vec2(0.0, 0.8), vec2(0.0, 1.0), vec2(0.9, 0.0)}) {
+    Walker walker;
+    walker.hold(60);
+    const quat chest = walker.chest(), head = walker.head();
+    walker.push(stick);
+    int ticks = kThumb;
+    const auto shows = [&] {
+      return glm::length(turned_by(chest, walker.chest())) > kSeen ||
+             glm::length(turned_by(head, walker.head())) > kSeen;
+    };
+    for (; !shows() && ticks < kRate; ++ticks) walker.step();
+    std::printf("stick (%.1f, %.1f): %.3f s\n", stick.x, stick.y, ticks * kDt);
+    EXPECT_LE(ticks * kDt, kMost_s);
+  }
+}
+
+// The heading of a segment, from where it was before the turn.
+TEST(UpperBody, TurnsHeadThenChestThenPelvis) {
+  constexpr double kTurned = 5.0 * kDegree;
+  for (const auto& [from, to] :
+       {std::array{kRest, vec2(0.9, 0.0)}, std::array{kRest, vec2(-0.9, 0.0)},
+        std::array{vec2(0.0, 0.8), vec2(0.5, 0.8)}, std::array{vec2(0.0, 0.8), vec2(-0.7, 0.6)}}) {
+    // Beside a walk that does not turn: its own sway is no turn.
+    Walker turns, straight;
+    for (Walker* walker : {&turns, &straight}) {
+      walker->push(from);
+      walker->hold(3 * kRate);
+    }
+    std::array<double, 3> at_s{};
+    for (int tick = 0; tick < 2 * kRate; ++tick) {
+      if (tick == 0) turns.push(to), straight.push(from);
+      turns.step(), straight.step();
+      const auto turned = [&](const quat& a, const quat& b) {
+        return std::abs(wrapped(heading_of(b * kForward) - heading_of(a * kForward)));
+      };
+      const std::array<double, 3> rad = {turned(straight.head(), turns.head()),
+                                         turned(straight.chest(), turns.chest()),
+                                         turned(straight.pelvis(), turns.pelvis())};
+      for (int k = 0; k < 3; ++k)
+        if (at_s[k] == 0.0 && rad[k] > kTurned) at_s[k] = (kThumb + tick) * kDt;
+    }
+    std::printf("(%.1f, %.1f): head %.3f, chest %.3f, pelvis %.3f s\n", to.x, to.y, at_s[0],
+                at_s[1], at_s[2]);
+    EXPECT_LT(at_s[0], at_s[1]);
+    EXPECT_LT(at_s[1], at_s[2]);
+  }
+}
+
+TEST(UpperBody, SwingsArmsAgainstTheLegsFromTheFirstStepOn) {
+  const int hip[2] = {adult().leg[0].joint[0].joint, adult().leg[1].joint[0].joint},
+            ankle[2] = {adult().leg[0].joint[2].joint, adult().leg[1].joint[2].joint};
+  for (const double y : {0.3, 0.6, 1.0}) {
+    Walker walker;
+    walker.hold(60);
+    walker.push(vec2(0.0, y));
+    double product = 0.0, most_m = 0.0;
+    for (int steps = 0, tick = 0; steps < 2 && tick < 3 * kRate; ++tick) {
+      walker.step();
+      steps += walker.block.state.tick == 0.0f && walker.block.state.flies == 0.0f ? 1 : 0;
+      const double legs_m = (walker.at(ankle[0]) - walker.at(hip[0])).z -
+                            (walker.at(ankle[1]) - walker.at(hip[1])).z,
+                   arms_m = (walker.hand(kLeftSide) - walker.shoulder(kLeftSide)).z -
+                            (walker.hand(kRightSide) - walker.shoulder(kRightSide)).z;
+      most_m = std::max(most_m, std::abs(legs_m));
+      if (std::abs(legs_m) < 0.3 * most_m) continue;
+      product += legs_m * arms_m;
+      if (std::abs(legs_m) > 0.9 * most_m && steps > 0) {
+        EXPECT_LT(legs_m * arms_m, 0.0) << y;
+      }
+    }
+    EXPECT_LT(product, 0.0) << y;
+  }
+}
+
+// --- Hands ---------------------------------------------------------------------------------------
+
+constexpr double kSolved_m = 1e-5;
+
+TEST(Hands, CarryAtTheirPlacesBeforeTheChest) {
+  const StyleValues carry = style_of(
+      {{"hands.carry", 1.0}, {"hands.x_m", 0.1}, {"hands.y_m", -0.25}, {"hands.z_m", 0.4}});
+  Walker walker(carry);
+  walker.push(vec2(0.0, 0.7));
+  walker.hold(5 * kRate);
+  const double scale = adult().body.arm_m / kReferenceArm_m;
+  double off_m = 0.0;
+  for (int tick = 0; tick < 2 * kRate; ++tick) {
+    walker.step();
+    vec3 across = walker.shoulder(kLeftSide) - walker.shoulder(kRightSide);
+    across = glm::normalize(vec3(across.x, 0.0, across.z));
+    const vec3 ahead = glm::cross(across, kUp),
+               middle = 0.5 * (walker.shoulder(kLeftSide) + walker.shoulder(kRightSide));
+    for (const Side side : {kLeftSide, kRightSide}) {
+      const vec3 place =
+          middle + scale * ((side == kLeftSide ? 0.1 : -0.1) * across - 0.25 * kUp + 0.4 * ahead);
+      off_m = std::max(off_m, glm::distance(walker.hand(side), place));
+    }
+  }
+  std::printf("off their places by %.5f mm\n", off_m * 1e3);
+  EXPECT_LE(off_m, kSolved_m);
+  for (const Side side : {kLeftSide, kRightSide}) {  // elbows point downwards and outwards
+    const vec3 elbow = walker.at(adult().body.arm[side].joints.elbow);
+    EXPECT_LT(elbow.y, walker.shoulder(side).y - 0.2);
+    EXPECT_GT((elbow.x - walker.pose.root_m.x) * (side == kLeftSide ? 1.0 : -1.0), 0.15);
+  }
+}
+
+TEST(Hands, SlideAlongARailOfConstantHeight) {
+  const StyleValues rail = style_of(
+      {{"left_hand.rail", 1.0}, {"left_hand.rail_height_m", 0.95}, {"left_hand.rail_side_m", 0.4}});
+  Walker walker(rail);
+  walker.push(vec2(0.0, 0.7));
+  walker.hold(5 * kRate);
+  const double scale = adult().body.shoulder_height_m / kReferenceShoulder_m;
+  for (int tick = 0; tick < 2 * kRate; ++tick) {
+    walker.step();
+    EXPECT_NEAR(walker.hand(kLeftSide).y, 0.95 * scale, kSolved_m);
+    EXPECT_NEAR(walker.hand(kLeftSide).x, 0.4 * scale, 1e-4);
+  }
+}
+
+TEST(Hands, FollowARailThatRisesEvenlyOverStairs) {
+  Terrain stairs;
+  ASSERT_FALSE(add_section(stairs, FlatSection{3.0}));
+  ASSERT_FALSE(add_section(stairs, StairsSection{0.17, 0.28, 12}));
+  WalkModel model = adult();
+  model.terrain = std::make_shared<const Terrain>(stairs);
+  Walker walker(style_of({{"right_hand.rail", 1.0}}), model);
+  const double scale = model.body.shoulder_height_m / kReferenceShoulder_m;
+  std::vector<double> height_m;
+  walker.push(vec2(0.0, 0.5));
+  for (int tick = 0; tick < 20 * kRate; ++tick) {
+    walker.step();
+    const double z_m = walker.pose.root_m.z;
+    if (z_m < 4.0 || z_m > 5.5) continue;
+    const double line_m = 0.17 / 0.28 * (z_m - 3.0) + 0.085;  // the mean height of the treads
+    EXPECT_NEAR(walker.hand(kRightSide).y, line_m + 0.9 * scale, 0.03);
+    height_m.push_back(walker.hand(kRightSide).y);
+  }
+  ASSERT_GT(height_m.size(), 200u);
+  for (std::size_t i = 2; i < height_m.size(); ++i)
+    EXPECT_LT(std::abs(height_m[i] - 2.0 * height_m[i - 1] + height_m[i - 2]), 0.0005);
+}
+
+TEST(Hands, ReachForWhatIsOutOfReach) {
+  Walker walker(
+      style_of({{"hands.carry", 1.0}, {"hands.x_m", 1.0}, {"hands.y_m", 1.0}, {"hands.z_m", 1.0}}));
+  walker.push(vec2(0.0, 0.7));
+  walker.hold(5 * kRate);
+  for (const Side side : {kLeftSide, kRightSide}) {
+    const ArmChain& arm = adult().body.arm[side].joints;
+    const vec3 way = walker.hand(side) - walker.shoulder(side),
+               upper = glm::normalize(walker.at(arm.elbow) - walker.at(arm.shoulder)),
+               fore = glm::normalize(walker.at(arm.wrist) - walker.at(arm.elbow));
+    EXPECT_GT(way.y, 0.2);
+    EXPECT_GT(way.z, 0.2);
+    EXPECT_GT(glm::dot(upper, fore), std::cos(45.0 * kDegree));
+  }
+}
+
+std::vector<StyleValues> busy_styles() {
+  return {style_of({{"hands.carry", 1.0}}),
+          style_of({{"left_hand.rail", 1.0}}),
+          style_of({{"hands.carry", 1.0}, {"hands.y_m", 0.3}, {"right_hand.rail", 1.0}}),
+          style_of({{"head.look", 1.0}, {"head.yaw_deg", -90.0}, {"head.pitch_deg", 60.0}}),
+          style_of({{"head.look_at", 1.0}, {"head.x_m", 1.0}, {"head.z_m", 6.0}}),
+          style_of({{"arms.weight.shoulder", 0.1}, {"spine.weight.upper", 0.2}}),
+          style_of({{"arms.swing", 3.0}, {"head.lead", 1.0}})};
+}
+
+TEST(BusyStyles, BeginAndEndWithoutAJump) {
+  constexpr double kMost_deg = 1.0;  // a tick^2
+  double worst = 0.0;
+  for (const StyleValues& busy : busy_styles()) {
+    for (const int moment : {0, 91, 203}) {
+      Walker walker;
+      walker.push(vec2(0.0, 0.8));
+      walker.hold(3 * kRate + moment);
+      const int joints = walker.pose.joint_count;
+      std::vector<vec3> rate(joints, vec3(0.0));
+      Pose before = walker.pose;
+      for (int tick = 0; tick < 1000; ++tick) {
+        walker.ask_for(tick < 450 ? busy : StyleValues{});
+        walker.step();
+        for (int j = 0; j < joints; ++j) {
+          const vec3 now = rotation_vector(glm::conjugate(before.local[j]) * walker.pose.local[j]);
+          if (tick > 0) worst = std::max(worst, glm::length(now - rate[j]) / kDegree);
+          rate[j] = now;
+        }
+        before = walker.pose;
+      }
+    }
+  }
+  std::printf("%.3f degrees a tick^2\n", worst);
+  EXPECT_LT(worst, kMost_deg);
+}
+
+TEST(BusyStyles, LeaveLegsAndPelvisTheirBits) {
+  const Skeleton& skeleton = adult().cycle.skeleton;
+  for (const StyleValues& busy : busy_styles()) {
+    Walker plain, other(busy);
+    for (Walker* walker : {&plain, &other}) walker->push(vec2(0.0, 0.7));
+    for (int tick = 0; tick < 900; ++tick) {
+      if (tick == 500)
+        for (Walker* walker : {&plain, &other}) walker->push(vec2(0.4, 0.7));
+      plain.step(), other.step();
+      ASSERT_EQ(plain.pose.root_m, other.pose.root_m);
+      for (int j = 0; j < plain.pose.joint_count; ++j) {
+        if (j != adult().cycle.pelvis &&
+            !is_ancestor(skeleton, adult().cycle.leg[0].joints.hip, j) &&
+            !is_ancestor(skeleton, adult().cycle.leg[1].joints.hip, j))
+          continue;
+        ASSERT_EQ(plain.pose.local[j], other.pose.local[j]) << skeleton.joints[j].name;
+      }
+    }
+  }
+}
+
+// --- Head ----------------------------------------------------------------------------------------
+
+TEST(Head, LooksWhereItIsTold) {
+  for (const auto& [yaw, pitch] : {std::pair{40.0, 0.0}, {-50.0, 20.0}, {10.0, -30.0}}) {
+    Walker walker(style_of({{"head.look", 1.0}, {"head.yaw_deg", yaw}, {"head.pitch_deg", pitch}}));
+    walker.push(vec2(0.0, 0.7));
+    walker.hold(5 * kRate);
+    for (int tick = 0; tick < kRate; ++tick) {
+      walker.step();
+      const vec3 gaze = walker.gaze();
+      EXPECT_NEAR(heading_of(gaze) / kDegree, yaw, 1.0);
+      EXPECT_NEAR(gaitpad::atan2(gaze.y, horizontal_length(gaze)) / kDegree, pitch, 1.0);
+    }
+  }
+}
+
+TEST(Head, FollowsAPlaceThatItPassesInAnyWorld) {
+  const vec3 place(4.0, 1.2, 8.0);
+  const StyleValues look =
+      style_of({{"head.look_at", 1.0}, {"head.x_m", 4.0}, {"head.y_m", 1.2}, {"head.z_m", 8.0}});
+  for (const Placement& placed : {Placement{}, Placement{vec3(0.5, 0.4, -1.0), 0.2}}) {
+    Walker walker(look);
+    move_walk(placed, 0, walker.block);
+    walker.push(vec2(0.0, 0.8));
+    int seen = 0;
+    for (int tick = 0; tick < 3000; ++tick) {
+      walker.step();
+      const vec3 way = place - walker.at(adult().body.head_path.back());
+      const double aside = wrapped(heading_of(way) - walker.heading_rad() - placed.heading_rad);
+      if (tick < 600 || std::abs(aside) > 55.0 * kDegree) continue;
+      ++seen;
+      EXPECT_LT(gaitpad::acos(glm::dot(walker.gaze(), glm::normalize(way))) / kDegree, 1.0);
+    }
+    EXPECT_GT(seen, 100);
+    // The goal is far behind, so the head does not follow it.
+    EXPECT_LT(
+        std::abs(wrapped(heading_of(walker.gaze()) - walker.heading_rad() - placed.heading_rad)) /
+            kDegree,
+        10.0);
+  }
+}
+
+// A near place, to which the head turns far.
+TEST(Head, ThatLooksAlmostWhollyDoesNotJump) {
+  const auto pose_at = [](double look_at) {
+    Walker walker(style_of(
+        {{"head.look_at", look_at}, {"head.x_m", 0.6}, {"head.y_m", 1.0}, {"head.z_m", 0.8}}));
+    walker.hold(3 * kRate);
+    return walker.pose;
+  };
+  const Pose almost = pose_at(0.999999), wholly = pose_at(1.0);
+  for (int j = 0; j < wholly.joint_count; ++j)
+    EXPECT_LT(glm::length(turned_by(almost.local[j], wholly.local[j])), 0.01 * kDegree) << j;
+}
+
+// --- Joints that the walk alone writes -----------------------------------------------------------
+
+// Into a pose that holds nothing: every joint is written in every tick, with the bits of one that
+// is written on. Returns the root's rotation.
+quat last_root(const WalkModel& model, const Placement& placed) {
+  Alone walk(model);
+  move_walk(placed, 0, walk.block);
+  const GaitParams params = params_of(0.2, 0.8);
+  walk.walk(params, 4 * kRate);
+  for (int tick = 0; tick < 2 * kRate; ++tick) {
+    Block<1> same = walk.block;
+    Pose pose;
+    pose.local.fill(quat(0.0, 0.0, 0.0, 0.0));
+    quat* local = pose.local.data();
+    vec3* root = &pose.root_m;
+    advance(walk.tables, same, Poses{&local, &root, 1});
+    walk.step(params);
+    for (int j = 0; j < walk.pose.joint_count; ++j) {
+      EXPECT_NEAR(glm::length(pose.local[j]), 1.0, 1e-6) << j;
+      EXPECT_EQ(pose.local[j], walk.pose.local[j]) << model.cycle.skeleton.joints[j].name;
+    }
+  }
+  return walk.pose.local[0];
+}
+
+TEST(Joints, AreAllWritten) { last_root(adult(), {vec3(2.0, 0.0, 1.0), 0.5}); }
+
+TEST(Joints, BetweenRootAndPelvisTurnWithTheHeading) {
+  Motion m = procedural_motion();
+  const int pelvis = m.pelvis;
+  m.skeleton.joints.insert(m.skeleton.joints.begin(), {"Reference", -1, vec3(0.0), false});
+  for (std::size_t j = 1; j < m.skeleton.joints.size(); ++j) ++m.skeleton.joints[j].parent;
+  m.pelvis = pelvis + 1;
+  for (LegJoints& leg : m.legs)
+    for (int* joint : {&leg.hip, &leg.knee, &leg.ankle, &leg.toe, &leg.toe_end}) ++*joint;
+  for (MotionFrame& frame : m.frames) {
+    frame.local.insert(frame.local.begin(), rotation_y(0.7));
+    frame.translation_m.clear();
+    for (const Joint& joint : m.skeleton.joints) frame.translation_m.push_back(joint.offset_m);
+    frame.translation_m[1] = frame.root_m;
+    frame.root_m = vec3(0.0);
+  }
+  const WalkModel model = model_of(value_of(gait_cycle(m)));
+  ASSERT_GT(model.cycle.pelvis, 0);
+  const Placement placed{vec3(2.0, 0.0, 1.0), 0.5};
+  const quat root = last_root(model, placed);
+  // The root itself stands still in the data, turned by 0.7.
+  Alone walk(model);
+  move_walk(placed, 0, walk.block);
+  walk.walk(params_of(0.2, 0.8), 6 * kRate);
+  const double heading_rad = 0.5 + walk.block.origin[0].heading_rad +
+                             static_cast<double>(walk.block.state.heading_rad);
+  EXPECT_LT(glm::length(turned_by(rotation_y(heading_rad + 0.7), root)), 1e-5);
+}
+
+}  // namespace
+}  // namespace gaitpad::anew

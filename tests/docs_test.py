@@ -36,7 +36,7 @@ FOREIGN = {
     r"out/my_walk\.toml": "the tutorial writes it",
     # Other programs, libraries and standards.
     r"ffe5:[13]000": "HID usages that the kernel's hid-input makes up",
-    "std::experimental::simd": "what src/base/lanes.h replaces",
+    "std::experimental::simd": "what src/walk/lanes.h replaces",
     "HumanBodyBones": "Unity's names of bones",
     r"Skeleton3D|Transform3D|JSON\.parse_string": "Godot's types and functions",
     "SDL_GAMECONTROLLER_IGNORE_DEVICES=0x054c/0x09cc|SDL_NO_SIGNAL_HANDLERS": "SDL's names of hints",
@@ -129,7 +129,7 @@ SABOTAGES = [  # page, what it says, what is false
     ("docs/path.md", "`src/pads/pad_stream.cpp`", "`src/pads/pad_reader.cpp`"),
     ("docs/path.md", "`GaitParams`", "`GaitParameters`"),
     ("docs/walk.md", "`cycle_on_skeleton()`", "`retargeted_cycle()`"),
-    ("docs/walk.md", "`walk_changes.cpp`", "`walk_stops.cpp`"),
+    ("docs/walk.md", "`ground_plan.cpp`", "`ground_search.cpp`"),
     ("docs/crowd.md", "`Crowd::advance()`", "`Crowd::step()`"),
     ("docs/pads.md", "`frame_us_p99`", "`frame_ms_p99`"),
     ("docs/pads.md", "`quirks_of()`", "`quirks_for()`"),

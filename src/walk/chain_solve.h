@@ -79,7 +79,7 @@ void step_within(const Chain& chain, const V (&column)[kDofs][3], const V (&angl
 // are to be solved. Leaves the best angles.
 template <class Chain, class V, std::size_t kDofs>
 void solve_chains(const Chain& chain, Mask<V> open, V (&angle_rad)[kDofs]) noexcept {
-  typename Chain::Place place, best;
+  typename Chain::Place place{}, best{};
   V next[kDofs], growth = all<V>(kGrowth), best_m2 = all<V>(1e30f), seen_m = all<V>(1e15f),
                  patience = all<V>(kPatience);
   for (int j = 0; j < chain.dofs; ++j)

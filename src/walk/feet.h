@@ -229,6 +229,18 @@ V landed_pitch(const Change<V>& change, const State<V>& state) noexcept {
                           : V{};
 }
 
+// How much of the tables' pitch the foot that stands has, by the plan. Where the hips lead, its toe
+// is down when the other foot lifts off, and only then its heel begins to rise: in the tables it
+// may have risen by then. In a first step it has not landed. In a last one it stays flat.
+template <class V>
+V planned_pitch(const Time<V>& time, const Change<V>& change, const State<V>& state) noexcept {
+  const V lands = time.flies ? V{} : smoother(roll_over(change, state)),
+          rises = smoother(V(time.u * (1.0f / kHeelRises)));
+  const auto starts = change.starting != V{}, later = both(change.led != V{}, time.flies);
+  const V share = either(starts, later) ? rises : V(1.0f - change.led * lands);
+  return both(change.closing != V{}, time.flies) ? V{} : share;
+}
+
 // A foot in the air, still without its pitch.
 template <class V>
 struct Flight {
@@ -312,21 +324,13 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
                   const Change<V>& change, const State<V>& state, F& footing) noexcept {
   Feet<V> feet;
   const V one = all<V>(1.0f);
-  const auto starts = change.starting != V{}, closes = change.closing != V{},
-             first_roll = both(starts, no(time.flies));
+  const auto starts = change.starting != V{}, first_roll = both(starts, no(time.flies));
   {  // The foot that stands: on its heel while it rolls, then on its toe.
     Foot<V>& foot = feet.foot[1];
     const Sole<V>& sole = feet.sole[1] = sole_of<V>(tables, no(time.right));
     const StrideFoot<V>& table = stride.foot[1];
-    const V s = roll_over(change, state);
-    const V off = landed_pitch(change, state);
-    // Where the hips lead, its toe is down when the other one lifts off.
-    const V stays = 1.0f - change.led * (time.flies ? V{} : smoother(s));
-    // In a first step it has not landed: its heel rises only while the other foot flies. In a last
-    // one it stays flat.
-    const V rises = starts ? smoother(V(time.u * (1.0f / kHeelRises))) : stays,
-            ends = change.gap_begin != V{} ? edge_left(time.u, change) : V{},
-            shows = both(closes, time.flies) ? ends : rises;
+    const V off = landed_pitch(change, state),
+            shows = planned_pitch(time, change, state) + change.off_pitch.x;
     const V low = time.flies ? low_lift<V>(no(time.right), state) : one;
     const V pitch = low * table.pitch_rad * shows + (time.flies ? V{} : off);
     V planted = time.flies ? most(pitch, V{}) : least(pitch, V{});

@@ -72,7 +72,7 @@ struct AskedStep {
 
 // Where it would land on level ground. An aim that is taken has no length that a slope shortens.
 template <class V, class F>
-AskedStep<V> plan_landing(const Tables& tables, const Time<V>& time, const Change<V>& change,
+AskedStep<V> plan_landing(const Tables& tables, const Time<V>& time, Change<V>& change,
                           State<V>& state, F& footing) noexcept {
   const auto closes = change.closing != V{};
   const V heading = heading_ahead(tables, state, V(time.to_strike + 1.0f));
@@ -132,6 +132,7 @@ AskedStep<V> plan_landing(const Tables& tables, const Time<V>& time, const Chang
   keep(z_m, *kept_z_m);
   keep(rad, state.landing_rad);
   keep(wider_m, state.next_wider_m);
+  keep(steps_m, change.stepped_m);
   return {aimed ? V{} : length_m, along, to};
 }
 

@@ -73,11 +73,13 @@ Mask<V> is_to_walk(const State<V>& state) noexcept {
   return both(asked.walks != V{}, either(on_spot, asked.backward == state.backward));
 }
 
+inline constexpr float kLeastCycle_s = 0.2f;
+
 // `left`: the share of the lengths asked for that uneven ground leaves.
 template <class V>
 void smooth_asked(const Tables& tables, const Change<V>& change, const V& left,
                   State<V>& state) noexcept {
-  constexpr float kGravity_m_s2 = 9.81f, kLeastCycle_s = 0.2f;
+  constexpr float kGravity_m_s2 = 9.81f;
   constexpr float kFirstStep = 0.9f;  // of the length asked for
   constexpr float kChestAhead_s = 0.13f, kHeadAhead_s = 0.30f;
   const Asked<V>& asked = state.asked;
@@ -101,7 +103,13 @@ void smooth_asked(const Tables& tables, const Change<V>& change, const V& left,
     follow(asked.lift[side], tables.step, state.lift[side]);
   }
   const V cycle_s = asked.time_s[0] + asked.time_s[1];
-  follow(V(0.5f * cycle_s), tables.step, state.step_time_s);
+  Smoothed<V> first_s = state.step_time_s;
+  const V step_s = walks ? V(0.5f * cycle_s) : state.step_time_s.x;
+  follow(step_s, tables.first_step, first_s);
+  follow(step_s, tables.step, state.step_time_s);
+  const auto starts = change.starting != V{};
+  state.step_time_s.x = starts ? first_s.x : state.step_time_s.x;
+  state.step_time_s.v = starts ? first_s.v : state.step_time_s.v;
   const V turn_rad_s = walks ? asked.turn_rad_s : V{};
   follow(turn_rad_s, tables.turn_goal, state.turn_goal_rad_s);
   settle(turn_rad_s, state.turn_goal_rad_s);
@@ -155,9 +163,12 @@ Stages<V> stages_of(const Tables& tables, const Change<V>& change, const State<V
           flight = chosen<V>(right, share[3], share[1]);
   const V ratio = asked_ratio(tables, state);
   const V rolls = roll_share(roll, ratio), flies = roll + flight - rolls;
-  const V lands_s = by_side<V>(no(right), asked.time_s), swings_s = by_side<V>(right, asked.time_s);
-  return {roll, flight, whole_beats(V(2.0f * lands_s * change.slowness * rolls), kLeastRoll),
-          whole_beats(V(2.0f * swings_s * change.slowness * flies), kLeastFlight)};
+  // Smoothed: a thumb that lets go passes through deflections whose steps are slow.
+  const V cycle_s = most(V(asked.time_s[0] + asked.time_s[1]), all<V>(kLeastCycle_s)),
+          smoothed = state.step_time_s.x / cycle_s, lands_s = by_side<V>(no(right), asked.time_s),
+          swings_s = by_side<V>(right, asked.time_s), factor = 4.0f * smoothed * change.slowness;
+  return {roll, flight, whole_beats(V(lands_s * factor * rolls), kLeastRoll),
+          whole_beats(V(swings_s * factor * flies), kLeastFlight)};
 }
 
 // A start: from the stick to the lift-off, and the first flight, in seconds and of a steady one.
@@ -234,18 +245,32 @@ void begin_flight(const Tables& tables, const Time<V>& time, const Mask<V>& lift
 
 // After the flight, where `strikes`: the other foot's step begins. It makes up for what the steps
 // before were too short or long by rounding. Where it is slower than the last one (`led`), hips
-// that still are as fast would have to sink for the foot behind: it leaves the floor sooner.
+// that still are as fast would have to sink for the foot behind: it leaves the floor sooner. Nor
+// does it take so long that they would have to go back.
 template <class V>
 void begin_step(const Tables& tables, const Time<V>& time, const Mask<V>& strikes,
                 const Change<V>& change, State<V>& state) noexcept {
   const float tick_s = tables.tick_s;
   const Stages<V> next = stages_of(tables, change, state, no(time.right));
   const V short_s = state.late_s + state.step_s - (state.roll_ticks + state.flight_ticks) * tick_s;
-  const V late_s = within(short_s, -tick_s, tick_s), step_s = next.roll_s + next.flight_s,
+  // A quintic that slows down goes back if its way is less than so much of its first speed's.
+  constexpr float kLeastWay = 0.52f, kLeastTime = 0.5f, kLeastSpeed_m = 1e-5f,
+                  kWalked = 0.2f;  // the ratio of a step that was none on the spot
+  const auto led = change.led != V{};
+  const V way_m = 0.5f * (state.ratio_behind * own_step_m<V>(tables, time.right, time.back) +
+                          by_side<V>(no(time.right), state.asked.length_m)),
+          x = change.pelvis_x_m.v, z = change.pelvis_z_m.v,
+          speed_m = most(root(V(x * x + z * z)), all<V>(kLeastSpeed_m)),
+          own_s = next.roll_s + next.flight_s,
+          longest_s = most(V(tick_s * way_m / (kLeastWay * speed_m)), V(kLeastTime * own_s));
+  const V late_s = within(short_s, -tick_s, tick_s),
+          step_s = both(both(led, change.stops == V{}), state.ratio_behind > all<V>(kWalked))
+                       ? least(own_s, longest_s)
+                       : own_s,
           own_roll = ticks_of(V(next.roll_s + late_s), tick_s),
           last_roll = next.roll / most(state.phase_rate, all<V>(1e-4f)),
           led_roll = most(floored(root(V(own_roll * last_roll))), all<V>(2.0f)),
-          roll = change.led != V{} ? least(own_roll, led_roll) : own_roll,
+          roll = led ? least(own_roll, led_roll) : own_roll,
           flight = ticks_of(V(step_s + late_s - roll * tick_s), tick_s);
   state.late_s = strikes ? late_s : state.late_s;
   state.step_s = strikes ? step_s : state.step_s;

@@ -41,6 +41,10 @@ struct Hips {
   Footprints<V> own;  // in a first step: of the foot that flies
 };
 
+// The tables' rate and acceleration at a strike are read over so many ticks: over one tick they are
+// those of the spline between two knots.
+inline constexpr float kAimTicks = 4.0f;
+
 // They follow the stride ahead to the landing. What they are off that path, for the step before was
 // another one or the landing has moved, fades until the strike.
 template <class V>
@@ -70,6 +74,7 @@ Hips<V> move_hips(const Tables& tables, const Time<V>& time, const Landing<V>& l
       return V(time.step_phase + (v0 + (c2 + c3 * s) * s) * s);
     };
     const V p0 = time.step_phase, p1 = phase_at(1.0f), p2 = phase_at(2.0f),
+            p4 = phase_at(kAimTicks), p8 = phase_at(2.0f * kAimTicks),
             rate = 0.5f * (4.0f * p1 - 3.0f * p0 - p2), bend = p0 - 2.0f * p1 + p2;
     const auto begin = [&](const V& from_m, const V& per_m, Off<V>& off) {
       off.x = strikes ? V(from_m + per_m * p0) : off.x;
@@ -83,7 +88,7 @@ Hips<V> move_hips(const Tables& tables, const Time<V>& time, const Landing<V>& l
     if (any(was_led)) {
       V x_m[3], z_m[3];
       for (int n : {0, 1, 2}) {
-        const V at = n == 0 ? p0 : n == 1 ? p1 : p2, k = all<V>(static_cast<float>(n));
+        const V at = n == 0 ? p0 : n == 1 ? p4 : p8, k = all<V>(static_cast<float>(n) * kAimTicks);
         const Vec<V> pelvis = hips.heading * read_pelvis(tables, time, at, state.ratio_behind,
                                                          state.ratio_behind, V{});
         const auto goes = [&](const Off<V>& of) { return V(of.x + k * (of.v + 0.5f * k * of.a)); };
@@ -91,9 +96,10 @@ Hips<V> move_hips(const Tables& tables, const Time<V>& time, const Landing<V>& l
         z_m[n] = goes(change.pelvis_z_m) - pelvis.z - (to.z_m + to.per_cycle_z_m * at);
       }
       const auto go_on = [&](const V(&m)[3], Off<V>& off) {
+        constexpr float kPerTick = 1.0f / kAimTicks;
         off.x = was_led ? m[0] : off.x;
-        off.v = was_led ? V(0.5f * (4.0f * m[1] - 3.0f * m[0] - m[2])) : off.v;
-        off.a = was_led ? V(m[0] - 2.0f * m[1] + m[2]) : off.a;
+        off.v = was_led ? V(0.5f * kPerTick * (4.0f * m[1] - 3.0f * m[0] - m[2])) : off.v;
+        off.a = was_led ? V(kPerTick * kPerTick * (m[0] - 2.0f * m[1] + m[2])) : off.a;
       };
       go_on(x_m, state.hips_x_m);
       go_on(z_m, state.hips_z_m);
@@ -117,11 +123,11 @@ Hips<V> move_hips(const Tables& tables, const Time<V>& time, const Landing<V>& l
 
 // --- A change of pace: the hips lead, the phase follows ------------------------------------------
 
-// Steps whose ratios differ by more are led. What the phase is off the one found fades in kCarry_s.
+// Steps whose ratios, or whose flights' times, differ by more are led. What the phase is off the
+// one found fades in kCarry_s.
 inline constexpr float kLiftFade = 0.5f;  // of the flight: until then the lift-off's motion fades
-inline constexpr float kOtherPace = 0.02f, kCarry_s = 0.15f, kMostBend_m_s2 = 15.0f;
-// The goal's rate and acceleration are read so far around the strike.
-inline constexpr float kAimTicks = 4.0f;
+inline constexpr float kOtherPace = 0.02f, kOtherTime = 0.06f, kCarry_s = 0.15f,
+                       kMostBend_m_s2 = 15.0f;
 // How much a phase that is a cycle off the clock counts, against hips that are off their place:
 // metres at the reference leg. It keeps heights in time with the landing.
 inline constexpr float kInTime_m = 1.2f, kLeastWay_m2 = 0.02f, kPhaseStep = 1e-3f;
@@ -269,9 +275,13 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
                            stands);
   stride = by_clock;
   if (!any(runs)) return state.phase;
-  const auto is_new = change.is_new != V{};
-  for (Off<V>* off : {&change.off_phase, &change.off_shown, &change.off_over, &change.off_ratio})
-    fade(change.off_ticks, *off);
+  const auto is_new = change.is_new != V{}, was_new = both(no(is_new), change.was_new != V{});
+  const V last_found = change.phase - change.off_phase.x;
+  for (Off<V>* off : {&change.off_phase, &change.off_shown}) fade(change.off_ticks, *off);
+  // What the step has not come over to its own stride ends with it.
+  const V step_ticks = least(change.off_ticks, V(time.to_strike + 1.0f));
+  for (Off<V>* off : {&change.off_over, &change.off_ratio, &change.off_pitch})
+    fade(step_ticks, *off);
   change.off_ticks = most(V(change.off_ticks - 1.0f), V{});
   change.rest_ticks = most(V(change.rest_ticks - 1.0f), V{});
   change.catch_ticks = most(V(change.catch_ticks - 1.0f), V{});
@@ -291,17 +301,20 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
     phase = led ? found : phase;
     rate = led ? moves : rate;
   }
-  const V was = change.phase - floored(V(change.phase - phase + 0.5f));
-  change.off_phase.x = is_new ? V(was + change.phase_rate - phase) : change.off_phase.x;
-  change.off_phase.v = is_new ? V(change.phase_rate - rate) : change.off_phase.v;
-  change.off_phase.a = is_new ? V{} : change.off_phase.a;
+  // How fast the phase of a new plan goes is seen a tick later, for its path moves, too.
+  const V cycles = floored(V(change.phase - phase + 0.5f)), was = change.phase - cycles,
+          goes_on = was_new ? V(phase - (last_found - cycles)) : rate;
+  const auto carries = either(is_new, was_new);
+  change.off_phase.x = carries ? V(was + change.phase_rate - phase) : change.off_phase.x;
+  change.off_phase.v = carries ? V(change.phase_rate - goes_on) : change.off_phase.v;
+  change.off_phase.a = carries ? V{} : change.off_phase.a;
   const float carry = kCarry_s * tables.time_scale / tables.tick_s;
   change.off_ticks =
       is_new ? most(floored(all<V>(carry + 0.5f)), change.off_ticks) : change.off_ticks;
-  change.is_new = V{};
+  change.was_new = change.is_new, change.is_new = V{};
   change.shown = runs ? V(planned_shown(time, change) + change.off_shown.x) : change.shown;
   phase = phase + change.off_phase.x;
-  const V goes = is_new ? V(rate + change.off_phase.v) : V(phase - was);
+  const V goes = V(phase - was);
   change.phase = runs ? phase : change.phase;
   change.phase_rate = runs ? goes : change.phase_rate;
   phase = runs ? phase : state.phase;
@@ -376,8 +389,7 @@ void begin_lead(const Tables& tables, const Mask<V>& strikes, const V& phase, co
   const V own_m = own_step_m<V>(tables, right, state.backward != V{}),
           asked_m = by_side<V>(right, state.asked.length_m),
           smoothed_m = right ? state.length_m[1].x : state.length_m[0].x,
-          begun_m = tables.terrain == nullptr ? V(state.ratio_behind * own_m) : smoothed_m,
-          last_m = change.starting != V{} ? begun_m : smoothed_m;
+          landed_m = by_side<V>(no(right), state.asked.length_m);
   // In the last step of a stop the foot closes beside the other one.
   const auto stops = change.stops != V{}, rests = both(strikes, change.closing != V{}),
              closes = both(both(strikes, no(rests)), both(stops, change.further == V{}));
@@ -385,18 +397,26 @@ void begin_lead(const Tables& tables, const Mask<V>& strikes, const V& phase, co
   change.stops = rests ? V{} : change.stops;
   change.further = strikes ? V{} : change.further;
   change.closing = closes ? all<V>(1.0f) : strikes ? V{} : change.closing;
-  const auto changes = size(V((asked_m - last_m) / own_m)) > all<V>(kOtherPace);
+  auto changes = size(V(asked_m - smoothed_m)) > kOtherPace * own_m;
+  if (tables.terrain == nullptr) {  // elsewhere the ground makes steps shorter and slower
+    const V flight_ticks =
+        stages_of(tables, change, state, no(right)).flight_s * (1.0f / tables.tick_s);
+    changes = either(changes, either(size(V(landed_m - change.stepped_m)) > kOtherPace * own_m,
+                                     size(V(state.flight_ticks - flight_ticks)) >
+                                         kOtherTime * state.flight_ticks));
+  }
   const auto leads = both(no(rests), either(either(stops, changes), change.catch_ticks != V{}));
   change.length_m[0] = both(strikes, no(stops)) ? state.asked.length_m[0] : change.length_m[0];
   change.length_m[1] = both(strikes, no(stops)) ? state.asked.length_m[1] : change.length_m[1];
   change.was_led = rests ? V{} : strikes ? change.led : change.was_led;
   change.off_ticks = rests ? V{} : change.off_ticks;
   for (Off<V>* off : {&change.off_phase, &change.off_shown}) off->x = rests ? V{} : off->x;
-  for (Off<V>* off : {&change.off_over, &change.off_ratio})
+  for (Off<V>* off : {&change.off_over, &change.off_ratio, &change.off_pitch})
     off->x = strikes ? V{} : off->x, off->v = strikes ? V{} : off->v,
     off->a = strikes ? V{} : off->a;
   change.led = strikes ? chosen<V>(leads, 1.0f, 0.0f) : change.led;
   change.starting = strikes ? V{} : change.starting;
+  change.resumes = strikes ? V{} : change.resumes;
   const auto begins = both(strikes, either(change.led != V{}, change.was_led != V{}));
   go_on_from_here(tables, begins, state, change);
   change.is_new = begins ? all<V>(1.0f) : change.is_new;

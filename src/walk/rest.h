@@ -28,8 +28,9 @@ inline constexpr float kMostCatch_s = 0.8f;  // until hips that have braked are 
 inline constexpr float kNearStrike_s = 0.15f, kLow_m = 0.001f;
 inline constexpr float kLeastRest_s = 0.25f, kAfterLanding_s = 0.15f;
 // Of the last step: its roll and its flight, the latter also of a steady one.
-inline constexpr float kLeastClosing_s = 0.30f, kMostClosing = 1.25f, kLeastClosingRoll_s = 0.11f,
-                       kLeastRollLeft_s = 0.05f, kLongestClosingRoll = 1.6f;
+inline constexpr float kLeastClosing_s = 0.30f, kMostClosing = 1.25f, kMostClosingOnSpot = 1.7f,
+                       kLeastClosingRoll_s = 0.11f, kLeastRollLeft_s = 0.05f,
+                       kLongestClosingRoll = 1.6f;
 
 // At this time from now the hips have at least so far to go yet: their foot lands ahead of them.
 struct Behind {
@@ -37,11 +38,13 @@ struct Behind {
 };
 
 // The time in which hips come to rest most softly, neither beyond their place nor back, and not
-// before their feet. `goes`, `aside`: off their place ahead and to the side, in seconds.
-inline float best_rest_s(const Off<float>& goes, const Off<float>& aside, float least_s,
-                         float most_s, const Behind (&landings)[2]) noexcept {
+// before their feet. `goes`, `aside`: off their place ahead and to the side, in seconds; of those
+// that turn on the spot no way is back.
+inline float best_rest_s(const Off<float>& goes, const Off<float>& aside, bool on_spot,
+                         float least_s, float most_s, const Behind (&landings)[2]) noexcept {
   constexpr int kTimes = 20, kPoints = 40;
-  constexpr float kOver = 200.0f, kBack = 50.0f, kLate = 0.8f, kAhead = 40.0f;  // costs, in m/s2
+  constexpr float kLate = 0.8f, kAhead = 40.0f;  // costs, in m/s2
+  const float kOver = on_spot ? 0.0f : 200.0f, kBack = on_spot ? 0.0f : 50.0f;
   float best_s = least_s, least = std::numeric_limits<float>::infinity();
   for (int k = 0; k < kTimes; ++k) {
     const float time_s = least_s + (most_s - least_s) * static_cast<float>(k) / (kTimes - 1.0f),
@@ -120,12 +123,15 @@ void change_step(const Tables& tables, bool moves, State<float>& state, Change<f
   const Flown was = flies ? flown(tables, change, state) : Flown{};
   const Time<float> time = time_of(tables, state);
   const float ratio_was = ratio(), shown = change.shown,
+              pitch = planned_pitch(time, change, state) + change.off_pitch.x,
               over = planned_over(time, change) + change.off_over.x;
   if (change.led == 0.0f) {
     go_on_from_here(tables, true, state, change);
     change.phase = state.phase, change.phase_rate = state.phase_rate;
   }
-  if (change.led == 0.0f && !flies) {  // the foot that rolls down goes on from its pitch
+  if (!flies &&
+      (change.led == 0.0f ||
+       roll_over(change, state) < 0.8f)) {  // the foot that rolls down goes on from its pitch
     State<float> next = state;
     next.tick += 1.0f;
     const float pitch_rad = landed_pitch(change, state);
@@ -139,6 +145,7 @@ void change_step(const Tables& tables, bool moves, State<float>& state, Change<f
   const Time<float> now = time_of(tables, state);
   change.off_shown = {shown - planned_shown(now, change), 0.0f, 0.0f};
   change.off_over = {over - planned_over(now, change), 0.0f, 0.0f};
+  change.off_pitch = {pitch - planned_pitch(now, change, state), 0.0f, 0.0f};
   if (!moves) return;
   change.gap_begin = now.u;
   NoFooting level;
@@ -232,6 +239,8 @@ inline void plan_rest(const Tables& tables, State<float>& state, Change<float>& 
               next_own_m = own_step_m<float>(tables, !right, time.back),
               foot_m = flies ? along(state.last_heel_m[0].x, state.last_heel_m[0].z)
                              : along(state.print_x_m, state.print_z_m);
+  const bool on_spot = planned < kTurnsOnSpot * own_m;
+  const float most_closing = on_spot ? kMostClosingOnSpot : kMostClosing;
   const float longest_s =
       (kLongestClosingRoll * state.roll_ticks + kMostClosing * state.flight_ticks) * tick_s;
   const auto left_of = [&](float x, float z) { return x * way.cosine - z * way.sine; };
@@ -240,18 +249,17 @@ inline void plan_rest(const Tables& tables, State<float>& state, Change<float>& 
                            const Behind(&landings)[2]) {
     const Off<float> aside{left_of(x.x, z.x) - aside_m, left_of(x.v, z.v) / tick_s,
                            left_of(x.a, z.a) / (tick_s * tick_s)};
-    const float time_s =
-        best_rest_s({-way_m, speed, bend}, aside, least_s, most(least_s, most_s), landings);
+    const float time_s = best_rest_s({-way_m, speed, bend}, aside, on_spot, least_s,
+                                     most(least_s, most_s), landings);
     change.rest_ticks = ticks_of(time_s, tick_s);
     change.stops = 1.0f;
   };
-  const bool may_close =
-      (from >= need / kCloseBrake_m_s2 && foot_m < -kBehind_m) || planned < kTurnsOnSpot * own_m;
+  const bool may_close = (from >= need / kCloseBrake_m_s2 && foot_m < -kBehind_m) || on_spot;
   if (may_close && change.starting == 0.0f && (!flies || time.u < kStays)) {
     change_step(tables, true, state, change, [&] {
       const Behind none[2] = {};
       to_rest(most(from, 0.0f), -tables.leg[right ? 0 : 1].stance_m, kLeastRest_s * scale,
-              flies ? left_s + (kMostClosing - 1.0f) * state.flight_ticks * tick_s : longest_s,
+              flies ? left_s + (most_closing - 1.0f) * state.flight_ticks * tick_s : longest_s,
               none);
       change.closing = 1.0f;
       change.is_aimed = 0.0f;  // it lands beside the other foot, not where a game wants it
@@ -286,7 +294,8 @@ inline void plan_rest(const Tables& tables, State<float>& state, Change<float>& 
     const int swing = right ? 1 : 0;
     change.length_m[swing] = step_m;
     change.length_m[1 - swing] = further_m;
-    state.length_m[swing] = {step_m, 0.0f};
+    // A foot that has yet to lift off for the first step rises as the landing asks.
+    if (flies || change.starting == 0.0f) state.length_m[swing] = {step_m, 0.0f};
     if (further_m > 0.0f) state.length_m[1 - swing] = {further_m, 0.0f};
   });
 }
@@ -372,6 +381,7 @@ inline void walk_on(const Tables& tables, State<float>& state, Change<float>& ch
     if (moves) state.length_m[swing] = {least(most(reach_m, shortest_m), asked_m), 0.0f};
     change.length_m[swing] = state.length_m[swing].x;
     change.stops = change.closing = change.further = 0.0f;
+    change.resumes = 1.0f;
   });
   change.catch_ticks = catch_ticks(tables, state, change);
 }

@@ -254,8 +254,8 @@ void raise_limping_heel(const Tables& tables, const Time<V>& time, const V& phas
   const V left = left_m * chosen<V>(time.back, right_1_m, left_1_m),
           right = right_m * chosen<V>(time.back, left_1_m, right_1_m), longer = most(left, right),
           shorter = least(left, right);
-  // The last steps of a stop are as long as it needs them.
-  const auto walks = both(change.stops == V{}, change.closing == V{}),
+  // The last steps of a stop, and one that goes on after all, are as long as hips need them.
+  const auto walks = both(both(change.stops == V{}, change.closing == V{}), change.resumes == V{}),
              limps = both(both(time.flies, walks),
                           longer - shorter > kEvenSteps * (longer + kLeastAsked));
   if (!any(limps)) return;

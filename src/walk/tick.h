@@ -79,6 +79,10 @@ void begin_walks(const Tables& tables, Block<kWidth>& block) noexcept {
     move_rails(other, footing.landing_y_m, block.styled);
     if (is_uneven(tables)) change_footing(beside, other, feet.flat_toe_m.y, footing);
     change_feet(beside, other, feet, Stride<V>{}, state);
+    const LegBones &l = tables.leg[0], &r = tables.leg[1];
+    const V wider_m = chosen<V>(right, std::abs(r.stance_m) - std::abs(r.track_m),
+                                std::abs(l.stance_m) - std::abs(l.track_m));
+    state.wider_m = other ? wider_m : state.wider_m;
     change_weighted_legs(other, block.weighted);
     state.right_swings = other ? V(1.0f - state.right_swings) : state.right_swings;
   }
@@ -133,12 +137,19 @@ void one_by_one(const Mask<Floats<kWidth>>& where, Block<kWidth>& block,
   }
 }
 
-// Where one that walks is to come to rest, or to go on after all.
+// Where one that walks is to come to rest, or to go on after all: when the stick, which passes
+// through small deflections on its way, is where it is meant to be.
 template <int kWidth>
 void change_ends(const Tables& tables, Block<kWidth>& block) noexcept {
   using V = Floats<kWidth>;
-  const auto walks = is_to_walk(block.state), stops = block.change.stops != V{},
-             moves = block.change.stands == V{};
+  constexpr float kGrows_per_s = 5.0f;
+  Change<V>& change = block.change;
+  const Asked<V>& asked = block.state.asked;
+  const V asked_m = asked.length_m[0] + asked.length_m[1] + size(asked.turn_rad_s);
+  const auto comes = size(V(asked_m - change.asked_m)) > kGrows_per_s * tables.tick_s * asked_m;
+  const auto walks = is_to_walk(block.state), stops = change.stops != V{},
+             moves = both(change.stands == V{}, either(no(walks), no(comes)));
+  change.asked_m = asked.walks != V{} ? asked_m : V{};
   one_by_one<kWidth>(both(moves, both(no(walks), no(stops))), block,
                      [&](Block<1>& one, int) { plan_rest(tables, one.state, one.change); });
   one_by_one<kWidth>(both(moves, both(walks, stops)), block,

@@ -105,14 +105,15 @@ struct Change {
   V stands{}, starting{}, closing{};  // 1 or 0: both feet rest; the first step; the last one
   V shown = V{} + 1.0f;               // how much of the tables: 0 at rest
   V led{}, was_led{};                 // 1 or 0: this step, and the one before it
-  V is_new{};                         // 1: the plan has changed since the last tick
+  V is_new{}, was_new{};              // 1: the plan has changed since the last tick; before that
   // Of a roll: the tick from which on the hips lead, and the rate of what its pitch was off then.
   V led_from{}, led_rate_rad{};
   Off<V> pelvis_x_m, pelvis_z_m;  // where the pelvis is, while it leads and a tick after
   V phase{}, phase_rate{};        // that are shown
-  // What a changed plan has left, of the phase, of what shows, of how far the step has come over to
-  // its own stride, and of this stride's ratio: fades in off_ticks.
-  Off<V> off_phase, off_shown, off_over, off_ratio;
+  // What a changed plan has left, of the phase and of what shows: fades in off_ticks. The same, at
+  // the latest until the strike, of how far the step has come over to its own stride, of this
+  // stride's ratio, and of how much of its pitch the standing foot has.
+  Off<V> off_phase, off_shown, off_over, off_ratio, off_pitch;
   V off_ticks{};
   // Of a stop: 1 or 0; the steps that are left before the last one, 1 or 0, and the lengths of both
   // feet's; until the hips rest, and how long the last step took from its plan on.
@@ -120,8 +121,11 @@ struct Change {
   // How far hips sink before a leg is at its reach, as knots of a cubic spline (kSinkKnot_s), and
   // the ticks that are left of it; how far a leg at its reach wants them to sink in this tick.
   V sink_m[kSinkKnots]{}, sink_ticks{}, wants_m{};
-  V foreseen_m{};   // both steps' lengths that were asked for when that was found
-  V catch_ticks{};  // of a walk that goes on after all: until its hips are where they ought to be
+  V foreseen_m{};  // both steps' lengths that were asked for when that was found
+  V asked_m{};     // the same of the last tick; a turn counts as a way of a metre a rad/s
+  // Of a walk that goes on after all: 1 or 0: in this step; until its hips are where they ought to
+  // be.
+  V resumes{}, catch_ticks{};
   // Of a flight: from where on, and over how much of it, its gap fades; the gaps of yaw, twist
   // and roll, and how high the heel was to be there; the ticks from and over which its pitch's
   // does, if its plan has changed.
@@ -129,6 +133,7 @@ struct Change {
   V gap_high_m = V{} + 1.0f;
   V pitch_begin{}, pitch_lasts{};
   V asked_ticks{};          // how long one that stands has been asked to walk
+  V stepped_m{};            // the length that was asked for when the running step's landing settled
   V slowness = V{} + 1.0f;  // factor on the step's times: on stairs steps take longer
   V by_paper{};  // 1: State::leg_rad are whole angles, as IkMode::paper solves them
   // What is asked of the coming landing. 1: it is to be here; else a push moves it by so much, and

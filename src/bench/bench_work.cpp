@@ -121,8 +121,8 @@ std::array<IkRow, 6> foot_rows(const LegBuild& leg, const IkFrame& frame, bool i
 // Both legs of one tick, solved by the walk's closed form. They start at the pose of the tick before
 // and move to the walk's solution.
 struct RobustLeg {
-  anew::Vec<float> ankle_m;
-  anew::Turn<float> foot;
+  Vec<float> ankle_m;
+  Turn<float> foot;
   float thigh_m = 0.0f, shank_m = 0.0f;
   std::array<float, kLegDofs> start_rad{};
 };
@@ -189,7 +189,7 @@ int solve(RobustLegs& both) {
   for (const RobustLeg& leg : both) {
     float start_rad[kLegDofs], off_rad[kLegDofs]{};
     std::copy(leg.start_rad.begin(), leg.start_rad.end(), start_rad);
-    const auto solved = anew::solve_leg<float>(leg.thigh_m, leg.shank_m, leg.ankle_m, leg.foot,
+    const auto solved = solve_leg<float>(leg.thigh_m, leg.shank_m, leg.ankle_m, leg.foot,
                                                start_rad, off_rad);
     reached += solved.short_m == 0.0f;
     benchmark::DoNotOptimize(solved);
@@ -331,7 +331,7 @@ struct Waves {
 };
 Ground ask_waves(const void* game, double x_m, double z_m) noexcept {
   ++static_cast<const Waves*>(game)->asked;
-  return {0.1 * (sin_cos(0.8 * x_m).sin + sin_cos(0.8 * z_m).sin)};
+  return {0.1 * (gaitpad::sin_cos(0.8 * x_m).sin + gaitpad::sin_cos(0.8 * z_m).sin)};
 }
 
 // The walker on the waves, from standing.
@@ -356,7 +356,7 @@ Work query_work() {
   const auto grid = std::make_shared<GroundGrid>(
       GroundGrid{.x_m = -100.0, .z_m = -100.0, .spacing_m = 0.5, .columns = 400, .rows = 400});
   for (int i = 0; i < grid->columns * grid->rows; ++i)
-    grid->height_m.push_back(static_cast<float>(0.05 * sin_cos(0.1 * i).sin));
+    grid->height_m.push_back(static_cast<float>(0.05 * gaitpad::sin_cos(0.1 * i).sin));
   const auto terrain = std::make_shared<Terrain>();
   terrain->asked = asked_ground(*grid);
   Work work;

@@ -282,7 +282,7 @@ double sunk_m(const WalkModel& model, const JointFrames& frames, Side side) {
   return most;
 }
 
-struct Footing {
+struct GroundWalk {
   double planted_mm = 0.0, sunk_mm = 0.0, hips_mm = 0.0, failed = 0.0;
   double way_m = 0.0;
 };
@@ -292,8 +292,8 @@ double off_ground_m(const Terrain& terrain, const vec3& p, double rest_m) {
   return std::fabs((p.y - ground.height_m) * ground.normal.y - rest_m);
 }
 
-Footing footing_of(const WalkModel& model, IkMode mode) {
-  Footing found;
+GroundWalk ground_walk_of(const WalkModel& model, IkMode mode) {
+  GroundWalk found;
   const Terrain& terrain = *model.terrain;
   const FootBuild build = foot_build(model);
   WalkCase what;
@@ -455,7 +455,7 @@ std::vector<Claim> terrain_claims(const Study& study, IkMode mode) {
     if (!terrain) continue;
     WalkModel model = study.model();
     model.terrain = std::make_shared<const Terrain>(*terrain);
-    const Footing f = footing_of(model, mode);
+    const GroundWalk f = ground_walk_of(model, mode);
     planted.keep_if_worse(f.planted_mm, ground.name);
     sunk.keep_if_worse(f.sunk_mm, ground.name);
     hips.keep_if_worse(f.hips_mm, ground.name);

@@ -4,7 +4,7 @@
 #include "walk/leg_solve.h"
 #include "walk/reach.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 namespace {
 
 // Ankles bend up to 38 degrees, and softly beyond it: people's reach 35 to 40 with a bent knee.
@@ -102,4 +102,4 @@ void ease_ankles(const Tables& tables, const Time<V>& time, const Stride<V>& str
 }
 
 }  // namespace
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

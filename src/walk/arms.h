@@ -5,7 +5,7 @@
 #include "walk/chain_solve.h"
 #include "walk/trunk.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 namespace {
 
 enum : int { kShoulderXAt, kShoulderZAt, kShoulderYAt, kElbowAt, kWristXAt, kWristZAt };
@@ -391,4 +391,4 @@ void pose_arms(const Tables& tables, const Hips<V>& hips, const Vec<V>& hips_m,
 }
 
 }  // namespace
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

@@ -4,7 +4,7 @@
 #include "walk/footholds.h"
 #include "walk/walk.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 namespace {
 
 // From the world's axes to the step frame's.
@@ -73,4 +73,4 @@ bool push(const Tables& tables, const vec3& velocity_m_s, Block<1>& block) noexc
   return true;
 }
 
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

@@ -5,7 +5,7 @@
 #include "gaitpad/walk_state.h"
 #include "walk/lanes.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 
 // In its place where the ground is level.
 struct NoFooting {};
@@ -31,4 +31,4 @@ void copy_walk(const Block<kFrom>& from, int from_lane, Block<kTo>& to, int to_l
   to.piece[to_lane] = from.piece[from_lane];
 }
 
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

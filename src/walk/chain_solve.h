@@ -4,7 +4,7 @@
 #pragma once
 #include "walk/lanes.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 namespace {
 
 inline constexpr float kLeastDamping_m2 = 1e-8f;  // above the rounding of floats
@@ -181,4 +181,4 @@ V within_half_turn(const V& angle_rad) noexcept {
 }
 
 }  // namespace
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

@@ -21,14 +21,14 @@ class WalkBlock {
   virtual std::unique_ptr<WalkBlock> clone() const = 0;
   virtual std::size_t bytes() const noexcept = 0;
   virtual void put(const WalkState& state, int lane) noexcept = 0;
-  virtual anew::Block<1> walk(int lane) const noexcept = 0;
+  virtual Block<1> walk(int lane) const noexcept = 0;
   // Its root before the last tick.
   virtual Placement root_before(int lane) const noexcept = 0;
   virtual void ask(const GaitParams& params, int lane) noexcept = 0;
   virtual void place(const Placement& placed, int lane) noexcept = 0;
   virtual void keep_root() noexcept = 0;
-  virtual void advance(const anew::Tables& tables, IkMode mode,
-                       const anew::Poses& poses) noexcept = 0;
+  virtual void advance(const Tables& tables, IkMode mode,
+                       const Poses& poses) noexcept = 0;
   double tick_s = 1.0 / 240.0;  // length of the last tick
 };
 
@@ -37,8 +37,8 @@ namespace {
 // What a root is made of.
 template <int kWidth>
 struct RootNumbers {
-  anew::Floats<kWidth> heading_rad{}, pelvis_x_m{}, pelvis_z_m{}, beside_x_m{}, beside_z_m{};
-  anew::Origin origin[kWidth];
+  Floats<kWidth> heading_rad{}, pelvis_x_m{}, pelvis_z_m{}, beside_x_m{}, beside_z_m{};
+  Origin origin[kWidth];
 };
 
 template <int kWidth>
@@ -56,19 +56,19 @@ class BlockOf final : public WalkBlock {
     });
     keep_root();
   }
-  anew::Block<1> walk(int lane) const noexcept override {
-    anew::Block<1> one;
+  Block<1> walk(int lane) const noexcept override {
+    Block<1> one;
     copy_walk(block_, lane, one, 0);
     return one;
   }
-  Placement root_before(int lane) const noexcept override {
-    anew::Block<1> one = walk(lane);
-    one.state.heading_rad = anew::lane(before_.heading_rad, lane);
-    one.state.pelvis_x_m[0] = anew::lane(before_.pelvis_x_m, lane);
-    one.state.pelvis_z_m[0] = anew::lane(before_.pelvis_z_m, lane);
-    one.told.pelvis_x_m = anew::lane(before_.beside_x_m, lane);
-    one.told.pelvis_z_m = anew::lane(before_.beside_z_m, lane);
-    one.origin[0] = before_.origin[lane];
+  Placement root_before(int member) const noexcept override {
+    Block<1> one = walk(member);
+    one.state.heading_rad = lane(before_.heading_rad, member);
+    one.state.pelvis_x_m[0] = lane(before_.pelvis_x_m, member);
+    one.state.pelvis_z_m[0] = lane(before_.pelvis_z_m, member);
+    one.told.pelvis_x_m = lane(before_.beside_x_m, member);
+    one.told.pelvis_z_m = lane(before_.beside_z_m, member);
+    one.origin[0] = before_.origin[member];
     return root_of(one);
   }
   void ask(const GaitParams& params, int lane) noexcept override {
@@ -78,10 +78,10 @@ class BlockOf final : public WalkBlock {
     if (asked.is_known && std::memcmp(&asked.params, &params, sizeof params) == 0) return;
     std::memcpy(&asked.params, &params, sizeof params);
     asked.is_known = true;
-    for_lanes(lane, [&](int w) { anew::ask(params, w, block_); });
+    for_lanes(lane, [&](int w) { gaitpad::ask(params, w, block_); });
   }
   void place(const Placement& placed, int lane) noexcept override {
-    for_lanes(lane, [&](int w) { anew::place(placed, w, block_); });
+    for_lanes(lane, [&](int w) { gaitpad::place(placed, w, block_); });
   }
   void keep_root() noexcept override {
     const auto& state = block_.state;
@@ -92,15 +92,15 @@ class BlockOf final : public WalkBlock {
     before_.beside_z_m = block_.told.pelvis_z_m;
     std::copy_n(block_.origin, kWidth, before_.origin);
   }
-  void advance(const anew::Tables& tables, IkMode mode,
-               const anew::Poses& poses) noexcept override {
+  void advance(const Tables& tables, IkMode mode,
+               const Poses& poses) noexcept override {
     if constexpr (kWidth == 1) {
       if (mode == IkMode::paper) {
-        anew::advance_by_paper(tables, block_, poses);
+        advance_by_paper(tables, block_, poses);
         return;
       }
     }
-    anew::advance(tables, block_, poses);
+    gaitpad::advance(tables, block_, poses);
   }
 
  private:
@@ -113,7 +113,7 @@ class BlockOf final : public WalkBlock {
     work(lane);
     for (int w = walks_; lane == walks_ - 1 && w < kWidth; ++w) work(w);
   }
-  anew::Block<kWidth> block_{};
+  Block<kWidth> block_{};
   RootNumbers<kWidth> before_;
   std::array<Asked, kWidth> asked_;
   int walks_;
@@ -216,17 +216,17 @@ WalkState Crowd::state(int member) const noexcept {
   state.walk = blocks_[block]->walk(lane);
   state.placed = placed_[member];
   state.tick_s = blocks_[block]->tick_s;
-  state.root = anew::root_of(state.walk);
+  state.root = root_of(state.walk);
   const WalkModel& model = *models_[member];
-  anew::place(state.placed, 0, state.walk);
-  anew::report(model, anew::tables_of(model, state.tick_s / tick_parts(state.tick_s)), state.walk,
+  place(state.placed, 0, state.walk);
+  report(model, tables_of(model, state.tick_s / tick_parts(state.tick_s)), state.walk,
                blocks_[block]->root_before(lane), roots_m_[member], local(member), state.frame);
   state.frame.bad_inputs = bad_inputs_[member];
   return state;
 }
 
 Placement Crowd::root(int member) const noexcept {
-  return anew::root_of(blocks_[lane_[member].block]->walk(lane_[member].lane));
+  return root_of(blocks_[lane_[member].block]->walk(lane_[member].lane));
 }
 
 void Crowd::put_state(int member, const WalkState& state) noexcept {
@@ -312,8 +312,8 @@ void Crowd::advance_block(int number, double dt_s) noexcept {
     roots_m[i] = &roots_m_[member];
   }
   const int parts = tick_parts(dt_s);
-  const anew::Tables tables = anew::tables_of(*models_[members[0]], dt_s / parts);
-  const anew::Poses poses{locals.data(), roots_m.data(), static_cast<int>(members.size())};
+  const Tables tables = tables_of(*models_[members[0]], dt_s / parts);
+  const Poses poses{locals.data(), roots_m.data(), static_cast<int>(members.size())};
   block.keep_root();
   for (int part = 0; part < parts; ++part) block.advance(tables, mode_, poses);
 }

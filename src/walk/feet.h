@@ -2,7 +2,7 @@
 #pragma once
 #include "walk/ground.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 namespace {
 
 template <class V>
@@ -89,7 +89,7 @@ Vec<V> flight_heel(const Tables& tables, const Time<V>& time, const Landing<V>& 
                    V& base_m) noexcept {
   const Way<V> left = way_of(state.print_rad);
   const V turns = chosen<V>(time.right, 1.0f, 0.0f);
-  const auto seen = [&](const Footprints<V>& prints, const Vec<V>& heel_m, const V& turned) {
+  const auto seen = [&](const FootprintsIn<V>& prints, const Vec<V>& heel_m, const V& turned) {
     Vec<V> p = heel_m - prints.swing_m;
     p.z = p.z + prints.stride_m * (phase - turned);
     return p;
@@ -263,7 +263,7 @@ Flight<V> fly(const Tables& tables, const Time<V>& time, const Landing<V>& landi
   // A low foot that hardly leaves the floor does not roll onto an edge.
   const V low = mix(one, low_lift<V>(time.right, state),
                     V(smoother(V(u * 2.0f)) * (1.0f - smoother(V((u - 0.6f) * 2.5f)))));
-  const StrideFoot<V>& table = stride.foot[0];
+  const FootInStride<V>& table = stride.foot[0];
   flight.edge = edge_of(sole, V(low * table.twist_rad), V(low * table.roll_rad));
   const Way<V> left = way_of(state.print_rad),
                flown = way_of(flying_yaw(time, landing, change, state));
@@ -328,7 +328,7 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
   {  // The foot that stands: on its heel while it rolls, then on its toe.
     Foot<V>& foot = feet.foot[1];
     const Sole<V>& sole = feet.sole[1] = sole_of<V>(tables, no(time.right));
-    const StrideFoot<V>& table = stride.foot[1];
+    const FootInStride<V>& table = stride.foot[1];
     const V off = landed_pitch(change, state),
             shows = planned_pitch(time, change, state) + change.off_pitch.x;
     const V low = time.flies ? low_lift<V>(no(time.right), state) : one;
@@ -478,4 +478,4 @@ void change_feet(const Landing<V>& landing, const Mask<V>& strikes, const Feet<V
 }
 
 }  // namespace
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

@@ -2,7 +2,7 @@
 #pragma once
 #include "walk/gait_clock.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 namespace {
 
 template <class V>
@@ -137,4 +137,4 @@ AskedStep<V> plan_landing(const Tables& tables, const Time<V>& time, Change<V>& 
 }
 
 }  // namespace
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

@@ -3,7 +3,7 @@
 #include "walk/block.h"
 #include "walk/tables.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 namespace {
 
 // Where a tick is in its step.
@@ -285,4 +285,4 @@ void begin_step(const Tables& tables, const Time<V>& time, const Mask<V>& strike
 }
 
 }  // namespace
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

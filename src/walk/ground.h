@@ -3,7 +3,7 @@
 #pragma once
 #include "walk/hips.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 namespace {
 
 inline bool is_uneven(const Tables& tables) noexcept { return tables.terrain != nullptr; }
@@ -340,4 +340,4 @@ void change_footing(const Landing<V>& landing, const Mask<V>& strikes, const V& 
 }
 
 }  // namespace
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

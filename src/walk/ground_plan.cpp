@@ -15,7 +15,7 @@
 #include "walk/feet.h"
 #include "walk/walk.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 namespace {
 
 vec3 doubles(const std::array<float, 3>& v) noexcept { return vec3(v[0], v[1], v[2]); }
@@ -745,4 +745,4 @@ void plan_room(const Tables& tables, bool begins, Block<1>& block) noexcept {
   }
 }
 
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

@@ -4,7 +4,7 @@
 #include "walk/block.h"
 #include "walk/tables.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 
 // The step that is asked for: along this way in the step frame, so far on level ground.
 struct AskedFoothold {
@@ -32,4 +32,4 @@ StandingPlace standing_place(const Tables& tables, const Placement& placed, int 
 // Height of the ground below a place in the walk's own coordinates.
 double ground_height(const Tables& tables, const Placement& placed, const vec3& place_m) noexcept;
 
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

@@ -2,7 +2,7 @@
 #pragma once
 #include "walk/strides.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 namespace {
 
 // The hips' path in the strides of some footprints, without their oscillation: a line in phase.
@@ -12,7 +12,7 @@ struct Path {
 };
 // To the next landing. `turns`: cycles at the end of the step.
 template <class V>
-Path<V> path_to(const Landing<V>& landing, const Footprints<V>& prints, const V& turns) noexcept {
+Path<V> path_to(const Landing<V>& landing, const FootprintsIn<V>& prints, const V& turns) noexcept {
   const Vec<V> seen =
       landing.way * Vec<V>{prints.swing_m.x, V{}, prints.swing_m.z + prints.stride_m * turns};
   return {landing.x_m - seen.x, landing.z_m - seen.z, landing.way.sine * prints.stride_m,
@@ -37,8 +37,8 @@ template <class V>
 struct Hips {
   V x_m{}, z_m{};  // of the pelvis, on the ground
   Way<V> heading;  // of the body
-  Footprints<V> behind, ahead;
-  Footprints<V> own;  // in a first step: of the foot that flies
+  FootprintsIn<V> behind, ahead;
+  FootprintsIn<V> own;  // in a first step: of the foot that flies
 };
 
 // The tables' rate and acceleration at a strike are read over so many ticks: over one tick they are
@@ -229,7 +229,7 @@ V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& l
 // So much of a stride shows.
 template <class V>
 void show(const V& shown, Stride<V>& stride) noexcept {
-  for (StrideFoot<V>& foot : stride.foot) {
+  for (FootInStride<V>& foot : stride.foot) {
     foot.pitch_rad = shown * foot.pitch_rad;
     foot.twist_rad = shown * foot.twist_rad;
     foot.roll_rad = shown * foot.roll_rad;
@@ -330,12 +330,12 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
               (1.0f -
                (closes ? V{} : smoother(V((time.u - (1.0f - kEdgeGoes)) * (1.0f / kEdgeGoes))))),
           share = led ? goes_over : all<V>(1.0f);
-  const StrideFoot<V>& stood = read.foot[0];
-  StrideFoot<V> flying = by_clock.foot[0];
+  const FootInStride<V>& stood = read.foot[0];
+  FootInStride<V> flying = by_clock.foot[0];
   const V edge = edge_left(time.u, change);
   flying.twist_rad = flying.twist_rad + edge * change.gap_twist_rad;
   flying.roll_rad = flying.roll_rad + edge * change.gap_roll_rad;
-  StrideFoot<V>& swing = stride.foot[0];
+  FootInStride<V>& swing = stride.foot[0];
   swing.pitch_rad = time.flies ? flying.pitch_rad : stood.pitch_rad;
   swing.twist_rad = time.flies ? mix(stood.twist_rad, flying.twist_rad, share) : stood.twist_rad;
   swing.roll_rad = time.flies ? mix(stood.roll_rad, flying.roll_rad, share) : stood.roll_rad;
@@ -565,4 +565,4 @@ void sink(const Tables& tables, const Time<V>& time, const Stride<V>& stride,
 }
 
 }  // namespace
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

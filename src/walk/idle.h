@@ -7,7 +7,7 @@
 
 #include "walk/hips.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 namespace {
 
 template <class V>
@@ -107,4 +107,4 @@ void sway(const Idle<V>& idle, const Way<V>& heading, Pelvis<V>& pelvis) noexcep
 }
 
 }  // namespace
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

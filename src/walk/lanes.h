@@ -8,7 +8,7 @@
 
 #include "gaitpad/walk_state.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 
 template <int kWidth>
 struct FloatsOf {
@@ -280,4 +280,4 @@ inline Way<V> chosen(const Mask<V>& mask, const Way<V>& a, const Way<V>& b) noex
 }
 
 }  // namespace
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

@@ -6,7 +6,7 @@
 #pragma once
 #include "walk/feet.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 namespace {
 
 template <class V>
@@ -161,4 +161,4 @@ void solve_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stri
 }
 
 }  // namespace
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

@@ -5,7 +5,7 @@
 #include "motion/leg_pose.h"
 #include "walk/weights.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 namespace {
 
 inline vec3 wide(const Vec<float>& v) noexcept { return {v.x, v.y, v.z}; }
@@ -71,4 +71,4 @@ inline void solve_by_paper(const Tables& tables, const Time<float>& time, float 
 }
 
 }  // namespace
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

@@ -3,7 +3,7 @@
 #include "walk/pose_places.h"
 #include "walk/upper_body.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 
 namespace {
 
@@ -89,4 +89,4 @@ void write_root(const Tables& tables, const Hips<Floats<kWidth>>& hips,
 }
 
 }  // namespace
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

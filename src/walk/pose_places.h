@@ -2,7 +2,7 @@
 #pragma once
 #include "gaitpad/math.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 
 struct Poses {
   quat* const* local;  // of each walk, by joint
@@ -10,4 +10,4 @@ struct Poses {
   int walks;  // of the block; the lanes after them are not written
 };
 
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

@@ -3,7 +3,7 @@
 #pragma once
 #include "walk/feet.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 namespace {
 
 // How far a standing foot may leave the floor with its heel: from here on in its own phase, and
@@ -159,4 +159,4 @@ void change_styled_feet(const Mask<V>& strikes, Styled<V>& styled) noexcept {
 }
 
 }  // namespace
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

@@ -10,7 +10,7 @@
 
 #include "walk/feet.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 namespace {
 
 // A quintic to rest brakes with about kNeed v^2 / way. Times are in seconds at the reference leg.
@@ -180,7 +180,7 @@ inline float ticks_to_lift_off(const Tables& tables, const State<float>& state,
                                const Change<float>& change) noexcept {
   const Time<float> time = time_of(tables, state);
   const float phase = time.step_phase + tables.stage_share[time.right ? 2 : 0];
-  const Footprints<float> prints = footprints_of(tables, time, state.ratio_behind);
+  const FootprintsIn<float> prints = footprints_of(tables, time, state.ratio_behind);
   const float place_m =
       prints.stride_m * phase - prints.stand_m.z +
       read_pelvis(tables, time, phase, state.ratio_behind, state.ratio_behind, 0.0f).z;
@@ -387,4 +387,4 @@ inline void walk_on(const Tables& tables, State<float>& state, Change<float>& ch
 }
 
 }  // namespace
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

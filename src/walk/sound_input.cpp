@@ -20,7 +20,7 @@ bool is_sound(const GaitParams& params) noexcept {
 }
 
 GaitParams mended_params(const GaitParams& params, WalkState& state) noexcept {
-  const anew::State<float>& walk = state.walk.state;
+  const State<float>& walk = state.walk.state;
   GaitParams in_force;
   for (const int side : {0, 1}) {
     in_force.stride[side] = {walk.length_m[side].x, walk.asked.time_s[side], walk.lift[side].x};
@@ -32,7 +32,7 @@ GaitParams mended_params(const GaitParams& params, WalkState& state) noexcept {
   in_force.hip_sway = walk.sway.x;
   in_force.hip_bounce = walk.bounce.x;
   if (state.walk.styled.asked != 0.0f) {
-    std::array<double, anew::kBodyNumbers> body;
+    std::array<double, kBodyNumbers> body;
     std::copy_n(state.walk.styled.goal, body.size(), body.begin());
     in_force.body = std::bit_cast<UpperBodyParams>(body);
   }

@@ -5,7 +5,7 @@
 #include "gaitpad/gait_params.h"
 #include "walk/block.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 
 // A walk that is to end keeps its steps' times and lengths.
 template <int kWidth>
@@ -50,4 +50,4 @@ void place(const Placement& placed, int walk, Block<kWidth>& block) noexcept {
   block.is_placed |= !(placed == Placement{});
 }
 
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

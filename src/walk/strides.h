@@ -6,7 +6,7 @@
 
 #include "walk/footholds.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 namespace {
 
 // As many numbers of a row as a register holds. The sums go across rows, never along them, so their
@@ -82,7 +82,7 @@ Knots<V> ratios_at(const V& ratio, const V& last) noexcept {
 }
 
 template <class V>
-struct StrideFoot {
+struct FootInStride {
   V pitch_rad{}, twist_rad{}, roll_rad{};
 };
 // The strides at one phase: of the step before, of this step, and both mixed. Swing foot first.
@@ -90,7 +90,7 @@ template <class V>
 struct Stride {
   Vec<V> heel_behind_m, heel_ahead_m;  // of the swing foot
   V heel_high_m{};                     // mixed
-  StrideFoot<V> foot[2];
+  FootInStride<V> foot[2];
   Vec<V> pelvis_m, pelvis_tilt_rad;
   V pelvis_yaw_rad{}, pelvis_low_m{}, pelvis_high_m{};
   V leg_rad[2][kLegAngles]{};
@@ -190,7 +190,7 @@ Stride<V> read_stride(const Tables& tables, const Time<V>& time, const V& phase,
   stride.heel_high_m = heel(n).y;
   stride.heel_behind_m = heel(n + kRowNumbers);
   stride.heel_ahead_m = heel(n + kRowNumbers + kHeelNumbers);
-  StrideFoot<V>&swing = stride.foot[0], &stand = stride.foot[1];
+  FootInStride<V>&swing = stride.foot[0], &stand = stride.foot[1];
   by_foot(time.right, n[6], n[7], swing.pitch_rad, stand.pitch_rad);
   by_foot(time.right, n[8], n[10], swing.twist_rad, stand.twist_rad);
   by_foot(time.right, n[9], n[11], swing.roll_rad, stand.roll_rad);
@@ -292,7 +292,7 @@ Stride<V> read_by_clock(const Tables& tables, const Time<V>& time, const Landing
                   starts ? short_ratio(tables, landing, state) : state.ratio_behind, landing.ratio,
                   closes ? V{} : smoother(starts ? u : share));
   const V flat = closes ? V(1.0f - smoother(u)) : all<V>(1.0f);
-  StrideFoot<V>& flies = stride.foot[0];
+  FootInStride<V>& flies = stride.foot[0];
   flies.pitch_rad = flat * flies.pitch_rad;
   flies.twist_rad = flat * flies.twist_rad, flies.roll_rad = flat * flies.roll_rad;
   raise_limping_heel(tables, time, phase, landing.ratio, u, change, state, stride);
@@ -318,12 +318,12 @@ Vec<V> read_pelvis(const Tables& tables, const Time<V>& time, const V& phase, co
 
 // Where a stride of this ratio goes: its length, and the footprints of swing and stand.
 template <class V>
-struct Footprints {
+struct FootprintsIn {
   V stride_m{};
   Vec<V> swing_m, stand_m;
 };
 template <class V>
-Footprints<V> footprints_of(const Tables& tables, const Time<V>& time, const V& ratio) noexcept {
+FootprintsIn<V> footprints_of(const Tables& tables, const Time<V>& time, const V& ratio) noexcept {
   const FootprintLines &ahead = tables.footprints, &back = tables.back_footprints;
   const V at =
       least(most(ratio, V{}), chosen<V>(time.back, tables.most_back_ratio, tables.most_ratio));
@@ -342,4 +342,4 @@ Footprints<V> footprints_of(const Tables& tables, const Time<V>& time, const V& 
 }
 
 }  // namespace
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

@@ -7,7 +7,7 @@
 #include "gaitpad/curve.h"
 #include "motion/stencil.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 namespace {
 
 template <class Numbers>
@@ -436,4 +436,4 @@ Tables tables_of(const WalkModel& model, double tick_s) noexcept {
           is_flat(*model.terrain) ? nullptr : model.terrain.get()};
 }
 
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

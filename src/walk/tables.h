@@ -8,7 +8,7 @@
 #include "gaitpad/walk_model.h"
 #include "walk/block.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 
 // A stride at one knot of its periodic cubic B-spline in phase, at one ratio; in the character's
 // metres and radians, 0 when standing (StrideCellOf). Numbers are neighbours so that what is read
@@ -176,4 +176,4 @@ std::shared_ptr<const BuildTables> build_tables(const WalkModel& model);
 // Of a model with its tables, and of a tick of `tick_s` seconds. No heap.
 Tables tables_of(const WalkModel& model, double tick_s) noexcept;
 
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

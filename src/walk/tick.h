@@ -7,7 +7,7 @@
 #include "walk/rest.h"
 #include "walk/walk.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 namespace {
 
 // The step frame of the walks that strike goes to the new footprint.
@@ -480,4 +480,4 @@ void advance_block(const Tables& tables, Block<kWidth>& block, const Poses& pose
 }
 
 }  // namespace
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

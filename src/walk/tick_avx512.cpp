@@ -1,10 +1,10 @@
 #include "walk/tick.h"
 #include "walk/walk.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 
 void advance(const Tables& tables, Block<16>& block, const Poses& poses) noexcept {
   advance_block<16>(tables, block, poses);
 }
 
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

@@ -1,7 +1,7 @@
 #include "walk/tick.h"
 #include "walk/walk.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 
 void advance(const Tables& tables, Block<1>& block, const Poses& poses) noexcept {
   advance_block<1>(tables, block, poses);
@@ -76,4 +76,4 @@ void stand(const Tables& tables, const Origin& place, Block<1>& block) noexcept 
   block.change.shown = 0.0f;
 }
 
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

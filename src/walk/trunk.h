@@ -8,7 +8,7 @@
 #include "walk/pose_places.h"
 #include "walk/weights.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 namespace {
 
 inline constexpr float kRadians = 0.017453293f;  // a degree
@@ -508,4 +508,4 @@ void look(const Tables& tables, const Block<kWidth>& block, const Mask<Floats<kW
 }
 
 }  // namespace
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

@@ -4,7 +4,7 @@
 #include "walk/arms.h"
 #include "walk/ground_plan.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 namespace {
 
 // The factor on the data's arm swing: proportional to speed (Boulic et al. 1990), 1 at the data's
@@ -444,4 +444,4 @@ void write_upper_body(const Tables& tables, const BodyTick<Floats<kWidth>>& of,
 }
 
 }  // namespace
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

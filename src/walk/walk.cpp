@@ -17,18 +17,18 @@ std::span<const quat> locals_of(const WalkModel& model, const Pose& pose) noexce
 }
 
 // Ticks of `tables`, one after another.
-void advance_by(const anew::Tables& tables, IkMode mode, int parts, WalkState& state,
+void advance_by(const Tables& tables, IkMode mode, int parts, WalkState& state,
                 Pose& pose) noexcept {
   pose.joint_count = tables.joints;
   quat* const local = pose.local.data();
   vec3* const root_m = &pose.root_m;
-  const anew::Poses poses{&local, &root_m, 1};
-  anew::place(state.placed, 0, state.walk);
+  const Poses poses{&local, &root_m, 1};
+  place(state.placed, 0, state.walk);
   for (int part = 0; part < parts; ++part) {
     if (mode == IkMode::paper) {
-      anew::advance_by_paper(tables, state.walk, poses);
+      advance_by_paper(tables, state.walk, poses);
     } else {
-      anew::advance(tables, state.walk, poses);
+      advance(tables, state.walk, poses);
     }
   }
 }
@@ -44,11 +44,11 @@ WalkState standing(const WalkModel& model, const vec3& place_m, double heading_r
   WalkState state;
   const double yaw_rad = wrapped(mended_place(heading_rad, state)),
                x_m = mended_place(place_m.x, state), z_m = mended_place(place_m.z, state);
-  const anew::Tables tables = anew::tables_of(model, state.tick_s);
-  anew::stand(tables, {x_m, z_m, yaw_rad}, state.walk);
+  const Tables tables = tables_of(model, state.tick_s);
+  stand(tables, {x_m, z_m, yaw_rad}, state.walk);
   advance_by(tables, IkMode::robust, 1, state, pose);
-  state.root = anew::root_of(state.walk);
-  anew::report(model, tables, state.walk, state.root, pose.root_m, locals_of(model, pose),
+  state.root = root_of(state.walk);
+  report(model, tables, state.walk, state.root, pose.root_m, locals_of(model, pose),
                state.frame);
   return state;
 }
@@ -60,12 +60,12 @@ void advance(const WalkModel& model, const GaitParams& params, IkMode mode, doub
     return advance(model, mended_params(params, state), mode, dt_s, state, pose);
   state.tick_s = dt_s;
   const int parts = tick_parts(dt_s);
-  const anew::Tables tables = anew::tables_of(model, dt_s / parts);
-  anew::ask(params, state.walk);
+  const Tables tables = tables_of(model, dt_s / parts);
+  ask(params, state.walk);
   advance_by(tables, mode, parts, state, pose);
   const Placement before = state.root;
-  state.root = anew::root_of(state.walk);
-  anew::report(model, tables, state.walk, before, pose.root_m, locals_of(model, pose),
+  state.root = root_of(state.walk);
+  report(model, tables, state.walk, before, pose.root_m, locals_of(model, pose),
                state.frame);
 }
 
@@ -74,6 +74,6 @@ double presence(const WalkState& state) noexcept {
   return std::clamp(shown, 0.0f, 1.0f) * std::clamp(posture, 0.0f, 1.0f);
 }
 
-double shown_phase(const WalkState& state) noexcept { return anew::phase_of(state.walk); }
+double shown_phase(const WalkState& state) noexcept { return phase_of(state.walk); }
 
 }  // namespace gaitpad

@@ -7,7 +7,7 @@
 #include "walk/block.h"
 #include "walk/tables.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 
 // Moves all walks of a block on by one tick.
 void advance(const Tables& tables, Block<1>& block, const Poses& poses) noexcept;
@@ -40,4 +40,4 @@ void move_walk(const Placement& by, int walk, Block<kWidth>& block) noexcept {
   block.is_placed = true;
 }
 
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

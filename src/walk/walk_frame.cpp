@@ -5,7 +5,7 @@
 #include "walk/feet.h"
 #include "walk/ground_plan.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 namespace {
 
 Side side_of(bool right) noexcept { return right ? kRightSide : kLeftSide; }
@@ -145,7 +145,7 @@ void report(const WalkModel& model, const Tables& tables, const Block<1>& block,
   report_feet(model, tables, placed, root_m, local, frame);
 }
 
-}  // namespace gaitpad::anew
+}  // namespace gaitpad
 
 namespace gaitpad {
 

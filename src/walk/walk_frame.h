@@ -6,7 +6,7 @@
 #include "walk/block.h"
 #include "walk/tables.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 
 // In the walk's own coordinates: the hips' place on the ground, without the tables' oscillation,
 // and the heading.
@@ -26,4 +26,4 @@ void report(const WalkModel& model, const Tables& tables, const Block<1>& block,
             const Placement& before, const vec3& root_m, std::span<const quat> local,
             WalkFrame& frame) noexcept;
 
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

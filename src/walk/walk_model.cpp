@@ -516,7 +516,7 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
   lay_out_legs(model);
   list_joints(model);
   model.body = upper_body_model(model.cycle, ratio, model.stand_m);
-  model.tables = anew::build_tables(model);
+  model.tables = build_tables(model);
   return model;
 }
 

@@ -33,8 +33,8 @@ WalkEvents walk_events(const WalkFrame& before, const WalkState& state) noexcept
   const WalkFrame& now = state.frame;
   WalkEvents events;
   // Where a foot stands or stood last: the step's stand foot, and the other one's heel or toe.
-  const anew::Block<1>& walk = state.walk;
-  const anew::Origin& origin = walk.origin[0];
+  const Block<1>& walk = state.walk;
+  const Origin& origin = walk.origin[0];
   const Placement step{vec3(origin.x_m, origin.y_m, origin.z_m), origin.heading_rad};
   const auto planted_m = [&](WalkEventKind kind, Side side) {
     const bool swings = (side == kRightSide) == (walk.state.right_swings != 0.0f);

@@ -10,7 +10,7 @@
 #include "walk/leg_solve.h"
 #include "walk/reach.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 namespace {
 
 inline constexpr float kLeastW = 0.09f;              // of a locked joint
@@ -474,4 +474,4 @@ void change_weighted_legs(const Mask<V>& strikes, Weighted<V>& weighted) noexcep
 }
 
 }  // namespace
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

@@ -8,7 +8,7 @@
 #include "tests/shared_data.h"
 #include "tests/walk/thumb_walk.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 namespace {
 
 constexpr int kBegin = kRate / 4;      // until then it stands
@@ -467,4 +467,4 @@ INSTANTIATE_TEST_SUITE_P(Of, Turns, testing::ValuesIn(kMotions), name_of);
 INSTANTIATE_TEST_SUITE_P(Of, Stands, testing::ValuesIn(kMotions), name_of);
 
 }  // namespace
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

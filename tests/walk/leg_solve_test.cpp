@@ -10,7 +10,7 @@
 #include "tests/animation/random.h"
 #include "tests/walk/made_block.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 namespace {
 
 constexpr float kThigh_m = 0.42f, kShank_m = 0.41f;
@@ -131,4 +131,4 @@ TEST(LegSolve, SaysByHowMuchALegIsTooShort) {
 }
 
 }  // namespace
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

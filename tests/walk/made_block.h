@@ -7,12 +7,12 @@
 #include "gaitpad/config_files.h"
 #include "tests/animation/made_walker.h"
 #include "tests/folders.h"
-#include "walk/pose.h"
+#include "walk/block.h"
 #include "walk/steer.h"
 #include "walk/walk.h"
 #include "walk/walk_frame.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 
 inline StyleValues shipped(const std::string& name) {
   return value_of(load_style(kSourceFolder + "/config/styles/" + name + ".toml"));
@@ -141,4 +141,4 @@ void for_each_width(const Work& work) {
   if (__builtin_cpu_supports("avx512dq")) work(std::integral_constant<int, 16>{});
 }
 
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

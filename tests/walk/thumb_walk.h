@@ -8,7 +8,7 @@
 #include "walk/steer.h"
 #include "walk/walk.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 
 constexpr int kThumbTicks = 14;  // a thumb moves in 60 ms
 constexpr int kCoarse = 4;       // ticks of a step of 60 Hz, over which accelerations are measured
@@ -208,4 +208,4 @@ inline Steady steady_of(const std::vector<Trail>& t, int from) {
   return steady;
 }
 
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

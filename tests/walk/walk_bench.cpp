@@ -5,7 +5,7 @@
 #include "motion/stencil.h"
 #include "tests/walk/made_block.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 namespace {
 
 constexpr int kMoments = 256;
@@ -128,6 +128,6 @@ void measure() {
 }
 
 }  // namespace
-}  // namespace gaitpad::anew
+}  // namespace gaitpad
 
-int main() { gaitpad::anew::measure(); }
+int main() { gaitpad::measure(); }

@@ -3,7 +3,7 @@
 
 #include "tests/walk/made_block.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 namespace {
 
 constexpr double kPlanted_m = 1e-5;
@@ -324,4 +324,4 @@ TEST(Push, MovesTheHipsAndTheNextFootprintCatchesThem) {
 }
 
 }  // namespace
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

@@ -7,7 +7,7 @@
 
 #include "tests/walk/made_block.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 namespace {
 
 constexpr double kPlanted_m = 1e-5;
@@ -131,4 +131,4 @@ TEST(Styles, WalksSideBySideHaveTheBitsOfOneAlone) {
 }
 
 }  // namespace
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

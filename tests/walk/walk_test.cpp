@@ -5,7 +5,7 @@
 
 #include "tests/walk/made_block.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 namespace {
 
 constexpr double kMostSlid_m = 1e-5;
@@ -109,4 +109,4 @@ TEST(Widths, WalksSideBySideHaveTheBitsOfOneAlone) {
 TEST(State, OfALevelWalkFitsIn512Bytes) { EXPECT_LE(sizeof(State<float>), 512u); }
 
 }  // namespace
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

@@ -6,7 +6,7 @@
 
 #include "tests/walk/made_block.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 namespace {
 
 constexpr int kThumb = kRate * 6 / 100, kMoments = 6;
@@ -535,4 +535,4 @@ TEST(Joints, BetweenRootAndPelvisTurnWithTheHeading) {
 }
 
 }  // namespace
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

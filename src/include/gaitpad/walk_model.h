@@ -117,9 +117,7 @@ struct FootprintLine {
   double most_ratio = 0.0;  // largest ratio of the tables
 };
 
-namespace anew {
 struct BuildTables;
-}
 
 // A character's model; walk_model() fills it. A program may replace `terrain` before the first walk
 // stands on it, by one that check() accepts. Lengths are the character's, in metres.
@@ -147,7 +145,7 @@ struct WalkModel {
   // Of the joints that the data set: those that move, and those that are always the identity.
   std::vector<int> moving, still;
   UpperBodyModel body;
-  std::shared_ptr<const anew::BuildTables> tables;  // all of this as a tick reads it
+  std::shared_ptr<const BuildTables> tables;  // all of this as a tick reads it
 };
 
 // Retargets a cycle by the ratio of the leg lengths: lengths grow with the leg, times with the

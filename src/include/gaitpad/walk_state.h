@@ -10,7 +10,7 @@
 #include "gaitpad/placement.h"
 #include "gaitpad/terrain.h"
 
-namespace gaitpad::anew {
+namespace gaitpad {
 
 // A number of each of kWidth walks.
 template <int kWidth>
@@ -282,4 +282,4 @@ struct alignas(kWidth == 1 ? alignof(double) : 64) Block {
   bool is_placed = false;    // a walk of them is placed
 };
 
-}  // namespace gaitpad::anew
+}  // namespace gaitpad

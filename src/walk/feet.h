@@ -158,9 +158,9 @@ V gap_share(const Time<V>& time, const Change<V>& change) noexcept {
 }
 // The heel from its table's place, `heel_m`, to where it is, and off the floor, whose height is
 // `base_m`.
-template <class V>
+template <class V, class F>
 Vec<V> with_gap(const Tables& tables, const Time<V>& time, const Vec<V>& heel_m, const V& base_m,
-                const Change<V>& change, const State<V>& state) noexcept {
+                const Change<V>& change, const State<V>& state, const F& footing) noexcept {
   constexpr float kSoftFloor_m = 0.02f, kSoftFrom = 0.3f, kSoftUntil = 0.7f;
   const V s = gap_share(time, change);
   const auto fading = both(time.flies, s < all<V>(1.0f)), changed = change.gap_begin != V{};
@@ -188,6 +188,7 @@ Vec<V> with_gap(const Tables& tables, const Time<V>& time, const Vec<V>& heel_m,
         changed ? V(base_m + soft_positive(V(p.y - base_m), most(soft_m, all<V>(1e-6f)))) : high_m;
   }
   p.y = high_m;
+  if constexpr (kIsUneven<F>) p.y = changed ? V(p.y - footing.gap_under_m * of_gap) : p.y;
   return p;
 }
 // `tick`: of the flight.
@@ -204,6 +205,14 @@ V pitch_off(const Time<V>& time, const V& tick, const Change<V>& change,
                                             : V{};
 }
 
+// How far its pitch may be off what the floor bounds it to: as far as it is off the tables, when
+// the toe has left the floor.
+template <class V>
+V loose_pitch(const V& u, const V& off, const Change<V>& change) noexcept {
+  return size(off) * smooth(0.0f, 0.1f, V(u - change.gap_begin)) +
+         edge_left(u, change) * change.gap_loose_rad;
+}
+
 template <class V>
 V flying_yaw(const Time<V>& time, const Landing<V>& landing, const Change<V>& change,
              const State<V>& state) noexcept {
@@ -214,7 +223,7 @@ V flying_yaw(const Time<V>& time, const Landing<V>& landing, const Change<V>& ch
 // How long a roll takes until the toe is down, and how much of that is over.
 template <class V>
 V roll_lasts(const Change<V>& change, const State<V>& state) noexcept {
-  return kRollEnd * (state.roll_ticks - change.led_from);
+  return kRollEnd * (least(state.roll_ticks, change.led_until) - change.led_from);
 }
 template <class V>
 V roll_over(const Change<V>& change, const State<V>& state) noexcept {
@@ -259,7 +268,8 @@ Flight<V> fly(const Tables& tables, const Time<V>& time, const Landing<V>& landi
   const V one = all<V>(1.0f), u = time.u;
   flight.table_heel_m = flight_heel(tables, time, landing, by_clock, hips, phase, u, change, state,
                                     footing, flight.base_m);
-  flight.heel_m = with_gap(tables, time, flight.table_heel_m, flight.base_m, change, state);
+  flight.heel_m =
+      with_gap(tables, time, flight.table_heel_m, flight.base_m, change, state, footing);
   // A low foot that hardly leaves the floor does not roll onto an edge.
   const V low = mix(one, low_lift<V>(time.right, state),
                     V(smoother(V(u * 2.0f)) * (1.0f - smoother(V((u - 0.6f) * 2.5f)))));
@@ -269,11 +279,12 @@ Flight<V> fly(const Tables& tables, const Time<V>& time, const Landing<V>& landi
                flown = way_of(flying_yaw(time, landing, change, state));
   flight.way = chosen(time.flies, flown, left);
   if constexpr (kIsUneven<F>) {
-    const Turn<V> from = tilt_of(footing.print), to = tilt_of(footing.landing);
+    const Turn<V> from = tilt_of(footing.print),
+                  to = tilt_of(plane_in_flight(time, change, footing));
     const Vec<V>& p = flight.heel_m;
     flight.lifted_m = footing.print_y_m +
                       rise_of(footing.print, V(p.x - state.print_x_m), V(p.z - state.print_z_m)) -
-                      flight.base_m;
+                      flight.base_m - edge_left(u, change) * footing.gap_line_m;
     const V goes = time.flies ? V(1.0f - value_left(u)) : V{};
     flight.tilt = unit(Turn<V>{mix(from.w, to.w, goes), mix(from.x, to.x, goes),
                                mix(from.y, to.y, goes), mix(from.z, to.z, goes)});
@@ -284,7 +295,8 @@ Flight<V> fly(const Tables& tables, const Time<V>& time, const Landing<V>& landi
 // Its pitch: what is planned, as far as toe and edge stay off the ground.
 template <class V, class F>
 void pitch_in_flight(const Time<V>& time, const Sole<V>& sole, const Flight<V>& flight,
-                     const V& planned, const V& off, const F& footing, Foot<V>& foot) noexcept {
+                     const V& planned, const V& off, const Change<V>& change, const F& footing,
+                     Foot<V>& foot) noexcept {
   const V u = time.u;
   V height_m = flight.heel_m.y;
   if constexpr (kIsUneven<F>) {
@@ -301,8 +313,7 @@ void pitch_in_flight(const Time<V>& time, const Sole<V>& sole, const Flight<V>& 
       sole.half_width_m * size(across) * smooth(0.0f, 0.25f, u) * (1.0f - smooth(0.9f, 1.0f, u));
   const V deep = (sole.toe_rest_m + edge_m - kMostSink_m - height_m) / sole.foot_m;
   const V limit = sole.elevation_rad - arc_sine(within(deep, -0.95f, 0.95f)) + arc_sine(steeper);
-  const V soft =
-      kSoftPitch_rad + kWiderPitch * size(off) * smooth(0.0f, 0.1f, u) + edge_m / sole.foot_m;
+  const V soft = kSoftPitch_rad + kWiderPitch * loose_pitch(u, off, change) + edge_m / sole.foot_m;
   const V pitch = time.flies ? soft_least(planned, limit, soft) : most(planned, V{});
   foot.heel_m = flight.heel_m;
   const Turn<V> level = flight.way.turn();
@@ -367,19 +378,23 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
     foot.toe_m.y = footing.toe_y_m;
     follow_room(tables, footing);
     const Vec<V> room_m = room_at(time.u, state, footing);
-    const V base_m = time.flies ? V(flight.base_m + room_m.y) : footing.print_y_m,
-            hover_m = time.flies ? V(0.5f * footing.early_m * smooth(0.0f, 0.5f, time.u)) : V{};
-    footing.rise_m =
-        rise_with_hips<V>(tables, time.right, stride.leg_rad[0][3], base_m, hover_m, footing);
-    footing.rise_m = first_roll ? V{} : footing.rise_m;
+    const V base_m = time.flies ? V(flight.base_m + room_m.y) : footing.print_y_m;
+    const V rise_m = rise_in_flight<V>(tables, time, stride.leg_rad[0][3], base_m, footing),
+            goes_on_m = 2.0f * footing.last_rise_m[0] - footing.last_rise_m[1],
+            left = edge_left(time.u, change);
+    const auto begins = both(starts, state.tick == all<V>(1.0f)),
+               anew = both(time.flies, either(begins, footing.is_new != V{}));
+    footing.gap_rise_m = anew ? V(goes_on_m - rise_m) : footing.gap_rise_m;
+    footing.is_new = V{};
+    footing.rise_m = first_roll ? V{} : most(V(rise_m + left * footing.gap_rise_m), V{});
     const Vec<V> risen_m{room_m.x, V(room_m.y + footing.rise_m), room_m.z};
     flight.heel_m = flight.heel_m + risen_m;
-    flight.base_m = base_m;
-    flight.heel_m.y = most(flight.heel_m.y, base_m);
+    flight.base_m = base_m + left * (footing.gap_line_m + footing.gap_room_m);
+    flight.heel_m.y = change.gap_begin != V{} ? flight.heel_m.y : most(flight.heel_m.y, base_m);
     planned = time.flies ? planned
                          : pitch_to_rise<V>(tables, time.right, footing.rise_m, most(planned, V{}));
   }
-  pitch_in_flight(time, sole, flight, planned, off, footing, foot);
+  pitch_in_flight(time, sole, flight, planned, off, change, footing, foot);
   feet.base_m = flight.base_m;
   return feet;
 }

@@ -62,9 +62,11 @@ inline constexpr float kLeastLeft = 0.3f;  // the ground leaves that much of a s
 inline constexpr float kRatioJump_1_s = 2.4f, kFirstRatioJump_1_s = 14.4f;
 
 template <class V>
-void lean_into_slope(const Tables& tables, const Change<V>& change, Footing<V>& footing) noexcept {
+void lean_into_slope(const Tables& tables, const State<V>& state, const Change<V>& change,
+                     Footing<V>& footing) noexcept {
   const V run_m = most(size(footing.step_m), all<V>(kShortestRun * tables.leg_m)),
-          grade = change.stands != V{} ? V{} : V(footing.landing_y_m / run_m),
+          rise_m = state.backward != V{} ? -footing.landing_y_m : footing.landing_y_m,
+          grade = change.stands != V{} ? V{} : V(rise_m / run_m),
           most_rad = chosen<V>(grade > V{}, kUphillLean_rad, kDownhillLean_rad);
   follow(V(most_rad * grade / (size(grade) + kHalfLeanGrade)), tables.slope_lean, footing.lean_rad);
 }
@@ -73,8 +75,25 @@ template <class V>
 V ratio_on_ground(const Change<V>& change, const State<V>& state,
                   const Footing<V>& footing) noexcept {
   return change.closing != V{}
-             ? state.ratio_behind
+             ? V(state.ratio_behind + change.off_ratio.x)
              : most(V(footing.step_ratio + footing.off_ratio.x + change.off_ratio.x), V{});
+}
+
+// The landing that is planned, wherever it is.
+template <class V, class F>
+Landing<V> landing_over(const Tables& tables, const Time<V>& time, const Way<V>& to,
+                        const Change<V>& change, const State<V>& state, const F& footing) noexcept {
+  Landing<V> landing = planned_landing(tables, time, to, change, state);
+  if constexpr (kIsUneven<F>) {
+    landing.ratio = ratio_on_ground(change, state, footing);
+    landing.off_ratio = footing.off_ratio.x + change.off_ratio.x;
+  }
+  return landing;
+}
+// Another step follows.
+template <class V>
+Mask<V> goes_on(const State<V>& state, const Change<V>& change) noexcept {
+  return both(change.closing == V{}, either(is_to_walk(state), change.further != V{}));
 }
 
 // What the ground leaves of the step's length, and the ratio for which the tables are read: a step
@@ -103,6 +122,7 @@ void follow_ground(const Tables& tables, const Time<V>& time, const AskedStep<V>
   off.a = strikes ? V{} : off.a;
   fade(time.flies ? all<V>(1.0f) : V(state.roll_ticks - state.tick + 1.0f), off);
   landing.ratio = ratio_on_ground(change, state, footing);
+  landing.off_ratio = footing.off_ratio.x + change.off_ratio.x;
 }
 
 // Rises are in legs. A riser of 17 cm takes an adult at least 0.84 s; both feet equally long.
@@ -110,12 +130,14 @@ template <class V>
 V slowness_of(const Tables& tables, const Mask<V>& right, const State<V>& state,
               const Footing<V>& footing) noexcept {
   constexpr float kSlowerOnStairs = 1.2f, kSlowestRise = 0.34f, kSteepRise = 0.15f,
-                  kStairStep_s = 0.84f, kStairRise = 0.2f;
+                  kStairStep_s = 0.84f, kStairRise = 0.2f,
+                  kSlowerBack = 2.05f;  // on stairs
   const V rise = least(footing.next_rise, all<V>(kSlowestRise)),
           own_s = by_side<V>(right, state.asked.time_s),
           other_s = by_side<V>(no(right), state.asked.time_s),
           level_s = mix(own_s, most(own_s, other_s), smooth(0.0f, kSteepRise, rise)),
-          stair_s = rise * (kStairStep_s * tables.time_scale / kStairRise),
+          stair_s = rise * (kStairStep_s * tables.time_scale / kStairRise) *
+                    chosen<V>(state.backward != V{}, kSlowerBack, 1.0f),
           slow_s = most(V(level_s * (1.0f + kSlowerOnStairs * rise)), stair_s);
   return rise == V{} ? all<V>(1.0f) : V(slow_s / own_s);
 }
@@ -128,6 +150,7 @@ V slowness_of(const Tables& tables, const Mask<V>& right, const State<V>& state,
 inline constexpr float kRiseLasts = 0.9f, kSinkBegin = 0.5f, kSinkEnd = 0.25f;
 // Closing, both feet then stand, with straight knees, at the landing.
 inline constexpr float kSinkBeginClosing = 0.15f;
+inline constexpr float kSinkBeginBack = 0.35f;  // as people do who feel for the ground behind them
 // How far the knee of a foot gives way that lands from a height: kYield legs from great heights,
 // half of it from kHalfYield. Chosen so that the knee is bent by 20 to 35 degrees on house stairs.
 // The other leg's knee is bent by kBentBefore of it, for a straight knee cannot yield smoothly.
@@ -138,11 +161,27 @@ struct Sinking {
   V ticks, share;
 };
 template <class V>
-Sinking<V> sinking(const Change<V>& change, const State<V>& state, const V& tick) noexcept {
+Sinking<V> sinking(const Change<V>& change, const State<V>& state, const Footing<V>& footing,
+                   const V& tick) noexcept {
   const auto closes = change.closing != V{};
-  const V begin = state.flight_ticks * chosen<V>(closes, kSinkBeginClosing, kSinkBegin),
+  const V begin = most(V(state.flight_ticks *
+                         (closes ? all<V>(kSinkBeginClosing)
+                                 : chosen<V>(state.backward != V{}, kSinkBeginBack, kSinkBegin))),
+                       footing.sink_from),
           ticks = state.flight_ticks - begin + (closes ? V{} : V(kSinkEnd * state.roll_ticks));
   return {ticks, V(most(V(tick - begin), V{}) / ticks)};
+}
+
+// In so many ticks hips that are off their place come there along a quintic without going far
+// beyond it; metres at the reference leg, seconds.
+template <class V>
+V settles_within(const Tables& tables, const Off<V>& off) noexcept {
+  constexpr float kBeyond_m = 0.03f, kLeast_s = 0.2f;
+  const V far_m = size(off.x) + kBeyond_m * tables.size,
+          by_rate = 2.0f * far_m / most(size(off.v), all<V>(1e-9f)),
+          by_bend = root(V(4.0f * far_m / most(size(off.a), all<V>(1e-12f))));
+  return floored(
+      most(least(by_rate, by_bend), all<V>(kLeast_s * tables.time_scale / tables.tick_s)));
 }
 
 // A quintic from where the hips are to where the landed foot carries them, less what they then sink
@@ -152,7 +191,11 @@ void move_hips_ground(const Tables& tables, const Time<V>& time, const Landing<V
                       const Change<V>& change, const State<V>& state,
                       Footing<V>& footing) noexcept {
   const auto stands = change.stands != V{}, closes = change.closing != V{},
-             strikes = both(no(stands), both(no(time.flies), state.tick == all<V>(1.0f)));
+             strikes = both(no(stands), both(no(time.flies), state.tick == all<V>(1.0f))),
+             rests = both(closes, both(time.flies, footing.level_m != V{})),
+             anew = either(both(time.flies, footing.is_new != V{}), rests),
+             begins = either(strikes, anew);
+  const V begun = state.tick + (time.flies ? state.roll_ticks : V{});
   // How far the next foot lands below the standing one, its heel or its toe.
   const float left_m = tables.leg[0].foot_m, right_m = tables.leg[1].foot_m, leg_m = tables.leg_m;
   const V toe_m = chosen<V>(time.right, right_m, left_m),
@@ -164,27 +207,36 @@ void move_hips_ground(const Tables& tables, const Time<V>& time, const Landing<V
   const V early_m =
       both(falls, no(closes)) ? V(kYield * leg_m * fall_m / (fall_m + kHalfYield * leg_m)) : V{};
   Off<V>&hips = footing.hips_m, &off = footing.off_m;
-  const auto set = [&](const V& to, V& number) { number = strikes ? to : number; };
+  const auto set = [&](const V& to, V& number) { number = begins ? to : number; };
   const V bent_m = kBentBefore * early_m,
-          level_m = closes ? V{} : V(-most(footing.yield_m, bent_m));
+          level_m = anew ? (closes ? V{} : V(-bent_m)) : V(-most(footing.yield_m, bent_m));
   const auto yields = both(footing.yield_m > bent_m, hips.x > level_m);
   const V step_ticks = state.roll_ticks + state.flight_ticks;
-  set(floored(V(yields   ? V(kSinkEnd * state.roll_ticks)
-                : closes ? step_ticks
-                         : V(kRiseLasts * step_ticks))),
+  const auto takes_all = either(closes, time.back);
+  const V settles = takes_all ? step_ticks : V(kRiseLasts * step_ticks),
+          later = most(settles, V(begun + kSinkEnd * state.roll_ticks));
+  set(floored(V(both(strikes, yields) ? V(kSinkEnd * state.roll_ticks)
+                : anew                ? later
+                                      : settles)),
       footing.settle_ticks);
+  // A plan that has changed lets them sink from now on.
+  set(anew ? state.tick : V{}, footing.sink_from);
+  // Hips that still move rest before that leads them far beyond.
+  const Off<V> moves{V(hips.x - level_m), hips.v, hips.a};
+  footing.settle_ticks =
+      begins ? V(least(footing.settle_ticks, V(begun + settles_within(tables, moves))))
+             : footing.settle_ticks;
   set(level_m, footing.level_m);
   set(V(hips.x - level_m), off.x), set(hips.v, off.v), set(hips.a, off.a);
   set(V{}, footing.drop_m), set(V{}, footing.yield_m), set(V{}, footing.early_m);
-  // Upwards, the rear leg of one that closes would be too short: hips that rest wait for its
-  // flight.
-  const auto rests = both(off.x < V{}, both(off.v == V{}, off.a == V{})),
-             waits = either(stands, both(no(time.flies), both(closes, rests)));
-  const V begun = state.tick + (time.flies ? state.roll_ticks : V{});
+  // Upwards, the rear leg of one that closes or walks backward would be too short, for it does not
+  // roll far over its toe: hips that rest wait for its flight.
+  const auto still = both(off.x < V{}, both(off.v == V{}, off.a == V{})),
+             waits = either(stands, both(no(time.flies), both(takes_all, still)));
   Off<V> faded = off;
   fade(V(footing.settle_ticks - begun + 1.0f), faded);
-  const Sinking<V> now = sinking(change, state, V(time.flies ? state.tick : V{})),
-                   end = sinking(change, state, state.flight_ticks);
+  const Sinking<V> now = sinking(change, state, footing, V(time.flies ? state.tick : V{})),
+                   end = sinking(change, state, footing, state.flight_ticks);
   const auto plans = both(no(waits), now.share == V{});
   const V end_share = smoother(end.share),
           drop_m =
@@ -239,6 +291,14 @@ V rise_with_hips(const Tables& tables, const Mask<V>& right, const V& knee_rad, 
   return higher_m <= -2.0f * hover_m ? V{} : bounded_m;
 }
 
+// Of the swinging foot.
+template <class V>
+V rise_in_flight(const Tables& tables, const Time<V>& time, const V& knee_rad, const V& base_m,
+                 const Footing<V>& footing) noexcept {
+  const V hover_m = time.flies ? V(0.5f * footing.early_m * smooth(0.0f, 0.5f, time.u)) : V{};
+  return rise_with_hips<V>(tables, time.right, knee_rad, base_m, hover_m, footing);
+}
+
 // Of any sine.
 template <class V>
 V arc_sine_of(const V& x) noexcept {
@@ -278,6 +338,15 @@ inline constexpr float kLiftUp = 0.5f, kHighUp = 0.2f, kHighestUp = 0.345f;
 inline constexpr float kLiftGround =
     0.5f;  // of the flight: until then the plane left bounds the toe
 inline constexpr float kReplan_m = 0.005f;  // a landing moved by more is planned for anew
+
+// The plane that it flies to, or what a change of plan has left of the one before.
+template <class V>
+Slope<V> plane_in_flight(const Time<V>& time, const Change<V>& change,
+                         const Footing<V>& footing) noexcept {
+  const V left = edge_left(time.u, change);
+  return {V(footing.landing.x + left * footing.gap_plane.x),
+          V(footing.landing.z + left * footing.gap_plane.z)};
+}
 
 // The height of the ground line below a flying heel: it climbs as the foot has come over the
 // ground; across a riser not at all, for there the splines raise the foot. And the factor on the
@@ -337,6 +406,9 @@ void change_footing(const Landing<V>& landing, const Mask<V>& strikes, const V& 
   set(V(-y_m), footing.print_y_m), set(V(flat_toe_y_m - y_m), footing.toe_y_m);
   set(V(footing.hips_m.x - y_m), footing.hips_m.x), set(V{}, footing.landing_y_m);
   set(V{}, footing.level_x_m), set(V{}, footing.level_z_m);
+  set(V{}, footing.gap_plane.x), set(V{}, footing.gap_plane.z), set(V{}, footing.gap_line_m),
+      set(V{}, footing.gap_room_m);
+  set(V{}, footing.gap_under_m), set(V{}, footing.gap_rise_m);
 }
 
 }  // namespace

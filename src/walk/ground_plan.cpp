@@ -328,7 +328,7 @@ void choose_foothold(const Tables& tables, const AskedFoothold& asked, Block<1>&
   footing.overhangs = room_on(piece, step.sole, step.leg_m).lacks_m > 0.0 ? 1.0f : 0.0f;
   const Plane plane = plane_under(floor, leg, place_on(step, piece), yaw, piece);
   const vec3 landing = frame.in(plane.place_m);
-  if (state.flies == 0.0f)
+  if (state.flies == 0.0f || asked.settles)
     footing.crosses = piece_at(floor, plane.place_m.z).from_m != step.lifts.from_m ? 1.0f : 0.0f;
   block.state.landing_x_m = static_cast<float>(landing.x);
   block.state.landing_z_m = static_cast<float>(landing.z);
@@ -527,7 +527,8 @@ PlannedFlight planned_flight(const Tables& tables, const Floor& floor, const Fra
   const LegBones& leg = tables.leg[time.right ? 1 : 0];
   PlannedFlight flight;
   for (int i = 0; i <= kProbes; ++i) {
-    time.u = static_cast<float>(i) / kProbes;
+    // What is over when a plan changes does not count.
+    time.u = std::max(static_cast<float>(i) / kProbes, change.gap_begin);
     const float tick = time.u * state.flight_ticks, s = (tick - state.tick) / left,
                 phase = state.phase + (v0 + (c2 + c3 * s) * s) * s;
     time.share = (state.roll_ticks + tick) / (state.roll_ticks + state.flight_ticks);
@@ -539,7 +540,8 @@ PlannedFlight planned_flight(const Tables& tables, const Floor& floor, const Fra
     const float off = pitch_off(time, tick, change, state);
     Foot<float> foot;
     const float low = low_pitch(low_lift<float>(time.right, state), time.u);
-    pitch_in_flight(time, sole, flies, low * stride.foot[0].pitch_rad + off, off, footing, foot);
+    pitch_in_flight(time, sole, flies, low * stride.foot[0].pitch_rad + off, off, change, footing,
+                    foot);
     set_points(leg, frame, flies, foot, flight.sole[i], flight.base[i]);
     flight.left[i] = lands.z - frame.out(doubles(flies.heel_m)).z;
   }
@@ -726,6 +728,29 @@ RoomPlan plan_down(const Tables& tables, const Floor& floor, const PlannedFlight
 }
 
 }  // namespace
+
+float depth_of_flight(const Tables& tables, const Block<1>& block) noexcept {
+  const Footing<float>& footing = block.footing;
+  const Floor floor{*tables.terrain, block.placed[0]};
+  const PlannedFlight flight = planned_flight(tables, floor, Frame(block.origin[0]), block);
+  Spline raise_m, shift_m;
+  for (int k = 0; k < kRoomKnots; ++k)
+    raise_m[k] = footing.raise[k].x, shift_m[k] = footing.shift[k].x;
+  const float from = block.state.tick / block.state.flight_ticks;
+  double deep_m = 0.0;
+  for (int i = 0; i <= kProbes; ++i) {
+    const double u = static_cast<double>(i) / kProbes;
+    if (u < from) continue;
+    SolePoints sole = flight.sole[i];
+    for (vec3& p : sole) {
+      p.y += spline_of(raise_m, flight.climb, u);
+      p.z += spline_of(shift_m, 0.0, u);
+    }
+    const auto ground = heights_at(floor, sole);
+    for (std::size_t k = 0; k < sole.size(); ++k) deep_m = std::max(deep_m, ground[k] - sole[k].y);
+  }
+  return static_cast<float>(deep_m);
+}
 
 void plan_room(const Tables& tables, bool begins, Block<1>& block) noexcept {
   const State<float>& state = block.state;

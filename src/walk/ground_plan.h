@@ -20,6 +20,9 @@ void choose_foothold(const Tables& tables, const AskedFoothold& asked, Block<1>&
 // Plans how the flying foot clears the ground. `begins`: at its lift-off.
 void plan_room(const Tables& tables, bool begins, Block<1>& block) noexcept;
 
+// How deep the rest of the flight leads into the ground at most, in metres.
+float depth_of_flight(const Tables& tables, const Block<1>& block) noexcept;
+
 // Where a heel stands nearest to a place in the walk's own coordinates, without an edge under the
 // sole, and how the ground rises there to the left and ahead of the foot.
 struct StandingPlace {

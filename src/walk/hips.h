@@ -325,8 +325,9 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
   stride.heel_high_m = by_clock.heel_high_m;
   // It stood, and will stand, at another phase than it flies at.
   constexpr float kEdgeGoes = 0.4f;  // of the flight
-  const V goes_over =
-              smoother(V(time.u * (1.0f / kEdgeGoes))) *
+  const V lifted = change.led_from < V{} ? all<V>(1.0f) : smoother(V(time.u * (1.0f / kEdgeGoes))),
+          goes_over =
+              lifted *
               (1.0f -
                (closes ? V{} : smoother(V((time.u - (1.0f - kEdgeGoes)) * (1.0f / kEdgeGoes))))),
           share = led ? goes_over : all<V>(1.0f);
@@ -424,7 +425,9 @@ void begin_lead(const Tables& tables, const Mask<V>& strikes, const V& phase, co
   change.gap_lasts = strikes ? all<V>(kLiftFade) : change.gap_lasts;
   change.pitch_lasts = strikes ? V{} : change.pitch_lasts;
   change.gap_rad = strikes ? V{} : change.gap_rad;
+  change.gap_loose_rad = strikes ? V{} : change.gap_loose_rad;
   change.led_from = strikes ? V{} : change.led_from;
+  change.led_until = strikes ? all<V>(kNever) : change.led_until;
   change.led_rate_rad = strikes ? V{} : change.led_rate_rad;
   change.gap_twist_rad = strikes ? V{} : change.gap_twist_rad;
   change.gap_roll_rad = strikes ? V{} : change.gap_roll_rad;

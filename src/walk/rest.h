@@ -3,12 +3,13 @@
 // A stop chooses among three ends the first that brakes softly: the flying foot closes beside the
 // standing one; it lands ahead and the other foot closes; one more step comes between. The hips go
 // to their place between the feet along a quintic, whose time is chosen for the least braking. It
-// is rare, so that lanes take their turns. On level ground: elsewhere a walk closes with the next
-// step.
+// is rare, so that lanes take their turns. Over uneven ground the foothold is chosen and the flight
+// planned anew; one whose new flight would not clear the ground keeps its landing.
 #pragma once
 #include <limits>
 
 #include "walk/feet.h"
+#include "walk/ground_plan.h"
 
 namespace gaitpad {
 namespace {
@@ -70,19 +71,22 @@ inline float best_rest_s(const Off<float>& goes, const Off<float>& aside, bool o
   return best_s;
 }
 
-// The flying foot by the plan in force, now and a tick later.
+// The flying foot by the plan in force, now and a tick later; without what it rises with the hips.
 struct Flown {
   Vec<float> heel_m[2];
-  float pitch_rad[2], yaw_rad, twist_rad, roll_rad;
+  float pitch_rad[2], over_m[2];  // over the ground line
+  float line_m = 0.0f, room_m = 0.0f, loose_rad = 0.0f;
+  float yaw_rad, twist_rad, roll_rad;
 };
-inline Flown flown(const Tables& tables, const Change<float>& change,
-                   const State<float>& state) noexcept {
+template <class F>
+Flown flown(const Tables& tables, const Change<float>& change, const State<float>& state,
+            F footing) noexcept {
   Flown flown;
   State<float> at = state;
   for (int k : {0, 1}) {
     const Time<float> time = time_of(tables, at);
     const Way<float> to = way_of(heading_ahead(tables, at, time.to_strike + 1.0f));
-    const Landing<float> landing = planned_landing(tables, time, to, change, at);
+    const Landing<float> landing = landing_over(tables, time, to, change, at, footing);
     const Stride<float> stride =
         read_by_clock(tables, time, landing, at.phase, time.share, time.u, change, at);
     Hips<float> hips;
@@ -91,8 +95,17 @@ inline Flown flown(const Tables& tables, const Change<float>& change,
     hips.own = footprints_of(tables, time, short_ratio(tables, landing, at));
     float base_m = 0.0f;
     const Vec<float> heel_m = flight_heel(tables, time, landing, stride, hips, at.phase, time.u,
-                                          change, at, NoFooting{}, base_m);
-    flown.heel_m[k] = with_gap(tables, time, heel_m, base_m, change, at);
+                                          change, at, footing, base_m);
+    flown.heel_m[k] = with_gap(tables, time, heel_m, base_m, change, at, footing);
+    flown.over_m[k] = flown.heel_m[k].y - base_m;
+    if constexpr (kIsUneven<F>) {
+      if (k == 1) follow_room(tables, footing);
+      const Vec<float> room_m = room_at(time.u, at, footing);
+      flown.heel_m[k] = flown.heel_m[k] + room_m;
+      const float left = edge_left(time.u, change);
+      if (k == 0) flown.line_m = base_m + left * footing.gap_line_m;
+      if (k == 0) flown.room_m = room_m.y + left * footing.gap_room_m;
+    }
     if (k == 0) {
       flown.yaw_rad = flying_yaw(time, landing, change, at);
       const float edge = edge_left(time.u, change);
@@ -102,25 +115,47 @@ inline Flown flown(const Tables& tables, const Change<float>& change,
     flown.pitch_rad[k] =
         low_pitch(low_lift<float>(time.right, at), time.u) * stride.foot[0].pitch_rad +
         pitch_off(time, at.tick, change, at);
+    if (k == 0) flown.loose_rad = loose_pitch(time.u, pitch_off(time, at.tick, change, at), change);
     at.tick += 1.0f, at.phase += at.phase_rate;
   }
   return flown;
 }
 
+// The landing of the running step as it is asked for now; over uneven ground it is chosen anew.
+template <class F>
+void plan_landing_anew(const Tables& tables, const Time<float>& time, Block<1>& block,
+                       F& footing) noexcept {
+  State<float>& state = block.state;
+  Change<float>& change = block.change;
+  const AskedStep<float> asked = plan_landing(tables, time, change, state, footing);
+  if constexpr (kIsUneven<F>) {
+    footing.asked_x_m = footing.level_x_m, footing.asked_z_m = footing.level_z_m;
+    footing.asked_rad = state.landing_rad;
+    choose_foothold(
+        tables,
+        {asked.along.sine, asked.along.cosine, asked.length_m, false, true, goes_on(state, change)},
+        block);
+    footing.step_m = state.landing_x_m * asked.to.sine + state.landing_z_m * asked.to.cosine;
+    footing.step_ratio = size(footing.step_m) / own_step_m<float>(tables, time.right, time.back);
+    footing.off_ratio = {};
+  }
+}
+
 // Gives the running step another end. A foot in flight whose landing `moves` goes over to its new
 // path until it lands.
-template <class Work>
-void change_step(const Tables& tables, bool moves, State<float>& state, Change<float>& change,
+template <class F, class Work>
+void change_step(const Tables& tables, bool moves, Block<1>& block, F& footing,
                  const Work& work) noexcept {
+  State<float>& state = block.state;
+  Change<float>& change = block.change;
   const bool flies = state.flies != 0.0f;
   const auto ratio = [&] {
     const Time<float> time = time_of(tables, state);
-    return planned_landing(tables, time,
-                           way_of(heading_ahead(tables, state, time.to_strike + 1.0f)), change,
-                           state)
+    return landing_over(tables, time, way_of(heading_ahead(tables, state, time.to_strike + 1.0f)),
+                        change, state, footing)
         .ratio;
   };
-  const Flown was = flies ? flown(tables, change, state) : Flown{};
+  const Flown was = flies ? flown(tables, change, state, footing) : Flown{};
   const Time<float> time = time_of(tables, state);
   const float ratio_was = ratio(), shown = change.shown,
               pitch = planned_pitch(time, change, state) + change.off_pitch.x,
@@ -139,6 +174,10 @@ void change_step(const Tables& tables, bool moves, State<float>& state, Change<f
     state.stand_pitch_rad = pitch_rad;
     change.led_from = state.tick;
   }
+  if (change.led == 0.0f && flies) change.led_from = -1.0f;
+  if (!flies) change.led_until = least(change.led_until, state.roll_ticks);
+  Slope<float> lands{};
+  if constexpr (kIsUneven<F>) lands = plane_in_flight(time, change, footing);
   work();
   change.led = change.is_new = 1.0f;
   change.off_ticks = floored(2.0f * kCarry_s * tables.time_scale / tables.tick_s + 0.5f);
@@ -147,9 +186,9 @@ void change_step(const Tables& tables, bool moves, State<float>& state, Change<f
   change.off_over = {over - planned_over(now, change), 0.0f, 0.0f};
   change.off_pitch = {pitch - planned_pitch(now, change, state), 0.0f, 0.0f};
   if (!moves) return;
+  if constexpr (kIsUneven<F>) footing.is_new = 1.0f;
   change.gap_begin = now.u;
-  NoFooting level;
-  plan_landing(tables, now, change, state, level);
+  plan_landing_anew(tables, now, block, footing);
   change.off_ratio = {};
   change.off_ratio.x = ratio_was - ratio();
   if (!flies) return;
@@ -160,13 +199,38 @@ void change_step(const Tables& tables, bool moves, State<float>& state, Change<f
   change.gap_high_m = 1.0f;
   state.swing_pitch_rad = state.swing_pitch_rate = 0.0f;
   change.gap_rad = change.gap_twist_rad = change.gap_roll_rad = 0.0f;
-  const Flown is = flown(tables, change, state);
-  state.gap_m = was.heel_m[0] - is.heel_m[0];
-  state.gap_slope_m = ((was.heel_m[1] - is.heel_m[1]) - state.gap_m) * ticks;
-  change.gap_high_m = most(is.heel_m[0].y, kLow_m * tables.size);
+  change.gap_loose_rad = was.loose_rad;
+  const auto fit_gap = [&](const Flown& is) {
+    state.gap_m = was.heel_m[0] - is.heel_m[0];
+    state.gap_slope_m = ((was.heel_m[1] - is.heel_m[1]) - state.gap_m) * ticks;
+  };
+  if constexpr (kIsUneven<F>) {
+    footing.gap_under_m = footing.gap_line_m = footing.gap_room_m = 0.0f;
+    const float goes = 1.0f - value_left(now.u), goes_was = 1.0f - value_left(time.u);
+    const auto left = [&](float was_x, float from, float to) {
+      return from + (was_x - from) * (goes_was / most(goes, 1e-3f)) - to;
+    };
+    footing.gap_plane = {left(lands.x, footing.print.x, footing.landing.x),
+                         left(lands.z, footing.print.z, footing.landing.z)};
+    // The ground is cleared where the foot goes over it.
+    for (int k = 0; k < kRoomKnots; ++k) footing.raise[k] = footing.shift[k] = {};
+    fit_gap(flown(tables, change, state, footing));
+    state.gap_m.y = state.gap_slope_m.y = 0.0f;
+    plan_room(tables, true, block);
+    state.gap_m = state.gap_slope_m = {};
+  }
+  const Flown is = flown(tables, change, state, footing);
+  fit_gap(is);
+  change.gap_high_m = most(is.over_m[0], kLow_m * tables.size);
+  if constexpr (kIsUneven<F>) {
+    footing.gap_line_m = was.line_m - is.line_m;
+    footing.gap_room_m = was.room_m - is.room_m;
+    footing.gap_under_m = most(-state.gap_m.y - change.gap_high_m, 0.0f);
+    state.gap_m.y += footing.gap_under_m;
+  }
   if (state.gap_m.y < 0.0f)
     state.gap_slope_m.y -=
-        state.gap_m.y * (is.heel_m[1].y - is.heel_m[0].y) / change.gap_high_m * ticks;
+        state.gap_m.y * (is.over_m[1] - is.over_m[0]) / change.gap_high_m * ticks;
   change.gap_rad = was.yaw_rad - is.yaw_rad;
   change.gap_twist_rad = was.twist_rad - is.twist_rad;
   change.gap_roll_rad = was.roll_rad - is.roll_rad;
@@ -219,8 +283,24 @@ inline void time_closing_step(const Tables& tables, State<float>& state,
                            tables.stage_share[right ? 3 : 1] / state.flight_ticks);
 }
 
-// Where one that walks is not to any more: how it comes to rest.
-inline void plan_rest(const Tables& tables, State<float>& state, Change<float>& change) noexcept {
+// Over uneven ground: how far a step that is to be so long will lead, from foothold to foothold.
+inline float foothold_m(const Tables& tables, float asked_m, Block<1> block) noexcept {
+  State<float>& state = block.state;
+  const Time<float> time = time_of(tables, state);
+  state.length_m[time.right ? 1 : 0] = {asked_m, 0.0f};
+  block.change.gap_begin = time.u;
+  plan_landing_anew(tables, time, block, block.footing);
+  const Way<float> way = way_of(state.landing_rad);
+  return (time.back ? -1.0f : 1.0f) *
+         (state.landing_x_m * way.sine + state.landing_z_m * way.cosine);
+}
+
+// Where one that walks is not to any more: how it comes to rest. `may_move`: a flight may land
+// elsewhere.
+template <class F>
+void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing) noexcept {
+  State<float>& state = block.state;
+  Change<float>& change = block.change;
   const bool flies = state.flies != 0.0f, right = state.right_swings != 0.0f;
   if (!flies && state.tick == 0.0f) return;  // its landing is planned in this tick
   const float tick_s = tables.tick_s, scale = tables.time_scale;
@@ -255,8 +335,9 @@ inline void plan_rest(const Tables& tables, State<float>& state, Change<float>& 
     change.stops = 1.0f;
   };
   const bool may_close = (from >= need / kCloseBrake_m_s2 && foot_m < -kBehind_m) || on_spot;
-  if (may_close && change.starting == 0.0f && (!flies || time.u < kStays)) {
-    change_step(tables, true, state, change, [&] {
+  const bool moves = !flies || (may_move && time.u < kStays);
+  if (may_close && change.starting == 0.0f && moves) {
+    change_step(tables, true, block, footing, [&] {
       const Behind none[2] = {};
       to_rest(most(from, 0.0f), -tables.leg[right ? 0 : 1].stance_m, kLeastRest_s * scale,
               flies ? left_s + (most_closing - 1.0f) * state.flight_ticks * tick_s : longest_s,
@@ -277,7 +358,13 @@ inline void plan_rest(const Tables& tables, State<float>& state, Change<float>& 
     return most(need / kBrake_m_s2, kWayWhileClosing * speed * (left_s + time_s * scale)) - from;
   };
   float step_m = planned, further_m = 0.0f;
-  if (time.u < kStays) step_m = least(most(wanted(kToClose_s), least(least_m, planned)), planned);
+  if (moves) step_m = least(most(wanted(kToClose_s), least(least_m, planned)), planned);
+  float asked_m = step_m, share = 1.0f;
+  if constexpr (kIsUneven<F>) {
+    share = footing.share;
+    asked_m = step_m / share;
+    if (moves) step_m = foothold_m(tables, asked_m, block);
+  }
   if (from + step_m < need / kMostBrake_m_s2)
     further_m = least(most(wanted(kToClose_s + kNextStep_s) - step_m, kFurtherStep * next_own_m),
                       next_own_m);
@@ -286,24 +373,25 @@ inline void plan_rest(const Tables& tables, State<float>& state, Change<float>& 
   const float lead_m = sign * tables.rest_lead_m;
   const Behind landings[2] = {{left_s, kLandsAhead * step_m + lead_m + further_m},
                               {left_s + between_s, kLandsAhead * further_m + lead_m}};
-  change_step(tables, time.u < kStays, state, change, [&] {
+  change_step(tables, moves, block, footing, [&] {
     to_rest(from + step_m + further_m,
             left_of(state.landing_x_m, state.landing_z_m) - tables.leg[right ? 1 : 0].stance_m,
             left_s + between_s + kAfterLanding_s * scale, left_s + between_s + longest_s, landings);
     change.further = further_m > 0.0f ? 1.0f : 0.0f;
     const int swing = right ? 1 : 0;
-    change.length_m[swing] = step_m;
-    change.length_m[1 - swing] = further_m;
+    change.length_m[swing] = asked_m;
+    change.length_m[1 - swing] = further_m / share;
     // A foot that has yet to lift off for the first step rises as the landing asks.
-    if (flies || change.starting == 0.0f) state.length_m[swing] = {step_m, 0.0f};
-    if (further_m > 0.0f) state.length_m[1 - swing] = {further_m, 0.0f};
+    if (flies || change.starting == 0.0f) state.length_m[swing] = {asked_m, 0.0f};
+    if (further_m > 0.0f) state.length_m[1 - swing] = {further_m / share, 0.0f};
   });
 }
 
 // The ticks in which hips that have braked come most softly to where the tables have them, at the
 // coming strike or later.
-inline float catch_ticks(const Tables& tables, const State<float>& state,
-                         const Change<float>& change) noexcept {
+template <class F>
+float catch_ticks(const Tables& tables, const State<float>& state, const Change<float>& change,
+                  const F& footing) noexcept {
   constexpr int kTimes = 12;
   constexpr float kBack = 50.0f, kLate = 0.8f;  // costs, in m/s2
   const Time<float> time = time_of(tables, state);
@@ -311,7 +399,7 @@ inline float catch_ticks(const Tables& tables, const State<float>& state,
               strike_phase = time.stage_end + (time.flies ? 0.0f : share),
               rate = share / state.flight_ticks;
   const Way<float> to = way_of(heading_ahead(tables, state, time.to_strike + 1.0f));
-  const Landing<float> landing = planned_landing(tables, time, to, change, state);
+  const Landing<float> landing = landing_over(tables, time, to, change, state, footing);
   const Path<float> path =
       path_to(landing, footprints_of(tables, time, landing.ratio), time.right ? 1.0f : 0.0f);
   const float sign = time.back ? -1.0f : 1.0f;
@@ -348,26 +436,31 @@ inline float catch_ticks(const Tables& tables, const State<float>& state,
 }
 
 // The stick has come back while the walk comes to rest.
-inline void walk_on(const Tables& tables, State<float>& state, Change<float>& change) noexcept {
+template <class F>
+void walk_on(const Tables& tables, bool may_move, Block<1>& block, F& footing) noexcept {
+  State<float>& state = block.state;
+  Change<float>& change = block.change;
   const bool flies = state.flies != 0.0f, closes = change.closing != 0.0f,
              right = state.right_swings != 0.0f;
   if (!flies && state.tick == 0.0f) return;
   const Time<float> time = time_of(tables, state);
-  if (closes && flies && time.u > kTurnsBack) return;
+  if (closes && flies && (time.u > kTurnsBack || !may_move)) return;
   // Hips that have braked cannot be where the tables have them at a strike that is near.
   if (flies && time.to_strike * tables.tick_s < kNearStrike_s * tables.time_scale) return;
   // As far as the hips, which have braked, can be where the tables have them at its strike.
   const int swing = right ? 1 : 0;
-  const float asked_m = state.asked.length_m[swing], tick_s = tables.tick_s;
+  float share = 1.0f;  // of a length that the ground leaves
+  if constexpr (kIsUneven<F>) share = footing.share;
+  const float asked_m = share * state.asked.length_m[swing], tick_s = tables.tick_s;
   const Stages<float> own = stages_of(tables, change, state, right);
   const Way<float> way = way_of(state.landing_rad);
   const float sign = time.back ? -1.0f : 1.0f;
   const auto along = [&](float x, float z) { return sign * (x * way.sine + z * way.cosine); };
-  const bool moves = !flies || time.u < kStays;
+  const bool moves = !flies || (may_move && time.u < kStays);
   const float at_m = along(change.pelvis_x_m.x, change.pelvis_z_m.x),
               speed = along(change.pelvis_x_m.v, change.pelvis_z_m.v) / tick_s,
               foot_m = flies ? along(state.last_heel_m[0].x, state.last_heel_m[0].z) : 0.0f;
-  change_step(tables, moves, state, change, [&] {
+  change_step(tables, moves, block, footing, [&] {
     if (closes) {
       if (!flies) state.roll_ticks = most(state.tick + 1.0f, ticks_of(own.roll_s, tick_s));
       state.flight_ticks = most(state.tick + 1.0f, ticks_of(own.flight_s, tick_s));
@@ -378,12 +471,32 @@ inline void walk_on(const Tables& tables, State<float>& state, Change<float>& ch
     const float shortest_m =
         least(most(kLeastStep * own_step_m<float>(tables, right, time.back), foot_m + kBehind_m),
               asked_m);
-    if (moves) state.length_m[swing] = {least(most(reach_m, shortest_m), asked_m), 0.0f};
+    if (moves) state.length_m[swing] = {least(most(reach_m, shortest_m), asked_m) / share, 0.0f};
     change.length_m[swing] = state.length_m[swing].x;
     change.stops = change.closing = change.further = 0.0f;
     change.resumes = 1.0f;
   });
-  change.catch_ticks = catch_ticks(tables, state, change);
+  change.catch_ticks = catch_ticks(tables, state, change, footing);
+}
+
+// Over uneven ground a foothold may be another one than was planned: in the last step hips come to
+// rest as softly as they still can.
+inline void time_rest(const Tables& tables, const State<float>& state,
+                      Change<float>& change) noexcept {
+  const float tick_s = tables.tick_s, sign = state.backward != 0.0f ? -1.0f : 1.0f,
+              longest_s =
+                  (kLongestClosingRoll * state.roll_ticks + kMostClosing * state.flight_ticks) *
+                  tick_s,
+              stands_m = tables.leg[state.right_swings != 0.0f ? 0 : 1].stance_m;
+  const auto of_time = [&](const Off<float>& of, float goal_m, float to) {
+    return Off<float>{to * (of.x - goal_m), to * of.v / tick_s, to * of.a / (tick_s * tick_s)};
+  };
+  const Behind none[2] = {};
+  const float least_s = kLeastRest_s * tables.time_scale;
+  change.rest_ticks = ticks_of(best_rest_s(of_time(change.pelvis_z_m, tables.rest_lead_m, sign),
+                                           of_time(change.pelvis_x_m, -stands_m, 1.0f), false, least_s,
+                                           most(least_s, longest_s), none),
+                               tick_s);
 }
 
 }  // namespace

@@ -127,7 +127,10 @@ V last_ratio(const Mask<V>& back) noexcept {
 template <class V>
 V short_ratio(const Tables& tables, const Landing<V>& landing, const State<V>& state) noexcept {
   const V x = landing.x_m - state.print_x_m, z = landing.z_m - state.print_z_m;
-  return root(V(x * x + z * z)) * (1.0f / (tables.leg[0].own_step_m + tables.leg[1].own_step_m));
+  return most(
+      V(root(V(x * x + z * z)) * (1.0f / (tables.leg[0].own_step_m + tables.leg[1].own_step_m)) +
+        0.5f * landing.off_ratio),
+      V{});
 }
 
 // `change`: from the stride behind, at 0, to the one ahead, at 1.
@@ -262,7 +265,14 @@ void raise_limping_heel(const Tables& tables, const Time<V>& time, const V& phas
   const auto evenness = [](const V& a, const V& b) {
     return V((least(a, b) + kLeastAsked) / (most(a, b) + kLeastAsked));
   };
-  const V uneven = 1.0f - most(evenness(left, right), evenness(left_m, right_m)),
+  // Nor do steps that only come to be as long as both are asked for.
+  const V &asked_left_m = state.asked.length_m[0], &asked_right_m = state.asked.length_m[1],
+          asked_left = asked_left_m * chosen<V>(time.back, right_1_m, left_1_m),
+          asked_right = asked_right_m * chosen<V>(time.back, left_1_m, right_1_m);
+  const V even =
+              most(most(evenness(left, right), evenness(left_m, right_m)),
+                   most(evenness(asked_left, asked_right), evenness(asked_left_m, asked_right_m))),
+          uneven = 1.0f - even,
           shows = smooth(kEvenSteps, kUnevenSteps, uneven) * smoother(V(u * 5.0f)) *
                   (1.0f - smoother(V((u - 0.5f) * 2.5f))),
           own = time.right ? right : left;

@@ -137,23 +137,50 @@ void one_by_one(const Mask<Floats<kWidth>>& where, Block<kWidth>& block,
   }
 }
 
+// A foot in flight goes to a new foothold where its way there is as clear of the ground as it was.
+template <class Plan>
+void change_over_ground(const Tables& tables, Block<1>& block, const Plan& plan) noexcept {
+  constexpr float kDeep_m = 0.004f;
+  if (block.state.flies == 0.0f) return plan(true, block, block.footing);
+  const Block<1> was = block;
+  plan(true, block, block.footing);
+  if (block.change.gap_begin == was.change.gap_begin) return;  // its landing stays
+  if (depth_of_flight(tables, block) <= most(kDeep_m, depth_of_flight(tables, was))) return;
+  block = was;
+  plan(false, block, block.footing);
+}
+
 // Where one that walks is to come to rest, or to go on after all: when the stick, which passes
 // through small deflections on its way, is where it is meant to be.
-template <int kWidth>
+template <int kWidth, bool kUneven>
 void change_ends(const Tables& tables, Block<kWidth>& block) noexcept {
   using V = Floats<kWidth>;
   constexpr float kGrows_per_s = 5.0f;
-  Change<V>& change = block.change;
   const Asked<V>& asked = block.state.asked;
-  const V asked_m = asked.length_m[0] + asked.length_m[1] + size(asked.turn_rad_s);
-  const auto comes = size(V(asked_m - change.asked_m)) > kGrows_per_s * tables.tick_s * asked_m;
-  const auto walks = is_to_walk(block.state), stops = change.stops != V{},
-             moves = both(change.stands == V{}, either(no(walks), no(comes)));
-  change.asked_m = asked.walks != V{} ? asked_m : V{};
+  V& asked_m = block.change.asked_m;
+  const V way_m = asked.length_m[0] + asked.length_m[1] + size(asked.turn_rad_s);
+  const auto comes = size(V(way_m - asked_m)) > kGrows_per_s * tables.tick_s * way_m;
+  const auto walks = is_to_walk(block.state), stops = block.change.stops != V{},
+             moves = both(block.change.stands == V{}, either(no(walks), no(comes)));
+  asked_m = asked.walks != V{} ? way_m : V{};
+  const auto ends = [&](bool may_move, Block<1>& one, auto& footing) {
+    plan_rest(tables, may_move, one, footing);
+  };
+  const auto comes_back = [&](bool may_move, Block<1>& one, auto& footing) {
+    walk_on(tables, may_move, one, footing);
+  };
+  const auto change = [&](Block<1>& one, const auto& plan) {
+    if constexpr (kUneven) {
+      change_over_ground(tables, one, plan);
+    } else {
+      NoFooting level;
+      plan(true, one, level);
+    }
+  };
   one_by_one<kWidth>(both(moves, both(no(walks), no(stops))), block,
-                     [&](Block<1>& one, int) { plan_rest(tables, one.state, one.change); });
+                     [&](Block<1>& one, int) { change(one, ends); });
   one_by_one<kWidth>(both(moves, both(walks, stops)), block,
-                     [&](Block<1>& one, int) { walk_on(tables, one.state, one.change); });
+                     [&](Block<1>& one, int) { change(one, comes_back); });
 }
 
 // Whether a flight is asked to be followed by another pace than was known; from time to time.
@@ -189,12 +216,36 @@ void choose_footholds(const Tables& tables, const Time<Floats<kWidth>>& time,
   const V is_first = chosen<V>(begins, 1.0f, 0.0f),
           is_open = chosen<V>(either(begins, settles), 1.0f, 0.0f);
   one_by_one<kWidth>(asks, block, [&](Block<1>& one, int w) {
-    const AskedFoothold step{
-        lane(asked.along.sine, w), lane(asked.along.cosine, w),
-        lane(asked.length_m, w),   lane(is_first, w) != 0.0f,
-        lane(is_open, w) != 0.0f,  is_to_walk(one.state) && one.change.closing == 0.0f};
+    const AskedFoothold step{lane(asked.along.sine, w), lane(asked.along.cosine, w),
+                             lane(asked.length_m, w),   lane(is_first, w) != 0.0f,
+                             lane(is_open, w) != 0.0f,  goes_on(one.state, one.change)};
     choose_foothold(tables, step, one);
   });
+}
+
+// One that is walked ahead asks for no ground. Its running step lands on the plane that was chosen
+// for it, and the next ones rise as the last one did.
+template <class V>
+void assume_foothold(const Time<V>& time, const AskedStep<V>& asked, State<V>& state,
+                     Footing<V>& footing) noexcept {
+  constexpr float kMostSteeper = 1.5f, kLeast_m = 1e-3f;
+  const auto begins = both(no(time.flies), state.tick == all<V>(1.0f));
+  const auto move = [&](const V& level_m, V& asked_m, V& landing_m) {
+    const V moved_m = level_m - asked_m;
+    landing_m = begins ? level_m : V(landing_m + moved_m);
+    asked_m = level_m;
+    return moved_m;
+  };
+  const V x_m = move(footing.level_x_m, footing.asked_x_m, state.landing_x_m),
+          z_m = move(footing.level_z_m, footing.asked_z_m, state.landing_z_m);
+  const auto far = [](const V& x, const V& z) { return root(V(x * x + z * z)); };
+  const V longer = far(state.landing_x_m, state.landing_z_m) /
+                   most(far(state.print_x_m, state.print_z_m), all<V>(kLeast_m)),
+          rise_m = asked.length_m == V{}
+                       ? V{}
+                       : V(-footing.print_y_m * least(longer, all<V>(kMostSteeper)));
+  footing.landing_y_m =
+      begins ? rise_m : V(footing.landing_y_m + rise_of(footing.landing, x_m, z_m));
 }
 
 // Where a flight begins, or its landing has moved, it is planned how it keeps clear of the ground.
@@ -232,7 +283,7 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
                 bool looks_ahead = true) noexcept;
 
 // Walks ahead, to know when legs will be at their reach: hips sink before that.
-template <bool kPaper>
+template <bool kPaper, bool kUneven>
 void look_ahead(const Tables& tables, Block<1>& block) noexcept {
   Change<float>& change = block.change;
   const int knot = sink_knot_ticks(tables), all_ticks = (kSinkKnots - 3) * knot,
@@ -243,7 +294,11 @@ void look_ahead(const Tables& tables, Block<1>& block) noexcept {
   NoFooting level;
   ahead.change.sink_ticks = 0.0f;
   for (int tick = gone; tick < all_ticks; ++tick) {
-    advance_on<1, kPaper>(tables, ahead, level, Poses{nullptr, nullptr, 0}, false);
+    if constexpr (kUneven) {
+      advance_on<1, kPaper>(tables, ahead, ahead.footing, Poses{nullptr, nullptr, 0}, false);
+    } else {
+      advance_on<1, kPaper>(tables, ahead, level, Poses{nullptr, nullptr, 0}, false);
+    }
     float& most_m = wants_m[tick / knot];
     most_m = most(most_m, ahead.change.wants_m);
   }
@@ -261,23 +316,6 @@ void look_ahead(const Tables& tables, Block<1>& block) noexcept {
   for (int k = 0; k < kSinkKnots; ++k) change.sink_m[k] = knots_m[k];
   change.foreseen_m = block.state.asked.length_m[0] + block.state.asked.length_m[1];
   change.sink_ticks = sinks ? static_cast<float>(all_ticks - gone) : 0.0f;
-}
-
-// On uneven ground a walk that is to end closes with the next step: a flight's landing has been
-// chosen, and room is made for it there.
-template <class V>
-void close_next(const Mask<V>& strikes, const State<V>& state, Change<V>& change) noexcept {
-  const auto ends = both(both(strikes, no(is_to_walk(state))), change.closing == V{});
-  change.stops = ends ? all<V>(1.0f) : change.stops;
-  for (V& length_m : change.length_m) length_m = ends ? V{} : length_m;
-}
-// Its hips rest as its foot lands.
-template <class V>
-void time_close(const Mask<V>& strikes, const State<V>& state, Change<V>& change) noexcept {
-  const auto closes = both(strikes, change.closing != V{});
-  const V ticks = state.roll_ticks + state.flight_ticks;
-  change.rest_ticks = closes ? ticks : change.rest_ticks;
-  change.closing_ticks = closes ? ticks : change.closing_ticks;
 }
 
 template <class V>
@@ -374,23 +412,29 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
   constexpr bool kUneven = kIsUneven<F>;
   const auto follows = change.is_new != V{};  // for a step has begun
   begin_walks(tables, block);
-  if constexpr (!kUneven) change_ends(tables, block);
+  if (!kUneven || looks_ahead) change_ends<kWidth, kUneven>(tables, block);
   const auto is_new = both(no(follows), change.is_new != V{}),
              is_short = either(either(change.starting != V{}, change.stops != V{}),
                                change.catch_ticks != V{});
-  if constexpr (kUneven) lean_into_slope(tables, change, footing);
+  if constexpr (kUneven) lean_into_slope(tables, state, change, footing);
   V left = all<V>(1.0f);
   if constexpr (kUneven) left = footing.left.x;
   smooth_asked(tables, change, left, state);
   if constexpr (kPaper) state.lean_rad = state.chest_ahead_rad = state.head_ahead_rad = {};
   const Time<V> time = advance_clock(tables, change, state);
   const AskedStep<V> asked = plan_landing(tables, time, change, state, footing);
-  if constexpr (kUneven) choose_footholds<kWidth>(tables, time, asked, block);
+  if constexpr (kUneven) {
+    if (looks_ahead) {
+      choose_footholds<kWidth>(tables, time, asked, block);
+    } else {
+      assume_foothold(time, asked, state, footing);
+    }
+  }
   Landing<V> landing = planned_landing(tables, time, asked.to, change, state);
   if constexpr (kUneven) {
     follow_ground(tables, time, asked, change, state, footing, landing);
     move_hips_ground(tables, time, landing, change, state, footing);
-    plan_rooms<kWidth>(tables, Mask<V>{}, block);
+    if (looks_ahead) plan_rooms<kWidth>(tables, Mask<V>{}, block);
   }
   const Stride<V> by_clock =
       read_by_clock(tables, time, landing, state.phase, time.share, time.u, change, state);
@@ -436,8 +480,11 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
       change_footing(landing, strikes, feet.flat_toe_m.y, footing);
       const V slow = slowness_of(tables, no(time.right), state, footing);
       change.slowness = strikes ? slow : change.slowness;
-      close_next(strikes, state, change);
     }
+    // A step whose plan changed late has not come over to its own stride yet.
+    landing.ratio = change.off_over.x != V{}
+                        ? mix(state.ratio_behind, landing.ratio, V(1.0f + change.off_over.x))
+                        : landing.ratio;
     change_feet(landing, strikes, feet, stride, state);
     change_weighted_legs(strikes, block.weighted);
     change_styled_feet(strikes, block.styled);
@@ -446,27 +493,25 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
     const V rate = keeps ? change.phase_rate : state.phase_rate;
     begin_lead(tables, strikes, phase, rate, state, change);
     begin_step(tables, time, strikes, change, state);
-    if constexpr (kUneven) {
-      time_close(strikes, state, change);
-    } else {
-      one_by_one<kWidth>(both(strikes, change.closing != V{}), block, [&](Block<1>& one, int) {
-        time_closing_step(tables, one.state, one.change);
-      });
-    }
+    one_by_one<kWidth>(both(strikes, change.closing != V{}), block, [&](Block<1>& one, int) {
+      if constexpr (kUneven) time_rest(tables, one.state, one.change);
+      time_closing_step(tables, one.state, one.change);
+    });
     rest(tables, change, state);
     if constexpr (kUneven) footing.next_rise = change.stands != V{} ? V{} : footing.next_rise;
   }
   count_last_roll(tables, strikes, change, block.told);
   if (any(lifts)) {
     begin_flight(tables, time, lifts, change, state);
-    if constexpr (kUneven) plan_rooms<kWidth>(tables, lifts, block);
+    if (kUneven && looks_ahead) plan_rooms<kWidth>(tables, lifts, block);
   }
-  if constexpr (!kUneven) {
-    if (!looks_ahead) return;
-    const auto looks = either(either(is_new, both(either(lifts, strikes), is_short)),
-                              both(is_to_walk(state), is_unforeseen(tables, state, change)));
-    one_by_one<kWidth>(looks, block, [&](Block<1>& one, int) { look_ahead<kPaper>(tables, one); });
-  }
+  if (!looks_ahead) return;
+  // Over uneven ground any change of pace asks for more than the tables know.
+  const auto changes = kUneven ? either(is_short, change.led != V{}) : is_short,
+             looks = either(either(is_new, both(either(lifts, strikes), changes)),
+                            both(is_to_walk(state), is_unforeseen(tables, state, change)));
+  one_by_one<kWidth>(looks, block,
+                     [&](Block<1>& one, int) { look_ahead<kPaper, kUneven>(tables, one); });
 }
 
 template <int kWidth, bool kPaper = false>

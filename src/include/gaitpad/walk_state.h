@@ -96,6 +96,7 @@ struct State {
   V frame_sine{}, frame_cosine{};
 };
 inline constexpr int kSinkKnots = 16;
+inline constexpr float kNever = 1e6f;  // ticks
 
 // A first step, or one whose pace is another one than that of the step before: the hips go to their
 // place at the coming strike along a quintic, and the phase at which the tables are read follows
@@ -106,8 +107,10 @@ struct Change {
   V shown = V{} + 1.0f;               // how much of the tables: 0 at rest
   V led{}, was_led{};                 // 1 or 0: this step, and the one before it
   V is_new{}, was_new{};              // 1: the plan has changed since the last tick; before that
-  // Of a roll: the tick from which on the hips lead, and the rate of what its pitch was off then.
-  V led_from{}, led_rate_rad{};
+  // Of a roll: the tick from which on the hips lead, the ticks after which it was to end before its
+  // plan changed, and the rate of what its pitch was off then. Of a flight that they have led from
+  // its middle on, led_from is -1.
+  V led_from{}, led_until = V{} + kNever, led_rate_rad{};
   Off<V> pelvis_x_m, pelvis_z_m;  // where the pelvis is, while it leads and a tick after
   V phase{}, phase_rate{};        // that are shown
   // What a changed plan has left, of the phase and of what shows: fades in off_ticks. The same, at
@@ -127,10 +130,10 @@ struct Change {
   // be.
   V resumes{}, catch_ticks{};
   // Of a flight: from where on, and over how much of it, its gap fades; the gaps of yaw, twist
-  // and roll, and how high the heel was to be there; the ticks from and over which its pitch's
-  // does, if its plan has changed.
+  // and roll, how high the heel was to be there, and how loosely its pitch was bounded; the ticks
+  // from and over which its pitch's does, if its plan has changed.
   V gap_begin{}, gap_lasts = V{} + 0.5f, gap_rad{}, gap_twist_rad{}, gap_roll_rad{};
-  V gap_high_m = V{} + 1.0f;
+  V gap_high_m = V{} + 1.0f, gap_loose_rad{};
   V pitch_begin{}, pitch_lasts{};
   V asked_ticks{};          // how long one that stands has been asked to walk
   V stepped_m{};            // the length that was asked for when the running step's landing settled
@@ -232,6 +235,12 @@ struct Footing {
   V level_m{};
   Off<V> off_m;
   V settle_ticks{}, drop_m{}, early_m{}, yield_m{};
+  // Of a step whose plan has changed: 1 in the next tick; from which tick of the flight on the hips
+  // may sink; what the flight's plane, the ground line, what is above it to keep clear and the
+  // rise with the hips were off the new ones, and how far the heel was below the line.
+  V is_new{}, sink_from{};
+  Slope<V> gap_plane;
+  V gap_line_m{}, gap_room_m{}, gap_rise_m{}, gap_under_m{};
   // The step along the heading, its ratio, and what the tables' ratio is off it; the share of the
   // wanted lengths that the ground leaves; the trunk's lean into the slope, forwards.
   V step_m{}, step_ratio{};

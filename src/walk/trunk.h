@@ -190,7 +190,7 @@ void nod(const Tables& tables, const Turn<V>& heading, const Bearing<V>& bearing
 inline constexpr float kPush_rad = 3.0f * kRadians,  // for a missing metre a second
     kFirstPush_rad = 2.0f * kRadians, kFirstFrom = 0.4f, kFirstAll = 0.8f;
 inline constexpr float kCalm = 0.25f, kSoftCalm_m_s = 0.1f;
-inline constexpr float kStill_rad = 1e-7f, kTurns_rad_s = 0.02f, kTurns_rad = 0.01f;
+inline constexpr float kStill_rad = 1e-7f, kTurns_rad_s = 0.02f, kTurns_rad = 0.003f;
 inline constexpr float kSteady_s = 0.3f;  // a walk is steady again so long after its hips have led
 
 // What a tick makes of it. `moves_m`: the pelvis, in this tick. True where chest and head are
@@ -255,14 +255,14 @@ Vec<V> head_turn(const Tables& tables, const Turn<V>& heading, const Trunk<V>& t
 
 // What a turn that `acts` is to be after its second difference was bounded by `most_rad`, where it
 // `eases`. What it is then off its goal fades away in kEases_s or, where it is far off, as much
-// later as half of the bound asks. `heading_rad`: the heading's own second difference.
+// later as a third of the bound asks. `heading_rad`: the heading's own second difference.
 template <class V>
 Vec<V> eased(const Tables& tables, const Vec<V>& goal, const V& most_rad, const V& heading_rad,
              const Mask<V>& acts, const Mask<V>& eases, Eased<V>& turn) noexcept {
   constexpr float kEases_s = 0.25f;
   constexpr int kNumbers = sizeof(Eased<V>) / sizeof(V);
   Eased<V> of = turn;
-  constexpr float kQuintic = 12.0f;  // of a quintic's greatest bend, 5.8 times its way, twice
+  constexpr float kQuintic = 17.0f;  // three times the greatest bend of a quintic over its way
   for (Off<V>& off : of.off) fade(of.ticks, off);
   const Vec<V> bend = goal + Vec<V>{of.off[0].x, of.off[1].x, of.off[2].x} - of.at - of.rate,
                turns{bend.x, V(bend.y + heading_rad), bend.z};

@@ -43,6 +43,7 @@ void settle(const V& goal, Smoothed<V>& value) noexcept {
 }
 
 // Head and chest turn before the pelvis does (people: by 0.3 s and less).
+inline constexpr float kChestAhead_s = 0.13f, kHeadAhead_s = 0.30f;
 template <class V>
 void lead_turn(const V& ahead_rad, const Filter& filter, Smoothed<V>& value) noexcept {
   constexpr float kStill_rad = 1e-7f;
@@ -81,7 +82,6 @@ void smooth_asked(const Tables& tables, const Change<V>& change, const V& left,
                   State<V>& state) noexcept {
   constexpr float kGravity_m_s2 = 9.81f;
   constexpr float kFirstStep = 0.9f;  // of the length asked for
-  constexpr float kChestAhead_s = 0.13f, kHeadAhead_s = 0.30f;
   const Asked<V>& asked = state.asked;
   const auto walks = is_to_walk(state);
   for (int side : {0, 1}) {

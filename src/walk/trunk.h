@@ -2,6 +2,8 @@
 // into a change of speed and as a style asks, chest and head turn ahead, weights share the spine's
 // bend, and the head looks. Where a walk is not steady chest and head turn no harder than in it.
 #pragma once
+#include <cstddef>
+
 #include "gaitpad/walk_model.h"
 #include "walk/chain_solve.h"
 #include "walk/idle.h"
@@ -85,14 +87,25 @@ Vec<V> every(const std::array<float, 3>& v) noexcept {
 
 // --- The trunk -----------------------------------------------------------------------------------
 
+// Room for the most joints of a path, of which few are used: the others are not set to 0.
+template <class T>
+class OfPath {
+ public:
+  T& operator[](int i) noexcept { return reinterpret_cast<T*>(bytes_)[i]; }
+  const T& operator[](int i) const noexcept { return reinterpret_cast<const T*>(bytes_)[i]; }
+
+ private:
+  alignas(T) std::byte bytes_[kMaxBodyPath * sizeof(T)];
+};
+
 // The joints from the pelvis to the head, and how they are turned and where they are in the step
 // frame.
 template <class V>
 struct Trunk {
   Turn<V> base;  // the pelvis'
   Vec<V> base_m;
-  Turn<V> own[kMaxBodyPath], turned[kMaxBodyPath];
-  Vec<V> place_m[kMaxBodyPath];
+  OfPath<Turn<V>> own, turned;
+  OfPath<Vec<V>> place_m;
 };
 
 inline int joints_of_path(const Tables& tables) noexcept {
@@ -116,14 +129,17 @@ void place_trunk(const Tables& tables, int from, Trunk<V>& trunk) noexcept {
                        below(trunk, i) * every<V>(tables.path[i].offset_m);
 }
 
-// Bends it by `turn(share)` about each joint of the spine, by its share.
+// Bends it by `turn(share)` about each joint of the spine, by its share, `where`.
 template <class V, class TurnOf>
-void bend(const Tables& tables, const TurnOf& turn, Trunk<V>& trunk) noexcept {
+void bend(const Tables& tables, const TurnOf& turn, const Mask<V>& where,
+          Trunk<V>& trunk) noexcept {
   Turn<V> above = trunk.base;
   for (int i = 0; i < joints_of_path(tables); ++i) {
     const PathJoint& joint = tables.path[i];
-    if (joint.bends > 0.0f)
-      trunk.own[i] = unit(back(above) * turn(all<V>(joint.bends)) * above * trunk.own[i]);
+    if (joint.bends > 0.0f) {
+      const Turn<V> bent = unit(back(above) * turn(all<V>(joint.bends)) * above * trunk.own[i]);
+      trunk.own[i] = chosen(where, bent, trunk.own[i]);
+    }
     above = trunk.turned[i] = above * trunk.own[i];
   }
 }
@@ -150,15 +166,13 @@ template <class V>
 void lean_trunk(const Tables& tables, const Turn<V>& heading, const Bearing<V>& bearing,
                 Trunk<V>& trunk) noexcept {
   const Turn<V> from_heading = back(heading);
-  bend(
-      tables,
-      [&](const V& share) {
-        return heading *
-               (turn_y(V(share * bearing.ahead_rad)) * turn_z(V(-share * bearing.left_rad)) *
-                turn_x(V(share * bearing.forward_rad))) *
-               from_heading;
-      },
-      trunk);
+  const auto turn = [&](const V& share) {
+    return heading *
+           (turn_y(V(share * bearing.ahead_rad)) * turn_z(V(-share * bearing.left_rad)) *
+            turn_x(V(share * bearing.forward_rad))) *
+           from_heading;
+  };
+  bend(tables, turn, no(Mask<V>{}), trunk);
 }
 template <class V>
 void nod(const Tables& tables, const Turn<V>& heading, const Bearing<V>& bearing,
@@ -176,7 +190,7 @@ void nod(const Tables& tables, const Turn<V>& heading, const Bearing<V>& bearing
 inline constexpr float kPush_rad = 3.0f * kRadians,  // for a missing metre a second
     kFirstPush_rad = 2.0f * kRadians, kFirstFrom = 0.4f, kFirstAll = 0.8f;
 inline constexpr float kCalm = 0.25f, kSoftCalm_m_s = 0.1f;
-inline constexpr float kStill_rad = 1e-7f, kTurns_rad_s = 1e-3f;
+inline constexpr float kStill_rad = 1e-7f, kTurns_rad_s = 0.02f, kTurns_rad = 0.003f;
 inline constexpr float kSteady_s = 0.3f;  // a walk is steady again so long after its hips have led
 
 // What a tick makes of it. `moves_m`: the pelvis, in this tick. True where chest and head are
@@ -210,8 +224,11 @@ Mask<V> advance_poise(const Tables& tables, const Hips<V>& hips, const Mask<V>& 
     poise.push_rad.x = still ? V{} : poise.push_rad.x;
     poise.push_rad.v = still ? V{} : poise.push_rad.v;
   }
-  return either(either(poise.unsteady_ticks != V{}, poise.push_rad.x != V{}),
-                size(state.head_ahead_rad.v) > all<V>(kTurns_rad_s));
+  // Below these it is ahead by so little more that its turn is bounded anyway.
+  const V ahead_rad = kHeadAhead_s * (is_to_walk(state) ? a.turn_rad_s : V{});
+  const auto turns = either(size(state.head_ahead_rad.v) > all<V>(kTurns_rad_s),
+                            size(V(ahead_rad - state.head_ahead_rad.x)) > all<V>(kTurns_rad));
+  return either(either(poise.unsteady_ticks != V{}, poise.push_rad.x != V{}), turns);
 }
 
 // Twice the axis of a turn by the sine of its half: about its rotation vector, of small turns.
@@ -238,14 +255,14 @@ Vec<V> head_turn(const Tables& tables, const Turn<V>& heading, const Trunk<V>& t
 
 // What a turn that `acts` is to be after its second difference was bounded by `most_rad`, where it
 // `eases`. What it is then off its goal fades away in kEases_s or, where it is far off, as much
-// later as half of the bound asks. `heading_rad`: the heading's own second difference.
+// later as a third of the bound asks. `heading_rad`: the heading's own second difference.
 template <class V>
 Vec<V> eased(const Tables& tables, const Vec<V>& goal, const V& most_rad, const V& heading_rad,
              const Mask<V>& acts, const Mask<V>& eases, Eased<V>& turn) noexcept {
   constexpr float kEases_s = 0.25f;
   constexpr int kNumbers = sizeof(Eased<V>) / sizeof(V);
   Eased<V> of = turn;
-  constexpr float kQuintic = 12.0f;  // of a quintic's greatest bend, 5.8 times its way, twice
+  constexpr float kQuintic = 17.0f;  // three times the greatest bend of a quintic over its way
   for (Off<V>& off : of.off) fade(of.ticks, off);
   const Vec<V> bend = goal + Vec<V>{of.off[0].x, of.off[1].x, of.off[2].x} - of.at - of.rate,
                turns{bend.x, V(bend.y + heading_rad), bend.z};
@@ -445,7 +462,7 @@ void look_along(const Tables& tables, const Vec<V>& direction, const V& share, c
   const Gaze<V> to =
       gaze<V>(tables, below(trunk, neck) * back(every<V>(tables.chest_standing)), direction);
   const Turn<V> wanted = between(own, to.head, V(within(share, 0.0f, 1.0f) * to.share));
-  Turn<V> was[kMaxBodyPath];
+  OfPath<Turn<V>> was;
   for (int i = neck; i < joints; ++i) was[i] = trunk.turned[i];
   turn_head(tables, wanted * back(trunk.turned[joints - 1]), trunk);
   for (int i = neck; i < joints; ++i) trunk.turned[i] = chosen(looks, trunk.turned[i], was[i]);

@@ -321,13 +321,8 @@ void pose_body(const Tables& tables, const BodyTick<Floats<kWidth>>& tick,
     const auto off = both(acts, poise.chest.ticks > V{});
     if (any(off)) {
       const Turn<V> turn = chosen(off, seen(turn_of(to) * back(turn_of(goal))), none);
-      Trunk<V> bent = trunk;
       bend(
-          tables, [&](const V& share) { return between(none, turn, share); }, bent);
-      for (int i = 0; i < joints; ++i) {
-        trunk.own[i] = chosen(off, bent.own[i], trunk.own[i]);
-        trunk.turned[i] = chosen(off, bent.turned[i], trunk.turned[i]);
-      }
+          tables, [&](const V& share) { return between(none, turn, share); }, off, trunk);
     }
   }
   poise.acts = chosen<V>(acts, 1.0f, 0.0f);

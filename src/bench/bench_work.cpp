@@ -118,8 +118,8 @@ std::array<IkRow, 6> foot_rows(const LegBuild& leg, const IkFrame& frame, bool i
           row(other, across),   row(effector + kSideLever_m * leg.side, across)};
 }
 
-// Both legs of one tick, solved by the walk's closed form. They start at the pose of the tick before
-// and move to the walk's solution.
+// Both legs of one tick, solved by the walk's closed form. They start at the pose of the tick
+// before and move to the walk's solution.
 struct RobustLeg {
   Vec<float> ankle_m;
   Turn<float> foot;
@@ -189,8 +189,8 @@ int solve(RobustLegs& both) {
   for (const RobustLeg& leg : both) {
     float start_rad[kLegDofs], off_rad[kLegDofs]{};
     std::copy(leg.start_rad.begin(), leg.start_rad.end(), start_rad);
-    const auto solved = solve_leg<float>(leg.thigh_m, leg.shank_m, leg.ankle_m, leg.foot,
-                                               start_rad, off_rad);
+    const auto solved =
+        solve_leg<float>(leg.thigh_m, leg.shank_m, leg.ankle_m, leg.foot, start_rad, off_rad);
     reached += solved.short_m == 0.0f;
     benchmark::DoNotOptimize(solved);
     benchmark::DoNotOptimize(off_rad);

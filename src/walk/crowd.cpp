@@ -27,8 +27,7 @@ class WalkBlock {
   virtual void ask(const GaitParams& params, int lane) noexcept = 0;
   virtual void place(const Placement& placed, int lane) noexcept = 0;
   virtual void keep_root() noexcept = 0;
-  virtual void advance(const Tables& tables, IkMode mode,
-                       const Poses& poses) noexcept = 0;
+  virtual void advance(const Tables& tables, IkMode mode, const Poses& poses) noexcept = 0;
   double tick_s = 1.0 / 240.0;  // length of the last tick
 };
 
@@ -92,8 +91,7 @@ class BlockOf final : public WalkBlock {
     before_.beside_z_m = block_.told.pelvis_z_m;
     std::copy_n(block_.origin, kWidth, before_.origin);
   }
-  void advance(const Tables& tables, IkMode mode,
-               const Poses& poses) noexcept override {
+  void advance(const Tables& tables, IkMode mode, const Poses& poses) noexcept override {
     if constexpr (kWidth == 1) {
       if (mode == IkMode::paper) {
         advance_by_paper(tables, block_, poses);
@@ -220,7 +218,7 @@ WalkState Crowd::state(int member) const noexcept {
   const WalkModel& model = *models_[member];
   place(state.placed, 0, state.walk);
   report(model, tables_of(model, state.tick_s / tick_parts(state.tick_s)), state.walk,
-               blocks_[block]->root_before(lane), roots_m_[member], local(member), state.frame);
+         blocks_[block]->root_before(lane), roots_m_[member], local(member), state.frame);
   state.frame.bad_inputs = bad_inputs_[member];
   return state;
 }

@@ -494,8 +494,8 @@ inline void time_rest(const Tables& tables, const State<float>& state,
   const Behind none[2] = {};
   const float least_s = kLeastRest_s * tables.time_scale;
   change.rest_ticks = ticks_of(best_rest_s(of_time(change.pelvis_z_m, tables.rest_lead_m, sign),
-                                           of_time(change.pelvis_x_m, -stands_m, 1.0f), false, least_s,
-                                           most(least_s, longest_s), none),
+                                           of_time(change.pelvis_x_m, -stands_m, 1.0f), false,
+                                           least_s, most(least_s, longest_s), none),
                                tick_s);
 }
 

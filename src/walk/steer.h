@@ -11,9 +11,7 @@ namespace gaitpad {
 template <int kWidth>
 void ask(const GaitParams& params, int walk, Block<kWidth>& block) noexcept {
   using V = Floats<kWidth>;
-  const auto set = [walk](double number, V& of) {
-    set_lane(static_cast<float>(number), walk, of);
-  };
+  const auto set = [walk](double number, V& of) { set_lane(static_cast<float>(number), walk, of); };
   Asked<V>& asked = block.state.asked;
   set(params.walking, asked.walks);
   if (params.walking) {

@@ -250,8 +250,7 @@ void fill_upper_body(const WalkModel& model, BuildTables& tables) {
     return is_on_path(joint) || (joint == 0 && cycle.pelvis != 0);
   };
   std::vector<int> moved = model.moving;
-  for (const int joint : model.still)
-    (turns(joint) ? moved : tables.still).push_back(joint);
+  for (const int joint : model.still) (turns(joint) ? moved : tables.still).push_back(joint);
   const std::size_t joints = cycle.skeleton.joints.size(), count = moved.size();
   tables.upper_rows.resize((kKnots + 3) * count * 4);
   for (std::size_t i = 0; i < count; ++i) {

@@ -130,8 +130,8 @@ struct BuildTables : BuildNumbers {
   std::array<float, 3> neck_m;
   std::array<float, kBodyNumbers> plain_body;  // UpperBodyParams of no style
   std::array<float, 2> most_elbow_swing;
-  std::vector<int> still;                  // always the identity
-  std::vector<std::pair<int, quat>> kept;  // twist joints in the legs
+  std::vector<int> still;                    // always the identity
+  std::vector<std::pair<int, quat>> kept;    // twist joints in the legs
   std::vector<ArmBones::Link> above_pelvis;  // from the root to its parent; none: it is the root
   std::array<float, 3> pelvis_offset_m;
   std::array<float, 4> pelvis_standing;  // w, x, y, z
@@ -146,7 +146,8 @@ struct Filters {
   float mean_pull;  // of the two filters that a leg's running mean goes through
 };
 
-// All that a tick reads beside the walks: a build, its ground, and the filters of the tick's length.
+// All that a tick reads beside the walks: a build, its ground, and the filters of the tick's
+// length.
 struct Tables : BuildNumbers, Filters {
   const StrideRows& forward;
   const BackRows& back;

@@ -3,8 +3,8 @@
 #pragma once
 #include <cstdint>
 
-#include "walk/pose_places.h"
 #include "walk/block.h"
+#include "walk/pose_places.h"
 #include "walk/tables.h"
 
 namespace gaitpad {

@@ -13,7 +13,7 @@ Side side_of(bool right) noexcept { return right ? kRightSide : kLeftSide; }
 // Where a walk is in its step, as its last tick left it.
 struct Moment {
   bool stands, settles, struck, flies, right;  // the right foot swings, or has just landed
-  int ticks;                          // of the step
+  int ticks;                                   // of the step
 };
 Moment moment_of(const Block<1>& block) noexcept {
   const State<float>& state = block.state;
@@ -50,7 +50,7 @@ struct JointFrame {
 JointFrame joint_frame(const Skeleton& skeleton, const vec3& root_m, std::span<const quat> local,
                        int joint) noexcept {
   JointFrame frame{vec3(0.0), local[joint]};
-  for (; joint > 0; ) {
+  for (; joint > 0;) {
     const Joint& of = skeleton.joints[joint];
     frame.place_m = of.offset_m + local[joint] * frame.place_m;
     joint = of.parent;
@@ -73,10 +73,10 @@ void report_feet(const WalkModel& model, const Tables& tables, const Placement& 
     frame.heel_ground_m = frame.toe_ground_m = {placed.place_m.y, placed.place_m.y};
     return;
   }
-  const std::array<double, 4> ground = heights_at<4>(
-      Floor{*tables.terrain, placed},
-      {from_world(placed, frame.heel_m[0]), from_world(placed, frame.heel_m[1]),
-       from_world(placed, frame.toe_m[0]), from_world(placed, frame.toe_m[1])});
+  const std::array<double, 4> ground =
+      heights_at<4>(Floor{*tables.terrain, placed},
+                    {from_world(placed, frame.heel_m[0]), from_world(placed, frame.heel_m[1]),
+                     from_world(placed, frame.toe_m[0]), from_world(placed, frame.toe_m[1])});
   for (const int side : {0, 1}) {
     frame.heel_ground_m[side] = ground[side] + placed.place_m.y;
     frame.toe_ground_m[side] = ground[2 + side] + placed.place_m.y;
@@ -107,9 +107,7 @@ void report(const WalkModel& model, const Tables& tables, const Block<1>& block,
   const Told<float>& told = block.told;
   const Placement& placed = block.placed[0];
   const Moment at = moment_of(block);
-  frame.stage = at.flies                    ? Stage::flight
-                : at.stands && !at.settles ? Stage::idle
-                                           : Stage::roll;
+  frame.stage = at.flies ? Stage::flight : at.stands && !at.settles ? Stage::idle : Stage::roll;
   // Of one that stands: the foot that has landed last.
   frame.swing = at.stands ? side_of(!at.right) : side_of(at.flies == at.right);
   int step_ticks = at.ticks, last_ticks = static_cast<int>(told.step_ticks[0]);
@@ -135,8 +133,7 @@ void report(const WalkModel& model, const Tables& tables, const Block<1>& block,
                               : (frame.stride_m[0] + frame.stride_m[1]) /
                                     (ticks * static_cast<double>(tables.tick_s));
   const Placement root = root_of(block);
-  frame.root_moved_m =
-      from_world({vec3(0.0), before.heading_rad}, root.place_m - before.place_m);
+  frame.root_moved_m = from_world({vec3(0.0), before.heading_rad}, root.place_m - before.place_m);
   frame.root_turned_rad = root.heading_rad - before.heading_rad;
   frame.root_m = to_world(placed, root.place_m);
   frame.heading_rad = placed.heading_rad + root.heading_rad;
@@ -154,8 +151,7 @@ std::array<LegAngles, 2> leg_angles(const WalkModel& model, const Pose& pose) no
   for (const int side : {0, 1}) {
     const auto turn = [&](int j) {
       const LegJointFrame& frame = model.leg[side].joint[j];
-      return glm::conjugate(frame.before) * pose.local[frame.joint] *
-             glm::conjugate(frame.after);
+      return glm::conjugate(frame.before) * pose.local[frame.joint] * glm::conjugate(frame.after);
     };
     const AnglesXzy hip = angles_xzy(turn(0)), knee = angles_xzy(turn(1)),
                     ankle = angles_xzy(turn(2));

@@ -377,9 +377,8 @@ StrideScale stride_scale(const GaitCycle& cycle, double scale, double ratio) noe
   to.hips_m = 0.5 * (cycle.leg[0].hip_m + cycle.leg[1].hip_m);
   to.stand_roll_rad = cycle.strides->stand_roll_rad;
   const double turns = ratio / scale;
-  to.standing_m = {
-      pelvis_turned(to.hips_m, 0.0, vec3(0.0, 0.0, to.stand_roll_rad)),
-      pelvis_turned(to.hips_m, 0.0, vec3(0.0, 0.0, turns * to.stand_roll_rad))};
+  to.standing_m = {pelvis_turned(to.hips_m, 0.0, vec3(0.0, 0.0, to.stand_roll_rad)),
+                   pelvis_turned(to.hips_m, 0.0, vec3(0.0, 0.0, turns * to.stand_roll_rad))};
   for (int side : {0, 1})
     to.apart_m[side] = vec3(cycle.leg[side].hip_m.x, 0.0, to.hips_m.z) * (scale - ratio);
   return to;

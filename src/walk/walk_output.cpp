@@ -39,10 +39,10 @@ WalkEvents walk_events(const WalkFrame& before, const WalkState& state) noexcept
   const auto planted_m = [&](WalkEventKind kind, Side side) {
     const bool swings = (side == kRightSide) == (walk.state.right_swings != 0.0f);
     if (!swings) return step.place_m;
-    return to_world(step, kind == WalkEventKind::toe_off
-                              ? vec3(walk.state.toe_x_m, walk.footing.toe_y_m, walk.state.toe_z_m)
-                              : vec3(walk.state.print_x_m, walk.footing.print_y_m,
-                                     walk.state.print_z_m));
+    return to_world(step,
+                    kind == WalkEventKind::toe_off
+                        ? vec3(walk.state.toe_x_m, walk.footing.toe_y_m, walk.state.toe_z_m)
+                        : vec3(walk.state.print_x_m, walk.footing.print_y_m, walk.state.print_z_m));
   };
   const auto add = [&](WalkEventKind kind, Side side) {
     events.event[events.count++] = {kind, side, to_world(state.placed, planted_m(kind, side))};

@@ -144,8 +144,7 @@ TEST(WalkStyle, ALimpLeansOverTheSoreLegWhileItStands) {
     // The knee of the uninjured leg straightens in mid-stance.
     const bool is_middle = 2.0f * s.walk.state.tick == s.walk.state.flight_ticks;
     if (s.frame.swing == kLeftSide && is_middle)
-      knee_rad =
-          std::max(knee_rad, leg_angles(walker.model(), walker.pose())[kRightSide][kKneeX]);
+      knee_rad = std::max(knee_rad, leg_angles(walker.model(), walker.pose())[kRightSide][kKneeX]);
   }
   EXPECT_GT(over_left, 5.0);
   EXPECT_LE(knee_rad, 12.0 * kDegree);

@@ -6,7 +6,6 @@
 #include <limits>
 #include <random>
 
-
 namespace gaitpad {
 namespace {
 

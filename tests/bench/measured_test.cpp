@@ -24,8 +24,7 @@ TEST(BenchRow, QuantilesLieBetweenTheRounds) {
 
 TEST(BenchList, ARowTellsItsRatioToItsPeerAndWhetherItsBoundIsMet) {
   const Work peer = work("playback"), met = work("fast", 2.0), missed = work("slow", 2.0);
-  const std::vector<BenchRow> rows = {
-      {&peer, {100.0}}, {&met, {200.0}}, {&missed, {201.0}}};
+  const std::vector<BenchRow> rows = {{&peer, {100.0}}, {&met, {200.0}}, {&missed, {201.0}}};
   EXPECT_FALSE(json_of(rows[0], rows).contains("met"));
   EXPECT_DOUBLE_EQ(json_of(rows[1], rows)["ratio"], 2.0);
   EXPECT_TRUE(json_of(rows[1], rows)["met"].get<bool>());

@@ -106,8 +106,11 @@ TEST(LegSolve, GoesAsFarAsTheGeneralSolver) {
     const auto row = [&](const vec3& point, const vec3& direction) {
       return IkRow{point, direction, glm::dot(direction, end.position_m + end.rotation * point)};
     };
-    rows = {row(points[0], kLeft), row(points[0], kUp), row(points[0], kForward),
-            row(points[1], end.rotation * kLeft), row(points[1], end.rotation * kUp),
+    rows = {row(points[0], kLeft),
+            row(points[0], kUp),
+            row(points[0], kForward),
+            row(points[1], end.rotation * kLeft),
+            row(points[1], end.rotation * kUp),
             row(points[2], end.rotation * kUp)};
     ASSERT_EQ(solve_robust(chain, rows, RobustOptions{}, general).status, IkStatus::converged);
     Angles moved;

@@ -86,8 +86,7 @@ class Alone {
     quat* local = pose.local.data();
     vec3* root = &pose.root_m;
     const Poses poses{&local, &root, 1};
-    mode_ == IkMode::paper ? advance_by_paper(tables, block, poses)
-                           : advance(tables, block, poses);
+    mode_ == IkMode::paper ? advance_by_paper(tables, block, poses) : advance(tables, block, poses);
   }
   void walk(const GaitParams& params, int ticks) {
     for (int tick = 0; tick < ticks; ++tick) step(params);

@@ -103,7 +103,8 @@ void measure() {
   constexpr int kCrowd = 1000;
   row("1,000 in lanes of 1", new_ns<1>(tables, moments, kCrowd));
   row("1,000 in lanes of 4", new_ns<4>(tables, moments, kCrowd));
-  if (__builtin_cpu_supports("avx2")) row("1,000 in lanes of 8", new_ns<8>(tables, moments, kCrowd));
+  if (__builtin_cpu_supports("avx2"))
+    row("1,000 in lanes of 8", new_ns<8>(tables, moments, kCrowd));
   if (__builtin_cpu_supports("avx512dq"))
     row("1,000 in lanes of 16", new_ns<16>(tables, moments, kCrowd));
   // Four walks of the styles of `gaitpad bench`, over four even ones; alone, and side by side.

@@ -529,8 +529,8 @@ TEST(Joints, BetweenRootAndPelvisTurnWithTheHeading) {
   Alone walk(model);
   move_walk(placed, 0, walk.block);
   walk.walk(params_of(0.2, 0.8), 6 * kRate);
-  const double heading_rad = 0.5 + walk.block.origin[0].heading_rad +
-                             static_cast<double>(walk.block.state.heading_rad);
+  const double heading_rad =
+      0.5 + walk.block.origin[0].heading_rad + static_cast<double>(walk.block.state.heading_rad);
   EXPECT_LT(glm::length(turned_by(rotation_y(heading_rad + 0.7), root)), 1e-5);
 }
 

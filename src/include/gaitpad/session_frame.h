@@ -47,9 +47,9 @@ struct WalkerFrame {
   GaitOverrides overrides;
   // The legs' angles in the pose; signs as in gaitpad/limbs.h.
   std::array<LegAngles, 2> angles_rad{};
-  double phase = 0.0;            // phase of the source's cycle, 0 .. 1 from the right heel strike
-                                 // on
-  double presence = 0.0;         // share of the source's motion that shows: 0 standing .. 1 walking
+  double phase = 0.0;     // phase of the source's cycle, 0 .. 1 from the right heel strike
+                          // on
+  double presence = 0.0;  // share of the source's motion that shows: 0 standing .. 1 walking
   std::int64_t ik_failures = 0;
 };
 

@@ -79,7 +79,7 @@ struct WalkState {
   // and the heading; whole turns add up.
   Placement root;
   double tick_s = 1.0 / 240.0;  // length of the last tick
-  Block<1> walk;          // what the next tick begins from
+  Block<1> walk;                // what the next tick begins from
 };
 
 // Makes a character stand at `place_m`, facing +z, on its terrain; the height of `place_m` is

@@ -138,7 +138,7 @@ struct Change {
   V asked_ticks{};          // how long one that stands has been asked to walk
   V stepped_m{};            // the length that was asked for when the running step's landing settled
   V slowness = V{} + 1.0f;  // factor on the step's times: on stairs steps take longer
-  V by_paper{};  // 1: State::leg_rad are whole angles, as IkMode::paper solves them
+  V by_paper{};             // 1: State::leg_rad are whole angles, as IkMode::paper solves them
   // What is asked of the coming landing. 1: it is to be here; else a push moves it by so much, and
   // 1: the landing after it.
   V is_aimed{}, aim_x_m{}, aim_z_m{}, aim_rad{}, push_x_m{}, push_z_m{}, push_waits{};
@@ -261,7 +261,7 @@ struct Told {
   // Landings so far, of which so many overhang an edge; the length of each foot's last step; ticks
   // of the last step and of the one before it.
   V steps[2]{}, overhangs{}, stride_m[2]{}, step_ticks[2]{};
-  V struck{};  // 1: a foot has landed in this tick, which still shows its flight
+  V struck{};        // 1: a foot has landed in this tick, which still shows its flight
   V settle_ticks{};  // after the last landing, until the report says that the walk stands
   // Where the pelvis is beside the hips' even way, to the left and ahead.
   V pelvis_x_m{}, pelvis_z_m{};

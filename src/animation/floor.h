@@ -3,8 +3,8 @@
 #pragma once
 #include <array>
 
+#include "gaitpad/placement.h"
 #include "gaitpad/terrain.h"
-#include "gaitpad/walk.h"
 
 namespace gaitpad {
 

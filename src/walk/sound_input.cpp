@@ -1,11 +1,11 @@
 #include "walk/sound_input.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 
 #include "control/params_range.h"
+#include "walk/steer.h"
 
 namespace gaitpad {
 
@@ -32,9 +32,9 @@ GaitParams mended_params(const GaitParams& params, WalkState& state) noexcept {
   in_force.hip_sway = walk.sway.x;
   in_force.hip_bounce = walk.bounce.x;
   if (state.walk.styled.asked != 0.0f) {
-    std::array<double, kBodyNumbers> body;
+    BodyNumbers body;
     std::copy_n(state.walk.styled.goal, body.size(), body.begin());
-    in_force.body = std::bit_cast<UpperBodyParams>(body);
+    in_force.body = body_params(body);
   }
   const ParamsRange& range = params_range();
   GaitParams mended = params;

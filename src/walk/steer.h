@@ -1,11 +1,26 @@
 // What a walk is asked for, as its tick reads it.
 #pragma once
-#include <bit>
+#include <array>
+#include <cstring>
 
 #include "gaitpad/gait_params.h"
 #include "walk/block.h"
 
 namespace gaitpad {
+
+// A style's numbers of the upper body in the order of BodyNumber, and back.
+using BodyNumbers = std::array<double, kBodyNumbers>;
+static_assert(sizeof(UpperBodyParams) == sizeof(BodyNumbers));
+inline BodyNumbers body_numbers(const UpperBodyParams& params) noexcept {
+  BodyNumbers numbers;
+  std::memcpy(numbers.data(), &params, sizeof numbers);
+  return numbers;
+}
+inline UpperBodyParams body_params(const BodyNumbers& numbers) noexcept {
+  UpperBodyParams params;
+  std::memcpy(static_cast<void*>(&params), numbers.data(), sizeof numbers);
+  return params;
+}
 
 // A walk that is to end keeps its steps' times and lengths.
 template <int kWidth>
@@ -27,7 +42,7 @@ void ask(const GaitParams& params, int walk, Block<kWidth>& block) noexcept {
   }
   Styled<V>& styled = block.styled;
   set(!(params.body == UpperBodyParams{}), styled.asked);
-  const auto body = std::bit_cast<std::array<double, kBodyNumbers>>(params.body);
+  const BodyNumbers body = body_numbers(params.body);
   for (int n = 0; n < kBodyNumbers; ++n) set(body[n], styled.goal[n]);
   Weighted<V>& weighted = block.weighted;
   bool is_even = true;

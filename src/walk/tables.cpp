@@ -1,11 +1,11 @@
 #include "walk/tables.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
 #include "gaitpad/curve.h"
 #include "motion/stencil.h"
+#include "walk/steer.h"
 
 namespace gaitpad {
 namespace {
@@ -221,7 +221,7 @@ void fill_arms(const WalkModel& model, BuildTables& tables) {
   }
   tables.arm_m = static_cast<float>(body.arm_m);
   tables.shoulder_height_m = static_cast<float>(body.shoulder_height_m);
-  const auto plain = std::bit_cast<std::array<double, kBodyNumbers>>(UpperBodyParams{});
+  const BodyNumbers plain = body_numbers(UpperBodyParams{});
   for (int n = 0; n < kBodyNumbers; ++n) tables.plain_body[n] = static_cast<float>(plain[n]);
 }
 

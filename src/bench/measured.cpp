@@ -21,9 +21,9 @@ constexpr double kFrame_ns = 1e9 / 60.0;
 
 // Keeps Google Benchmark's result: this thread's processor time, which other programs do not
 // affect, or the elapsed time if there are several threads.
-class Block : public benchmark::BenchmarkReporter {
+class TimedBlock : public benchmark::BenchmarkReporter {
  public:
-  explicit Block(bool has_threads) : has_threads_(has_threads) {}
+  explicit TimedBlock(bool has_threads) : has_threads_(has_threads) {}
   bool ReportContext(const Context&) override { return true; }
   void ReportRuns(const std::vector<Run>& runs) override {
     for (const Run& run : runs) {
@@ -40,14 +40,14 @@ class Block : public benchmark::BenchmarkReporter {
 };
 
 // Runs `passes` passes of a work or, if 0, as many as take kBlock_s.
-Block measured_block(const Work& work, std::int64_t passes) {
+TimedBlock measured_block(const Work& work, std::int64_t passes) {
   benchmark::ClearRegisteredBenchmarks();
   auto* registered = benchmark::RegisterBenchmark("block", [&work](benchmark::State& state) {
     for (auto _ : state) work.pass();
   });
   if (work.is_on_all_cores) registered->UseRealTime();
   passes > 0 ? registered->Iterations(passes) : registered->MinTime(kBlock_s);
-  Block block(work.is_on_all_cores);
+  TimedBlock block(work.is_on_all_cores);
   benchmark::RunSpecifiedBenchmarks(&block);
   return block;
 }
@@ -72,7 +72,7 @@ std::vector<BenchRow> measured(const std::vector<Work>& works, int rounds, const
     for (std::size_t i = 0; i < works.size(); ++i) {
       const Work& work = works[i];
       if (round % work.every != 0) continue;
-      const Block block = block_of(work, passes[i]);
+      const TimedBlock block = block_of(work, passes[i]);
       rows[i].ns.push_back(block.pass_ns / work.units);
     }
   }

@@ -46,6 +46,14 @@ template <class V>
 void smooth_body(const Tables& tables, const Mask<V>& is_styled, Styled<V>& styled) noexcept {
   constexpr float kSettled = 1e-5f;
   const auto asked = styled.asked != V{}, acted = styled.acts != V{};
+  // Mostly all of them have been there for long.
+  auto moves = both(is_styled, acted != asked);
+  for (int n = 0; n < kBodyNumbers; ++n) {
+    const V goal = asked ? styled.goal[n] : all<V>(tables.plain_body[n]);
+    moves =
+        either(moves, both(is_styled, either(styled.body[n].x != goal, styled.body[n].v != V{})));
+  }
+  if (!any(moves)) return;
   auto plain = no(asked);
   for (int n = 0; n < kBodyNumbers; ++n) {
     const V none = all<V>(tables.plain_body[n]), goal = asked ? styled.goal[n] : none;
@@ -54,11 +62,11 @@ void smooth_body(const Tables& tables, const Mask<V>& is_styled, Styled<V>& styl
     const auto there =
         both(size(V(number.x - goal)) < all<V>(kSettled), size(number.v) < all<V>(kSettled));
     const V value = there ? goal : number.x, rate = there ? V{} : number.v;
-    styled.body[n].x = is_styled ? value : styled.body[n].x;
-    styled.body[n].v = is_styled ? rate : styled.body[n].v;
+    styled.body[n].x = moves ? value : styled.body[n].x;
+    styled.body[n].v = moves ? rate : styled.body[n].v;
     plain = both(plain, value == none);
   }
-  styled.acts = chosen<V>(plain, 0.0f, 1.0f);
+  styled.acts = moves ? chosen<V>(plain, 0.0f, 1.0f) : styled.acts;
 }
 
 // 1 in the middle of the time that a leg stands alone, 0 in that of the other.
@@ -276,19 +284,22 @@ void pose_body(const Tables& tables, const BodyTick<Floats<kWidth>>& tick,
   lean_trunk(tables, heading, bearing, trunk);
   // Arms keep hanging as they did.
   Turn<V> shoulder[2];
-  const auto turn_shoulder = [&](int side, const Turn<V>& turn) {
+  const auto turn_shoulder = [&](int side, const Turn<V>& turn, const Mask<V>& where) {
+    if (!any(where)) return;
     const ArmBones& bones = tables.arm[side];
     Turn<V> above = below(trunk, bones.on_trunk);
     for (int i = bones.on_trunk; i < bones.shoulder; ++i)
       above = above * read_joint<V>(bones.path[i].joint, is, poses);
-    shoulder[side] = unit(back(above) * turn * above * shoulder[side]);
+    shoulder[side] =
+        chosen(where, unit(back(above) * turn * above * shoulder[side]), shoulder[side]);
   };
+  const auto leans = either(bearing.forward_rad != V{}, bearing.left_rad != V{});
   const bool has[2] = {!tables.arm[0].path.empty(), !tables.arm[1].path.empty()};
   for (int side : {0, 1}) {
     if (!has[side]) continue;
     const ArmBones& bones = tables.arm[side];
     shoulder[side] = read_joint<V>(bones.path[bones.shoulder].joint, is, poses);
-    turn_shoulder(side, seen(turn_x(V(-bearing.forward_rad)) * turn_z(bearing.left_rad)));
+    turn_shoulder(side, seen(turn_x(V(-bearing.forward_rad)) * turn_z(bearing.left_rad)), leans);
   }
   // What is not steady does not jump.
   const float dt = tables.tick_s;
@@ -326,9 +337,13 @@ void pose_body(const Tables& tables, const BodyTick<Floats<kWidth>>& tick,
     }
   }
   poise.acts = chosen<V>(acts, 1.0f, 0.0f);
+  auto hangs = leans;
   for (int side : {0, 1}) {
     const V out_rad = (side == 0 ? kRadians : -kRadians) * styled.body[kArmOut_deg + side].x;
-    if (has[side] && !kPaper) turn_shoulder(side, seen(turn_z(is_styled ? out_rad : V{})));
+    const auto spreads = both(is_styled, out_rad != V{});
+    if (!has[side] || kPaper) continue;
+    turn_shoulder(side, seen(turn_z(spreads ? out_rad : V{})), spreads);
+    hangs = either(hangs, spreads);
   }
   // Arms and spine by their weights.
   const Mask<V> arms[2] = {both(is_styled, is_arm_posed(styled, 0)),
@@ -349,10 +364,12 @@ void pose_body(const Tables& tables, const BodyTick<Floats<kWidth>>& tick,
     share_spine(tables, styled, uneven, trunk);
     if (any(poses_arms)) place_trunk(tables, 0, trunk);
   }
-  for (int side : {0, 1})
-    if (has[side])
-      write_where(shoulder[side], tables.arm[side].path[tables.arm[side].shoulder].joint, is,
-                  poses);
+  if (any(hangs)) {
+    for (int side : {0, 1})
+      if (has[side])
+        write_where(shoulder[side], tables.arm[side].path[tables.arm[side].shoulder].joint,
+                    chosen<V>(both(is_posed, hangs), 1.0f, 0.0f), poses);
+  }
   if (any(poses_arms)) {
     const Vec<V> off_m = tick.hips.heading * tick.stride.pelvis_m,
                  hips_m{V(tick.hips.x_m - off_m.x), V{}, V(tick.hips.z_m - off_m.z)};

@@ -335,14 +335,25 @@ Mask<V> smooth_weights(const Tables& tables, Weighted<V>& weighted) noexcept {
   const V one = all<V>(1.0f);
   const auto asked = weighted.asked != V{}, acted = weighted.acts != V{};
   auto acts = asked;
+  // Mostly all of them have been there for long.
+  auto moves = acted != asked;
+  for (int side : {0, 1})
+    for (int j = 0; j < kLegAngles; ++j)
+      moves = either(moves, both(acted, either(weighted.weight[side][j].x != weighted.goal[side][j],
+                                               weighted.weight[side][j].v != V{})));
+  if (!any(moves)) return acts;
+  constexpr float kThere = 1e-6f, kStill_per_s = 1e-4f;
   for (int side : {0, 1}) {
     for (int j = 0; j < kLegAngles; ++j) {
       Smoothed<V>& in_force = weighted.weight[side][j];
       const V goal = asked ? weighted.goal[side][j] : one;
       Smoothed<V> weight{acted ? in_force.x : one, acted ? in_force.v : V{}};
       follow(goal, tables.weights, weight);
-      const auto even = both(goal == one, size(V(weight.x - one)) < all<V>(kAsGoodAsEven));
-      in_force = {even ? one : weight.x, even ? V{} : weight.v};
+      const auto even = both(goal == one, size(V(weight.x - one)) < all<V>(kAsGoodAsEven)),
+                 there = either(even, both(size(V(weight.x - goal)) < all<V>(kThere),
+                                           size(weight.v) < all<V>(kStill_per_s)));
+      const V x = there ? goal : weight.x, v = there ? V{} : weight.v;
+      in_force = {moves ? x : in_force.x, moves ? v : in_force.v};
       acts = either(acts, both(acted, no(even)));
     }
   }

@@ -346,9 +346,8 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
   }
   V asked_rad[2]{};
   keep_heels_low(tables, time, phase, stride, change, state, block.styled, pelvis, feet, asked_rad);
-  const Vec<V> ankle_m[2] = {ankle_of(feet.foot[0], feet.sole[0]),
-                             ankle_of(feet.foot[1], feet.sole[1])};
-  sink(tables, time, stride, ankle_m, state, change, pelvis);
+  for (int k : {0, 1}) feet.ankle_m[k] = ankle_of(feet.foot[k], feet.sole[k]);
+  sink(tables, time, stride, feet.ankle_m, state, change, pelvis);
   reach_with_toe(tables, time, change, pelvis, feet);
   if (looks_ahead)  // nobody sees a walk that is walked ahead
     pose_walks<kWidth, kPaper>(tables, time, hips, stride, pelvis, idle, phase, block, footing,

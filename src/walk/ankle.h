@@ -19,7 +19,7 @@ void point_down(const Time<V>& time, const Sole<V>& sole, const Turn<V>& yaw, co
   const Mask<V> on_toe{};  // none
   const V u = time.u, open = smooth(0.0f, 0.2f, u) * (1.0f - smooth(0.7f, 0.95f, u)),
           low = within(V((sole.toe_rest_m - heel_m) / sole.foot_m), -1.0f, 1.0f),
-          room = sole.elevation_rad - arc_sine_of(low) - foot.pitch_rad,
+          room = sole.elevation_rad - arc_sine(low) - foot.pitch_rad,
           allowed = least(more_rad, most(room, V{}));
   set_pitch(sole, yaw, V(foot.pitch_rad + allowed), on_toe, foot);
   const V toe_y_m = foot.toe_m.y;

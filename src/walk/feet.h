@@ -327,6 +327,7 @@ struct Feet {
   Vec<V> table_heel_m;  // of the swinging one
   V base_m{};           // the ground line below it
   Vec<V> flat_toe_m;    // of the standing one, where it is flat on its ground
+  Vec<V> ankle_m[2];    // once both are where they are to be
 };
 
 template <class V, class F>

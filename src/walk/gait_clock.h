@@ -28,10 +28,22 @@ Vec<V> by_side(const Mask<V>& right, const std::array<float, 3>& left_of,
 }
 
 template <class V>
-void follow(const V& goal, const Filter& filter, Smoothed<V>& value) noexcept {
-  value.v = (value.v + (goal - value.x) * filter.pull) * filter.keep;
+void follow(const V& goal, const V& pull, const V& keep, float tick_s,
+            Smoothed<V>& value) noexcept {
+  value.v = (value.v + (goal - value.x) * pull) * keep;
   value.v = size(value.v) < all<V>(1e-30f) ? V{} : value.v;  // denormal numbers are slow
-  value.x = value.x + value.v * filter.tick_s;
+  value.x = value.x + value.v * tick_s;
+}
+template <class V>
+void follow(const V& goal, const Filter& filter, Smoothed<V>& value) noexcept {
+  follow(goal, all<V>(filter.pull), all<V>(filter.keep), filter.tick_s, value);
+}
+// `quick`: with the quicker filter.
+template <class V>
+void follow(const V& goal, const Mask<V>& quick, const Filter& quicker, const Filter& filter,
+            Smoothed<V>& value) noexcept {
+  follow(goal, chosen<V>(quick, quicker.pull, filter.pull),
+         chosen<V>(quick, quicker.keep, filter.keep), filter.tick_s, value);
 }
 // A turn whose goal is 0 comes to exactly that.
 template <class V>
@@ -95,21 +107,13 @@ void smooth_asked(const Tables& tables, const Change<V>& change, const V& left,
             kept_m = rests != V{} ? V{} : state.length_m[side].x,
             asked_m = walks ? asked.length_m[side] : kept_m,
             goal_m = either(stops, goes_on) ? change.length_m[side] : asked_m;
-    Smoothed<V> first = state.length_m[side];
-    follow(both(steps, no(stops)) ? V(kFirstStep * goal_m) : goal_m, tables.first_step, first);
-    follow(goal_m, tables.step, state.length_m[side]);
-    state.length_m[side].x = is_quick ? first.x : state.length_m[side].x;
-    state.length_m[side].v = is_quick ? first.v : state.length_m[side].v;
+    follow(both(steps, no(stops)) ? V(kFirstStep * goal_m) : goal_m, is_quick, tables.first_step,
+           tables.step, state.length_m[side]);
     follow(asked.lift[side], tables.step, state.lift[side]);
   }
   const V cycle_s = asked.time_s[0] + asked.time_s[1];
-  Smoothed<V> first_s = state.step_time_s;
-  const V step_s = walks ? V(0.5f * cycle_s) : state.step_time_s.x;
-  follow(step_s, tables.first_step, first_s);
-  follow(step_s, tables.step, state.step_time_s);
-  const auto starts = change.starting != V{};
-  state.step_time_s.x = starts ? first_s.x : state.step_time_s.x;
-  state.step_time_s.v = starts ? first_s.v : state.step_time_s.v;
+  follow(walks ? V(0.5f * cycle_s) : state.step_time_s.x, change.starting != V{}, tables.first_step,
+         tables.step, state.step_time_s);
   const V turn_rad_s = walks ? asked.turn_rad_s : V{};
   follow(turn_rad_s, tables.turn_goal, state.turn_goal_rad_s);
   settle(turn_rad_s, state.turn_goal_rad_s);
@@ -196,6 +200,19 @@ template <class V>
 V ticks_of_stage(const State<V>& state) noexcept {
   return state.flies != V{} ? state.flight_ticks : state.roll_ticks;
 }
+// The phases at which the step began, and at which the roll or the flight ends.
+template <class V>
+V step_phase_of(const Tables& tables, const State<V>& state) noexcept {
+  const auto& share = tables.stage_share;
+  return chosen<V>(state.right_swings != V{}, share[0] + share[1], 0.0f);
+}
+template <class V>
+V stage_end_of(const Tables& tables, const State<V>& state) noexcept {
+  const auto right = state.right_swings != V{};
+  const auto& share = tables.stage_share;
+  return step_phase_of(tables, state) + chosen<V>(right, share[2], share[0]) +
+         (state.flies != V{} ? chosen<V>(right, share[3], share[1]) : V{});
+}
 // Where the walk's tick is in its step.
 template <class V>
 Time<V> time_of(const Tables& tables, const State<V>& state) noexcept {
@@ -203,10 +220,8 @@ Time<V> time_of(const Tables& tables, const State<V>& state) noexcept {
   time.right = state.right_swings != V{};
   time.flies = state.flies != V{};
   time.back = state.backward != V{};
-  const auto& share = tables.stage_share;
-  time.step_phase = chosen<V>(time.right, share[0] + share[1], 0.0f);
-  time.stage_end = time.step_phase + chosen<V>(time.right, share[2], share[0]) +
-                   (time.flies ? chosen<V>(time.right, share[3], share[1]) : V{});
+  time.step_phase = step_phase_of(tables, state);
+  time.stage_end = stage_end_of(tables, state);
   time.u = time.flies ? V(state.tick / state.flight_ticks) : V{};
   time.to_strike = ticks_of_stage(state) - state.tick + (time.flies ? V{} : state.flight_ticks);
   time.share = (state.tick + (time.flies ? state.roll_ticks : V{})) /
@@ -220,7 +235,7 @@ Time<V> advance_clock(const Tables& tables, const Change<V>& change, State<V>& s
   const auto follows = both(change.starting != V{}, state.flies == V{}),
              runs = change.stands == V{};
   if (any(follows)) time_first_flight(tables, follows, change, state);
-  const V stage_end = time_of(tables, state).stage_end, left = ticks_of_stage(state) - state.tick,
+  const V stage_end = stage_end_of(tables, state), left = ticks_of_stage(state) - state.tick,
           s = 1.0f / left, way = stage_end - state.phase, v0 = state.phase_rate * left,
           v1 = state.end_rate * left, c2 = 3.0f * way - 2.0f * v0 - v1, c3 = v0 + v1 - 2.0f * way;
   state.phase = runs ? V(state.phase + (v0 + (c2 + c3 * s) * s) * s) : state.phase;

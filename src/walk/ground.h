@@ -299,15 +299,6 @@ V rise_in_flight(const Tables& tables, const Time<V>& time, const V& knee_rad, c
   return rise_with_hips<V>(tables, time.right, knee_rad, base_m, hover_m, footing);
 }
 
-// Of any sine.
-template <class V>
-V arc_sine_of(const V& x) noexcept {
-  const V a = size(x), low = arc_sine(least(a, all<V>(0.5f))),
-          high = 1.57079633f - 2.0f * arc_sine(root(V(most(V(0.5f - 0.5f * a), V{}))));
-  const V angle = a > all<V>(0.5f) ? high : low;
-  return x < V{} ? -angle : angle;
-}
-
 // The pitch of a foot on its toe whose ankle is higher by `rise_m`.
 template <class V>
 V pitch_to_rise(const Tables& tables, const Mask<V>& right, const V& rise_m,
@@ -319,12 +310,12 @@ V pitch_to_rise(const Tables& tables, const Mask<V>& right, const V& rise_m,
   };
   const V length_m = chosen<V>(right, length_of(tables.leg[1]), length_of(tables.leg[0])),
           down_m = chosen<V>(right, -tables.leg[1].toe_m[1], -tables.leg[0].toe_m[1]),
-          flat_rad = arc_sine_of(V(down_m / length_m));
+          flat_rad = arc_sine(V(down_m / length_m));
   V sine, cosine;
   sin_cos(least(V(flat_rad + pitch_rad), all<V>(kUpright_rad)), sine, cosine);
   const V higher =
               soft_least(V(sine + rise_m / length_m), all<V>(kMostUpright), all<V>(kSoftUpright)),
-          risen_rad = most(pitch_rad, V(arc_sine_of(higher) - flat_rad));
+          risen_rad = most(pitch_rad, V(arc_sine(higher) - flat_rad));
   return rise_m == V{} ? pitch_rad : risen_rad;
 }
 

@@ -264,6 +264,16 @@ V planned_over(const Time<V>& time, const Change<V>& change) noexcept {
   return change.closing != V{} ? V{} : walks;
 }
 
+// A foot stood, and will stand, at another phase than it flies at: how far the flying one's edges
+// have come over, by the plan, to the phase at which it flies.
+template <class V>
+V planned_edge(const Time<V>& time, const Change<V>& change) noexcept {
+  constexpr float kEdgeGoes = 0.4f;  // of the flight
+  const V lands =
+      change.closing != V{} ? V{} : smoother(V((time.u - (1.0f - kEdgeGoes)) * (1.0f / kEdgeGoes)));
+  return smoother(V(time.u * (1.0f / kEdgeGoes))) * (1.0f - lands);
+}
+
 // Where hips lead or have led: their place, and the stride at the phase that goes with it. The foot
 // that flies keeps to the clock. Returns that phase; elsewhere that of the clock.
 template <class V>
@@ -278,10 +288,12 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
   const auto is_new = change.is_new != V{}, was_new = both(no(is_new), change.was_new != V{});
   const V last_found = change.phase - change.off_phase.x;
   for (Off<V>* off : {&change.off_phase, &change.off_shown}) fade(change.off_ticks, *off);
-  // What the step has not come over to its own stride ends with it.
+  // What the step has not come over to its own stride ends with it, and the standing foot's pitch
+  // with its roll or with the other's flight.
   const V step_ticks = least(change.off_ticks, V(time.to_strike + 1.0f));
-  for (Off<V>* off : {&change.off_over, &change.off_ratio, &change.off_pitch})
+  for (Off<V>* off : {&change.off_over, &change.off_ratio, &change.off_edge})
     fade(step_ticks, *off);
+  fade(least(change.off_ticks, V(ticks_of_stage(state) - state.tick + 1.0f)), change.off_pitch);
   change.off_ticks = most(V(change.off_ticks - 1.0f), V{});
   change.rest_ticks = most(V(change.rest_ticks - 1.0f), V{});
   change.catch_ticks = most(V(change.catch_ticks - 1.0f), V{});
@@ -323,14 +335,7 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
   stride = read;
   stride.heel_behind_m = by_clock.heel_behind_m, stride.heel_ahead_m = by_clock.heel_ahead_m;
   stride.heel_high_m = by_clock.heel_high_m;
-  // It stood, and will stand, at another phase than it flies at.
-  constexpr float kEdgeGoes = 0.4f;  // of the flight
-  const V lifted = change.led_from < V{} ? all<V>(1.0f) : smoother(V(time.u * (1.0f / kEdgeGoes))),
-          goes_over =
-              lifted *
-              (1.0f -
-               (closes ? V{} : smoother(V((time.u - (1.0f - kEdgeGoes)) * (1.0f / kEdgeGoes))))),
-          share = led ? goes_over : all<V>(1.0f);
+  const V share = led ? V(planned_edge(time, change) + change.off_edge.x) : all<V>(1.0f);
   const FootInStride<V>& stood = read.foot[0];
   FootInStride<V> flying = by_clock.foot[0];
   const V edge = edge_left(time.u, change);
@@ -412,7 +417,7 @@ void begin_lead(const Tables& tables, const Mask<V>& strikes, const V& phase, co
   change.was_led = rests ? V{} : strikes ? change.led : change.was_led;
   change.off_ticks = rests ? V{} : change.off_ticks;
   for (Off<V>* off : {&change.off_phase, &change.off_shown}) off->x = rests ? V{} : off->x;
-  for (Off<V>* off : {&change.off_over, &change.off_ratio, &change.off_pitch})
+  for (Off<V>* off : {&change.off_over, &change.off_ratio, &change.off_pitch, &change.off_edge})
     off->x = strikes ? V{} : off->x, off->v = strikes ? V{} : off->v,
     off->a = strikes ? V{} : off->a;
   change.led = strikes ? chosen<V>(leads, 1.0f, 0.0f) : change.led;

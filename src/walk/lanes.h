@@ -28,7 +28,7 @@ namespace {
 
 template <class V>
 inline V all(float x) noexcept {
-  return V{} + x;
+  return x - V{};  // x itself, which V{} + x is not: a zero may have a sign
 }
 template <class V>
 inline float lane(const V& v, int i) noexcept {
@@ -181,14 +181,19 @@ inline void sin_cos(const V& angle_rad, V& sine, V& cosine) noexcept {
   sine = back ? -sine_of : sine_of;
   cosine = (odd != back) ? -cosine_of : cosine_of;
 }
-// Up to 0.5 to 1e-7, up to 0.7 to 1e-4: of a foot's pitch (Cephes, asinf).
+// To 1e-7 (Cephes, asinf): above a half by the arc of the other leg.
 template <class V>
 inline V arc_sine(const V& x) noexcept {
-  const V z = x * x;
-  return x + x * z *
-                 (1.6666752422e-1f +
-                  z * (7.4953002686e-2f +
-                       z * (4.5470025998e-2f + z * (2.4181311049e-2f + z * 4.2163199048e-2f))));
+  const V a = size(x);
+  const auto wide = a > all<V>(0.5f);
+  const V z = wide ? V(0.5f * (1.0f - a)) : V(a * a), s = wide ? root(z) : a,
+          arc = s +
+                s * z *
+                    (1.6666752422e-1f +
+                     z * (7.4953002686e-2f +
+                          z * (4.5470025998e-2f + z * (2.4181311049e-2f + z * 4.2163199048e-2f)))),
+          angle_rad = wide ? V(1.5707963f - 2.0f * arc) : arc;
+  return x < V{} ? -angle_rad : angle_rad;
 }
 
 // --- Vectors and rotations -----------------------------------------------------------------------

@@ -151,8 +151,7 @@ void solve_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stri
       state.leg_rad[k][j] = keep * off + ahead * (off - state.last_leg_rad[k][j]);
       state.last_leg_rad[k][j] = off;
     }
-    const Vec<V> ankle_m =
-        to_pelvis * (ankle_of(feet.foot[k], feet.sole[k]) - pelvis.place_m - pelvis.hip_m[k]);
+    const Vec<V> ankle_m = to_pelvis * (feet.ankle_m[k] - pelvis.place_m - pelvis.hip_m[k]);
     if (begun_rad != nullptr) std::copy_n(state.leg_rad[k], kLegAngles, begun_rad[k]);
     legs[k] =
         solve_leg<V>(chosen<V>(right, r.thigh_m, l.thigh_m), chosen<V>(right, r.shank_m, l.shank_m),

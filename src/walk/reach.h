@@ -128,12 +128,12 @@ void reach_with_toe(const Tables& tables, const Time<V>& time, const Change<V>& 
                stands = both(change.stands == V{}, k == 0 ? no(time.flies) : time.flies);
     Foot<V>& foot = feet.foot[k];
     const V reach_m = kReachOnToe * leg_m<V>(tables, right);
-    const Vec<V> hip_m = pelvis.place_m + pelvis.hip_m[k],
-                 way = hip_m - ankle_of(foot, feet.sole[k]);
+    const Vec<V> hip_m = pelvis.place_m + pelvis.hip_m[k], way = hip_m - feet.ankle_m[k];
     const auto short_of = both(stands, dot(way, way) > reach_m * reach_m);
     if (!any(short_of)) continue;
     const V pitch_rad = most(foot.pitch_rad, pitch_in_reach<V>(foot, feet.sole[k], hip_m, reach_m));
     rise_on_toe(feet.sole[k], pitch_rad, short_of, foot);
+    feet.ankle_m[k] = chosen(short_of, ankle_of(foot, feet.sole[k]), feet.ankle_m[k]);
   }
 }
 

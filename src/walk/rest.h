@@ -159,6 +159,7 @@ void change_step(const Tables& tables, bool moves, Block<1>& block, F& footing,
   const Time<float> time = time_of(tables, state);
   const float ratio_was = ratio(), shown = change.shown,
               pitch = planned_pitch(time, change, state) + change.off_pitch.x,
+              edge = change.led != 0.0f ? planned_edge(time, change) + change.off_edge.x : 1.0f,
               over = planned_over(time, change) + change.off_over.x;
   if (change.led == 0.0f) {
     go_on_from_here(tables, true, state, change);
@@ -185,6 +186,7 @@ void change_step(const Tables& tables, bool moves, Block<1>& block, F& footing,
   change.off_shown = {shown - planned_shown(now, change), 0.0f, 0.0f};
   change.off_over = {over - planned_over(now, change), 0.0f, 0.0f};
   change.off_pitch = {pitch - planned_pitch(now, change, state), 0.0f, 0.0f};
+  change.off_edge = {flies ? edge - planned_edge(now, change) : 0.0f, 0.0f, 0.0f};
   if (!moves) return;
   if constexpr (kIsUneven<F>) footing.is_new = 1.0f;
   change.gap_begin = now.u;
@@ -456,13 +458,16 @@ void walk_on(const Tables& tables, bool may_move, Block<1>& block, F& footing) n
   const Way<float> way = way_of(state.landing_rad);
   const float sign = time.back ? -1.0f : 1.0f;
   const auto along = [&](float x, float z) { return sign * (x * way.sine + z * way.cosine); };
-  const bool moves = !flies || (may_move && time.u < kStays);
+  const bool moves = !flies || (may_move && (closes || time.u < kStays));
   const float at_m = along(change.pelvis_x_m.x, change.pelvis_z_m.x),
               speed = along(change.pelvis_x_m.v, change.pelvis_z_m.v) / tick_s,
               foot_m = flies ? along(state.last_heel_m[0].x, state.last_heel_m[0].z) : 0.0f;
   change_step(tables, moves, block, footing, [&] {
     if (closes) {
-      if (!flies) state.roll_ticks = most(state.tick + 1.0f, ticks_of(own.roll_s, tick_s));
+      const float least_left = floored(kLeastRollLeft_s * tables.time_scale / tick_s + 0.5f);
+      if (!flies)
+        state.roll_ticks = least(most(state.tick + least_left, ticks_of(own.roll_s, tick_s)),
+                                 state.roll_ticks + least_left);
       state.flight_ticks = most(state.tick + 1.0f, ticks_of(own.flight_s, tick_s));
     }
     const float left_s = time_of(tables, state).to_strike * tick_s,

@@ -164,6 +164,7 @@ Stride<V> read_stride(const Tables& tables, const Time<V>& time, const V& phase,
       const float a = of_old[r + 1], b = of_next[r + 1], mixed = a * left + b * share;
       const float *p0 = rows.at(i, r), *p1 = rows.at(i + 1, r), *p2 = rows.at(i + 2, r),
                   *p3 = rows.at(i + 3, r);
+#pragma GCC unroll 10
       for (int n = 0; n < kParts; ++n) {
         const int o = n * kPart;
         const RowPart here = part<RowPart>(p0 + o) * k0 + part<RowPart>(p1 + o) * k1 +

@@ -356,11 +356,13 @@ void count_last_roll(const Tables& tables, const Mask<V>& strikes, const Change<
                                                           : most(V(told.settle_ticks - 1.0f), V{});
 }
 
-// A walk may change its solver: the paper's one starts from whole angles.
+// A walk may change its solver: the paper's one starts from whole angles, and weights of the other
+// one from their own means.
 template <bool kPaper>
 void change_solver(const Tables& tables, const Time<float>& time, const Stride<float>& stride,
-                   State<float>& state, Change<float>& change) noexcept {
+                   State<float>& state, Change<float>& change, Weighted<float>& weighted) noexcept {
   if ((change.by_paper != 0.0f) == kPaper) return;
+  weighted.acts = 0.0f;
   change.by_paper = kPaper ? 1.0f : 0.0f;
   for (int k : {0, 1}) {
     float table_rad[kLegAngles];
@@ -382,7 +384,8 @@ void pose_walks(const Tables& tables, const BodyTick<Floats<kWidth>>& tick,
   State<V>& state = block.state;
   const Change<V>& change = block.change;
   const auto& [time, landing, hips, stride, pelvis, idle, phase, shown] = tick;
-  if constexpr (kWidth == 1) change_solver<kPaper>(tables, time, stride, state, block.change);
+  if constexpr (kWidth == 1)
+    change_solver<kPaper>(tables, time, stride, state, block.change, block.weighted);
   Leg<V> legs[2];
   Mask<V> eases{};
   if constexpr (kPaper) {
@@ -452,9 +455,8 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
   }
   V asked_rad[2]{};
   keep_heels_low(tables, time, phase, stride, change, state, block.styled, pelvis, feet, asked_rad);
-  const Vec<V> ankle_m[2] = {ankle_of(feet.foot[0], feet.sole[0]),
-                             ankle_of(feet.foot[1], feet.sole[1])};
-  sink(tables, time, stride, ankle_m, state, change, pelvis);
+  for (int k : {0, 1}) feet.ankle_m[k] = ankle_of(feet.foot[k], feet.sole[k]);
+  sink(tables, time, stride, feet.ankle_m, state, change, pelvis);
   reach_with_toe(tables, time, change, pelvis, feet);
   if (looks_ahead)  // nobody sees a walk that is walked ahead
     pose_walks<kWidth, kPaper>(

@@ -1,7 +1,6 @@
 // The walk as callers see it: one walk in their memory, moved on by the tick that crowds have, too.
 #include "gaitpad/walk.h"
 
-
 #include "walk/pose.h"
 #include "walk/sound_input.h"
 #include "walk/steer.h"

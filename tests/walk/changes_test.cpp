@@ -23,7 +23,7 @@ constexpr std::array kSticks = {0.3, 0.8, 1.0};
 // most 6, and 0.8 degrees, of captures 1.2, are asked; 1 cm; 0.9 s and 0.9 m; 1.2 s; 70 and 60 mm.
 struct Bounds {
   double median_m_s2 = 4.0, worst_m_s2 = 6.0, off_s = 0.35;
-  double start_deg = 1.0, stop_deg = 1.25, resumed_deg = 1.65, paced_deg = 1.1, tap_deg = 1.1;
+  double start_deg = 1.0, stop_deg = 1.25, resumed_deg = 1.3, paced_deg = 1.1, tap_deg = 1.1;
   double lower_m = 0.0105, resumed_m = 0.0105;
   double stop_s = 0.9, way_m = 0.9, reversal_s = 1.2, reversal_m_s2 = 6.0;
   double resumed = 1.5, paced = 1.75, faster = 1.14;
@@ -32,13 +32,13 @@ struct Bounds {
 // Of captures, whose knees are straighter and whose hips sway more: what is met.
 constexpr Bounds kOfCaptures{.worst_m_s2 = 7.0,
                              .off_s = 0.37,
-                             .start_deg = 2.3,
-                             .stop_deg = 3.1,
-                             .resumed_deg = 8.0,
+                             .start_deg = 1.7,
+                             .stop_deg = 3.7,
+                             .resumed_deg = 4.0,
                              .paced_deg = 3.6,
                              .tap_deg = 3.8,
-                             .lower_m = 0.026,
-                             .resumed_m = 0.026,
+                             .lower_m = 0.027,
+                             .resumed_m = 0.027,
                              .way_m = 1.2,
                              .reversal_s = 1.65,
                              .reversal_m_s2 = 7.0,

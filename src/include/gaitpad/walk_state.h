@@ -114,9 +114,10 @@ struct Change {
   Off<V> pelvis_x_m, pelvis_z_m;  // where the pelvis is, while it leads and a tick after
   V phase{}, phase_rate{};        // that are shown
   // What a changed plan has left, of the phase and of what shows: fades in off_ticks. The same, at
-  // the latest until the strike, of how far the step has come over to its own stride, of this
-  // stride's ratio, and of how much of its pitch the standing foot has.
-  Off<V> off_phase, off_shown, off_over, off_ratio, off_pitch;
+  // the latest until the strike, of how far the step has come over to its own stride and of this
+  // stride's ratio; at the latest until the lift-off, of how much pitch the standing foot has; of
+  // how far the flying foot's edges have come over to its own phase.
+  Off<V> off_phase, off_shown, off_over, off_ratio, off_pitch, off_edge;
   V off_ticks{};
   // Of a stop: 1 or 0; the steps that are left before the last one, 1 or 0, and the lengths of both
   // feet's; until the hips rest, and how long the last step took from its plan on.

@@ -464,7 +464,8 @@ void lean_pelvis(const Tables& tables, const Turn<V>& upright, const Turn<V>& tu
 
 // The pelvis' turn in the upright body.
 template <class V>
-Turn<V> tilted(const Tables& tables, const Stride<V>& stride, const State<V>& state) noexcept {
+[[gnu::always_inline]] inline Turn<V> tilted(const Tables& tables, const Stride<V>& stride,
+                                             const State<V>& state) noexcept {
   Vec<V> tilt = stride.pelvis_tilt_rad;
   tilt.z = tilt.z + tables.stand_roll_rad;
   V sine, cosine;

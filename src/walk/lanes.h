@@ -271,7 +271,7 @@ struct Way {
   Turn<V> turn() const noexcept { return {half_cosine, V{}, half_sine, V{}}; }
 };
 template <class V>
-inline Way<V> way_of(const V& heading_rad) noexcept {
+[[gnu::always_inline]] inline Way<V> way_of(const V& heading_rad) noexcept {
   Way<V> way;
   sin_cos(V(0.5f * heading_rad), way.half_sine, way.half_cosine);
   way.sine = 2.0f * way.half_sine * way.half_cosine;

@@ -25,7 +25,8 @@ inline constexpr float kMostSwivel_rad = 0.3f;  // in a tick: farther away it is
 
 // Turns two axes of a frame about the third; (a, b) in cyclic order.
 template <class V>
-void turn_axes(Vec<V>& a, Vec<V>& b, const V& sine, const V& cosine) noexcept {
+[[gnu::always_inline]] inline void turn_axes(Vec<V>& a, Vec<V>& b, const V& sine,
+                                             const V& cosine) noexcept {
   const Vec<V> old = a;
   a = old * cosine + b * sine;
   b = b * cosine - old * sine;

@@ -198,9 +198,10 @@ V data_phase(const Tables& tables, const Time<V>& time, const V& phase) noexcept
 // How chest and head were turned in the two ticks before they are eased: a walk that is steady, and
 // one that stands, keep no account of it.
 template <class V>
-void begin_easing(const Tables& tables, const BodyTick<V>& tick, const Bearing<V> (&before)[2],
-                  const Mask<V>& begins, const Change<V>& change, const State<V>& state,
-                  Poise<V>& poise) noexcept {
+[[gnu::noinline]] void begin_easing(const Tables& tables, const BodyTick<V>& tick,
+                                    const Bearing<V> (&before)[2], const Mask<V>& begins,
+                                    const Change<V>& change, const State<V>& state,
+                                    Poise<V>& poise) noexcept {
   const V is = chosen<V>(begins, 1.0f, 0.0f), over = planned_over(tick.time, change),
           rate = either(change.stands != V{}, change.starting != V{}) ? V{} : state.phase_rate;
   const Turn<V> heading = tick.hips.heading.turn(),
@@ -257,10 +258,11 @@ Bearing<V> bearing_of(const Tables& tables, const BodyTick<V>& tick, const Mask<
 // Where `is_posed`: the trunk leans, arms are spread and posed, the head turns. `eases`: chest and
 // head turn no harder than in a steady walk.
 template <int kWidth, bool kPaper>
-void pose_body(const Tables& tables, const BodyTick<Floats<kWidth>>& tick,
-               const Mask<Floats<kWidth>>& is_posed, const Mask<Floats<kWidth>>& is_styled,
-               const Mask<Floats<kWidth>>& eases, Block<kWidth>& block,
-               const Poses& poses) noexcept {
+[[gnu::noinline]] void pose_body(const Tables& tables, const BodyTick<Floats<kWidth>>& tick,
+                                 const Mask<Floats<kWidth>>& is_posed,
+                                 const Mask<Floats<kWidth>>& is_styled,
+                                 const Mask<Floats<kWidth>>& eases, Block<kWidth>& block,
+                                 const Poses& poses) noexcept {
   using V = Floats<kWidth>;
   // Radians a second^2 by the square of the turn's rate, for the body's own turn is a part of
   // chest's and head's; the head leads.

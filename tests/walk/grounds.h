@@ -9,7 +9,8 @@ namespace {
 
 constexpr double kPlanted_m = 1e-5;
 
-std::shared_ptr<const Terrain> ground_of(const std::vector<SectionShape>& sections) {
+[[maybe_unused]] std::shared_ptr<const Terrain> ground_of(
+    const std::vector<SectionShape>& sections) {
   Terrain terrain;
   for (const SectionShape& s : sections) {
     const auto problem = add_section(terrain, s);
@@ -17,7 +18,7 @@ std::shared_ptr<const Terrain> ground_of(const std::vector<SectionShape>& sectio
   }
   return std::make_shared<const Terrain>(terrain);
 }
-WalkModel model_on(std::shared_ptr<const Terrain> terrain) {
+[[maybe_unused]] WalkModel model_on(std::shared_ptr<const Terrain> terrain) {
   WalkModel model = adult();
   model.terrain = std::move(terrain);
   return model;
@@ -44,7 +45,7 @@ struct Hills {
     hills.calls = calls + 1;
   }
 };
-std::shared_ptr<const Terrain> asked_of(const Hills& hills) {
+[[maybe_unused]] std::shared_ptr<const Terrain> asked_of(const Hills& hills) {
   Terrain terrain;
   terrain.asked = {&Hills::ask, &hills, &Hills::ask_several};
   return std::make_shared<const Terrain>(terrain);
@@ -52,7 +53,7 @@ std::shared_ptr<const Terrain> asked_of(const Hills& hills) {
 
 // Soles and the stairs: how deep a heel, ball or tip is below the ground at most.
 constexpr double kBeside_m = 0.002;
-double deepest_m(const WalkModel& model, const Pose& pose) {
+[[maybe_unused]] double deepest_m(const WalkModel& model, const Pose& pose) {
   static JointFrames frames;
   forward_kinematics(model.cycle.skeleton, pose, frames);
   double deep_m = 0.0;
@@ -72,7 +73,7 @@ double deepest_m(const WalkModel& model, const Pose& pose) {
 }
 
 // The same on level ground without a terrain.
-double deepest_on_floor_m(const WalkModel&, const Pose& pose) {
+[[maybe_unused]] double deepest_on_floor_m(const WalkModel&, const Pose& pose) {
   double deep_m = 0.0;
   for (const Side side : {kLeftSide, kRightSide})
     for (const bool toe : {false, true}) {
@@ -84,7 +85,8 @@ double deepest_on_floor_m(const WalkModel&, const Pose& pose) {
 }
 
 // The greatest second difference of the legs' rotations, degrees a tick^2.
-double second_difference_deg(const Pose& before, const Pose& last, const Pose& now) {
+[[maybe_unused]] double second_difference_deg(const Pose& before, const Pose& last,
+                                              const Pose& now) {
   double most_rad = 0.0;
   for (const LegBuild& leg : adult().leg)
     for (int j : {0, 1, 2}) {

@@ -163,7 +163,7 @@ std::vector<SingleSupport> single_supports(const WalkModel& model, double y, dou
     const Side stands = other(state.frame.swing);
     if (state.frame.stage == Stage::flight) {
       now.knee_deg.push_back(leg_angles(model, hiker.pose())[stands][kKneeX] / kDegree);
-      now.rise_m = state.walk.footing.landing_y_m;
+      if (state.walk.told.struck == 0.0f) now.rise_m = state.walk.footing.landing_y_m;
     } else if (!now.knee_deg.empty()) {
       all.push_back(std::move(now));
       now = {};

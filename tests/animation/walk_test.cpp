@@ -41,8 +41,12 @@ TEST(Walk, AStopEndsStandingStillWithTheFeetTogether) {
     EXPECT_EQ(end.stage, Stage::idle);
     EXPECT_EQ(end.speed_m_s, 0.0);
     EXPECT_NEAR(end.heel_m[0].z, end.heel_m[1].z, 1e-4);
-    EXPECT_NEAR(end.heel_m[0].x - end.heel_m[1].x, adult().leg[0].track_m - adult().leg[1].track_m,
-                1e-4);
+    // At hip width: each heel is where a straight leg has it.
+    const auto below_hip_m = [](int side) {
+      const LegModel& leg = adult().leg[side].model;
+      return leg.hip_m.x + leg.heel_m.x;
+    };
+    EXPECT_NEAR(end.heel_m[0].x - end.heel_m[1].x, below_hip_m(0) - below_hip_m(1), 1e-4);
     for (Side side : {kLeftSide, kRightSide}) {
       EXPECT_NEAR(end.heel_m[side].y, 0.0, 1e-4);
       EXPECT_NEAR(end.toe_m[side].y, adult().leg[side].model.toe_rest_m, 1e-4);

@@ -1,9 +1,9 @@
 #include "walk/tables.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 
+#include "base/bits.h"
 #include "gaitpad/curve.h"
 #include "motion/stencil.h"
 
@@ -221,7 +221,7 @@ void fill_arms(const WalkModel& model, Tables& tables) {
   }
   tables.arm_m = static_cast<float>(body.arm_m);
   tables.shoulder_height_m = static_cast<float>(body.shoulder_height_m);
-  const auto plain = std::bit_cast<std::array<double, kBodyNumbers>>(UpperBodyParams{});
+  const auto plain = bits_as<std::array<double, kBodyNumbers>>(UpperBodyParams{});
   for (int n = 0; n < kBodyNumbers; ++n) tables.plain_body[n] = static_cast<float>(plain[n]);
 }
 

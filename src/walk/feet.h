@@ -89,13 +89,18 @@ Vec<V> flight_heel(const Tables& tables, const Time<V>& time, const Landing<V>& 
                    V& base_m) noexcept {
   const Way<V> left = way_of(state.print_rad);
   const V turns = chosen<V>(time.right, 1.0f, 0.0f);
-  const auto seen = [&](const FootprintsIn<V>& prints, const Vec<V>& heel_m, const V& turned) {
+  // In a walk a foot may swing past the other one closely; turning on the spot it would meet it.
+  constexpr float kPastClosely = 0.2f;  // from strides of this ratio on
+  const auto seen = [&](const FootprintsIn<V>& prints, const Vec<V>& heel_m, const V& turned,
+                        const V& ratio) {
     Vec<V> p = heel_m - prints.swing_m;
+    p.x = p.x * smooth(V(ratio * (1.0f / kPastClosely)));
     p.z = p.z + prints.stride_m * (phase - turned);
     return p;
   };
-  const Vec<V> from = left * seen(hips.behind, stride.heel_behind_m, V(turns - 1.0f)),
-               to = landing.way * seen(hips.ahead, stride.heel_ahead_m, turns);
+  const Vec<V> from = left *
+                      seen(hips.behind, stride.heel_behind_m, V(turns - 1.0f), state.ratio_behind),
+               to = landing.way * seen(hips.ahead, stride.heel_ahead_m, turns, landing.ratio);
   const V gone = smoother(u);
   Vec<V> p{mix(V(state.print_x_m + from.x), V(landing.x_m + to.x), gone), V{},
            mix(V(state.print_z_m + from.z), V(landing.z_m + to.z), gone)};
@@ -103,7 +108,7 @@ Vec<V> flight_heel(const Tables& tables, const Time<V>& time, const Landing<V>& 
   if (any(is_short)) {
     // As far as strides of its own length have it; before it lands it is one of the walk.
     constexpr float kInPlaceStride_m = 0.02f, kLikeAStep = 0.4f, kWalksFrom = 0.3f;
-    const Vec<V> ahead = seen(hips.own, stride.heel_behind_m, turns);
+    const Vec<V> ahead = seen(hips.own, stride.heel_behind_m, turns, all<V>(kPastClosely));
     const auto in_place = size(hips.own.stride_m) < all<V>(kInPlaceStride_m);
     const V far = in_place ? smoother(u)
                            : V(1.0f + ahead.z / (in_place ? all<V>(1.0f) : hips.own.stride_m)),

@@ -49,7 +49,7 @@ constexpr Bounds kOfCaptures{.worst_m_s2 = 7.0,
                              .feet_m = 0.015,
                              .turning_deg = 2.2,
                              .spot_m_s2 = 7.5,
-                             .spot_deg = 3.2};
+                             .spot_deg = 3.7};
 struct Of {
   const char *name, *file;  // file: of a capture
   Bounds bounds;
@@ -365,7 +365,7 @@ TEST_P(Turns, KeepTheLegsApart) {
     std::printf("%s, %s: shins %.0f, feet %.0f mm apart, %.0f where it stands; %.2f deg/tick2\n",
                 GetParam().name, turn.name, shins * 1e3, feet * 1e3, stand * 1e3, jerk);
     EXPECT_GE(shins, bounds().shins_m) << turn.name;
-    EXPECT_GE(feet, bounds().feet_m) << turn.name;
+    EXPECT_GE(feet, turn.moves[0].y == 0.0 ? 0.04 : bounds().feet_m) << turn.name;
     EXPECT_LE(jerk, bounds().turning_deg) << turn.name;
   }
 }

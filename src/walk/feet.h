@@ -75,7 +75,7 @@ inline constexpr float kShortPitchFade = 0.6f, kFirstLift_m = 0.03f,
 // Of the first roll: until then the heel stays down; of the tables' pitch when it lifts off.
 inline constexpr float kHeelStays = 0.25f, kFirstPitch = 0.8f;
 inline constexpr float kHeelRises = 0.5f;  // of the first flight: of the other foot
-inline constexpr float kLedRises = 0.25f;  // of a flight that the hips lead, over uneven ground
+inline constexpr float kLedRises = 0.25f;  // of a flight that the hips lead
 inline constexpr float kRollEnd = 0.9f;    // of the roll: the toe is down
 // A flying toe may be that far below where it stands: the tables' own, which only just leave the
 // floor, are let through.
@@ -241,26 +241,22 @@ V landed_pitch(const Change<V>& change, const State<V>& state) noexcept {
 
 // How much of the standing foot's pitch in the tables shows. In a first step it has not landed: its
 // heel rises only while the other foot flies. In a last one it stays flat. Where the hips lead, its
-// toe is down when the other one lifts off; over uneven ground they may be ahead of the plan then,
-// and its heel rises softly.
+// toe is down when the other one lifts off; as they may be ahead of the plan then, its heel rises
+// softly.
 template <class V>
-V planned_stance(const Time<V>& time, const V& rolled, const Change<V>& change,
-                 bool is_uneven) noexcept {
+V planned_stance(const Time<V>& time, const V& rolled, const Change<V>& change) noexcept {
   const auto starts = change.starting != V{}, led = change.led != V{};
   const V first = smoother(V(time.u * (1.0f / kHeelRises))),
-          flies = is_uneven && any(led)
-                      ? V(led ? smoother(V(time.u * (1.0f / kLedRises))) : all<V>(1.0f))
-                      : all<V>(1.0f),
+          soft = led ? smoother(V(time.u * (1.0f / kLedRises))) : all<V>(1.0f),
           walks = change.closing != V{} ? V{}
                   : starts              ? first
-                                        : flies,
+                                        : soft,
           rolls = starts ? first : V(1.0f - change.led * smoother(rolled));
   return time.flies ? walks : rolls;
 }
 template <class V>
-V stance_shows(const Time<V>& time, const V& rolled, const Change<V>& change,
-               bool is_uneven) noexcept {
-  const V planned = planned_stance(time, rolled, change, is_uneven);
+V stance_shows(const Time<V>& time, const V& rolled, const Change<V>& change) noexcept {
+  const V planned = planned_stance(time, rolled, change);
   return time.flies ? V(planned + edge_left(time.u, change) * change.gap_stance) : planned;
 }
 
@@ -356,7 +352,7 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
     const StrideFoot<V>& table = stride.foot[1];
     const V s = roll_over(change, state);
     const V off = landed_pitch(change, state);
-    const V shows = stance_shows(time, s, change, kIsUneven<F>);
+    const V shows = stance_shows(time, s, change);
     const V low = time.flies ? low_lift<V>(no(time.right), state) : one;
     const V pitch = low * table.pitch_rad * shows + (time.flies ? V{} : off);
     V planted = time.flies ? most(pitch, V{}) : least(pitch, V{});

@@ -170,7 +170,7 @@ void change_step(const Tables& tables, bool moves, Block<1>& block, F& footing,
   }
   if (change.led == 0.0f && flies) change.led_from = -1.0f;
   if (!flies) change.led_until = least(change.led_until, state.roll_ticks);
-  const float stance = stance_shows(time, 0.0f, change, kIsUneven<F>);
+  const float stance = stance_shows(time, 0.0f, change);
   Slope<float> lands{};
   if constexpr (kIsUneven<F>) lands = plane_in_flight(time, change, footing);
   work();
@@ -194,7 +194,7 @@ void change_step(const Tables& tables, bool moves, Block<1>& block, F& footing,
   state.swing_pitch_rad = state.swing_pitch_rate = 0.0f;
   change.gap_rad = change.gap_twist_rad = change.gap_roll_rad = 0.0f;
   change.gap_loose_rad = was.loose_rad;
-  change.gap_stance = stance - planned_stance(now, 0.0f, change, kIsUneven<F>);
+  change.gap_stance = stance - planned_stance(now, 0.0f, change);
   const auto fit_gap = [&](const Flown& is) {
     state.gap_m = was.heel_m[0] - is.heel_m[0];
     state.gap_slope_m = ((was.heel_m[1] - is.heel_m[1]) - state.gap_m) * ticks;

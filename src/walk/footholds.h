@@ -10,7 +10,7 @@ struct Landing {
   V x_m{}, z_m{}, rad{};  // the footprint
   Way<V> way;             // where it points
   V ratio{};              // of the stride that the step is taken with
-  V off_ratio{};          // what it still is off the step's own
+  V off_ratio{};          // of a first step: what it still is off the step's own
 };
 
 // q^n of whole numbers n, at least 0.
@@ -59,7 +59,7 @@ Landing<V> planned_landing(const Tables& tables, const Time<V>& time, const Way<
                      way_of(state.landing_rad)};
   const V step_m = landing.x_m * to.sine + landing.z_m * to.cosine,
           own_m = own_step_m<V>(tables, time.right, time.back);
-  landing.off_ratio = change.off_ratio.x;
+  landing.off_ratio = change.starting != V{} ? change.off_ratio.x : V{};
   landing.ratio =
       (change.closing != V{} ? state.ratio_behind : V(size(step_m) / own_m)) + change.off_ratio.x;
   return landing;

@@ -86,7 +86,7 @@ Landing<V> landing_over(const Tables& tables, const Time<V>& time, const Way<V>&
   Landing<V> landing = planned_landing(tables, time, to, change, state);
   if constexpr (kIsUneven<F>) {
     landing.ratio = ratio_on_ground(change, state, footing);
-    landing.off_ratio = footing.off_ratio.x + change.off_ratio.x;
+    landing.off_ratio = change.starting != V{} ? V(footing.off_ratio.x + change.off_ratio.x) : V{};
   }
   return landing;
 }
@@ -122,7 +122,7 @@ void follow_ground(const Tables& tables, const Time<V>& time, const AskedStep<V>
   off.a = strikes ? V{} : off.a;
   fade(time.flies ? all<V>(1.0f) : V(state.roll_ticks - state.tick + 1.0f), off);
   landing.ratio = ratio_on_ground(change, state, footing);
-  landing.off_ratio = footing.off_ratio.x + change.off_ratio.x;
+  landing.off_ratio = change.starting != V{} ? V(footing.off_ratio.x + change.off_ratio.x) : V{};
 }
 
 // Rises are in legs. A riser of 17 cm takes an adult at least 0.84 s; both feet equally long.
@@ -226,6 +226,8 @@ void move_hips_ground(const Tables& tables, const Time<V>& time, const Landing<V
   footing.settle_ticks =
       begins ? V(least(footing.settle_ticks, V(begun + settles_within(tables, moves))))
              : footing.settle_ticks;
+  // A step that closes may have become shorter: they rest at its end.
+  footing.settle_ticks = closes ? least(footing.settle_ticks, step_ticks) : footing.settle_ticks;
   set(level_m, footing.level_m);
   set(V(hips.x - level_m), off.x), set(hips.v, off.v), set(hips.a, off.a);
   set(V{}, footing.drop_m), set(V{}, footing.yield_m), set(V{}, footing.early_m);

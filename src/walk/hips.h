@@ -234,6 +234,7 @@ void show(const V& shown, Stride<V>& stride) noexcept {
     foot.twist_rad = shown * foot.twist_rad;
     foot.roll_rad = shown * foot.roll_rad;
   }
+  stride.stood_pitch_rad = shown * stride.stood_pitch_rad;
   stride.pelvis_m = stride.pelvis_m * shown;
   stride.pelvis_tilt_rad = stride.pelvis_tilt_rad * shown;
   stride.pelvis_yaw_rad = shown * stride.pelvis_yaw_rad;

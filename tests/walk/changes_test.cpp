@@ -161,7 +161,7 @@ TEST_P(Starts, AnswerAtOnceAndAreAWalkAfterTwoSteps) {
     const Walking& walks = walking(GetParam(), stick);
     const std::vector<Trail>& t = walks.trails;
     int off = 0, walking = 0;
-    for (int i = kBegin; off == 0 || walking == 0; ++i) {
+    for (int i = kBegin; i < static_cast<int>(t.size()) && (off == 0 || walking == 0); ++i) {
       for (const Side side : {kLeftSide, kRightSide}) {
         const double rest_m = model().leg[side].model.toe_rest_m;
         if (off == 0 && t[i].toe_m[side].y - rest_m > 0.01) off = i;

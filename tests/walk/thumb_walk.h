@@ -28,6 +28,7 @@ class ThumbWalk {
  public:
   explicit ThumbWalk(const WalkModel& model)
       : model_(&model), limits_(gait_limits(model)), tables_(tables_of(model, kDt)) {
+    pose_.joint_count = tables_.joints;
     stand(tables_, Origin{}, block_);
     const std::vector<int>& path = model.body.head_path;
     head_ = path.empty() ? -1 : path.back();

@@ -166,7 +166,7 @@ AxisPair right_stick_of_two(const ReportFields& r) {
                                                                             : kRotationPair;
 }
 
-// Many game pads call themselves joysticks. Of a flight stick, a yoke or a wheel these axes are the
+// Many game pads call themselves joysticks. On a flight stick, a yoke or a wheel these axes are the
 // twist, the throttle and the pedals, which are not as wide as the stick.
 bool may_be_stick(const ReportFields& r, AxisPair pair) {
   return r.has(pair.x, pair.y) && (r.is_game_pad() || like_left_stick(r, pair));
@@ -511,7 +511,7 @@ void drop_defaults_on(const ReportDescriptor& d, const ControlMap& controls,
 }
 
 // SDL's data base has some pads' axes as a D-pad, without any left stick: the default stick is
-// bound, so that such a pad can drive as well.
+// bound, so that such a pad can also control the walk.
 std::vector<Binding> sdl_bindings(const ReportDescriptor& d, const ControlMap& controls) {
   std::vector<Binding> bindings;
   for (int i = 0; i < kAxisCount; ++i) {

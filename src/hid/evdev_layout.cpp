@@ -327,8 +327,9 @@ bool stands_before(const ReportDescriptor& d, const Codes& codes, std::size_t in
   return next.report_id == f.report_id && f.bit_offset + f.bit_size == next.bit_offset;
 }
 
-// One field keeps a shared code: the first, but of several X (DragonRise and Mega Drive pads state
-// dead ones) the one beside Y, and so on. All fields of a D-pad keep theirs.
+// Lets one field keep a shared code: the first; but of several X (DragonRise and Mega Drive pads
+// state dead ones) the one beside Y, of several Z the one beside Rz, and so on. All fields of a
+// D-pad keep theirs.
 void keep_one_of_each(const ReportDescriptor& d, Codes& codes) {
   std::array<std::optional<std::size_t>, evdev::kAbsMax + 1> axis_owner;
   std::array<std::optional<std::size_t>, evdev::kKeyMax + 1> key_owner;
@@ -600,7 +601,7 @@ class LayoutBuilder {
     bits_ = static_cast<std::uint16_t>(bits_ + size * count);
   }
 
-  // Usages of one page; neighbours as a range.
+  // Writes usages of one page; neighbours as a range.
   void add_key_usages(const std::vector<std::uint32_t>& usages) {
     items_.page(usages.front());
     for (std::size_t first = 0; first < usages.size();) {

@@ -23,7 +23,7 @@ using Bytes = std::vector<std::uint8_t>;
 constexpr std::size_t kMaxAnswerBytes = 4096;
 constexpr std::int64_t kKey = 0x01;  // type of the events of keys
 
-// `0BFF00`, as far as a request can answer.
+// Reads hexadecimal digits such as `0BFF00`, at most as many as a request can answer.
 std::optional<Bytes> bytes_of(std::string_view digits) {
   if (digits.size() % 2 != 0 || digits.size() > 2 * kMaxAnswerBytes) return std::nullopt;
   Bytes bytes;
@@ -140,7 +140,8 @@ Cause UmockdevReader::answer(std::string_view line) {
   return std::nullopt;
 }
 
-// Value, minimum, maximum, noise, flat, resolution. A request is told again when the value differs.
+// Value, minimum, maximum, noise, flat, resolution. The file repeats the request when the answer
+// has changed.
 Cause UmockdevReader::axis_range(std::uint16_t code, const Bytes& bytes) {
   constexpr std::size_t kBytes = 24;
   if (bytes.size() != kBytes) return fmt::format("an axis' range has {} bytes", kBytes);

@@ -327,7 +327,7 @@ GaitCycle procedural_gait() {
   fill_locals(cycle);
   cycle.stride_m = stride_length(cycle);
   cycle.duration_s = std::floor(cycle.stride_m / kSpeed * kFrameRate + 0.5) / kFrameRate;
-  cycle.frames = cycle.duration_s * kFrameRate;  // all of procedural_motion(), from its frame 0 on
+  cycle.frames = cycle.duration_s * kFrameRate;  // procedural_motion() from its frame 0 on
   cycle.step_m = {0.5 * cycle.stride_m, 0.5 * cycle.stride_m};
   // The toes point outwards, so the heels are closer.
   const double heel_m = cycle.leg[kLeftSide].heel_m.x;

@@ -50,8 +50,8 @@ class TickClock {
     on_time,  // the tick began at most one tick late
     late,
     // More than a second late: this tick is due now, and the clock restarts with it.
-    after_standstill,  // much too late all at once: the process was stopped
-    after_overload,    // late by degrees: ticks take longer than their time
+    after_standstill,  // suddenly, because the process was stopped
+    after_overload,    // gradually, because ticks take longer than their time
   };
   // Must not be called at pace 0.
   Begin begin(std::int64_t tick, std::int64_t now_ns) noexcept;

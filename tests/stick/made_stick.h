@@ -63,8 +63,8 @@ struct MadeStick {
   int spike_reports = 3;
   // Faults. Their times are drawn from the seed.
   double roam = 0.0, roam_s = 1.0;  // moves without a touch: standard deviation and time constant
-  double displaced = 0.0;           // distance from its usual rest ...
-  int displaced_times = 0;          // ... after this number of the first 12 releases
+  double displaced = 0.0;           // distance from the usual rest after `displaced_times` releases
+  int displaced_times = 0;          // of the first 12
   int drop_outs = 0;                // number of lost contacts: an axis shows its end
   double drop_out_s = 0.04;         // time of a drop-out, times 0.5 to 1.5
   int freezes = 0;                  // number of times that one axis or both stand still

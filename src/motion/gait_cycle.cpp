@@ -65,7 +65,7 @@ namespace {
 
 // Least cosine of the angle between the hips' front and the travel.
 constexpr double kBackwards = 0.5;
-// Share of the stride after a strike at which the toe is down.
+// Share of the stride within which the toe is down after a strike.
 constexpr double kLongestFlat = 0.35;
 // Share of the stride with both feet in the air; more is a run.
 constexpr double kMostFlight = 0.02;

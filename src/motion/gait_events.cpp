@@ -351,7 +351,8 @@ std::optional<double> strike_of(const FeetTracks& tracks, const SwingSearch& s, 
   };
   int rest = s.fastest_heel + 1;
   while (rest < s.flat && !rests(rest)) ++rest;
-  // The heel is down at the lowest height of this rest. Some feet sink into the floor later.
+  // A heel is down near the lowest height of this rest, not of the whole stance: some feet sink
+  // into the floor later.
   double low_m = heel[rest].y;
   for (int k = rest; k <= std::min(rest + r.half(kRest_s), s.flat); ++k) {
     low_m = std::min(low_m, heel[k].y);

@@ -213,6 +213,7 @@ namespace {
 constexpr std::int64_t kNap_ns = 20'000'000;
 constexpr std::size_t kSamples = 1024;  // samples that wait to be taken: 4 s
 constexpr std::size_t kUsed = 4096;     // reports that wait for a frame: over 1 s
+// latest_due(): the longest wait for a due tick, and its parts.
 constexpr std::int64_t kDueWait_ns = 2'000'000, kDueNap_ns = 100'000;
 constexpr std::chrono::milliseconds kBeat{80};
 constexpr double kFullBeatSpeed_m_s = 1.5;

@@ -55,10 +55,8 @@ class TickClock {
   };
   // Must not be called at pace 0.
   Begin begin(std::int64_t tick, std::int64_t now_ns) noexcept;
-  std::int64_t skipped_ns() const noexcept {
-    return skipped_ns_;
-  }  // total time by which the clock
-     // was set forward
+  // Total time by which the clock was set forward.
+  std::int64_t skipped_ns() const noexcept { return skipped_ns_; }
 
  private:
   void run_anew(std::int64_t tick, std::int64_t due_ns) noexcept;
@@ -164,7 +162,7 @@ class LiveLoop {
   void advance(int ticks) noexcept;
   void stop() noexcept { is_stopping_.store(true, std::memory_order_relaxed); }
 
-  // All from one thread; see LiveSession.
+  // Call these from one thread, the viewing one; see LiveSession.
   const SessionFrame& latest(bool& is_new) noexcept;
   const SessionFrame& latest_due() noexcept;
   void end_frame(FrameEnd end) noexcept;
@@ -184,7 +182,7 @@ class LiveLoop {
   std::int64_t recorded_ticks() const noexcept {
     return recorded_ticks_.load(std::memory_order_acquire);
   }
-  // Any thread.
+  // Call these from any thread.
   bool has_ended() const noexcept { return has_ended_.load(std::memory_order_relaxed); }
   bool is_known(std::uint16_t device) const noexcept { return reports_.is_known(device); }
   // Fills the fields of LiveStatus that the loop itself knows.
@@ -217,8 +215,8 @@ class LiveLoop {
   std::int64_t steps_left_ = 0;  // ticks to run at pace 0
   std::int64_t last_begin_ns_ = 0;
   std::int64_t shown_ns_ = 0;  // SessionFrame::time_ns of the last tick
-  std::int64_t real_time_ns_ =
-      0;  // time of the last change of pace; waits that began earlier are not measured
+  // Time of the last change of pace; waits that began earlier are not measured.
+  std::int64_t real_time_ns_ = 0;
   std::int64_t ticks_behind_end_ = 0;
   Latest<SessionFrame> frames_;
   TickSample sample_;

@@ -198,7 +198,7 @@ struct Playback::Impl {
 
   TraceRun run;
   Snapshots snapshots;
-  std::int64_t first_sample = 0;  // earlier ticks are in no history that is needed
+  std::int64_t first_sample = 0;  // samples of earlier ticks are not needed
   std::deque<TickSample> samples;
   SessionFrame frame;
 };

@@ -27,7 +27,7 @@ struct Binding {
   std::uint8_t directions = 0;
 };
 
-// The n-th entry is button n, counted from 1.
+// Tables of the orders of buttons: the n-th entry is button n, counted from 1.
 constexpr PadButton kEmpty = kButtonCount;
 constexpr PadButton kDirectInput[] = {
     kButtonX,     kButtonA,    kButtonB,    kButtonY,     kButtonLeftShoulder, kButtonRightShoulder,
@@ -70,7 +70,7 @@ constexpr PadButton kXinput[] = {kButtonA,
                                  kButtonRightStick,
                                  kButtonGuide};
 
-// kButtonCount: the order has no such number.
+// The button with this number; kButtonCount if the order has none.
 PadButton button_of(ButtonOrder order, std::uint32_t number) noexcept {
   const auto pick = [number](const auto& table) {
     return number >= 1 && number <= std::size(table) ? table[number - 1] : kEmpty;

@@ -630,7 +630,7 @@ class LayoutBuilder {
   std::uint16_t bits_ = 0;
 };
 
-// Clockwise from up; y grows downwards.
+// Position of a HID hat: 0 is up, then clockwise; y grows downwards.
 std::int64_t hat_position(std::int32_t x, std::int32_t y) noexcept {
   constexpr std::int64_t kPositions[3][3] = {{7, 0, 1}, {6, kHatReleased, 2}, {5, 4, 3}};
   return kPositions[std::clamp(y, -1, 1) + 1][std::clamp(x, -1, 1) + 1];

@@ -513,7 +513,7 @@ Cause TraceReader::end(Words words) {
   return std::nullopt;
 }
 
-// Devices whose R: line was damaged; no event belongs to them.
+// Drops devices whose R: line was damaged; no event belongs to them.
 void TraceReader::drop_undescribed_devices() {
   std::vector<std::uint16_t> place(trace_.devices.size());
   std::vector<TraceDevice> kept;

@@ -271,8 +271,8 @@ constexpr double kWidths[] = {1.0 * kSpacing, 1.5 * kSpacing, 2.0 * kSpacing, 3.
 // the corners of a square; 1.5 gives the least circularity error over all made gates) and between
 // an estimate and the direction's own samples.
 constexpr double kAgreement = 1.5, kOwnAgreement = 3.0;
-constexpr double kGreatestError =
-    0.025;                      // raw, one standard error; beyond it the direction was not seen
+// Greatest standard error, raw; beyond it the direction was not seen.
+constexpr double kGreatestError = 0.025;
 constexpr int kGap = 3;         // most unseen directions between seen ones that are filled in
 constexpr double kSharp = 0.6;  // sine of the least angle by which a corner turns
 

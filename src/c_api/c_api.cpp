@@ -176,7 +176,7 @@ std::optional<Error> start_problem(const gaitpad_model* model, const double* pla
   return range_problem(what + "heading_rad", heading_rad, -kFarthest_m, kFarthest_m);
 }
 
-// Counts a place that is null.
+// True if the pointer is null; counts it in gaitpad_walk::bad_numbers.
 bool is_missing(const double* place_m, gaitpad_walk& walk) noexcept {
   walk.bad_numbers += !place_m;
   return !place_m;

@@ -24,7 +24,7 @@ quat from_euler(const EulerOrder& order, const EulerAngles& angles_rad) noexcept
 EulerAngles nearest_euler(const EulerOrder& order, const quat& rotation,
                           const EulerAngles& previous_rad) noexcept;
 
-// Sine of the second angle: 1 is the pole.
+// |sine| of the second angle; 1 is the pole, where the outer angles are not unique.
 double pole_closeness(const EulerOrder& order, const quat& rotation) noexcept;
 
 }  // namespace gaitpad

@@ -38,7 +38,7 @@ std::optional<Bytes> bytes_of(std::string_view digits) {
 std::uint16_t word(std::span<const std::uint8_t> bytes, std::size_t index) {
   return static_cast<std::uint16_t>(bytes[2 * index] | bytes[2 * index + 1] << 8);
 }
-// Number `i` of the kernel's input_absinfo.
+// The 32-bit number at `index` of the kernel's input_absinfo.
 std::int32_t number(std::span<const std::uint8_t> bytes, std::size_t index) {
   const std::uint32_t low = word(bytes, 2 * index), high = word(bytes, 2 * index + 1);
   return static_cast<std::int32_t>(low | high << 16);
@@ -111,8 +111,8 @@ Cause UmockdevReader::use(std::string_view path) {
   return std::nullopt;
 }
 
-// `EVIOCGABS(1) 0 0D0F...`: a request, with its number unless that is 0, what it returned, and the
-// bytes that it filled in. What it returned is their number where that varies.
+// `EVIOCGABS(1) 0 0D0F...`: a request with its number (no number: 0), what the call returned, and
+// the bytes that it filled in. Calls for names and keys return the number of these bytes.
 Cause UmockdevReader::answer(std::string_view line) {
   Words words(line);
   std::string_view index = words.next();

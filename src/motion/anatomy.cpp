@@ -351,7 +351,8 @@ std::optional<Legs> shaped_legs(const Figure& figure, int up_axis) {
   return std::nullopt;
 }
 
-// Toes point forward and ankles lie below hips, so left = up x forward needs no axis of the file.
+// Swaps the legs if the first is the right one. Left is up x forward, with up from ankle to hip and
+// forward from ankle to toe, so the file's axes need not be known.
 void put_left_first(const std::vector<JointFrames>& frames, Legs& legs) {
   double left = 0.0;
   for (const JointFrames& frame : frames) {

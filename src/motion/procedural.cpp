@@ -16,6 +16,8 @@ constexpr double kShank = kReferenceLeg_m - kThigh;
 constexpr double kHipHalf = 0.052 * kStature;
 constexpr double kHipDrop = 0.03 * kStature;  // height of the pelvis joint above the hip joints
 constexpr double kAnkleHeight = 0.039 * kStature;
+// Metres: heel and ball from the ankle, tip from the ball; then the heights of ball and tip of a
+// standing foot.
 constexpr double kHeelBack = 0.05, kBallForward = 0.13, kToeLength = 0.06;
 constexpr double kBallRest = 0.02, kToeEndRest = 0.01;
 constexpr double kToeOut = 7.0 * kDegree;

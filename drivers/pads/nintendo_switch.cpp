@@ -72,7 +72,8 @@ constexpr std::size_t kAckAt = 13, kSubcommandAt = 14, kAddressAt = 15, kLengthA
 // The addresses of the sticks' calibration in the flash memory, 9 bytes each.
 constexpr std::uint32_t kFactoryAddress = 0x603d;  // left stick, right stick
 constexpr std::size_t kFactoryBytes = 18;
-constexpr std::uint32_t kUserAddress = 0x8010;  // for each stick 2 marking bytes, then 9 bytes
+// For each stick 2 bytes that mark a calibration, then its 9 bytes.
+constexpr std::uint32_t kUserAddress = 0x8010;
 constexpr std::size_t kUserBytes = 22;
 constexpr std::size_t kStickBytes = 9, kMarkBytes = 2;
 constexpr std::array<std::uint8_t, kMarkBytes> kMark = {0xb2, 0xa1};

@@ -84,8 +84,8 @@ inline constexpr double kGravity_m_s2 = 9.81, kLeastCycle_s = 0.2;
 inline constexpr double kStillTurn = 1e-5;  // rad/s; a slower turn counts as straight ahead
 // Largest swing beyond the data's that pace alone can give.
 inline constexpr double kMostExtraSwing = 0.4;
-// Pace below which the data's posture fades, and the swing with it.
-inline constexpr double kLeastPace = 0.5;
+inline constexpr double kLeastPace =
+    0.5;  // pace below which the data's posture fades, and the swing with it
 
 // Factor on the data's arm swing: proportional to speed (Boulic et al. 1990), bounded, and 1 at the
 // data's own pace.
@@ -675,8 +675,8 @@ void advance_hips(const Tick& tick, const MomentOf<V>& at, StateOf<V>& state,
 inline constexpr double kPhaseStep = 1e-3, kAimTicks = 4.0, kMostBend_m_s2 = 15.0;
 // The cost of a phase that is a cycle off the clock, as the distance of the hips from their place
 // (metres at the reference leg) that costs the same. It keeps heights in time with the landing.
-// Share of the data's stride; the phase of a shorter one follows the clock.
-inline constexpr double kGoesSomewhere = 0.2;
+inline constexpr double kGoesSomewhere =
+    0.2;  // share of the data's stride; the phase of a shorter one follows the clock
 inline constexpr double kInTime_m = 1.2, kLeastWay_m2 = 0.02;
 // Phases before and after the step's own that are searched.
 inline constexpr double kBeforeStep = 0.1, kAfterStep = 0.14;
@@ -945,8 +945,8 @@ void advance_unsteady(const Tick& tick, const MomentOf<V>& at, PathFlow<V>& path
 inline constexpr double kMostSink_m = 0.0015, kSoftPitch = 0.4 * kDegree, kWiderPitch = 0.25;
 // Share of the foot's own phase at which the heel may rise, and how long the rise lasts.
 inline constexpr double kRiseBegin = 0.20, kHeelRiseLasts = 0.18;
-// Share of the leg's length; if the hip is farther away, the heel rises.
-inline constexpr double kReachOnToe = 0.99995;
+inline constexpr double kReachOnToe =
+    0.99995;  // share of the leg's length; if the hip is farther away, the heel rises
 // A foot whose heel stays low rises when its leg would be longer than kLowReach of its length
 // although the hips are lower by kLowHips_m.
 inline constexpr double kLowHips_m = 0.045, kLowSmoothing = 0.03, kLowUntil = 0.25,

@@ -427,8 +427,8 @@ namespace {
 constexpr double kRiseLasts = 0.9;                         // share of the step for a rise
 constexpr double kSinkBegin = 0.5, kSinkBeginBack = 0.35;  // shares of the flight
 constexpr double kSinkEnd = 0.25;                          // share of the roll: end of the sinking
-// Share for a closing step, at whose landing both knees are straight.
-constexpr double kSinkBeginClosing = 0.15;
+constexpr double kSinkBeginClosing =
+    0.15;  // share for a closing step, at whose landing both knees are straight
 // The yield of the knee of a foot that lands from a height: kYield legs from great heights, half of
 // kYield at a fall of kHalfYield legs, so that the knee bends by 20 to 35 degrees on house stairs.
 // The other leg's knee is bent by kBentBefore of it, because a straight knee cannot yield smoothly.

@@ -20,9 +20,10 @@ struct Binding {
   ControlKind kind = ControlKind::axis;
   int control = 0;        // a PadAxis or a PadButton; not used for a hat
   std::size_t field = 0;  // index in ReportDescriptor::fields
+  // The other members are as in ControlSource.
   std::uint32_t mask = 0;
   bool reversed = false;
-  AxisPart part = AxisPart::whole;  // this member and those below are as in ControlSource
+  AxisPart part = AxisPart::whole;
   StickSide side = StickSide::both;
   std::uint8_t directions = 0;
 };

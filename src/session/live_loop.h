@@ -155,9 +155,9 @@ class LiveLoop {
   LiveLoop(const Options& options, const Script& script, Simulation& simulation, PadStream& pads,
            Recording* recording);
 
-  // Use either run(), which runs ticks by the clock on the calling thread until stop(),
+  // Use either run(), which runs ticks by the clock on the calling thread until stop(); or, without
+  // a clock, begin() and then advance() at any time.
   void run() noexcept;
-  // or, without a clock, begin() and then advance() at any time.
   void begin() noexcept;
   void advance(int ticks) noexcept;
   void stop() noexcept { is_stopping_.store(true, std::memory_order_relaxed); }
@@ -225,7 +225,9 @@ class LiveLoop {
   // Reports that a tick has used and no frame has shown yet.
   struct UsedReport {
     ReportTime time;
-    bool is_real_time = false;  // the report arrived and was used at pace 1
+    // False: the session was not at real-time pace all the way from the report's arrival to this
+    // tick.
+    bool is_real_time = false;
   };
   SpscRing<UsedReport> used_;
   // Tick and time of the last frame read; viewing thread only.

@@ -1,5 +1,5 @@
-// A walk's place in the world: a walk that is moved at any tick goes on with the same bits as one
-// that is not moved.
+// A walk's place in the world: a walk that is moved at any tick walks on with the bits that it has
+// unmoved.
 #include "animation/placement.h"
 
 #include <gtest/gtest.h>

@@ -35,8 +35,8 @@ struct Camera {
   mat4 projection(double aspect) const noexcept;
 };
 
-// Both keep the camera above the floor and 1 to 40 m from the target, as do the functions below.
-// Positive yaw moves the eye counter-clockwise as seen from above, positive pitch upwards.
+// All functions below keep the camera above the floor and 1 to 40 m from the target. Positive yaw
+// moves the eye counter-clockwise as seen from above, positive pitch upwards.
 void orbit(Camera& camera, double yaw_rad, double pitch_rad) noexcept;
 void dolly(Camera& camera, double factor) noexcept;  // Multiplies the distance by `factor`.
 // Moves the picture at the target's distance by this number of pixels, y downwards. Ends following.

@@ -146,7 +146,7 @@ class EvemuWriter {
         codes_(evdev_codes(descriptor_, stated_by_)) {}
 
   std::string header() const;
-  // The events of a report or of an unplugging; empty if it changes nothing.
+  // Appends the events of a report or of an unplugging; nothing if they change nothing.
   void add(std::int64_t time_us, std::span<const std::uint8_t> report, std::string& out);
   void release(std::int64_t time_us, std::string& out);
 

@@ -431,7 +431,8 @@ class FieldNumbers {
   }
 
  private:
-  // The field that was bound, and the source by which a line's number is bound to it.
+  // The descriptor's field at these bits; null: there is none. Sets the usage of `s`, and its
+  // occurrence among the fields of the report that have that usage.
   const Field* source_of(std::uint8_t report_id, const FieldBits& bits, ControlSource& s) const {
     for (const Field& f : descriptor_.fields) {
       if (f.kind != FieldKind::input || f.is_array || f.report_id != report_id) continue;

@@ -18,7 +18,7 @@ struct Camera {
   vec3 target_m{0.0, 0.8, 0.0};
   double distance_m = 6.0;
   double yaw_rad = 0.16;   // 0: looks along -z, at the front of a character that walks along +z
-  double pitch_rad = 0.2;  // above the horizon
+  double pitch_rad = 0.2;  // angle of the eye above the horizon
   double field_of_view_rad = 0.66;  // angle between the picture's lower and upper edge
   // Ground heights below target and eye; the limits are relative to them.
   double floor_m = 0.0, eye_floor_m = 0.0;

@@ -99,7 +99,8 @@ class TimeHistogram {
 // gathered, the rest stays in the PadStream, which keeps the newest state of each device.
 class TickReports {
  public:
-  static constexpr std::size_t kMaxInTick = 256;  // more reports wait for the next tick
+  // Most reports that a tick uses; the others wait for the next.
+  static constexpr std::size_t kMaxInTick = 256;
 
   // `pads` and `simulation` must outlive this object.
   TickReports(PadStream& pads, Simulation& simulation);

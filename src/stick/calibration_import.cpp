@@ -51,7 +51,7 @@ Result<std::vector<MappingLine>> mapping_lines_of(std::string_view text,
 constexpr double kLeastImportedHalfRange = 0.1;  // least half range, raw, as in calibration files
 constexpr double kLeastImportedInner = 0.05, kMostInner = 0.9;
 constexpr double kLeastTriggerWay = 0.1;
-constexpr unsigned kCodesByKernel = 0x8000;  // in a version: the kernel chose the codes
+constexpr unsigned kCodesByKernel = 0x8000;  // bit of a node's version: the kernel chose the codes
 
 // What a recording states about one axis of the pad, in counts: its range min..max, its dead zone
 // low..high.

@@ -41,8 +41,8 @@ class StillWatch {
 inline constexpr double kHalfWay = 0.5;
 
 inline constexpr int kWantedReleases = 6, kWantedSides = 3;
-inline constexpr int kWantedReleasesAside = 10;  // if the stick rests off its middle, where a thumb
-                                                 // may hold it
+// Wanted number if the stick rests off its middle, where a thumb may hold it.
+inline constexpr int kWantedReleasesAside = 10;
 // Wanted time of rest at the end, which shows drift.
 inline constexpr std::int64_t kWantedRestNs = 2500 * kMillisecondNs;
 

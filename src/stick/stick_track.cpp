@@ -366,8 +366,9 @@ namespace {
 constexpr std::size_t kMostIntervals = std::size_t{1} << 20;
 constexpr std::size_t kFewestIntervals = 20;
 constexpr double kSilence_s = 0.1, kSlowest_s = 0.5;  // longer: silence; on a slow pad
-constexpr double kBurst_s = 0.0007;           // nearly all pads send at most 1000 reports a second
-constexpr double kUnknownInterval_s = 0.004;  // if there are too few reports
+constexpr double kBurst_s = 0.0007;  // nearly all pads send at most 1000 reports a second
+// Time between reports that is assumed if there are too few.
+constexpr double kUnknownInterval_s = 0.004;
 constexpr double kFrozen_s = 0.07;
 
 // Seconds between successive reports; those during movements if there are enough, because every pad

@@ -17,7 +17,7 @@
 #include "gaitpad/walk.h"
 #include "gaitpad/walk_output.h"
 
-// C functions stand in no namespace.
+// C functions belong to no namespace.
 using namespace gaitpad;  // NOLINT(google-build-using-namespace)
 
 // The ground as a function of the C API.
@@ -52,7 +52,7 @@ void tell(const std::string& sentence, char* error, size_t error_size) noexcept 
   error[length] = 0;
 }
 
-// Calls `make`, which may fail or throw; then it returns null and tells the cause.
+// Returns what `make` has made; null if it failed or threw, with the cause in `error`.
 template <class T, class Make>
 T* made_or_null(const Make& make, char* error, size_t error_size) noexcept {
   try {

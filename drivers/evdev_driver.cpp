@@ -31,8 +31,9 @@ namespace gaitpad {
 
 namespace {
 
-constexpr int kMaxEventsAtOpening = 4096;
-constexpr int kMaxErrorsInARow = 64;  // more errors in a row: the pad counts as gone
+constexpr int kMaxEventsAtOpening = 4096;  // most packets that are skipped at the opening
+constexpr int kMaxErrorsInARow = 64;       // more errors in a row: the pad counts as gone
+// A device that takes longer to upload an effect does not rumble.
 constexpr std::chrono::milliseconds kMaxUpload{250};
 
 // ---- An open node
@@ -68,7 +69,7 @@ EvdevAbilities abilities_of(const libevdev* device) {
   return abilities;
 }
 
-// Text of a file in the sysfs folder of the node's input device.
+// Path of a file in the sysfs folder of the node's input device.
 std::string in_sysfs(const std::string& node, const char* name) {
   return fmt::format("/sys/class/input/{}/device/{}", node.substr(node.rfind('/') + 1), name);
 }
@@ -83,7 +84,7 @@ Result<InputNode> open_input_node(const std::string& node, int mode) {
   // events.
   int clock = CLOCK_MONOTONIC;
   if (::ioctl(opened.fd.get(), EVIOCSCLOCKID, &clock) != 0) return open_error(node, errno);
-  // It would print warnings about unusual devices to stderr.
+  // Without this, libevdev prints warnings about unusual devices to stderr.
   libevdev_set_log_function(nullptr, nullptr);
   libevdev* device = nullptr;
   const int status = libevdev_new_from_fd(opened.fd.get(), &device);

@@ -43,7 +43,7 @@ class PadPort {
 struct OutPacket {
   std::array<std::uint8_t, 128> bytes{};
   std::size_t size = 0;  // number of bytes; 0: nothing to send
-  // It is a feature report (HID pads only), which begins with its id, or 0.
+  // The packet is a feature report (HID pads only), which begins with its id, or 0.
   bool is_feature = false;
   // The packet is sent again after this time until another packet follows; 0: it is sent once.
   std::chrono::milliseconds repeat{0};

@@ -287,7 +287,7 @@ constexpr std::size_t kRightButtons = 3, kSharedButtons = 4, kLeftButtons = 5, k
 // Shared buttons of the left one (minus, stick, capture) and the right one (plus, ...).
 constexpr std::uint8_t kSharedLeft = 0x29, kSharedRight = 0x16;
 constexpr std::array<std::uint8_t, kStickBytes> kCentred = {0x00, 0x08, 0x80};
-// After this number of other reports in a row other pads get their turn.
+// After this number of skipped reports in a row read() returns, so that other pads are read.
 constexpr int kMaxSkippedInARow = 64;
 
 // Turns an axis: a single Joy-Con's factory sticks are for holding it sideways, a pair's for

@@ -63,13 +63,13 @@ std::uint8_t motor(std::uint16_t strength) noexcept {
   return strength == 0 ? 0 : std::max<std::uint8_t>(1, static_cast<std::uint8_t>(strength >> 8));
 }
 
+// by_axis: plus and minus of each axis in turn; by_way: plus of all axes, then minus.
+enum class TurnOrder { by_axis, by_way };
+constexpr std::size_t kGyroBytes = 23;
 // The calibration of a gyroscope: its counts at rest and while it was turned both ways about each
 // axis, then the speed of both turns in degrees a second. The pad has already subtracted the counts
 // at rest from its reports (hid-playstation.c: "bias"). None: the numbers are impossible for such a
 // chip.
-// Plus and minus of each axis in turn; first plus of all axes, then minus.
-enum class TurnOrder { by_axis, by_way };
-constexpr std::size_t kGyroBytes = 23;
 std::optional<FactoryGyro> gyro_of(std::span<const std::uint8_t> feature, TurnOrder order) {
   constexpr double kUsual_rad_s = 2048.0 / 32767.0 * kDegree;
   if (feature.size() < kGyroBytes) return std::nullopt;

@@ -20,14 +20,15 @@ struct Binding {
   ControlKind kind = ControlKind::axis;
   int control = 0;        // a PadAxis or a PadButton; not used for a hat
   std::size_t field = 0;  // index in ReportDescriptor::fields
+  // The other members are as in ControlSource.
   std::uint32_t mask = 0;
   bool reversed = false;
-  AxisPart part = AxisPart::whole;  // this member and those below are as in ControlSource
+  AxisPart part = AxisPart::whole;
   StickSide side = StickSide::both;
   std::uint8_t directions = 0;
 };
 
-// The n-th entry is button n, counted from 1.
+// Tables of the orders of buttons: the n-th entry is button n, counted from 1.
 constexpr PadButton kEmpty = kButtonCount;
 constexpr PadButton kDirectInput[] = {
     kButtonX,     kButtonA,    kButtonB,    kButtonY,     kButtonLeftShoulder, kButtonRightShoulder,
@@ -70,7 +71,7 @@ constexpr PadButton kXinput[] = {kButtonA,
                                  kButtonRightStick,
                                  kButtonGuide};
 
-// kButtonCount: the order has no such number.
+// The button with this number; kButtonCount if the order has none.
 PadButton button_of(ButtonOrder order, std::uint32_t number) noexcept {
   const auto pick = [number](const auto& table) {
     return number >= 1 && number <= std::size(table) ? table[number - 1] : kEmpty;
@@ -166,7 +167,7 @@ AxisPair right_stick_of_two(const ReportFields& r) {
                                                                             : kRotationPair;
 }
 
-// Many game pads call themselves joysticks. Of a flight stick, a yoke or a wheel these axes are the
+// Many game pads call themselves joysticks. On a flight stick, a yoke or a wheel these axes are the
 // twist, the throttle and the pedals, which are not as wide as the stick.
 bool may_be_stick(const ReportFields& r, AxisPair pair) {
   return r.has(pair.x, pair.y) && (r.is_game_pad() || like_left_stick(r, pair));
@@ -511,7 +512,7 @@ void drop_defaults_on(const ReportDescriptor& d, const ControlMap& controls,
 }
 
 // SDL's data base has some pads' axes as a D-pad, without any left stick: the default stick is
-// bound, so that such a pad can drive as well.
+// bound, so that such a pad can also control the walk.
 std::vector<Binding> sdl_bindings(const ReportDescriptor& d, const ControlMap& controls) {
   std::vector<Binding> bindings;
   for (int i = 0; i < kAxisCount; ++i) {

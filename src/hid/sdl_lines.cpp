@@ -364,7 +364,8 @@ std::string fitting_mapping(std::span<const std::string> lines, const DeviceInfo
   const bool is_node = stated_by(device.driver) == StatedBy::evdev_driver;
   const unsigned version = is_node ? device.version : device.version & ~kCodesByKernel;
   const std::string* best = nullptr;
-  int best_fit = 0;  // 1, and 1 for buttons by position, 2 for the same version
+  // 1 for the same ids, 1 more for buttons by position, 2 more for the same version.
+  int best_fit = 0;
   for (const std::string& line : lines) {
     const auto guid = guid_of(line);
     if (!guid || (*guid)[kBus] != static_cast<unsigned>(device.bus) ||
@@ -430,7 +431,8 @@ class FieldNumbers {
   }
 
  private:
-  // The field that was bound, and the source by which a line's number is bound to it.
+  // The descriptor's field at these bits; null: there is none. Sets the usage of `s`, and its
+  // occurrence among the fields of the report that have that usage.
   const Field* source_of(std::uint8_t report_id, const FieldBits& bits, ControlSource& s) const {
     for (const Field& f : descriptor_.fields) {
       if (f.kind != FieldKind::input || f.is_array || f.report_id != report_id) continue;

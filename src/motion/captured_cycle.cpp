@@ -15,8 +15,8 @@ namespace {
 
 constexpr int kPoints = 256;    // samples of the closed stride, before its harmonics are taken
 constexpr double kFade = 0.12;  // longest fade on either side of the seam, a share of the stride
-constexpr double kLeastFade = 0.08;
-constexpr int kFullHarmonics = 10;  // harmonics above this number fade out to kHarmonics
+constexpr double kLeastFade = 0.08;  // least fade; if there is less room, Closer spreads the gaps
+constexpr int kFullHarmonics = 10;   // harmonics above this number fade out to kHarmonics
 
 // Natural cubic spline through values at 0, 1, 2 ...
 struct Spline {
@@ -406,9 +406,11 @@ namespace {
 
 // --- The standing pose ---------------------------------------------------------------------------
 
-constexpr double kOwnAnkle_legs = 0.08;      // if the skeleton has no toe: ankle above the floor
-constexpr double kLowestToe_legs = 0.16;     // a foot point deeper under the ankle is no sole
-constexpr double kMostToe = 70.0 * kDegree;  // toes bend no further; some clips turn them all round
+constexpr double kOwnAnkle_legs = 0.08;  // height of a toeless ankle above the floor
+// Greatest depth of a sole under the ankle; a lower foot point is ignored.
+constexpr double kLowestToe_legs = 0.16;
+// Greatest flexion of toes; some clips turn them all the way round.
+constexpr double kMostToe = 70.0 * kDegree;
 
 // Joints strictly between `from` and `to`, topmost first.
 std::vector<int> joints_between(const Skeleton& skeleton, int from, int to) {
@@ -518,7 +520,7 @@ void build_toes(const FlatPose& flat, const std::vector<quat>& local, GaitCycle&
   }
 }
 
-// Heel point and the toes' rest heights, for an ankle of this height above the floor.
+// Sets the heel point and the toes' rest heights, for an ankle of this height above the floor.
 void build_sole(double ankle_height_m, LegModel& leg) {
   const vec3 flat(leg.toe_m.x, 0.0, leg.toe_m.z);
   leg.heel_m = -kHeelShare * flat - ankle_height_m * kUp;

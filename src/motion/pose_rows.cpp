@@ -3,7 +3,7 @@
 namespace gaitpad {
 namespace {
 
-constexpr int kWidest = 8;
+constexpr int kWidest = 8;  // doubles in the widest register
 
 bool is_still(const GaitCycle& cycle, std::size_t joint) {
   const std::size_t joints = cycle.standing_local.size();

@@ -16,6 +16,8 @@ constexpr double kShank = kReferenceLeg_m - kThigh;
 constexpr double kHipHalf = 0.052 * kStature;
 constexpr double kHipDrop = 0.03 * kStature;  // height of the pelvis joint above the hip joints
 constexpr double kAnkleHeight = 0.039 * kStature;
+// Metres: heel and ball from the ankle, tip from the ball; then the heights of ball and tip of a
+// standing foot.
 constexpr double kHeelBack = 0.05, kBallForward = 0.13, kToeLength = 0.06;
 constexpr double kBallRest = 0.02, kToeEndRest = 0.01;
 constexpr double kToeOut = 7.0 * kDegree;
@@ -327,7 +329,7 @@ GaitCycle procedural_gait() {
   fill_locals(cycle);
   cycle.stride_m = stride_length(cycle);
   cycle.duration_s = std::floor(cycle.stride_m / kSpeed * kFrameRate + 0.5) / kFrameRate;
-  cycle.frames = cycle.duration_s * kFrameRate;  // all of procedural_motion(), from its frame 0 on
+  cycle.frames = cycle.duration_s * kFrameRate;  // procedural_motion() from its frame 0 on
   cycle.step_m = {0.5 * cycle.stride_m, 0.5 * cycle.stride_m};
   // The toes point outwards, so the heels are closer.
   const double heel_m = cycle.leg[kLeftSide].heel_m.x;

@@ -12,9 +12,9 @@ namespace {
 constexpr std::uint16_t kSony = 0x054c, kNintendo = 0x057e, kValve = 0x28de;
 
 constexpr std::array<GyroLayout::Axis, 3> kAsCounted = {{{0}, {1}, {2}}};
-// The range that hid-playstation.c assumes.
+// rad/s per count; the range of 2048 degrees a second is hid-playstation.c's.
 constexpr double kSonyScale = 2048.0 / 32767.0 * kDegree;
-// The calibration that hid-nintendo.c assumes.
+// rad/s per count, by the calibration that hid-nintendo.c assumes; then the Steam Deck's.
 constexpr double kSwitchScale = 936.0 / 13371.0 * kDegree;
 constexpr double kDeckScale = 2000.0 / 32768.0 * kDegree;
 
@@ -43,7 +43,8 @@ GyroLayout nintendo(double sign) {
           .axes = {{{1, -sign}, {2, sign}, {0, -1.0}}}};
 }
 
-// Reports of both Joy-Cons come in turns.
+// Reports with the sensors of the left and of the right Joy-Con come in turns; the right one's are
+// taken.
 GyroLayout pair_of_joy_cons() {
   GyroLayout layout = nintendo(-1.0);
   layout.mark_at = kPairSideByte;

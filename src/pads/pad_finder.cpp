@@ -289,9 +289,11 @@ constexpr auto kDriverPatience = 700ms, kKernelPatience = 2000ms;
 // Longest wait for a pad's unique id: its node appears before the kernel's driver has asked for the
 // id.
 constexpr auto kIdPatience = 1000ms;
+// Longest wait until the I/O thread gives back a pad that drivers no longer see.
 constexpr auto kGonePatience = 3000ms;
 // A problem is told after this time, because permissions come a moment after the node.
 constexpr auto kProblemPatience = 1500ms;
+// Longest times between two looks at the devices: usually, without an open pad, without udev.
 constexpr auto kIdleLook = 30'000ms, kLookWithoutPads = 5000ms, kLookWithoutUdev = 1000ms;
 
 // A key that stays the same while one driver sees one device.
@@ -539,7 +541,8 @@ bool PadFinder::clear_the_way(const PadSighting& sighting) {
   return is_clear;
 }
 
-// Plugged in again before the I/O thread noticed the removal: wait, then reuse its index.
+// True if the pad was plugged in again before the I/O thread noticed that it was gone. Its opening
+// waits for that, to have the same index again.
 bool PadFinder::is_awaiting_gone(const PadSighting& sighting) const {
   return std::ranges::any_of(open_, [this, &info = sighting.listing.info](const Open& open) {
     return open.missing_since && now_ < *open.missing_since + kGonePatience &&

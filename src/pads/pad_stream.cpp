@@ -155,8 +155,9 @@ constexpr auto kRoomPoll = 2ms;      // wait between two attempts to write to a 
 constexpr auto kMaxRumble = 10s;     // longest rumble; a longer request is a mistake of the caller
 // Wait until the stop of a motor is sent again, if it could not be sent.
 constexpr auto kStopRetry = 20ms;
+// How often the thread measures its own processor time, and the share of the time above which it
+// gives up its real-time priority.
 constexpr auto kWatch = 500ms;
-// Most processor time of a thread with real-time priority, as a share.
 constexpr double kMaxBusy = 0.8;
 constexpr std::size_t kMaxCommands = 1024;
 constexpr std::int64_t kClockSlack_ns = 1'000'000'000;
@@ -169,7 +170,7 @@ std::int64_t nanoseconds(std::chrono::steady_clock::time_point time) {
   return std::chrono::nanoseconds(time.time_since_epoch()).count();
 }
 
-// Makes it a report without content. Its bytes are not cleared, because they are many and are not
+// Makes `report` one without content. Its bytes are not cleared, because they are many and are not
 // read.
 void make_event(Report& report, ReportKind kind, std::uint16_t device, std::int64_t time_ns) {
   report.time_ns = time_ns;

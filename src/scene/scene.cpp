@@ -105,7 +105,8 @@ bool is_drawable(const Capsule& c) {
          std::isfinite(c.radius_a_m + c.radius_b_m + c.width_a + c.width_b);
 }
 
-// High bodies use the mean height, so that their shadow does not jump at each riser.
+// Height of the floor below a place; below a high place the mean over a step's length, so that the
+// place's shadow does not jump at each riser.
 double floor_below(const SceneContent& content, const vec3& place_m) {
   constexpr double kNear_m = 0.35;
   if (content.terrain == nullptr) return 0.0;
@@ -204,7 +205,8 @@ void CapsuleScene::load(const SceneContent& content, const SceneView& view) {
   bodies_.load(GlRows::Of::instance, rows_);
 }
 
-// Contains all bodies and their shadows, in whole texels, so that shadows do not flicker.
+// The square that holds all bodies and their shadows. It moves by whole texels, so that shadows do
+// not flicker.
 ShadowPlace CapsuleScene::shadow_place() const noexcept {
   if (rows_.empty()) return {};
   vec2 low(1e9), high(-1e9);
@@ -420,7 +422,7 @@ std::optional<Error> FloorScene::open() {
   return sky_.link("background", shader::kSkyVertex, background + shader::kSkyFragment);
 }
 
-// A square around the focus. It is behind all bodies, because they stand on it.
+// Draws level floor as a square around the focus, behind all bodies, because they stand on it.
 void FloorScene::draw_floor(const SceneContent& content, const SceneView& view,
                             const ShadowPlace& place) const {
   floor_.use();

@@ -165,7 +165,7 @@ GaitParams Followers::params_of(int member, const GaitParams& first, const WalkS
   const vec3 off_m = (first_state.path.hips_m - first_m_) -
                      (path.hips_m - start_m_[static_cast<std::size_t>(member)]);
   const double behind_m = glm::dot(vec3(off_m.x, 0.0, off_m.z), ahead);
-  // Distance from the way, + to the left.
+  // Sideways distance to its place, + to the left.
   const double beside_m = off_m.x * ahead.z - off_m.z * ahead.x;
   const double speed = speed_m_s(first);  // speed_m_s() is at least 0
 

@@ -94,7 +94,7 @@ std::optional<Error> LiveSession::Impl::open_recording() {
 }
 
 void LiveSession::Impl::start_loop() {
-  // Recorded as a command, so that a replay needs no option.
+  // The option is recorded as a command, so that a replay does not need it.
   if (spec.walk.stick == StickMeans::points) pads->command("stick points");
   const LiveLoop::Options options = {rate_hz, spec.live.rumble, spec.live.frame_ticks,
                                      stream ? &stream->newest() : nullptr,
@@ -295,8 +295,8 @@ bool LiveSession::has_ended() const noexcept { return impl_->loop->has_ended(); 
 
 LiveStatus LiveSession::status() const noexcept {
   LiveStatus status = impl_->loop->status();
-  // After an overload the loop runs at normal priority.
   if (impl_->stream) status.streamed = impl_->stream->frames();
+  // After an overload the loop runs at normal priority.
   status.time_policy = status.overloads > 0 ? "normal priority" : impl_->time_policy;
   const std::lock_guard lock(impl_->mutex);
   status.pads = impl_->final ? *impl_->final : impl_->pads->counts();

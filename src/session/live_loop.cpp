@@ -209,9 +209,11 @@ bool TickReports::is_known(std::uint16_t device) const noexcept {
 
 namespace {
 
-constexpr std::int64_t kNap_ns = 20'000'000;  // longest sleep between two looks at the orders
-constexpr std::size_t kSamples = 1024;        // samples that wait to be taken: 4 s
-constexpr std::size_t kUsed = 4096;           // reports that wait for a frame: over 1 s
+// Longest sleep: then pace, steps and stop are read again.
+constexpr std::int64_t kNap_ns = 20'000'000;
+constexpr std::size_t kSamples = 1024;  // samples that wait to be taken: 4 s
+constexpr std::size_t kUsed = 4096;     // reports that wait for a frame: over 1 s
+// latest_due(): the longest wait for a due tick, and its parts.
 constexpr std::int64_t kDueWait_ns = 2'000'000, kDueNap_ns = 100'000;
 constexpr std::chrono::milliseconds kBeat{80};
 constexpr double kFullBeatSpeed_m_s = 1.5;
@@ -384,7 +386,7 @@ void LiveLoop::use(std::span<const Report> reports, std::int64_t now_ns) noexcep
     if (report.kind != ReportKind::input) continue;
     const bool is_real_time = clock_.pace() == 1.0 && report.time_ns >= real_time_ns_;
     if (is_real_time) wait_times_.add(now_ns - report.time_ns);
-    // If the ring is full, nobody shows frames: the report is left out of the measurement.
+    // If the ring is full, no frames are shown: the report is left out of the measurement.
     static_cast<void>(used_.push({{tick_, report.time_ns, now_ns, report.device}, is_real_time}));
   }
 }

@@ -112,7 +112,8 @@ std::optional<std::string> mark_of(const Trace& trace, const TraceEvent& event) 
     case ReportKind::command: {
       const char* text = reinterpret_cast<const char*>(trace.bytes.data()) + event.first_byte;
       const std::string_view command(text, event.size);
-      if (command == "mark") return std::nullopt;  // long pauses are recorded with one
+      // A mark without a name fills a long pause of a recording.
+      if (command == "mark") return std::nullopt;
       return std::string(command);
     }
     case ReportKind::added:
@@ -197,7 +198,7 @@ struct Playback::Impl {
 
   TraceRun run;
   Snapshots snapshots;
-  std::int64_t first_sample = 0;  // earlier ticks are in no history that is needed
+  std::int64_t first_sample = 0;  // samples of earlier ticks are not needed
   std::deque<TickSample> samples;
   SessionFrame frame;
 };

@@ -89,7 +89,7 @@ void RecordingLines::style(std::int64_t tick, const Style& style) {
   writer_.file("styles/" + style.name + ".toml", style_text(style));
 }
 
-// Records a tick completely or not at all.
+// True if the recording is full before this tick: a tick is recorded completely or not at all.
 bool RecordingLines::is_over(std::int64_t tick) {
   if (is_full_ || (rate_hz_ && events_ > 0 && tick == tick_)) return is_full_;
   if (bytes_ + text_size() < limits_.bytes && events_ < limits_.events) return false;
@@ -229,7 +229,8 @@ Recording::~Recording() { end_thread(); }
 void Recording::add(std::int64_t tick, const Report& report) noexcept {
   Item item;
   item.tick = tick;
-  copy_used_bytes(report, now_ns(), item.report);  // a future time would end the recording
+  // Not later than now: a time far ahead would end the recording.
+  copy_used_bytes(report, now_ns(), item.report);
   if (!ring_.push(item)) lost_.fetch_add(1, std::memory_order_relaxed);
 }
 

@@ -141,9 +141,10 @@ class Recording {
  private:
   struct Item {
     std::int64_t tick = 0;
-    std::int64_t clock_ns = kNoClock;  // if it is set, the item is a clock() instead of a report
+    // Set: the item is the argument of a call of clock(), not a report.
+    std::int64_t clock_ns = kNoClock;
     double pace = 1.0;
-    // If they are set, the item is a styles().
+    // Set: the item holds the arguments of a call of styles().
     const std::vector<Style>*styles_before = nullptr, *styles = nullptr;
     Report report;
   };

@@ -34,7 +34,7 @@ bool is_mapping(std::string_view line) {
          line.find_first_not_of("0123456789abcdefABCDEF") == kDigits;
 }
 
-// Other lines are skipped.
+// The text's mapping lines and their numbers; other lines are skipped.
 Result<std::vector<MappingLine>> mapping_lines_of(std::string_view text,
                                                   const std::string& source) {
   std::vector<MappingLine> mappings;
@@ -51,13 +51,15 @@ Result<std::vector<MappingLine>> mapping_lines_of(std::string_view text,
 constexpr double kLeastImportedHalfRange = 0.1;  // least half range, raw, as in calibration files
 constexpr double kLeastImportedInner = 0.05, kMostInner = 0.9;
 constexpr double kLeastTriggerWay = 0.1;
-constexpr unsigned kCodesByKernel = 0x8000;
+constexpr unsigned kCodesByKernel = 0x8000;  // bit of a node's version: the kernel chose the codes
 
-// The claims of a tool about one axis of the pad, in counts.
+// What a recording states about one axis of the pad, in counts: its range min..max, its dead zone
+// low..high.
 struct Claim {
   std::string axis;  // name of the axis in sentences
   double min = 0.0, low = 0.0, high = 0.0, max = 0.0;
-  bool is_zone_told = false;  // the user was told about the zone
+  // The recording states a dead zone; false: low and high are the middle of the range.
+  bool is_zone_told = false;
 };
 
 bool is_hat_field(const Field& f) {
@@ -82,7 +84,7 @@ NodeAxes node_axes(const ReportDescriptor& d, const DeviceInfo& device) {
   return axes;
 }
 
-// The axes of the pad that the whole field is bound to.
+// The pad's axes that use the whole range of the field.
 std::vector<AxisOp> ops_of(const PadLayout& layout, const Field& f) {
   std::vector<AxisOp> ops;
   for (const ReportLayout& report : layout.reports) {
@@ -166,7 +168,7 @@ std::string apply(const Claim& claim, const PadLayout& layout, const Field& fiel
   return {};
 }
 
-// The middle of the range is taken as the centre: the kernel knows no other.
+// Takes the middle of each axis' range as its centre, because the kernel states no other.
 Result<Sticks> apply_ranges(const EvdevRecording& node, const std::string& source,
                             const NodeAxes& axes, const PadLayout& layout) {
   Sticks sticks;
@@ -220,7 +222,7 @@ unsigned guid_word(const std::string& line, std::size_t byte) {
 std::string mapping_problem(const std::string& line, const DeviceInfo& device) {
   if (!is_one_line(line)) return "SDL mapping: it holds a control character";
   const unsigned vendor = guid_word(line, 4), product = guid_word(line, 8);
-  // The GUID holds a name instead of ids.
+  // A GUID without these zeros holds a name instead of ids, which cannot be compared.
   if (guid_word(line, 6) != 0 || guid_word(line, 10) != 0) return {};
   if (vendor != 0 && (vendor != device.vendor || product != device.product)) {
     return fmt::format("SDL mapping: it is for {}, the pad is {}", ids_text(vendor, product),

@@ -16,9 +16,9 @@ namespace gaitpad {
 namespace {
 
 constexpr std::int64_t kBucketNs = 100 * kMillisecondNs;
-// Limit on the difference of means over 0.1 s: 3 sigma of a very noisy stick.
+// Limit on the raw distance of two means over 0.1 s: 3 sigma of a very noisy stick.
 constexpr double kStillWithin = 0.04;
-// Anything shorter is a spike: to another place and back within three reports.
+// A shorter movement is a spike: wrong reports, at most three, between right ones.
 constexpr std::int64_t kSpikeNs = 40 * kMillisecondNs;
 
 constexpr std::int64_t kStillNs = 500 * kMillisecondNs;
@@ -32,8 +32,10 @@ constexpr std::size_t kMaxRests = 64;  // places of further releases are ignored
 // A rest this far from the middle is rare, so more releases are asked for.
 constexpr double kAside = 0.1;
 
-constexpr double kOfReach = 0.6;      // share of the farthest position: pushed out
-constexpr double kOfMedianRim = 0.6;  // less is a cut corner; a square gate has 0.71
+constexpr double kOfReach = 0.6;  // rim(): share of the stick's farthest distance
+// Least radius of a direction that counts as seen, as a share of the median radius: less is a cut
+// corner; the sides of a square gate have 0.71 of its corners.
+constexpr double kOfMedianRim = 0.6;
 // Limits of the travel between two reports along the rim: less is noise, more is a spike.
 constexpr double kLeastTravel = 15.0 * kDegree, kMostTravel = 90.0 * kDegree;
 
@@ -41,7 +43,7 @@ constexpr double kUnpressed = 0.1;  // raw; a turn that stays this far inside of
                                     // pressed to the rim
 
 constexpr std::int64_t kHeldNs = 250 * kMillisecondNs;
-constexpr double kInOfRim = 0.6;  // share of the rim's radius below which the stick was released
+constexpr double kInOfRim = 0.6;  // share of the rim's distance below which the stick was released
 
 // 0 right, 1 front, 2 left, 3 back.
 std::size_t quarter_of(const vec2& v) noexcept {
@@ -75,7 +77,7 @@ void ReleaseWatch::hold(const vec2& raw, std::int64_t duration_ns) {
     away_ns_ += duration_ns;
     away_ = from_rest;
     if (away_ns_ > kSpikeNs) {
-      if (!is_away_) still_ = StillWatch();  // forgets the place of the rest before
+      if (!is_away_) still_ = StillWatch();  // forget where it stood before this push
       reach_ = std::max(reach_, glm::length(from_rest));
       is_away_ = true;
       near_ns_ = 0;
@@ -233,10 +235,10 @@ std::optional<vec2> PushWatch::take_push() noexcept {
 
 namespace {
 
-// Longer silence adds nothing and would cost time.
+// Longest silence that counts: no step waits for longer, and StillWatch takes it in parts of 0.1 s.
 constexpr std::int64_t kLongestHoldNs = 5000 * kMillisecondNs;
 
-// Larger over smaller part of a push: at most 30 degrees off an axis.
+// Least ratio of a push's larger to its smaller component: at most 30 degrees off an axis.
 constexpr double kClearRatio = 1.7;
 
 constexpr int kPushes = 4;

@@ -27,11 +27,12 @@ constexpr double kAssumedHysteresis = 0.05;
 constexpr double kSigmasOfRest = 5.5;
 // Distance of full output from the rim in sigmas: one report in 300,000 is not full.
 constexpr double kSigmasOfRim = 4.5;
-// From 0.14 on full deflection could be less than 0.96, where the sideways zone takes most off it.
+// Bounds of the sideways zone: above 0.14 a full push 57 degrees off the side gives less than 0.96.
 constexpr double kLeastSideways = 0.11, kGreatestSideways = 0.14;
 constexpr double kSigmasOfForward = 4.0;
 constexpr double kSpreadOfDisplaced = 1.1;
-constexpr double kSigmasOfWander = 5.0;  // a minute shows more of it than the second measured
+// In sigmas of the wander, which is measured within one second and grows within a minute.
+constexpr double kSigmasOfWander = 5.0;
 
 // Limits beyond which no calibration helps.
 // Greatest useful inner zone, raw: beyond it a third of the stick's way does nothing.
@@ -43,19 +44,19 @@ constexpr double kUselessSigma = 0.05;
 constexpr double kUselessDrift = 0.002;
 // Greatest useful wander, raw in a second: a greater one leaves any zone within a minute.
 constexpr double kUselessWander = 0.029;
-// Least rest for a drift of a stick that was released only once.
+// Least rest from which a drift is believed if the stick was released only once.
 constexpr double kDriftSure_s = 5.0;
-// Least report rate: slower reports show no movement by itself.
+// Least report rate: slower reports do not show whether the stick moves by itself.
 constexpr double kLeastRate_hz = 22.5;
 constexpr int kFewestDirections = 44;  // fewest directions of 48; the unseen ones may be weak
 constexpr int kUselessDropOuts = 2;
-// Jumps a minute beyond the filter that make a stick useless.
+// Jumps a minute that pass the filter, beyond which a stick is useless.
 constexpr double kUselessPassing = 0.2;
 constexpr int kUselessStuck = 2;  // a single frozen time may be a lost report
 // Beyond these a stick is worn: two or three times what new ones show.
 constexpr double kWornHysteresis = 0.06, kWornSigma = 0.01, kWornCentre = 0.12, kWornReach = 0.8;
 constexpr double kWornWander = 0.01;
-// Noise of a worn stick, in steps: smaller noise comes from the steps.
+// Least noise of a worn stick, in steps: less comes from the steps.
 constexpr double kWornSteps = 1.5;
 constexpr int kWornJumps = 3;
 // A thumb or a finger that lies on a stick holds it aside, while its range stays symmetric. After
@@ -84,8 +85,9 @@ double reach_in(const Outline& outline, int direction) noexcept {
   return outline.radius[static_cast<std::size_t>(direction)];
 }
 
-// Reasons for which a side, or the worst of all directions, reaches less far than `least`. If the
-// worst direction is beside a side, its number replaces the side's, because the picture shows it.
+// Reasons for which a side counts as short: sentences about each side, and the worst of all
+// directions, that reaches less far than `least`. If the worst direction is beside a side, its
+// number replaces the side's, because the picture shows it.
 std::vector<std::string> short_sides(const StickStatistics& s, double least) {
   constexpr int kBeside = kOutlineDirections / 16;
   std::optional<int> worst = worst_direction(s.outline);
@@ -127,8 +129,8 @@ std::int64_t single_jumps(const StickStatistics& s) noexcept { return s.jumps - 
 double share_of_jumps(const StickStatistics& s) noexcept {
   return static_cast<double>(s.jumps) / static_cast<double>(std::max<std::int64_t>(s.samples, 1));
 }
-// The times a minute at which two jumps come in three reports, which the median of three lets
-// through.
+// The times a minute at which two jumps come within three reports, which the median of three lets
+// through: 2 share^2 of the reports.
 double passing_jumps(const StickStatistics& s) noexcept {
   const double share = share_of_jumps(s);
   return 2.0 * share * share * 60.0 * s.rate_hz.value_or(250.0);
@@ -179,9 +181,10 @@ void add_zones(const StickStatistics& s, StickAdvice& advice) noexcept {
   StickCalibration& c = advice.calibration;
   const double half = least_half(c), sigma = greatest_sigma(s);
   advice.inner_zone = std::max(kLeastInner, 3.0 * sigma + hysteresis_of(s));
-  // With little hysteresis that formula covers too little of the noise. It also ignores wander, and
-  // single rests far from the others, which may be a little farther off on other sides. A single
-  // one may have been a thumb, but a zone that is too wide is better than a walk by itself.
+  // The formula of `inner_zone` covers too little of the noise if the hysteresis is small. It
+  // ignores wander, and displaced rests, which may be 10 % farther off on sides that were not seen.
+  // A single one may come from a thumb, but a wide zone is better than a character that walks by
+  // itself.
   const double away = 0.5 * hysteresis_of(s) + kSpreadOfDisplaced * s.displaced_by;
   const double rest =
       std::max(advice.inner_zone, away + kSigmasOfRest * sigma + kSigmasOfWander * s.wander);

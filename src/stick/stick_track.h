@@ -98,7 +98,7 @@ struct CleanTracks {
   // spike) repeats the position before it; times never go back.
   std::vector<StickTrack> tracks;
   std::int64_t jumps = 0;       // spikes: to another place and back within three reports
-  std::int64_t long_jumps = 0;  // those of them that a median of three reports lets through
+  std::int64_t long_jumps = 0;  // number of jumps that the median of three reports lets through
   // An axis jumped to another value, stayed there for two reports to 0.12 s, and jumped back.
   std::int64_t drop_outs = 0;
   double drop_out_s = 0.0;  // duration of all drop-outs together

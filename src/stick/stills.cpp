@@ -16,7 +16,7 @@ namespace {
 // ---- Finding the stills
 
 constexpr double kCell_s = 0.02;
-// Most cells, for all tracks together: those of a day.
+// Most cells, for all tracks together: 24 hours.
 constexpr std::size_t kMostCells = 86400 * 50;
 // A place is still if the means of the 0.1 s before it and behind it are equal.
 constexpr std::size_t kHalfWindow = 5, kWindow = 2 * kHalfWindow;  // lengths in cells
@@ -80,7 +80,7 @@ double doubt(double reports) noexcept {
 }
 
 // Whether the window of cells from `first` on shows a single place, apart from noise. The noise is
-// measured between successive reports, where a movement's own steps are too small to matter.
+// measured between successive reports, between which even a movement is small.
 bool is_still(std::span<const Cell> cells, std::size_t first, double slow) noexcept {
   Cell before, after;
   for (std::size_t k = 0; k < kHalfWindow; ++k) {
@@ -123,8 +123,8 @@ bool stays(std::span<const Cell> cells, const Run& run, std::size_t end) noexcep
   return true;
 }
 
-// Runs of cells in the middle of still windows, extended by the part of the outermost windows that
-// is certainly rest: a movement begins and ends within the noise, and on a slow pad between two
+// Runs of cells whose windows are still. A run is extended into its outermost windows, except for
+// the cells beside the movement: it begins within the noise and, on a slow pad, between two
 // reports.
 std::vector<Run> still_runs(std::span<const Cell> cells, double slow, double interval_s) {
   std::vector<Run> runs;
@@ -196,7 +196,7 @@ bool is_near_middle(const vec2& p) noexcept {
   return std::max(std::fabs(p.x), std::fabs(p.y)) < kFarthestHome;
 }
 
-// `turned`: where the stick went if it was turned round; a rest lies well inside of it.
+// `turned`: the extent of a stick that was turned round; a rest lies within 0.6 of it.
 bool may_be_rest(const Still& still, const std::optional<Extent>& turned) noexcept {
   if (!is_near_middle(still.mean)) return false;
   return !turned || glm::length((still.mean - turned->middle()) / turned->half()) < 0.6;
@@ -217,7 +217,8 @@ std::optional<Extent> turned_extent(std::span<const StickTrack> tracks) {
 std::vector<Still>::iterator sort_out_rests(std::vector<Still>& found,
                                             std::span<const StickTrack> tracks) {
   constexpr double kSquare = 0.0625, kSame = 3;  // side of a square, raw; distance in squares
-  // Distance from the middle, raw; worn sticks rest up to that far off.
+  // Raw distance from the middle at which a place counts exp(-1) as much; worn sticks rest up to
+  // that far off.
   constexpr double kNearMiddle = 0.25;
   struct Place {
     double seen_s = 0.0, count = 0.0;
@@ -289,8 +290,8 @@ vec2 side_of_return(std::span<const Cell> way, const vec2& place) noexcept {
 
 // ---- Hands-off time
 
-// Shares of the reach. A spring brings the stick from the farther place to the nearer one within
-// kSpringCells; a hand that leads it back is slower.
+// Shares of the reach. A spring brings the stick from kFar to kBack within kSpringCells; a hand
+// that leads it back is slower.
 constexpr double kPushed = 0.5, kFar = 0.7, kBack = 0.45;
 constexpr std::size_t kSpringCells = 7, kSettlingCells = 15, kLeastSettlingCells = 8;
 constexpr std::size_t kBlockCells = 5;
@@ -310,7 +311,8 @@ std::optional<vec2> usual_place(std::span<const Cell> cells) {
   return places.size() < 5 * kBlockCells ? std::nullopt : std::optional(median_of(places));
 }
 
-// The hands-off times of one track. `home`: where the stick rests; `reach`: from there.
+// The hands-off times of one track. `home`: where the stick rests; `reach`: from there; `late`:
+// cells per report, on slow pads.
 void add_hands_off(std::size_t track, std::span<const Cell> cells, const vec2& home, double reach,
                    std::size_t late, std::vector<HandsOff>& found) {
   const auto away = [&](std::size_t k) { return glm::length(cells[k].mean() - home) / reach; };
@@ -332,7 +334,7 @@ void add_hands_off(std::size_t track, std::span<const Cell> cells, const vec2& h
         if ((away(last - 1) - away(last - 4)) * reach < kOutwards) break;
       }
     }
-    // If the time is short, its end counts, although the stick may not quite have settled.
+    // A short time counts from earlier on, although the stick may not quite have settled.
     if (is_released && last < first + kBlockCells)
       first = std::max(begin + kLeastSettlingCells, last - std::min(last, kBlockCells));
     if (last < first + kBlockCells) continue;

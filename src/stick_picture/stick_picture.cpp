@@ -252,7 +252,7 @@ void draw_calibrated_plane(cairo_t* cr, const Box& box, const StickPicture& stic
 constexpr double kLeastHalfHeight = 0.02;  // least half height of the magnified plane, raw
 constexpr std::size_t kMaxDots = 20000;
 
-// Magnified so that the inner zone fills most of the height.
+// A plane around the stick's rest, magnified so that the inner zone fills most of the height.
 Plane plane_about_rest(const Box& box, const StickPicture& stick) {
   Plane plane{box};
   plane.half_height = 0.1;
@@ -314,7 +314,7 @@ void draw_grid(cairo_t* cr, const Plane& plane) {
   });
 }
 
-// Reported positions, darker where they were reported often.
+// Draws each reported position as a dot; places that were reported often are darker.
 void draw_positions(cairo_t* cr, const Plane& plane, const StickPicture& stick) {
   std::vector<vec2> dots;
   for (const StickTrack& track : stick.tracks) {

@@ -22,7 +22,8 @@ constexpr double kHip = 1.8, kAnkle = 1.8;
 constexpr double kSmooth = 20.0;  // weight of second differences between samples
 // Factors on kSmooth for the pelvis.
 constexpr double kPelvisSmooth = 5000.0, kPelvisSmoothUp = 4000.0;
-// Weights per square metre, for the knee per square radian.
+// Weights of a planted point's error, of a point's depth in the floor (both per square metre) and
+// of a knee's lack of bend (per square radian).
 constexpr double kPlanted = 3e5, kFloor = 3e6, kKnee = 1e4;
 constexpr double kLevel = 5e2;  // weight of a sole that is level and points ahead, per square metre
 // Weights per square metre of second differences, for heels that come to rest and toes that begin
@@ -32,10 +33,12 @@ constexpr int kLanding = 3;  // number of samples over which these weights fade
 // People's hips accelerate by 2 to 4 m/s^2 along the path. Excess costs kSurge per square metre of
 // a second difference.
 constexpr double kMostSurge_m_s2 = 2.8, kSoftSurge_m_s2 = 0.8, kSurge = 1e6;
-constexpr double kSoftHeave_m_s2 = 2.0;  // bound on the vertical acceleration, which is soft
-constexpr double kSide_m = 0.1;          // lever of kLevel across the foot
-// Depth to which the edge of a heel may sink into the floor.
+constexpr double kSoftHeave_m_s2 = 2.0;  // width of the soft limit on the vertical acceleration
+// Distance beside the heel at which kLevel measures the sole's roll.
+constexpr double kSide_m = 0.1;
+// Depth to which the edge of a heel may sink into the floor, and the width of that soft limit.
 constexpr double kMostSink_m = 0.002, kSoftEdge_m = 0.0015;
+// Widths of the soft limits on toes, heels and knees.
 constexpr double kSoftFloor_m = 0.004, kSoftHeel_m = 0.001;
 constexpr double kSoftKnee = 2.0 * kDegree;
 constexpr double kToeClearance_m = 0.01;  // height of the toe in the middle of the flight
@@ -355,7 +358,7 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
   System& s = *system_;
   const int n = s.samples, solved = s.solved;
   s.clear();
-  // A small and smooth change of the data.
+  // A small and smooth change of the data costs least.
   for (int i = 0; i < solved; ++i) {
     for (int k = 0; k < kUnknowns; ++k) {
       const int at = i * kUnknowns + k;

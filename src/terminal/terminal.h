@@ -44,8 +44,8 @@ ScreenSize screen_size() noexcept;
 // Lines of at most `width` characters, broken at blanks.
 std::vector<std::string> wrapped_lines(const std::string& text, std::size_t width);
 
-// Breaks the text's lines at blanks to at most `width` characters. Continuation lines are indented
-// to the last column that begins in the left half; two blanks precede a column.
+// Breaks the text's lines at blanks to at most `width` characters. A continuation line begins below
+// the last column of its line that begins in the left half; a column begins after two blanks.
 std::string fitted(std::string_view text, std::size_t width);
 // Columns of a terminal; nothing if the descriptor is not one.
 std::optional<std::size_t> terminal_columns(int descriptor) noexcept;

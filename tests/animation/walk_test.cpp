@@ -141,8 +141,7 @@ TEST(Walk, NeitherFailsNorJumpsNorLeavesItsLimitsOverRandomSticksAndStyles) {
     EXPECT_EQ(failures, 0) << ratio;
     for (const auto& legs_rad : walker.angles_rad()) ASSERT_TRUE(within_limits(model, legs_rad));
     EXPECT_LT(walker.drift_m(), 1e-4) << ratio;
-    // The bound is half as large again as for a single change (0.8), because sticks and styles jump
-    // here.
+    // 1.5 times the bound for a single change (0.8), because sticks and styles jump here.
     EXPECT_LT(walker.sharpest_turn_rad(), 1.2 * kDegree) << ratio;
   }
 }

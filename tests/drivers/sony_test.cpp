@@ -141,7 +141,8 @@ TEST(DualShock4, RumblesOverUsbIn32BytesWithoutTouchingTheLight) {
   EXPECT_EQ(rumble_of(*pad, {}), expected);
 }
 
-// Bit 2 of the second status byte tells it (hid-playstation.c, DS4_STATUS1_DONGLE_STATE).
+// Bit 2 of the second status byte is set if no pad is connected (hid-playstation.c,
+// DS4_STATUS1_DONGLE_STATE).
 TEST(DualShock4, ItsAdapterTellsWhetherAPadIsConnected) {
   const auto adapter = quirks(0x0ba0, BusType::usb);
   Packet report(64, 0x80);

@@ -4,6 +4,9 @@
 // standing one; it lands ahead and the other foot closes; one more step comes before that. The hips
 // go to their place between the feet along a quintic, whose duration is chosen for the least
 // braking.
+//
+// A program may ask for another landing of the running step, and push the hips; both are changes of
+// the running step, as a stop is.
 #include "animation/placement.h"
 #include "animation/sound_input.h"
 #include "animation/walk_flow.h"

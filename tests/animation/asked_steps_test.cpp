@@ -190,7 +190,7 @@ TEST(AskedSteps, APushedWalkCatchesItselfWithItsNextFootprint) {
       EXPECT_LT(walk.most_slide_m, 1e-4);
       EXPECT_LT(walk.most_bend_rad, kSharpest_rad);
       EXPECT_NEAR(walk.state.frame.speed_m_s, other_walk.state.frame.speed_m_s, 0.01);
-        }
+    }
     EXPECT_GT(most_m, 0.05) << "the hips go where they are pushed";
   }
 }

@@ -130,13 +130,9 @@ void Crowd::advance_block(int number, double dt_s) noexcept {
   std::array<RootBefore, kTogether> before;
   for (std::size_t i = 0; i < block.size(); ++i) before[i] = root_of(*walks[i].state);
   for (int part = 0; part < parts; ++part) {
-    if (lanes_in_use() >= 8) {
-      advance_all<8>(model, dt_s / parts, all);
-    } else if (lanes_in_use() >= 4) {
-      advance_all<4>(model, dt_s / parts, all);
-    } else {
-      advance_all<2>(model, dt_s / parts, all);
-    }
+    with_width(lanes_in_use(), [&](auto width) {
+      if constexpr (width > 1) advance_all<width>(model, dt_s / parts, all);
+    });
   }
   for (std::size_t i = 0; i < block.size(); ++i) {
     WalkState& state = *walks[i].state;

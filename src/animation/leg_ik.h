@@ -74,25 +74,25 @@ struct LegToClose {
 template <int kRegister>
 void close_legs(std::array<LegToClose, 2>& legs) noexcept;
 
-// Solves legs side by side. kWidth: 2, 4 or 8. kWeighted: the legs' `shares` are used. kRegister:
-// the width of the registers for which it is compiled; wider ones bring instructions with three
-// operands, with which two legs take a seventh less time.
+// Solves legs side by side. kWidth: kLeastLanes, 2, 4 or 8. kWeighted: the legs' `shares` are used.
+// kRegister: the width of the registers for which it is compiled; wider ones bring instructions
+// with three operands, with which two legs take a seventh less time.
 template <int kWidth, bool kWeighted, int kRegister = kWidth>
 void solve_legs(const std::array<LegToSolve*, kWidth>& legs) noexcept;
 
 // Closes the two legs of one character, for the widest registers in use.
 inline void close_two_legs(std::array<LegToClose, 2>& legs) noexcept {
-  const int lanes = lanes_in_use();
-  const auto close = lanes >= 8 ? close_legs<8> : lanes >= 4 ? close_legs<4> : close_legs<2>;
-  close(legs);
+  with_width(lanes_in_use(), [&](auto width) { close_legs<width>(legs); });
 }
 template <bool kWeighted>
 inline void solve_two_legs(std::array<LegToSolve, 2>& legs) noexcept {
-  const int lanes = lanes_in_use();
-  const auto solve = lanes >= 8   ? solve_legs<2, kWeighted, 8>
-                     : lanes >= 4 ? solve_legs<2, kWeighted, 4>
-                                  : solve_legs<2, kWeighted>;
-  solve({&legs[0], &legs[1]});
+  with_width(lanes_in_use(), [&](auto width) {
+    if constexpr (width == 1) {
+      for (LegToSolve& leg : legs) solve_legs<1, kWeighted>({&leg});
+    } else {
+      solve_legs<2, kWeighted, width>({&legs[0], &legs[1]});
+    }
+  });
 }
 
 }  // namespace gaitpad

@@ -321,7 +321,7 @@ inline void gather(const std::array<Leg*, kWidth>& legs, One Leg::*part, Several
     from[i] = reinterpret_cast<const double*>(&(legs[i]->*part));
   for (std::size_t k = 0; k < sizeof(One) / sizeof(double); ++k) {
     Lanes<kWidth> row;
-    for (std::size_t i = 0; i < kWidth; ++i) row[i] = from[i][k];
+    for (std::size_t i = 0; i < kWidth; ++i) set_lane(from[i][k], static_cast<int>(i), row);
     lanes[k] = row;
   }
 }
@@ -331,7 +331,8 @@ inline void scatter(const Several& from, One Leg::*part,
   const auto* lanes = reinterpret_cast<const Lanes<kWidth>*>(&from);
   for (std::size_t i = 0; i < kWidth; ++i) {
     auto* to = reinterpret_cast<double*>(&(legs[i]->*part));
-    for (std::size_t k = 0; k < sizeof(One) / sizeof(double); ++k) to[k] = lanes[k][i];
+    for (std::size_t k = 0; k < sizeof(One) / sizeof(double); ++k)
+      to[k] = lane_of(lanes[k], static_cast<int>(i));
   }
 }
 
@@ -339,15 +340,20 @@ inline void scatter(const Several& from, One Leg::*part,
 
 template <int kRegister>
 void close_legs(std::array<LegToClose, 2>& legs) noexcept {
-  using V = Lanes<2>;
-  PlannedLeg<V> planned;
-  LegValues<V> angles_rad;
-  const std::array<LegToClose*, 2> both = {&legs[0], &legs[1]};
-  gather(both, &LegToClose::planned, planned);
-  gather(both, &LegToClose::angles_rad, angles_rad);
-  const auto reached = close_lanes<V>(planned, angles_rad);
-  scatter(angles_rad, &LegToClose::angles_rad, both);
-  for (int side : {0, 1}) legs[side].reached = is_set(reached, side) ? 1.0 : 0.0;
+  constexpr std::size_t kWidth = kLeastLanes;
+  using V = Lanes<kLeastLanes>;
+  for (std::size_t first = 0; first < legs.size(); first += kWidth) {
+    std::array<LegToClose*, kWidth> some;
+    for (std::size_t i = 0; i < kWidth; ++i) some[i] = &legs[first + i];
+    PlannedLeg<V> planned;
+    LegValues<V> angles_rad;
+    gather(some, &LegToClose::planned, planned);
+    gather(some, &LegToClose::angles_rad, angles_rad);
+    const auto reached = close_lanes<V>(planned, angles_rad);
+    scatter(angles_rad, &LegToClose::angles_rad, some);
+    for (std::size_t i = 0; i < kWidth; ++i)
+      some[i]->reached = is_set(reached, static_cast<int>(i)) ? 1.0 : 0.0;
+  }
 }
 
 template <int kWidth, bool kWeighted, int kRegister>

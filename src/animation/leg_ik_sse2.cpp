@@ -3,8 +3,8 @@
 
 namespace gaitpad {
 
-template void solve_legs<2, false>(const std::array<LegToSolve*, 2>&) noexcept;
-template void close_legs<2>(std::array<LegToClose, 2>&) noexcept;
-template void solve_legs<2, true>(const std::array<LegToSolve*, 2>&) noexcept;
+template void solve_legs<kLeastLanes, false>(const std::array<LegToSolve*, kLeastLanes>&) noexcept;
+template void close_legs<kLeastLanes>(std::array<LegToClose, 2>&) noexcept;
+template void solve_legs<kLeastLanes, true>(const std::array<LegToSolve*, kLeastLanes>&) noexcept;
 
 }  // namespace gaitpad

@@ -16,24 +16,24 @@ bool is_same(const UpperBodyParams& a, const UpperBodyParams& b) noexcept {
 }
 
 bool is_sound(const GaitParams& params, const WalkState& state) noexcept {
-  using Pair = Lanes<2>;
+  using Some = Lanes<kLeastLanes>;
   const ParamsRange& range = params_range();
-  const auto pair = [](const GaitParams& of, std::size_t k) {
-    Pair two;
-    std::memcpy(&two, numbers_of(of).data() + k, sizeof two);
-    return two;
+  const auto some = [](const GaitParams& of, std::size_t k) {
+    Some numbers;
+    std::memcpy(&numbers, numbers_of(of).data() + k, sizeof numbers);
+    return numbers;
   };
   // The body's numbers come last; they are many and seldom change, so they are checked only after a
   // change.
   constexpr std::size_t kBody = sizeof(UpperBodyParams) / sizeof(double);
   const bool same = is_same(params.body, state.body.goal);
   const std::size_t count = same ? kParamsNumbers - kBody : kParamsNumbers;
-  MaskOf<Pair> outside{};
-  for (std::size_t k = 0; k < count; k += 2) {
-    // Pairs of numbers; the last pair of an odd count overlaps the one before.
-    const std::size_t at = std::min(k, count - 2);
-    const Pair x = pair(params, at);
-    outside |= ~((x >= pair(range.least, at)) & (x <= pair(range.most, at)));
+  MaskOf<Some> outside{};
+  for (std::size_t k = 0; k < count; k += kLeastLanes) {
+    // The last pair of an odd count overlaps the one before.
+    const std::size_t at = std::min(k, count - kLeastLanes);
+    const Some x = some(params, at);
+    outside |= not_of((x >= some(range.least, at)) & (x <= some(range.most, at)));
   }
   return !any(outside);
 }

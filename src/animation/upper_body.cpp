@@ -46,22 +46,22 @@ void settle_values(const Tick& tick, UpperBodyState& body) noexcept {
     body.per_s = {};
     return;
   }
-  using Pair = Lanes<2>;
+  using Some = Lanes<kLeastLanes>;
   const auto before = bits_as<BodyValues>(body.now);
   const BodyValues rate = body.per_s;
   BodyValues now = before;
   const Damping damping(tau, tick.dt_s);
-  for (std::size_t i = 0; i < to.size(); i += 2) {
-    // Pairs of numbers; the last pair of an odd count overlaps the one before.
-    const std::size_t at = std::min(i, to.size() - 2);
-    Damped<Pair> value;
-    Pair aim;
-    std::memcpy(&value.x, &before[at], sizeof(Pair));
-    std::memcpy(&value.v, &rate[at], sizeof(Pair));
-    std::memcpy(&aim, &to[at], sizeof(Pair));
+  for (std::size_t i = 0; i < to.size(); i += kLeastLanes) {
+    // The last pair of an odd count overlaps the one before.
+    const std::size_t at = std::min(i, to.size() - kLeastLanes);
+    Damped<Some> value;
+    Some aim;
+    std::memcpy(&value.x, &before[at], sizeof(Some));
+    std::memcpy(&value.v, &rate[at], sizeof(Some));
+    std::memcpy(&aim, &to[at], sizeof(Some));
     value.advance(aim, damping);
-    std::memcpy(&now[at], &value.x, sizeof(Pair));
-    std::memcpy(&body.per_s[at], &value.v, sizeof(Pair));
+    std::memcpy(&now[at], &value.x, sizeof(Some));
+    std::memcpy(&body.per_s[at], &value.v, sizeof(Some));
   }
   body.now = bits_as<UpperBodyParams>(now);
 }

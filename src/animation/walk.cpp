@@ -536,6 +536,7 @@ void begin_tick(const Tick& tick, WalkState& state, Moment& at) noexcept {
   if (state.clock.started && !walks && !state.clock.stopping) plan_rest(tick, state);
   if (state.clock.started && walks && state.clock.stopping) walk_on(tick, state);
   if (state.clock.starting && state.clock.stage == Stage::roll) time_first_flight(tick, state);
+  take_asked_step(tick, state);
   smooth_upper_body(tick, state);
   advance_idle(tick, state);
   if (!tick.flat && tick.mode != IkMode::paper) lean_into_slope(tick, state);

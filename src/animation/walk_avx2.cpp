@@ -3,6 +3,8 @@
 
 namespace gaitpad {
 
+#ifndef GAITPAD_NO_VECTORS
 template void advance_lanes<4>(const WalkModel&, double, std::span<const Walking>) noexcept;
+#endif
 
 }  // namespace gaitpad

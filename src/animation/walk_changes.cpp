@@ -4,6 +4,10 @@
 // standing one; it lands ahead and the other foot closes; one more step comes before that. The hips
 // go to their place between the feet along a quintic, whose duration is chosen for the least
 // braking.
+//
+// A program may ask for another landing of the running step, and push the hips; both are changes of
+// the running step, as a stop is.
+#include "animation/placement.h"
 #include "animation/sound_input.h"
 #include "animation/walk_flow.h"
 
@@ -219,10 +223,11 @@ void plan_rest(const Tick& tick, WalkState& state) noexcept {
   for (double& time_s : state.gait.time_s) time_s = usual * tick.dt_s / clock.slowness;
   state.gait.asked_ratio = ratio_ahead<double>(model, moment_of(model, state), state);
   const bool flies = clock.stage == Stage::flight;
-  // A foot that will land soon, or that is high, keeps its landing place. Over uneven ground every
-  // flying foot does, because the way to its foothold is planned.
+  // A foot that will land soon, that is high, or whose landing was asked for keeps its place. Over
+  // uneven ground every flying foot does, because the way to its foothold is planned.
   const double lands_s = (clock.stage_ticks - clock.tick) * tick.dt_s;
   const bool is_high = state.gait.flight_height[swing].x > kHighFlight;
+  if (path.asked.waits || path.asked.is_taken) return;
   if (flies && (!tick.flat || is_high || lands_s < kLands_s * scale)) return;
   if (clock.starting && !flies) {  // true before the foot has left the floor
     path.rest_m = 0.5 * (standing + state.foot[swing].heel_anchor_m) + forward * model.rest_lead_m -
@@ -291,6 +296,115 @@ void plan_rest(const Tick& tick, WalkState& state) noexcept {
   path.rest_m = path.landing_m + ahead * further + forward * model.rest_lead_m -
                 left * model.leg[swing].track_m;
   path.rest_m.y = 0.0;
+}
+
+// --- Steps that are asked for --------------------------------------------------------------------
+
+namespace {
+
+// True if a program may still change where the running step ends.
+bool is_open_step(const WalkModel& model, const WalkState& state) noexcept {
+  constexpr double kLatest = 0.5;  // share of the flight
+  const StepClock& clock = state.clock;
+  if (!clock.started || clock.stopping || clock.closing) return false;
+  if (clock.stage == Stage::roll) return true;
+  return is_flat(*model.terrain) && clock.tick <= kLatest * clock.stage_ticks;
+}
+
+// The nearest landing that the running step's foot can reach, in the walk's own coordinates.
+Placement reachable_step(const WalkModel& model, const WalkState& state,
+                         const Placement& heel) noexcept {
+  // From heel to heel, in legs, so that feet neither touch nor do a split; and the turn of a foot.
+  constexpr double kAhead = 0.95, kBack = 0.45, kLeastAside = 0.07, kMostAside = 0.45,
+                   kMostTurn_rad = 0.7;
+  const Side swing = step_foot(state);
+  const FootState& stands = state.foot[other(swing)];
+  const Placement frame = {stands.heel_anchor_m, stands.lift_yaw_rad};
+  const vec3 asked = from_world(frame, heel.place_m);
+  const bool backward = state.clock.backward;
+  const double way = backward ? -1.0 : 1.0, outwards = swing == kRightSide ? -1.0 : 1.0,
+               leg_m = model.leg_length_m,
+               own_m = model.own_step_m[backward ? other(swing) : swing],
+               ahead_m = std::min(kAhead * leg_m, kMostRatio * own_m);
+  const vec3 near(
+      outwards * std::clamp(outwards * asked.x, kLeastAside * leg_m, kMostAside * leg_m), 0.0,
+      way * std::clamp(way * asked.z, -kBack * leg_m, ahead_m));
+  const double turn_rad = wrapped(heel.heading_rad - frame.heading_rad);
+  return {to_world(frame, near),
+          frame.heading_rad + std::clamp(turn_rad, -kMostTurn_rad, kMostTurn_rad)};
+}
+
+bool is_finite(const Placement& place) noexcept {
+  return std::isfinite(place.place_m.x + place.place_m.z + place.heading_rad);
+}
+
+}  // namespace
+
+std::optional<Placement> nearest_step(const WalkModel& model, const Placement& heel,
+                                      const WalkState& state) noexcept {
+  if (!is_finite(heel) || !is_open_step(model, state)) return std::nullopt;
+  const Placement& placed = state.placed;
+  const Placement own = {from_world(placed, heel.place_m), heel.heading_rad - placed.heading_rad};
+  return moved(placed, reachable_step(model, state, own));
+}
+
+bool step_to(const WalkModel& model, const Placement& heel, WalkState& state) noexcept {
+  constexpr double kSame_m = 0.001, kSame_rad = 0.1 * kDegree;
+  const auto near = nearest_step(model, heel, state);
+  if (!near) return false;
+  const vec3 off = near->place_m - heel.place_m;
+  if (glm::length(vec2(off.x, off.z)) > kSame_m ||
+      std::abs(wrapped(near->heading_rad - heel.heading_rad)) > kSame_rad)
+    return false;
+  AskedStep& asked = state.path.asked;
+  asked.waits = true;
+  asked.heel_m = from_world(state.placed, near->place_m);
+  asked.heading_rad = near->heading_rad - state.placed.heading_rad;
+  return true;
+}
+
+bool push_walk(const vec3& velocity_m_s, WalkState& state) noexcept {
+  const StepClock& clock = state.clock;
+  const vec3 v = glm::conjugate(rotation_y(state.placed.heading_rad)) * velocity_m_s;
+  if (!(glm::length(vec2(v.x, v.z)) <= kMostPush_m_s) || !clock.started || clock.stopping)
+    return false;
+  state.path.asked.push_m_s += vec3(v.x, 0.0, v.z);
+  return true;
+}
+
+void take_asked_step(const Tick& tick, WalkState& state) noexcept {
+  // A pendulum as long as the leg falls v sqrt(l / g) far: there a foot catches it (Hof 2008).
+  constexpr double kGravity_m_s2 = 9.81;
+  // Time constant in which the hips take a push, so that a straight knee does not snap.
+  constexpr double kPush_s = 0.05, kLeastPush_m_s = 0.01;
+  AskedStep& asked = state.path.asked;
+  const bool is_pushed = asked.push_m_s != vec3(0.0);
+  if (!asked.waits && !is_pushed) return;
+  const bool is_open = is_open_step(tick.model, state);
+  if (asked.waits && is_open) change_step(tick, state, [&] { asked.is_taken = true; });
+  asked.waits = false;
+  if (!is_pushed) return;
+  if (!state.clock.started || state.clock.stopping) {
+    asked.push_m_s = vec3(0.0);
+    return;
+  }
+  if (!asked.is_taken) {
+    // The landing of a step that has just begun is planned in its first tick.
+    if (!is_open || state.clock.tick == 0) return;
+    const vec3 falls_m = asked.push_m_s * std::sqrt(tick.model.leg_length_m / kGravity_m_s2);
+    const Placement heel = reachable_step(
+        tick.model, state, {state.path.landing_m + falls_m, state.path.landing_heading_rad});
+    change_step(tick, state, [&] {
+      asked.is_taken = true;
+      asked.heel_m = heel.place_m;
+      asked.heading_rad = heel.heading_rad;
+    });
+  }
+  const vec3 part_m_s =
+      asked.push_m_s * std::min(1.0, tick.dt_s / (kPush_s * tick.model.time_scale));
+  state.path.pelvis_m.v += part_m_s * tick.dt_s;
+  asked.push_m_s -= part_m_s;
+  if (glm::length(asked.push_m_s) < kLeastPush_m_s) asked.push_m_s = vec3(0.0);
 }
 
 void walk_on(const Tick& tick, WalkState& state) noexcept {

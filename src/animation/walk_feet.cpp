@@ -97,6 +97,7 @@ void plant_foot(WalkState& state, Side side) noexcept {
   foot.heel_anchor_m = state.path.landing_m;
   foot.lift_yaw_rad = state.path.landing_heading_rad;
   foot.plane = state.path.landing_plane;
+  state.path.asked.is_taken = false;
   state.path.wider_m = state.path.next_wider_m;
 }
 

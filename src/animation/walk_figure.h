@@ -373,9 +373,10 @@ template <class V>
 std::array<HalfTurns<V>, 2> half_turns(const typename LegFlow<V>::Angles& angles_rad) noexcept {
   std::array<HalfTurns<V>, 2> half;
   for (int j = 0; j < kLegDofs; ++j) {
-    if constexpr (kAlone<V>) {  // both legs are computed side by side
-      Lanes<2> sine, cosine;
-      sin_cos_of(0.5 * Lanes<2>{angles_rad[0][j], angles_rad[1][j]}, sine, cosine);
+    using Both = Lanes<kAlone<V> ? kLeastLanes : 1>;
+    if constexpr (kWidthOf<Both> == 2) {  // both legs are computed side by side
+      Both sine, cosine;
+      sin_cos_of(0.5 * Both{angles_rad[0][j], angles_rad[1][j]}, sine, cosine);
       for (int side : {0, 1}) half[side].sine[j] = sine[side], half[side].cosine[j] = cosine[side];
     } else {
       for (int side : {0, 1})
@@ -452,7 +453,7 @@ V data_phase(const WalkModel& model, const MomentOf<V>& at) noexcept {
 // Converts rows of w, x, y and z to the rotations of the table's joints.
 template <class V>
 void write_quats(const double* blend, const PoseRows& rows, quat* to) noexcept {
-  constexpr std::size_t kTogether = kAlone<V> ? 2 : kWidthOf<V>;
+  constexpr std::size_t kTogether = kAlone<V> ? kLeastLanes : kWidthOf<V>;
   const std::size_t count = rows.joint.size(), stride = rows.stride;
   std::size_t i = 0;
   for (; i + kTogether <= count; i += kTogether) {

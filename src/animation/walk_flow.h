@@ -517,7 +517,7 @@ template <class V>
 void plan_landing(const Tick& tick, const MomentOf<V>& at, StateOf<V>& state) noexcept {
   const auto on_way = at.on_way();
   if (!any(on_way)) return;
-  PathFlow<V>& path = state.path;
+  auto& path = state.path;
   const V ticks = at.ticks_to_strike() + 1.0, heading = heading_ahead<V>(tick, state, ticks);
   const Vec<V> standing = chosen(at.right_steps, state.foot[kLeftSide].heel_anchor_m,
                                  state.foot[kRightSide].heel_anchor_m);
@@ -555,6 +555,13 @@ void plan_landing(const Tick& tick, const MomentOf<V>& at, StateOf<V>& state) no
         side_of<V>(to) * asides_m - side_of<V>(from) * stood_m + (from - to) * lead_m;
     path.landing_heading_rad = open ? lands_rad : path.landing_heading_rad;
     path.landing_m = chosen(open, standing + along * length_m + across, path.landing_m);
+    if constexpr (kAlone<V>) {
+      const AskedStep& asked = path.asked;
+      if (asked.is_taken && !at.closing) {
+        path.landing_heading_rad = asked.heading_rad;
+        path.landing_m = vec3(asked.heel_m.x, standing.y, asked.heel_m.z);
+      }
+    }
     path.next_wider_m = open ? (steps_on ? max_of(wider, V{}) : V{}) : path.next_wider_m;
     if constexpr (kAlone<V>) {
       if (!tick.flat) choose_foothold(tick, state, along, across);

@@ -197,6 +197,8 @@ void plan_rest(const Tick& tick, WalkState& state) noexcept;
 void plan_rest_place(const Tick& tick, WalkState& state) noexcept;
 // Called when the stick is pushed again: turns a stop that has not gone far back into a walk.
 void walk_on(const Tick& tick, WalkState& state) noexcept;
+// Takes what step_to() and push_walk() have asked for.
+void take_asked_step(const Tick& tick, WalkState& state) noexcept;
 // Gives the running step the present duration of steps.
 void time_step_again(const Tick& tick, WalkState& state) noexcept;
 // Plans when the closing foot lifts off and lands, while it still stands.

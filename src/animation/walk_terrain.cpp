@@ -332,7 +332,11 @@ void choose_foothold(const Tick& tick, WalkState& state, const vec3& forward,
                       : forward * middle(sole_extent(leg, yaw - heading_of(forward)));
   const double length =
       step_length<double>(moment_of(tick.model, state), state.gait.length_m[swing].x);
-  const auto wanted = [&] { return step.from_m + forward * (length * landing.share) + across_m; };
+  const AskedStep& asked = state.path.asked;
+  const auto wanted = [&] {
+    if (asked.is_taken) return vec3(asked.heel_m.x, step.from_m.y, asked.heel_m.z);
+    return step.from_m + forward * (length * landing.share) + across_m;
+  };
   if (!flies) {
     landing.share = 1.0;
     step.wanted_m = wanted();

@@ -11,13 +11,13 @@ std::atomic<int> g_lanes = 0;  // lanes in use; 0: not determined yet
 }  // namespace
 
 int widest_lanes() noexcept {
-#ifdef GAITPAD_WIDE_LANES
+#if defined(GAITPAD_WIDE_LANES) && !defined(GAITPAD_NO_VECTORS)
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
       __builtin_cpu_supports("avx512vl"))
     return 8;
   if (__builtin_cpu_supports("avx2")) return 4;
 #endif
-  return 2;
+  return kLeastLanes;
 }
 
 int lanes_in_use() noexcept {

@@ -1,10 +1,15 @@
 // Vector registers of doubles, one number per lane. Every lane gives the same bits as a single
 // double, for any width. Masks select lanes instead of branches.
+//
+// Registers are the vector types of GCC and Clang. For other compilers, and where
+// GAITPAD_NO_VECTORS is defined, there is one lane alone, a double: the two legs of a walk and the
+// walks of a crowd are computed one after the other.
 #pragma once
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <type_traits>
 #include <utility>
 
 #include "base/trigonometry.h"
@@ -12,11 +17,27 @@
 
 namespace gaitpad {
 
+#if !defined(GAITPAD_NO_VECTORS) && !defined(__GNUC__) && !defined(__clang__)
+#define GAITPAD_NO_VECTORS
+#endif
+
+template <int kWidth>
+struct LanesOf;
+template <>
+struct LanesOf<1> {
+  using Type = double;
+  using Mask = bool;
+};
+#ifdef GAITPAD_NO_VECTORS
+inline constexpr int kLeastLanes = 1;
+#else
 template <int kWidth>
 struct LanesOf {
   using Type __attribute__((vector_size(8 * kWidth))) = double;
   using Mask __attribute__((vector_size(8 * kWidth))) = long long;
 };
+inline constexpr int kLeastLanes = 2;  // lanes of the narrowest registers
+#endif
 template <int kWidth>
 using Lanes = typename LanesOf<kWidth>::Type;
 // The type of a comparison; bool for double.
@@ -25,13 +46,23 @@ using MaskOf = decltype(V{} < V{});
 template <class V>
 inline constexpr int kWidthOf = sizeof(V) / sizeof(double);
 
-// Lanes of this processor's registers: 8 with AVX-512, 4 with AVX2, otherwise 2. Code that is
-// compiled for wider ones must not be called.
+// Lanes of this processor's registers: 8 with AVX-512, 4 with AVX2, otherwise kLeastLanes. Code
+// that is compiled for wider ones must not be called.
 int widest_lanes() noexcept;
 // Lanes in use: widest_lanes(), unless tests and measurements set fewer by use_lanes() (1, 2, 4,
 // 8). Results have the same bits. With 1, the walks of a crowd are computed one by one.
 int lanes_in_use() noexcept;
 void use_lanes(int lanes) noexcept;
+// Calls `work` with the greatest of these widths, a constant, that is not above `lanes`: 8, 4, and
+// kLeastLanes, which is the least.
+template <class Work>
+inline void with_width([[maybe_unused]] int lanes, const Work& work) noexcept {
+#ifndef GAITPAD_NO_VECTORS
+  if (lanes >= 8) return work(std::integral_constant<int, 8>());
+  if (lanes >= 4) return work(std::integral_constant<int, 4>());
+#endif
+  work(std::integral_constant<int, kLeastLanes>());
+}
 
 template <class V>
 inline V all_of(double x) noexcept {
@@ -363,7 +394,9 @@ inline quat chosen(bool mask, const quat& a, const quat& b) noexcept { return ma
 template <class V>
 inline void store_quats(const QuatOf<V>& q, const std::array<quat*, kWidthOf<V>>& to) noexcept {
   constexpr int n = kWidthOf<V>;
-  if constexpr (n == 2) {
+  if constexpr (n == 1) {
+    *to[0] = quat(q.w, q.x, q.y, q.z);
+  } else if constexpr (n == 2) {
     std::array<V, 2> xy = {q.x, q.y}, zw = {q.z, q.w};
     transpose(xy);
     transpose(zw);

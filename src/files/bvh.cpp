@@ -362,7 +362,7 @@ std::optional<Error> check(const BvhLayout& layout, const Skeleton& skeleton) {
   }
   for (std::size_t j = 0; j < layout.orders.size(); ++j) {
     BvhOrder axes = layout.orders[j];
-    std::ranges::sort(axes);
+    std::sort(axes.begin(), axes.end());
     if (axes != BvhOrder{0, 1, 2})
       return Error{fmt::format("{}orders[{}] does not have each of 0, 1 and 2 once", what, j)};
   }

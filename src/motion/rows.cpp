@@ -7,18 +7,15 @@
 namespace gaitpad {
 
 void blend_rows(const BlendedRows& rows) noexcept {
-  const int lanes = lanes_in_use();
-  (lanes >= 8 ? blend_rows<8> : lanes >= 4 ? blend_rows<4> : blend_rows<2>)(rows);
+  with_width(lanes_in_use(), [&](auto width) { blend_rows<width>(rows); });
 }
 
 void fade_rows(const BlendedRows& rows) noexcept {
-  const int lanes = lanes_in_use();
-  (lanes >= 8 ? fade_rows<8> : lanes >= 4 ? fade_rows<4> : fade_rows<2>)(rows);
+  with_width(lanes_in_use(), [&](auto width) { fade_rows<width>(rows); });
 }
 
 void sum_rows(const SummedRows& rows) noexcept {
-  const int lanes = std::min(lanes_in_use(), rows.numbers);
-  (lanes >= 8 ? sum_rows<8> : lanes >= 4 ? sum_rows<4> : sum_rows<2>)(rows);
+  with_width(std::min(lanes_in_use(), rows.numbers), [&](auto width) { sum_rows<width>(rows); });
 }
 
 }  // namespace gaitpad

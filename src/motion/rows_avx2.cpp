@@ -3,8 +3,10 @@
 
 namespace gaitpad {
 
+#ifndef GAITPAD_NO_VECTORS
 template void blend_rows<4>(const BlendedRows&) noexcept;
 template void fade_rows<4>(const BlendedRows&) noexcept;
 template void sum_rows<4>(const SummedRows&) noexcept;
+#endif
 
 }  // namespace gaitpad

@@ -10,8 +10,8 @@ namespace gaitpad {
 namespace {
 
 template <int kWidth>
-inline QuatOf<Lanes<kWidth>> quat_lanes(const double* from, int stride) noexcept {
-  QuatOf<Lanes<kWidth>> q;
+inline Quat<Lanes<kWidth>> quat_lanes(const double* from, int stride) noexcept {
+  Quat<Lanes<kWidth>> q;
   std::memcpy(&q.w, from, sizeof q.w);
   std::memcpy(&q.x, from + stride, sizeof q.x);
   std::memcpy(&q.y, from + 2 * stride, sizeof q.y);
@@ -19,7 +19,7 @@ inline QuatOf<Lanes<kWidth>> quat_lanes(const double* from, int stride) noexcept
   return q;
 }
 template <int kWidth>
-inline void store_quats(const QuatOf<Lanes<kWidth>>& q, int stride, double* to) noexcept {
+inline void store_quats(const Quat<Lanes<kWidth>>& q, int stride, double* to) noexcept {
   std::memcpy(to, &q.w, sizeof q.w);
   std::memcpy(to + stride, &q.x, sizeof q.x);
   std::memcpy(to + 2 * stride, &q.y, sizeof q.y);
@@ -34,10 +34,10 @@ template <int kWidth>
 void blend_rows(const BlendedRows& rows) noexcept {
   using V = Lanes<kWidth>;
   for (int j = 0; j < rows.stride; j += kWidth) {
-    const QuatOf<V> nearest = quat_lanes<kWidth>(rows.sample[1] + j, rows.stride);
-    QuatOf<V> sum = nearest * all_of<V>(rows.weight[1]);
+    const Quat<V> nearest = quat_lanes<kWidth>(rows.sample[1] + j, rows.stride);
+    Quat<V> sum = nearest * all_of<V>(rows.weight[1]);
     for (const int k : {0, 2, 3}) {
-      const QuatOf<V> q = quat_lanes<kWidth>(rows.sample[k] + j, rows.stride);
+      const Quat<V> q = quat_lanes<kWidth>(rows.sample[k] + j, rows.stride);
       const V weight = all_of<V>(rows.weight[k]);
       sum = sum + q * (dot_of(q, nearest) < V{} ? -weight : weight);
     }
@@ -49,8 +49,8 @@ template <int kWidth>
 void fade_rows(const BlendedRows& rows) noexcept {
   using V = Lanes<kWidth>;
   for (int j = 0; j < rows.stride; j += kWidth) {
-    const QuatOf<V> from = quat_lanes<kWidth>(rows.standing + j, rows.stride),
-                    to = quat_lanes<kWidth>(rows.blend + j, rows.stride);
+    const Quat<V> from = quat_lanes<kWidth>(rows.standing + j, rows.stride),
+                  to = quat_lanes<kWidth>(rows.blend + j, rows.stride);
     store_quats<kWidth>(nlerp_of<V>(from, to, all_of<V>(rows.shown)), rows.stride, rows.blend + j);
   }
 }

@@ -3,8 +3,8 @@
 
 namespace gaitpad {
 
-template void blend_rows<2>(const BlendedRows&) noexcept;
-template void fade_rows<2>(const BlendedRows&) noexcept;
-template void sum_rows<2>(const SummedRows&) noexcept;
+template void blend_rows<kLeastLanes>(const BlendedRows&) noexcept;
+template void fade_rows<kLeastLanes>(const BlendedRows&) noexcept;
+template void sum_rows<kLeastLanes>(const SummedRows&) noexcept;
 
 }  // namespace gaitpad

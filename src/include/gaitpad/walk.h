@@ -16,6 +16,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "gaitpad/gait_params.h"
 #include "gaitpad/skeleton.h"
@@ -299,9 +300,19 @@ struct PathFlow {
   Damped<V> lean_rad;           // lean of the whole body into a turn, to the left positive
   Vec<V> sway_m{};              // sway of a standing character's hips, on the ground
 };
+// What a program has asked of the running step by step_to() and push_walk(), in the walk's own
+// coordinates. standing() and each landing clear it.
+struct AskedStep {
+  bool waits = false, is_taken = false;  // for the next tick; the step leads there
+  vec3 heel_m{0.0};                      // landing place of the heel
+  double heading_rad = 0.0;              // heading of the foot there
+  vec3 push_m_s{0.0};                    // velocity that waits to be added to the hips
+};
+
 struct PathState : PathFlow<double> {
   FootPlane landing_plane;
   Foothold foothold;
+  AskedStep asked;
   HipsGround base;
   Damped<double> slope_lean_rad;  // lean of the trunk into a slope or stair, forwards positive
 };
@@ -370,6 +381,26 @@ struct CapsuleMotion {
 // walk is some centimetres off the capsule. It turns to where the capsule goes.
 GaitParams following(const CapsuleMotion& capsule, const WalkState& state, const StyleValues& style,
                      const GaitLimits& limits) noexcept;
+
+// --- What a program asks of the running step beside its stick ------------------------------------
+
+// The landing place and heading nearest to `heel` that the heel of the running step's foot can
+// still reach, in the world; its height is ignored. Nothing if no step can be changed: the
+// character stands or comes to rest, or the foot has flown more than half of its flight or, over
+// uneven ground, flies at all.
+std::optional<Placement> nearest_step(const WalkModel& model, const Placement& heel,
+                                      const WalkState& state) noexcept;
+// Asks the foot that flies, or that flies next, to land with its heel at that place, and to point
+// to that heading: a stepping stone. The hips and the tables follow, and the next step is the
+// stick's again. Returns false and changes nothing if nearest_step() is not that place within 1 mm
+// and 0.1 degrees. On a terrain of sections the foot keeps off edges as always.
+bool step_to(const WalkModel& model, const Placement& heel, WalkState& state) noexcept;
+// Pushes the hips: adds this velocity to theirs, and moves the landing of the running step to where
+// that foot catches the fall, as far as it can reach. If the step cannot be changed any more, the
+// next one answers. Returns false and changes nothing if the character stands or comes to rest, or
+// if a number is not finite or beyond kMostPush_m_s.
+inline constexpr double kMostPush_m_s = 3.0;
+bool push_walk(const vec3& velocity_m_s, WalkState& state) noexcept;
 
 // Advances the walk by one tick of `dt_s` seconds, a constant of the run, and writes the pose. The
 // walk is the same at every rate; a tick longer than 1/60 s is computed in equal parts. Never

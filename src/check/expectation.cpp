@@ -54,8 +54,7 @@ void RunMeter::look(const WalkerSample& sample, const Walker& walker, Character&
     for (std::size_t p = 0; p < points.size(); ++p) {
       const auto& [is_planted, place_m] = points[p];
       if (is_planted && foot.is_planted[p]) {
-        character.slip_m =
-            worse_slip_m(character.slip_m, glm::length(place_m - foot.planted_m[p]));
+        character.slip_m = worse_slip_m(character.slip_m, glm::length(place_m - foot.planted_m[p]));
       } else if (is_planted) {
         foot.planted_m[p] = place_m;
       }

@@ -19,7 +19,7 @@ LIBRARIES = {
     "devices": ["src/hid", "src/stick", "src/pads", "drivers", "drivers/pads"],
     "session": ["src/session"],
     "program": ["src/stick_picture", "src/scene", "src/view", "src/paper", "src/check", "src/selftest", "src/bench", "src/terminal",
-                "src/doctor"],
+                "src/doctor", "src/pad_report"],
 }
 # room: (rooms of its own library that it may include, vendor headers)
 ROOMS = {
@@ -46,6 +46,7 @@ ROOMS = {
     "src/selftest": ([], ["fmt/", "nlohmann/"]),
     "src/terminal": ([], ["fmt/"]),
     "src/doctor": ([], ["fmt/"]),
+    "src/pad_report": (["terminal"], ["fmt/", "nlohmann/"]),
     "src/bench": ([], ["fmt/", "nlohmann/", "benchmark/"]),
 }
 # Rooms that include less than the libraries below theirs have. Drawing knows no pads and no sticks.

@@ -1,5 +1,6 @@
 #include "terminal/terminal.h"
 
+#include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/ioctl.h>
@@ -183,6 +184,22 @@ std::string fitted(std::string_view text, std::size_t width) {
     if (is_whole) all += '\n';
   }
   return all;
+}
+
+std::string table_text(const std::vector<TableRow>& table) {
+  if (table.empty()) return "";
+  std::vector<std::size_t> widths(table.front().size(), 0);
+  for (const TableRow& row : table) {
+    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
+  }
+  std::string text;
+  for (const TableRow& row : table) {
+    std::string line;
+    for (std::size_t c = 0; c < row.size(); ++c) line += fmt::format("{:<{}}  ", row[c], widths[c]);
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += printable(line) + "\n";
+  }
+  return text;
 }
 
 }  // namespace gaitpad

@@ -47,6 +47,9 @@ std::vector<std::string> wrapped_lines(const std::string& text, std::size_t widt
 // Breaks the text's lines at blanks to at most `width` characters. Continuation lines are indented
 // to the last column that begins in the left half; two blanks precede a column.
 std::string fitted(std::string_view text, std::size_t width);
+// Columns as wide as their widest text, two blanks apart. All rows have the same number of columns.
+using TableRow = std::vector<std::string>;
+std::string table_text(const std::vector<TableRow>& table);
 // Columns of a terminal; nothing if the descriptor is not one.
 std::optional<std::size_t> terminal_columns(int descriptor) noexcept;
 

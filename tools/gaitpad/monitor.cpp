@@ -12,6 +12,7 @@
 #include "base/numeric.h"
 #include "gaitpad/calibration.h"
 #include "gaitpad/pad_stream.h"
+#include "pad_report/decode_report.h"
 #include "pads/pad_meter.h"
 #include "terminal/run_end.h"
 #include "terminal/terminal.h"

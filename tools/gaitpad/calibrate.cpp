@@ -354,25 +354,25 @@ std::string png_problem([[maybe_unused]] const std::string& path) {
 // Options of measuring and of the result.
 void add_measuring(CLI::App& command, CalibrateArguments& arguments) {
   add_pad_options(command, arguments.selector);
-  auto* trace = command.add_option("--trace", arguments.traces,
-                                   "a recording instead of a guided session; again for more");
+  auto* trace = command.add_option(
+      "--trace", arguments.traces,
+      "measure this recording instead of a live pad; repeat it for more recordings");
   trace->allow_extra_args(false);
   trace->excludes(command.get_option("PAD"))->excludes(command.get_option("--driver"));
   command.add_option("--out", arguments.out,
-                     "the file to write, - for standard output (default: the device's own)");
-  command.add_option("--plot", arguments.plot, "draws what was measured (.png)")
-      ->check(png_problem);
+                     "file to write, - for standard output (default: the device's own file)");
+  command.add_option("--plot", arguments.plot, "draw what was measured (.png)")->check(png_problem);
   command
-      .add_option("--check", arguments.check, "compares with this calibration file and writes none")
+      .add_option("--check", arguments.check, "compare with this calibration file; write nothing")
       ->excludes(command.get_option("--out"));
   command
       .add_option("--pushes", arguments.pushes,
-                  "what the last pushes of the recordings meant, to learn axes and signs: "
+                  "directions of the last pushes in the recordings, to learn axes and signs: "
                   "forward,right,back,left")
       ->delimiter(',')
       ->check(CLI::IsMember({"forward", "right", "back", "left"}))
       ->needs(trace);
-  command.add_flag("--json", arguments.as_json, "what was measured, for machines");
+  command.add_flag("--json", arguments.as_json, "print what was measured as JSON");
   command.add_option("--map", arguments.map, "pad file that overrides config/pads");
   command.add_flag("--lenient", arguments.is_lenient,
                    "skip a recording's damaged lines and count them");
@@ -380,18 +380,16 @@ void add_measuring(CLI::App& command, CalibrateArguments& arguments) {
 
 // Options that convert instead of measuring.
 void add_conversions(CLI::App& command, CalibrateArguments& arguments) {
-  auto* import =
-      command.add_option("--import", arguments.import,
-                         "takes over the axes of a recording of evemu, libinput or umockdev, "
-                         "or an SDL mapping; "
-                         "without PAD all Linux lines of a gamecontrollerdb.txt; "
-                         "- for standard input");
+  auto* import = command.add_option(
+      "--import", arguments.import,
+      "import the axes from a recording of evemu, libinput or umockdev, or from an SDL mapping; "
+      "without PAD import all Linux lines of a gamecontrollerdb.txt; - for standard input");
   auto* export_sdl = command.add_flag("--export-sdl", arguments.exports_sdl,
-                                      "prints the pad as SDL's mapping line");
+                                      "print the pad as a mapping line of SDL");
   export_sdl->excludes(import)->excludes(command.get_option("--out"));
-  auto* compare = command.add_option("--compare", arguments.compare,
-                                     "compares two calibration files, before and after a repair; "
-                                     "--plot draws them");
+  auto* compare = command.add_option(
+      "--compare", arguments.compare,
+      "compare two calibration files, such as before and after a repair; --plot draws both");
   compare->expected(2)->type_name("A B");
   for (const char* other :
        {"PAD", "--trace", "--out", "--check", "--pushes", "--json", "--import", "--export-sdl"})
@@ -406,7 +404,7 @@ void add_conversions(CLI::App& command, CalibrateArguments& arguments) {
 
 void add_calibrate(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand(
-      "calibrate", "measures a pad's sticks, guided or from recordings, and keeps the calibration");
+      "calibrate", "measures a pad's sticks, guided or from recordings, and saves the calibration");
   const auto arguments = std::make_shared<CalibrateArguments>();
   add_measuring(*command, *arguments);
   add_conversions(*command, *arguments);

@@ -194,16 +194,15 @@ int run(const DecodeArguments& arguments) {
 void add_decode(CLI::App& app, int& status) {
   auto arguments = std::make_shared<DecodeArguments>();
   CLI::App* command = app.add_subcommand(
-      "decode",
-      "shows report descriptors and each report decoded, of a recording or a live device");
+      "decode", "shows the report descriptors and decoded reports of a recording or a live device");
   command
       ->add_option("TRACE", arguments->selector.pad,
                    "a recording (.hid), a node such as /dev/hidraw0, or a pad as for play")
       ->required();
   add_driver_option(*command, arguments->selector);
   add_seconds_option(*command, arguments->seconds);
-  command->add_flag("--descriptor", arguments->descriptor_only, "only the descriptors");
-  command->add_flag("--json", arguments->as_json, "one JSON object a line");
+  command->add_flag("--descriptor", arguments->descriptor_only, "print only the descriptors");
+  command->add_flag("--json", arguments->as_json, "print one JSON object a line");
   command->add_flag("--lenient", arguments->lenient,
                     "skip a recording's damaged lines and count them");
   command->add_option("--map", arguments->map, "pad file that overrides config/pads");

@@ -178,7 +178,7 @@ void add_pads(CLI::App& app, int& status) {
   const auto arguments = std::make_shared<PadsArguments>();
   add_driver_option(*command, arguments->selector);
   command->add_option("--map", arguments->map, "pad file that overrides config/pads");
-  command->add_flag("--json", arguments->as_json, "a list of objects");
+  command->add_flag("--json", arguments->as_json, "print a JSON list of objects");
   command->callback([arguments, &status] { status = run(*arguments); });
 }
 

@@ -270,15 +270,16 @@ void add_play(CLI::App& app, int& status) {
   command->add_option("--record", arguments->spec.live.record,
                       "write the session to this file (.hid)");
   add_seconds_option(*command, arguments->seconds);
-  command->add_flag("--no-rumble", arguments->no_rumble, "no beat at each heel strike");
-  command->add_flag("--forward", arguments->spec.live.forward,
-                    "a virtual pad has the calibrated sticks, for other programs (/dev/uinput)");
+  command->add_flag("--no-rumble", arguments->no_rumble, "do not rumble at heel strikes");
+  command->add_flag(
+      "--forward", arguments->spec.live.forward,
+      "make a virtual pad with the calibrated sticks for other programs (/dev/uinput)");
   command->add_flag("--commands", arguments->takes_commands,
-                    "lines of standard input are commands, such as `style limp_left`");
+                    "read commands such as `style limp_left` from standard input, one a line");
   auto* stream = command->add_option(
       "--stream", arguments->spec.live.stream,
-      "send the poses to other programs: osc://HOST:PORT (VMC) or json://HOST:PORT; the n-th "
-      "character to the n-th port from there on (default: 127.0.0.1, 39539 or 39540)");
+      "send the poses to other programs: osc://HOST:PORT (VMC) or json://HOST:PORT; each further "
+      "character uses the next port (default: 127.0.0.1, 39539 or 39540)");
   command
       ->add_option("--stream-fps", arguments->spec.live.stream_fps, "poses a second (default: 60)")
       ->check(CLI::Range(1, 1000))
@@ -286,9 +287,9 @@ void add_play(CLI::App& app, int& status) {
   add_session_options(*command, arguments->spec, std::to_string(kDefaultRateHz));
   command
       ->add_option("--report-times", arguments->report_times,
-                   "write when each report came, and when its tick began, to this file (.csv)")
+                   "write the arrival of each report and the begin of its tick to this file (.csv)")
       ->needs(no_window);
-  command->add_flag("--json", arguments->json, "the summary, for machines");
+  command->add_flag("--json", arguments->json, "print the summary as JSON");
   for (CLI::Option* option : add_window_options(*command, arguments->window))
     option->excludes(no_window);
   command->callback([arguments, &status] {

@@ -1,5 +1,6 @@
 #include "terminal/terminal.h"
 
+#include <fcntl.h>
 #include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
@@ -49,6 +50,13 @@ void handle_signals() noexcept {
 }
 
 }  // namespace
+
+void hold_standard_descriptors() noexcept {
+  for (int fd = 0; fd <= 2; ++fd) {
+    if (::fcntl(fd, F_GETFD) < 0)
+      static_cast<void>(::open("/dev/null", fd == 0 ? O_WRONLY : O_RDONLY));
+  }
+}
 
 TerminalKeys::TerminalKeys(Earlier earlier) {
   assert(!is_in_use);

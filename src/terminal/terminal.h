@@ -8,6 +8,11 @@
 
 namespace gaitpad {
 
+// Opens standard descriptors that the caller has closed. Otherwise a pad or a recording would get
+// such a number, and output for the terminal would be written into it. They are opened in the wrong
+// direction, so that using them fails as on closed ones.
+void hold_standard_descriptors() noexcept;
+
 // Single keys of standard input: on a terminal at once and without echo, else the first letter of
 // each line. The terminal's mode is changed meanwhile. It is restored by the destructor and when
 // the process is stopped (Ctrl-Z) or quit (Ctrl-\), and changed again when the process continues.

@@ -42,6 +42,12 @@ inline void sleep_until(std::int64_t time_ns) noexcept {
   ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
 }
 
+// Makes an eventfd unreadable.
+inline void clear_event(int fd) noexcept {
+  std::uint64_t count = 0;
+  static_cast<void>(!::read(fd, &count, sizeof count));
+}
+
 // One thread rings it, another waits for it.
 class Bell {
  public:
@@ -53,10 +59,7 @@ class Bell {
     const std::uint64_t one = 1;
     static_cast<void>(!::write(fd(), &one, sizeof one));
   }
-  void clear() noexcept {
-    std::uint64_t count = 0;
-    static_cast<void>(!::read(fd(), &count, sizeof count));
-  }
+  void clear() noexcept { clear_event(fd()); }
 
  private:
   OwnedFd fd_;

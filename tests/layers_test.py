@@ -19,7 +19,7 @@ LIBRARIES = {
     "devices": ["src/hid", "src/stick", "src/pads", "drivers", "drivers/pads"],
     "session": ["src/session"],
     "program": ["src/stick_picture", "src/scene", "src/view", "src/paper", "src/check", "src/selftest", "src/bench", "src/terminal",
-                "src/doctor"],
+                "src/doctor", "src/pad_report"],
 }
 # room: (rooms of its own library that it may include, vendor headers)
 ROOMS = {
@@ -46,6 +46,7 @@ ROOMS = {
     "src/selftest": ([], ["fmt/", "nlohmann/"]),
     "src/terminal": ([], ["fmt/"]),
     "src/doctor": ([], ["fmt/"]),
+    "src/pad_report": (["terminal"], ["fmt/", "nlohmann/"]),
     "src/bench": ([], ["fmt/", "nlohmann/", "benchmark/"]),
 }
 # Rooms that include less than the libraries below theirs have. Drawing knows no pads and no sticks.
@@ -96,21 +97,12 @@ SYSTEM_HEADERS = ("sys/", "unistd.h", "fcntl.h", "dirent.h", "errno.h", "signal.
                   "ftw.h", "semaphore.h", "mqueue.h", "strings.h", "wait.h")
 SYSTEM_FILES = {
     "src/base/files.cpp": "files that appear whole or not at all",
-    "src/pads/pad_finder.cpp": "the file behind a node, and an event",
     "src/session/recording.cpp": "a file that grows while it is locked",
     "src/session/pose_stream.cpp": "datagrams",
     "src/draw/video.cpp": "starts ffmpeg",
-    "src/draw/video.h": "its process id",
     "src/terminal/run_end.cpp": "signals",
-    "src/terminal/terminal.cpp": "the terminal",
-    "src/doctor/findings.cpp": "what it judges: groups, modes of nodes",
-    "src/doctor/machine.cpp": "what it judges: users and processes",
-    "src/selftest/self_test.cpp": "tells the owners of nodes and the kernel",
+    "src/terminal/terminal.cpp": "the terminal, the standard descriptors",
     "src/bench/measured.h": "a core of its own",
-    "src/bench/bench_work.cpp": "a folder of its own",
-    "tools/gaitpad/forward.cpp": "waits for several things",
-    "tools/gaitpad/install_rules.cpp": "root's file",
-    "tools/gaitpad/main.cpp": "the standard descriptors",
 }
 # Names by which a program knows that a sanitizer runs it, or hooks into one: tests alone have them.
 SANITIZERS = re.compile(r"__(?:asan|lsan|tsan|ubsan|msan)_|__SANITIZE_|GAITPAD_SANITIZED|__has_feature|sanitizer/")

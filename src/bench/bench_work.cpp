@@ -3,7 +3,6 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 #include <malloc.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -12,6 +11,7 @@
 #include "animation/leg_ik.h"
 #include "animation/walk_figure.h"
 #include "base/lanes.h"
+#include "drivers/system_users.h"
 #include "drivers/threads.h"
 #include "files/stride_cache.h"
 #include "gaitpad/config_files.h"
@@ -661,7 +661,7 @@ std::shared_ptr<const std::filesystem::path> cache_folder(std::string_view what)
   namespace fs = std::filesystem;
   std::error_code ignored;
   const fs::path path =
-      fs::temp_directory_path(ignored) / fmt::format("gaitpad_bench_{}_{}", what, ::getpid());
+      fs::temp_directory_path(ignored) / fmt::format("gaitpad_bench_{}_{}", what, own_process_id());
   return {new fs::path(path), [](const fs::path* p) {
             std::error_code unused;
             fs::remove_all(*p, unused);

@@ -54,7 +54,7 @@ std::vector<std::string> arguments(const std::string& file, int width, int heigh
 
 // ffmpeg gets its own process group, so that Ctrl-C reaches only this program, which then finishes
 // the file. No signal is blocked in ffmpeg.
-int spawn(std::vector<std::string> words, int input, int log, pid_t& process) {
+int spawn(std::vector<std::string> words, int input, int log, int& process) {
   std::vector<char*> argv;
   for (std::string& word : words) argv.push_back(word.data());
   argv.push_back(nullptr);

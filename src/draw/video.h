@@ -1,6 +1,5 @@
 // Writes frames as a video, H.264 in MP4, with the program ffmpeg if it is installed.
 #pragma once
-#include <sys/types.h>
 
 #include <memory>
 #include <optional>
@@ -30,9 +29,9 @@ class VideoWriter {
   bool has_ended_well();
 
   std::string path_, part_;
-  int link_ = -1;       // socket to ffmpeg's standard input; -1: closed
-  int log_ = -1;        // file that receives ffmpeg's standard error; -1: none
-  pid_t process_ = -1;  // ffmpeg; -1: not started, or already waited for
+  int link_ = -1;     // socket to ffmpeg's standard input; -1: closed
+  int log_ = -1;      // file that receives ffmpeg's standard error; -1: none
+  int process_ = -1;  // ffmpeg; -1: not started, or already waited for
   int exit_status_ = -1;
   int width_ = 0, height_ = 0;
 };

@@ -228,7 +228,7 @@ std::vector<std::string> changes_since(const CalibrationFile& then, const Calibr
                     *now.measured[side],
                     told};
     if (stick.then.frame != stick.now.frame) {
-      stick.tell("its axes lie otherwise than in the file: was another pad calibrated?");
+      stick.tell("its axes differ from the file: was another pad calibrated?");
       continue;
     }
     compare_centre(stick);

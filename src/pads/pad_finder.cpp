@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 #include <poll.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -15,6 +13,8 @@
 
 #include "base/text.h"
 #include "drivers/driver_rows.h"
+#include "drivers/posix.h"
+#include "drivers/system_users.h"
 #include "drivers/virtual_pad.h"
 #include "gaitpad/driver_registry.h"
 #include "gaitpad/pad_stream.h"
@@ -53,8 +53,8 @@ bool is_asked(const DriverEntry& entry, Drivers which, std::span<const DriverEnt
 }
 
 std::uint64_t file_number(const std::string& node) {
-  struct stat status = {};
-  return ::stat(node.c_str(), &status) == 0 ? status.st_ino : 0;
+  const auto rights = node_rights(node);
+  return rights ? rights->file : 0;
 }
 
 PadSighting judged(const PadFiles& files, DeviceListing listing, const DriverEntry& driver) {
@@ -401,11 +401,10 @@ void PadFinder::let_settle(int changes_fd) {
   const Clock::time_point end = Clock::now() + kMaxUnrest;
   pollfd changes{changes_fd, POLLIN, 0};
   do {
-    std::uint64_t ignored = 0;
     if (monitor_)
       monitor_->has_changed();
     else
-      static_cast<void>(!::read(changes_fd, &ignored, sizeof(ignored)));
+      clear_event(changes_fd);
   } while (!is_ending_ && Clock::now() < end &&
            ::poll(&changes, 1, static_cast<int>(kQuiet.count())) > 0);
 }

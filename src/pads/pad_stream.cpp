@@ -117,8 +117,8 @@ bool PadQueue::flush() {
   return true;
 }
 
-// Of two threads that change `reader_sleeps_`, the second sees what the first wrote before, so no
-// wake-up is missed.
+// The second of two threads that change `reader_sleeps_` sees everything that the first wrote
+// before its change, so no wake-up is missed.
 void PadQueue::wake_reader() noexcept {
   if (reader_sleeps_.exchange(false, std::memory_order_acq_rel)) bell_.ring();
 }
@@ -146,8 +146,8 @@ struct PadCounters {
 
 // Most reports that are read from one device before the others get their turn.
 constexpr int kReadsInRound = 64;
-// More wakes without a report than any sound source makes (SDL's: one each millisecond). Such a
-// source would keep the thread busy all the time.
+// Close a device that wakes this thread more often without a report: it would keep the thread busy
+// all the time. SDL wakes it once each millisecond.
 constexpr int kMaxIdleWakes = 500;
 constexpr auto kIdleWindow = 100ms;
 constexpr int kMaxErrorWakes = 200;  // most wakes with an error between two reports

@@ -2,11 +2,6 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <grp.h>
-#include <pwd.h>
-#include <sys/stat.h>
-#include <sys/utsname.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -27,6 +22,7 @@
 #include "base/text.h"
 #include "drivers/posix.h"
 #include "drivers/system_nodes.h"
+#include "drivers/system_users.h"
 #include "gaitpad/decode.h"
 #include "gaitpad/limbs.h"
 #include "gaitpad/live.h"
@@ -233,25 +229,22 @@ std::string installed_rule() {
 }
 
 ordered_json permissions(const std::string& node) {
-  struct stat status = {};
-  if (::stat(node.c_str(), &status) != 0) return nullptr;
-  const passwd* owner = ::getpwuid(status.st_uid);
-  const group* owners = ::getgrgid(status.st_gid);
-  return {{"mode", fmt::format("{:04o}", status.st_mode & 07777u)},
-          {"owner", owner != nullptr ? owner->pw_name : std::to_string(status.st_uid)},
-          {"group", owners != nullptr ? owners->gr_name : std::to_string(status.st_gid)},
+  const auto rights = node_rights(node);
+  if (!rights) return nullptr;
+  return {{"mode", fmt::format("{:04o}", rights->mode)},
+          {"owner", rights->owner},
+          {"group", rights->group},
           {"problem", access_problem(node)}};
 }
 
 ordered_json system_facts() {
-  utsname system = {};
-  ::uname(&system);
+  const KernelName kernel = kernel_name();
   const std::string rule = installed_rule();
-  return {{"kernel", system.release},
-          {"machine", system.machine},
+  return {{"kernel", kernel.release},
+          {"machine", kernel.machine},
           {"distribution", distribution()},
           {"udev_rule", rule.empty() ? ordered_json(nullptr) : ordered_json(rule)},
-          {"is_root", ::geteuid() == 0}};
+          {"is_root", is_root()}};
 }
 
 // The controls that a pad has, and the requests to operate them.

@@ -146,7 +146,7 @@ void LiveSession::Impl::remark_on_time(const LiveStatus& now) {
   }
   if (now.overloads > 0 && remarked.overloads == 0) {
     remarks.push_back(fmt::format(
-        "a tick takes {:.0f} us and there are {} a second: the session is slower than the time; "
+        "a tick takes {:.0f} us and there are {} a second: the session runs slower than real time; "
         "fewer characters or a lower --rate help",
         now.tick_us_median, rate_hz));
   }

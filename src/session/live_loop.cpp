@@ -386,7 +386,7 @@ void LiveLoop::use(std::span<const Report> reports, std::int64_t now_ns) noexcep
     if (report.kind != ReportKind::input) continue;
     const bool is_real_time = clock_.pace() == 1.0 && report.time_ns >= real_time_ns_;
     if (is_real_time) wait_times_.add(now_ns - report.time_ns);
-    // If the ring is full, no frames are shown: the report is left out of the measurement.
+    // The ring is full if no viewer shows frames: then the report is left out of the measurement.
     static_cast<void>(used_.push({{tick_, report.time_ns, now_ns, report.device}, is_real_time}));
   }
 }

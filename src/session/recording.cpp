@@ -207,7 +207,7 @@ Result<std::unique_ptr<Recording>> Recording::start(const Options& options,
   std::error_code ignored;
   const fs::file_status status = fs::status(options.path, ignored);
   if (fs::exists(status) && !fs::is_regular_file(status)) {
-    return Error{options.path + ": this is no file, a recording cannot take its place"};
+    return Error{options.path + ": not a regular file; choose another name"};
   }
   auto file = opened_part(options.path + ".part");
   if (!file) return file.error();

@@ -1,5 +1,7 @@
 #include "terminal/terminal.h"
 
+#include <fcntl.h>
+#include <fmt/format.h>
 #include <poll.h>
 #include <signal.h>
 #include <sys/ioctl.h>
@@ -48,6 +50,13 @@ void handle_signals() noexcept {
 }
 
 }  // namespace
+
+void hold_standard_descriptors() noexcept {
+  for (int fd = 0; fd <= 2; ++fd) {
+    if (::fcntl(fd, F_GETFD) < 0)
+      static_cast<void>(::open("/dev/null", fd == 0 ? O_WRONLY : O_RDONLY));
+  }
+}
 
 TerminalKeys::TerminalKeys(Earlier earlier) {
   assert(!is_in_use);
@@ -183,6 +192,22 @@ std::string fitted(std::string_view text, std::size_t width) {
     if (is_whole) all += '\n';
   }
   return all;
+}
+
+std::string table_text(const std::vector<TableRow>& table) {
+  if (table.empty()) return "";
+  std::vector<std::size_t> widths(table.front().size(), 0);
+  for (const TableRow& row : table) {
+    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
+  }
+  std::string text;
+  for (const TableRow& row : table) {
+    std::string line;
+    for (std::size_t c = 0; c < row.size(); ++c) line += fmt::format("{:<{}}  ", row[c], widths[c]);
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += printable(line) + "\n";
+  }
+  return text;
 }
 
 }  // namespace gaitpad

@@ -8,6 +8,11 @@
 
 namespace gaitpad {
 
+// Opens standard descriptors that the caller has closed. Otherwise a pad or a recording would get
+// such a number, and output for the terminal would be written into it. They are opened in the wrong
+// direction, so that using them fails as on closed ones.
+void hold_standard_descriptors() noexcept;
+
 // Single keys of standard input: on a terminal at once and without echo, else the first letter of
 // each line. The terminal's mode is changed meanwhile. It is restored by the destructor and when
 // the process is stopped (Ctrl-Z) or quit (Ctrl-\), and changed again when the process continues.
@@ -47,6 +52,9 @@ std::vector<std::string> wrapped_lines(const std::string& text, std::size_t widt
 // Breaks the text's lines at blanks to at most `width` characters. A continuation line begins below
 // the last column of its line that begins in the left half; a column begins after two blanks.
 std::string fitted(std::string_view text, std::size_t width);
+// Columns as wide as their widest text, two blanks apart. All rows have the same number of columns.
+using TableRow = std::vector<std::string>;
+std::string table_text(const std::vector<TableRow>& table);
 // Columns of a terminal; nothing if the descriptor is not one.
 std::optional<std::size_t> terminal_columns(int descriptor) noexcept;
 

@@ -210,7 +210,7 @@ class WindowLoop {
   WindowResult result_;
   std::optional<Error> failure_;  // why the window has to end; none: it goes on
 
-  // In the order of their dependencies.
+  // Each member uses only those before it, so they are destroyed in a valid order.
   std::unique_ptr<WindowSurface> surface_;
   std::unique_ptr<Gui> gui_;
   std::unique_ptr<Scene> scene_;

@@ -7,18 +7,10 @@
 #include <vector>
 
 #include "animation/made_walker.h"
+#include "tests/finite_pose.h"
 
 namespace gaitpad {
 namespace {
-
-bool is_finite(const Pose& pose) {
-  double sum = pose.root_m.x + pose.root_m.y + pose.root_m.z;
-  for (int j = 0; j < pose.joint_count; ++j) {
-    const quat& q = pose.local[j];
-    sum += q.w + q.x + q.y + q.z;
-  }
-  return std::isfinite(sum);
-}
 
 StyleValues with_hip_weight(double weight) {
   StyleValues style;

@@ -12,6 +12,7 @@
 #include "base/numeric.h"
 #include "gaitpad/calibration.h"
 #include "gaitpad/pad_stream.h"
+#include "pad_report/decode_report.h"
 #include "pads/pad_meter.h"
 #include "terminal/run_end.h"
 #include "terminal/terminal.h"
@@ -269,7 +270,7 @@ void add_monitor(CLI::App& app, int& status) {
   add_seconds_option(*command, arguments->seconds);
   command->add_option("--calibration", arguments->calibration, "calibration file of the stick");
   command->add_option("--map", arguments->map, "pad file that overrides config/pads");
-  command->add_flag("--json", arguments->as_json, "one JSON object a pad and second");
+  command->add_flag("--json", arguments->as_json, "print one JSON object for each pad and second");
   command->callback([arguments, &status] { status = run(*arguments); });
 }
 

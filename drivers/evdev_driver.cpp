@@ -47,10 +47,6 @@ struct InputNode {
   bool may_write = false;
 };
 
-// A bit in the version, set by kernel drivers that choose their own codes (sony, playstation,
-// nintendo).
-constexpr int kArrangedByKernel = 0x8000;
-
 // A sentence for errno; if permission is missing it also says how to get it.
 Error open_error(const std::string& node, int error) {
   const std::string access = error == EACCES || error == EPERM ? access_problem(node) : "";
@@ -96,7 +92,8 @@ Result<InputNode> open_input_node(const std::string& node, int mode) {
 // The node, stated as a HID device.
 EvdevLayout input_node_layout(const InputNode& opened, const std::string& node) {
   std::vector<std::uint8_t> own_descriptor;
-  if ((libevdev_get_id_version(opened.device.get()) & kArrangedByKernel) == 0) {
+  const auto version = static_cast<unsigned>(libevdev_get_id_version(opened.device.get()));
+  if ((version & kKernelCodesBit) == 0) {
     own_descriptor = sysfs_bytes(in_sysfs(node, "device/report_descriptor"));
   }
   return evdev_layout(abilities_of(opened.device.get()), own_descriptor);

@@ -51,7 +51,6 @@ Result<std::vector<MappingLine>> mapping_lines_of(std::string_view text,
 constexpr double kLeastImportedHalfRange = 0.1;  // least half range, raw, as in calibration files
 constexpr double kLeastImportedInner = 0.05, kMostInner = 0.9;
 constexpr double kLeastTriggerWay = 0.1;
-constexpr unsigned kCodesByKernel = 0x8000;  // bit of a node's version: the kernel chose the codes
 
 // What a recording states about one axis of the pad, in counts: its range min..max, its dead zone
 // low..high.
@@ -233,8 +232,8 @@ std::string mapping_problem(const std::string& line, const DeviceInfo& device) {
     return "SDL mapping: it is for another platform, where controls have other numbers";
   }
   const bool is_node = stated_by(device.driver) == StatedBy::evdev_driver;
-  const unsigned mark = is_node ? device.version & kCodesByKernel : 0;
-  if (vendor != 0 && (guid_word(line, 12) & kCodesByKernel) != mark) {
+  const unsigned mark = is_node ? device.version & kKernelCodesBit : 0;
+  if (vendor != 0 && (guid_word(line, 12) & kKernelCodesBit) != mark) {
     return mark == 0 ? "SDL mapping: it counts what the kernel's driver for that pad numbers; give "
                        "its event node (/dev/input/event...)"
                      : "SDL mapping: it counts the pad without the kernel's driver for it";

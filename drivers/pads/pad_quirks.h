@@ -60,6 +60,11 @@ struct OutPacket {
 // Who started the pad: some start-up packets are only for a pad without a kernel driver.
 enum class StartedBy { kernel, us };
 
+// The same axis of a stick that is turned by 180 degrees.
+constexpr FactoryAxis mirrored(const FactoryAxis& axis) noexcept {
+  return {-axis.max, -axis.centre, -axis.min};
+}
+
 class PadQuirks {
  public:
   virtual ~PadQuirks() = default;

@@ -290,12 +290,6 @@ constexpr std::array<std::uint8_t, kStickBytes> kCentred = {0x00, 0x08, 0x80};
 // After this number of skipped reports in a row read() returns, so that other pads are read.
 constexpr int kMaxSkippedInARow = 64;
 
-// Turns an axis: a single Joy-Con's factory sticks are for holding it sideways, a pair's for
-// holding it upright.
-FactoryAxis mirrored(const FactoryAxis& axis) noexcept {
-  return {-axis.max, -axis.centre, -axis.min};
-}
-
 DeviceInfo pair_info(const DeviceInfo& left, const DeviceInfo& right) {
   DeviceInfo pair = left;
   pair.product = kPair;
@@ -339,6 +333,7 @@ class JoyConPair final : public Device {
     return left || right;
   }
 
+  // A single Joy-Con's sticks are for holding it sideways, a pair's for holding it upright.
   std::optional<FactorySticks> factory_sticks() const override {
     const auto left = sides_[0]->factory_sticks(), right = sides_[1]->factory_sticks();
     if (!left && !right) return std::nullopt;

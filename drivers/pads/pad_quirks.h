@@ -89,8 +89,8 @@ class PadQuirks {
       std::span<const std::uint8_t> packet) const noexcept {
     return packet;
   }
-  // False while an adapter says that no pad is in this plug.
-  virtual bool is_plugged() const noexcept { return true; }
+  // False while a receiver or an adapter says that no pad is connected.
+  virtual bool has_pad() const noexcept { return true; }
   // The packet that sets the motors; size 0: the pad has none.
   virtual void rumble(const Rumble&, OutPacket& packet) noexcept { packet.size = 0; }
   virtual std::optional<FactorySticks> factory_sticks() const { return std::nullopt; }

@@ -140,13 +140,12 @@ void LiveSession::Impl::stop_loop() {
 
 void LiveSession::Impl::remark_on_time(const LiveStatus& now) {
   if (now.standstills > remarked.standstills) {
-    remarks.push_back(
-        fmt::format("the program stood still; the session goes on {:.1f} s later than the time",
-                    now.skipped_s));
+    remarks.push_back(fmt::format(
+        "the program stood still; the session is {:.1f} s behind real time", now.skipped_s));
   }
   if (now.overloads > 0 && remarked.overloads == 0) {
     remarks.push_back(fmt::format(
-        "a tick takes {:.0f} us and there are {} a second: the session is slower than the time; "
+        "a tick takes {:.0f} us and there are {} a second: the session runs slower than real time; "
         "fewer characters or a lower --rate help",
         now.tick_us_median, rate_hz));
   }

@@ -328,7 +328,7 @@ std::optional<std::string> fault_of(const GaitCycle& cycle) {
     return "has events that are not in the order of a walk";
   for (const CycleSample& sample : cycle.samples) {
     if (std::abs(glm::dot(sample.pelvis, sample.pelvis) - 1.0) > 1e-6)
-      return "turns its pelvis by what is no rotation";
+      return "holds a rotation of the pelvis that is not a unit quaternion";
     for (const LegSample& leg : sample.leg) {
       for (const double angle : leg.angles) {
         if (std::abs(angle) > kMostAngle) return "turns a leg by more than a full turn";

@@ -47,10 +47,6 @@ struct InputNode {
   bool may_write = false;
 };
 
-// A bit in the version, set by kernel drivers that choose their own codes (sony, playstation,
-// nintendo).
-constexpr int kArrangedByKernel = 0x8000;
-
 // A sentence for errno; if permission is missing it also says how to get it.
 Error open_error(const std::string& node, int error) {
   const std::string access = error == EACCES || error == EPERM ? access_problem(node) : "";
@@ -69,8 +65,8 @@ EvdevAbilities abilities_of(const libevdev* device) {
   return abilities;
 }
 
-// Path of a file in the sysfs folder of the node's input device.
-std::string in_sysfs(const std::string& node, const char* name) {
+// A file of the node's input device.
+std::string sysfs_file_path(const std::string& node, const char* name) {
   return fmt::format("/sys/class/input/{}/device/{}", node.substr(node.rfind('/') + 1), name);
 }
 
@@ -96,8 +92,9 @@ Result<InputNode> open_input_node(const std::string& node, int mode) {
 // The node, stated as a HID device.
 EvdevLayout input_node_layout(const InputNode& opened, const std::string& node) {
   std::vector<std::uint8_t> own_descriptor;
-  if ((libevdev_get_id_version(opened.device.get()) & kArrangedByKernel) == 0) {
-    own_descriptor = sysfs_bytes(in_sysfs(node, "device/report_descriptor"));
+  const auto version = static_cast<unsigned>(libevdev_get_id_version(opened.device.get()));
+  if ((version & kKernelCodesBit) == 0) {
+    own_descriptor = sysfs_bytes(sysfs_file_path(node, "device/report_descriptor"));
   }
   return evdev_layout(abilities_of(opened.device.get()), own_descriptor);
 }
@@ -386,7 +383,7 @@ const char* what_else(const libevdev* device, const SystemNode& node) {
 // Keyboards, mice and power buttons have neither ABS_X nor ABS_Y, which sysfs tells without opening
 // them. The file holds words in hexadecimal, the lowest last.
 bool cannot_have_a_stick(const std::string& node) {
-  const std::string bits = sysfs_text(in_sysfs(node, "capabilities/abs"));
+  const std::string bits = sysfs_text(sysfs_file_path(node, "capabilities/abs"));
   return !bits.empty() && std::string_view("37bfBF").find(bits.back()) == std::string_view::npos;
 }
 

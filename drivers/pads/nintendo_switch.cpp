@@ -153,11 +153,6 @@ FactoryAxis factory_axis(const StickRange& range, std::size_t axis) noexcept {
   return {fraction(range.min[axis]), fraction(range.centre[axis]), fraction(range.max[axis])};
 }
 
-// The same axis of a stick that is turned by 180 degrees.
-FactoryAxis mirrored(const FactoryAxis& axis) noexcept {
-  return {-axis.max, -axis.centre, -axis.min};
-}
-
 // NES controllers have the ids of a Joy-Con and other buttons. This collection marks them, and
 // config/pads/nintendo.toml has an entry for it: ff57:0009.
 constexpr std::uint8_t kNesMark[] = {0x06, 0x57, 0xff, 0x09, 0x09, 0xa1, 0x01, 0xc0};

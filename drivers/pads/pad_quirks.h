@@ -60,6 +60,11 @@ struct OutPacket {
 // Who started the pad: some start-up packets are only for a pad without a kernel driver.
 enum class StartedBy { kernel, us };
 
+// The same axis of a stick that is turned by 180 degrees.
+constexpr FactoryAxis mirrored(const FactoryAxis& axis) noexcept {
+  return {-axis.max, -axis.centre, -axis.min};
+}
+
 class PadQuirks {
  public:
   virtual ~PadQuirks() = default;
@@ -84,8 +89,8 @@ class PadQuirks {
       std::span<const std::uint8_t> packet) const noexcept {
     return packet;
   }
-  // False while an adapter says that no pad is in this plug.
-  virtual bool is_plugged() const noexcept { return true; }
+  // False while a receiver or an adapter says that no pad is connected.
+  virtual bool has_pad() const noexcept { return true; }
   // The packet that sets the motors; size 0: the pad has none.
   virtual void rumble(const Rumble&, OutPacket& packet) noexcept { packet.size = 0; }
   virtual std::optional<FactorySticks> factory_sticks() const { return std::nullopt; }

@@ -28,37 +28,23 @@ struct Binding {
   std::uint8_t directions = 0;
 };
 
+constexpr PadButton kNoButton = kButtonCount;
+
 // Tables of the orders of buttons: the n-th entry is button n, counted from 1.
-constexpr PadButton kEmpty = kButtonCount;
 constexpr PadButton kDirectInput[] = {
     kButtonX,     kButtonA,    kButtonB,    kButtonY,     kButtonLeftShoulder, kButtonRightShoulder,
-    kEmpty,       kEmpty,      kButtonBack, kButtonStart, kButtonLeftStick,    kButtonRightStick,
+    kNoButton,    kNoButton,   kButtonBack, kButtonStart, kButtonLeftStick,    kButtonRightStick,
     kButtonGuide, kButtonMisc1};
 constexpr PadButton kTopFirst[] = {kButtonY, kButtonB, kButtonA, kButtonX};
-constexpr PadButton kAndroid[] = {kButtonA,
-                                  kButtonB,
-                                  kEmpty,
-                                  kButtonX,
-                                  kButtonY,
-                                  kEmpty,
-                                  kButtonLeftShoulder,
-                                  kButtonRightShoulder,
-                                  kEmpty,
-                                  kEmpty,
-                                  kButtonBack,
-                                  kButtonStart,
-                                  kButtonGuide,
-                                  kButtonLeftStick,
-                                  kButtonRightStick,
-                                  kEmpty,
-                                  kEmpty,
-                                  kEmpty,
-                                  kEmpty,
-                                  kEmpty,
-                                  kButtonPaddle1,  // Linux's BTN_TRIGGER_HAPPY5 .. 8: upper and
-                                  kButtonPaddle3,  // lower right, upper and lower left paddle
-                                  kButtonPaddle2,
-                                  kButtonPaddle4};
+constexpr PadButton kAndroid[] = {
+    kButtonA,       kButtonB,         kNoButton,           kButtonX,
+    kButtonY,       kNoButton,        kButtonLeftShoulder, kButtonRightShoulder,
+    kNoButton,      kNoButton,        kButtonBack,         kButtonStart,
+    kButtonGuide,   kButtonLeftStick, kButtonRightStick,   kNoButton,
+    kNoButton,      kNoButton,        kNoButton,           kNoButton,
+    kButtonPaddle1,  // Linux's BTN_TRIGGER_HAPPY5 .. 8: upper and
+    kButtonPaddle3,  // lower right, upper and lower left paddle
+    kButtonPaddle2, kButtonPaddle4};
 constexpr PadButton kXinput[] = {kButtonA,
                                  kButtonB,
                                  kButtonX,
@@ -71,10 +57,10 @@ constexpr PadButton kXinput[] = {kButtonA,
                                  kButtonRightStick,
                                  kButtonGuide};
 
-// The button with this number; kButtonCount if the order has none.
+// The button with this number; kNoButton if the order has none.
 PadButton button_of(ButtonOrder order, std::uint32_t number) noexcept {
   const auto pick = [number](const auto& table) {
-    return number >= 1 && number <= std::size(table) ? table[number - 1] : kEmpty;
+    return number >= 1 && number <= std::size(table) ? table[number - 1] : kNoButton;
   };
   switch (order) {
     case ButtonOrder::direct_input:
@@ -86,10 +72,8 @@ PadButton button_of(ButtonOrder order, std::uint32_t number) noexcept {
     case ButtonOrder::xinput:
       return pick(kXinput);
   }
-  return kEmpty;
+  return kNoButton;
 }
-
-constexpr int kNone = kButtonCount;
 
 // The fields of one report by usage. If a usage occurs several times, the first one counts.
 class ReportFields {
@@ -254,7 +238,7 @@ int key_button(std::uint32_t u, const KeyRules& rules) {
     case usage::kStart:
       return kButtonStart;
     default:
-      return kNone;
+      return kNoButton;
   }
 }
 
@@ -269,7 +253,7 @@ int dpad_button(std::uint32_t u) {
     case usage::kDpadRight:
       return kButtonDpadRight;
     default:
-      return kNone;
+      return kNoButton;
   }
 }
 
@@ -282,7 +266,7 @@ void bind_buttons(const ReportDescriptor& d, const ReportFields& r, ButtonOrder 
       out.push_back({ControlKind::hat, 0, i, 0, false});
       continue;
     }
-    if (const int dpad = dpad_button(u); dpad != kNone) {
+    if (const int dpad = dpad_button(u); dpad != kNoButton) {
       out.push_back({ControlKind::dpad, dpad, i, 0, false});
       continue;
     }
@@ -290,10 +274,10 @@ void bind_buttons(const ReportDescriptor& d, const ReportFields& r, ButtonOrder 
     if (page_of(u) == usage::kButtonPage) {
       button = button_of(order, id_of(u));
       // The key is in another report; this button, which is never pressed, must not release it.
-      if (button == kButtonGuide && rules.has_home && !rules.home_is_start) button = kNone;
-      if (button == kButtonBack && rules.has_back) button = kNone;
+      if (button == kButtonGuide && rules.has_home && !rules.home_is_start) button = kNoButton;
+      if (button == kButtonBack && rules.has_back) button = kNoButton;
     }
-    if (button != kNone) out.push_back({ControlKind::button, button, i, 0, false});
+    if (button != kNoButton) out.push_back({ControlKind::button, button, i, 0, false});
   }
 }
 
@@ -313,7 +297,7 @@ std::vector<std::size_t> pad_fields(const ReportDescriptor& d) {
     const bool other_pad =
         f.application == kNoApplication || is_pad_application(d.applications[f.application]);
     const KeyRules no_rules;
-    const bool is_key = !other_pad && key_button(f.usage, no_rules) != kNone;
+    const bool is_key = !other_pad && key_button(f.usage, no_rules) != kNoButton;
     if (f.application == *pad || is_key) fields.push_back(i);
   }
   return fields;

@@ -284,7 +284,6 @@ Result<ControlMap> sdl_controls(std::string_view mapping, const ReportDescriptor
 
 namespace {
 
-constexpr unsigned kCodesByKernel = 0x8000;
 constexpr std::size_t kGuidDigits = 32, kMaxLines = 20'000;
 
 // The 16-bit words of a GUID (SDL 2.26, SDL_CreateJoystickGUID): bus, checksum of the name, vendor,
@@ -362,7 +361,7 @@ std::vector<std::string> mapping_lines(std::string_view text) {
 std::string fitting_mapping(std::span<const std::string> lines, const DeviceInfo& device) {
   if (device.vendor == 0) return {};
   const bool is_node = stated_by(device.driver) == StatedBy::evdev_driver;
-  const unsigned version = is_node ? device.version : device.version & ~kCodesByKernel;
+  const unsigned version = is_node ? device.version : device.version & ~kKernelCodesBit;
   const std::string* best = nullptr;
   // 1 for the same ids, 1 more for buttons by position, 2 more for the same version.
   int best_fit = 0;
@@ -372,7 +371,7 @@ std::string fitting_mapping(std::span<const std::string> lines, const DeviceInfo
         (*guid)[kVendor] != device.vendor || (*guid)[kProduct] != device.product)
       continue;
     const unsigned of_line = (*guid)[kVersion];
-    if ((*guid)[kDriverMark] != 0 || ((of_line ^ version) & kCodesByKernel) != 0) continue;
+    if ((*guid)[kDriverMark] != 0 || ((of_line ^ version) & kKernelCodesBit) != 0) continue;
     if (!is_for_name(line, *guid, device.name) || !is_hint_met(line)) continue;
     const int fit = 1 + (is_for_labels(line) ? 0 : 1) + (of_line == version ? 2 : 0);
     if (fit <= best_fit) continue;
@@ -607,7 +606,7 @@ std::string kernel_numbers_problem(const DeviceInfo& device, const ReportDescrip
     const auto& all = descriptor.applications;
     return std::find(all.begin(), all.end(), u) != all.end();
   };
-  if ((device.version & kCodesByKernel) == 0 &&
+  if ((device.version & kKernelCodesBit) == 0 &&
       std::none_of(std::begin(kVendorPads), std::end(kVendorPads), is_vendor_pad)) {
     return {};
   }

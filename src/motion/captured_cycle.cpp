@@ -15,7 +15,7 @@ namespace {
 
 constexpr int kPoints = 256;    // samples of the closed stride, before its harmonics are taken
 constexpr double kFade = 0.12;  // longest fade on either side of the seam, a share of the stride
-constexpr double kLeastFade = 0.08;  // least fade; if there is less room, Closer spreads the gaps
+constexpr double kLeastFade = 0.08;  // if there is less room, the gaps are spread
 constexpr int kFullHarmonics = 10;   // harmonics above this number fade out to kHarmonics
 
 // Natural cubic spline through values at 0, 1, 2 ...
@@ -69,16 +69,16 @@ StrideFrames frames_of(const StrideWindow& w) {
 // Makes x(phase), 0 .. 1, periodic. If the motion continues beyond the seam, both of its sides are
 // cross-faded. Otherwise the gaps in value and slope are spread around the seam. Samples away from
 // the seam do not change.
-class Closer {
+class SeamCloser {
  public:
-  explicit Closer(const StrideFrames& frames)
+  explicit SeamCloser(const StrideFrames& frames)
       : s_(frames), fades_(s_.before + s_.after >= kLeastFade) {}
 
   std::array<double, kPoints> closed(const Spline& x) const {
     std::array<double, kPoints> y;
     for (int i = 0; i < kPoints; ++i) {
       const double phase = double(i) / kPoints;
-      y[i] = fades_ ? faded(x, phase) : levelled(x, phase);
+      y[i] = fades_ ? faded(x, phase) : with_spread_gap(x, phase);
     }
     return y;
   }
@@ -96,7 +96,7 @@ class Closer {
     }
     return y;
   }
-  double levelled(const Spline& x, double phase) const {
+  double with_spread_gap(const Spline& x, double phase) const {
     constexpr double kReach = 0.15, kStep = 0.01;
     const double gap = x.at(s_.place(1.0)) - x.at(s_.place(0.0));
     const double slope_start = (x.at(s_.place(kStep)) - x.at(s_.place(0.0))) / kStep;
@@ -199,7 +199,7 @@ quat mean_rotation(const std::vector<quat>& all) {
 
 PeriodicMotion periodic_motion(const Motion& motion, const StrideWindow& window) {
   const StrideFrames s = frames_of(window);
-  const Closer closer(s);
+  const SeamCloser closer(s);
   const auto waves = std::make_unique<Waves>();
   PeriodicMotion out;
   out.duration_s = s.period * motion.frame_time_s;

@@ -374,7 +374,7 @@ std::optional<double> toe_off_of(const FeetTracks& tracks, const SwingSearch& s,
 }
 
 // The next swing in the same range if it is the other foot's, otherwise -1.
-int rival_after(const std::vector<SwingSearch>& swings, std::size_t i) {
+int other_foots_next_swing(const std::vector<SwingSearch>& swings, std::size_t i) {
   for (std::size_t k = i + 1; k < swings.size(); ++k) {
     if (swings[k].run.range != swings[i].run.range) continue;
     return swings[k].run.side == swings[i].run.side ? -1 : static_cast<int>(k);
@@ -437,12 +437,12 @@ std::vector<FootSwing> foot_swings(const FeetTracks& tracks, double moving_share
   }
   // A heel must strike before the other toe leaves. Widen the limits for feet that slide.
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const int rival = rival_after(all, i);
-    if (rival < 0 || !found[i].strike || !found[rival].toe_off) continue;
+    const int other = other_foots_next_swing(all, i);
+    if (other < 0 || !found[i].strike || !found[other].toe_off) continue;
     for (double slide = 1.0 + kSlideStep; slide <= kMostSlide; slide += kSlideStep) {
-      if ((*found[rival].toe_off - *found[i].strike) * tracks.sample_s >= kLeastRoll_s) break;
+      if ((*found[other].toe_off - *found[i].strike) * tracks.sample_s >= kLeastRoll_s) break;
       found[i].strike = strike_of(tracks, all[i], slide);
-      found[rival].toe_off = toe_off_of(tracks, all[rival], slide);
+      found[other].toe_off = toe_off_of(tracks, all[other], slide);
     }
   }
   return found;

@@ -140,9 +140,8 @@ void LiveSession::Impl::stop_loop() {
 
 void LiveSession::Impl::remark_on_time(const LiveStatus& now) {
   if (now.standstills > remarked.standstills) {
-    remarks.push_back(
-        fmt::format("the program stood still; the session goes on {:.1f} s later than the time",
-                    now.skipped_s));
+    remarks.push_back(fmt::format(
+        "the program stood still; the session is {:.1f} s behind real time", now.skipped_s));
   }
   if (now.overloads > 0 && remarked.overloads == 0) {
     remarks.push_back(fmt::format(

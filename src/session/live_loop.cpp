@@ -265,7 +265,7 @@ void LiveLoop::run() noexcept {
     if (has_steps) {
       --steps_left_;
     } else {
-      keep_time(begin_ns);
+      note_lateness(begin_ns);
     }
     run_tick(begin_ns, has_steps ? begin_ns : clock_.due_ns(tick_));
   }
@@ -280,11 +280,11 @@ void LiveLoop::advance(int ticks) noexcept {
 // Returns false if the loop must stop.
 bool LiveLoop::wait_for_tick() noexcept {
   while (!is_stopping_.load(kRelaxed)) {
-    follow_orders();
+    read_pace_and_steps();
     drop_recording();
     const std::int64_t due = due_ns(), time_ns = now_ns();
     if (time_ns >= due) return true;
-    if (clock_.pace() == 0.0) look_at_pads(time_ns);
+    if (clock_.pace() == 0.0) show_new_reports(time_ns);
     sleep_until(std::min(due, time_ns + kNap_ns));
   }
   return false;
@@ -300,7 +300,7 @@ void LiveLoop::step(int ticks) noexcept {
 
 // Reads the steps first: if a thread sets the pace to 0 and then asks for steps, they run at pace
 // 0.
-void LiveLoop::follow_orders() noexcept {
+void LiveLoop::read_pace_and_steps() noexcept {
   const std::int64_t steps = wanted_steps_.exchange(0, std::memory_order_acquire);
   const double pace = wanted_pace_.load(std::memory_order_acquire);
   if (pace != clock_.pace()) {
@@ -327,11 +327,11 @@ std::int64_t LiveLoop::due_ns() const noexcept {
 }
 
 // While ticks stand still, the frame shows new reports although no tick has used them.
-void LiveLoop::look_at_pads(std::int64_t now_ns) noexcept {
+void LiveLoop::show_new_reports(std::int64_t now_ns) noexcept {
   if (reports_.gather(now_ns)) publish(shown_ns_);
 }
 
-void LiveLoop::keep_time(std::int64_t now_ns) noexcept {
+void LiveLoop::note_lateness(std::int64_t now_ns) noexcept {
   late_times_.add(now_ns - clock_.due_ns(tick_));
   const TickClock::Begin begin = clock_.begin(tick_, now_ns);
   if (begin == TickClock::Begin::on_time) return;

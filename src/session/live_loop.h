@@ -191,11 +191,11 @@ class LiveLoop {
 
  private:
   bool wait_for_tick() noexcept;
-  void follow_orders() noexcept;
+  void read_pace_and_steps() noexcept;
   void drop_recording() noexcept;
   std::int64_t due_ns() const noexcept;
-  void look_at_pads(std::int64_t now_ns) noexcept;
-  void keep_time(std::int64_t now_ns) noexcept;
+  void show_new_reports(std::int64_t now_ns) noexcept;
+  void note_lateness(std::int64_t now_ns) noexcept;
   void run_tick(std::int64_t now_ns, std::int64_t shown_ns) noexcept;
   void follow_script(std::int64_t now_ns) noexcept;
   void use(std::span<const Report> reports, std::int64_t now_ns) noexcept;

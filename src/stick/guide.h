@@ -213,9 +213,9 @@ class CalibrationGuide {
     std::optional<double> released;  // the lowest level that was seen
     bool is_done = false;
   };
-  struct Piece {  // the tracks of a finished step
+  struct StepTracks {
     GuideStep step = GuideStep::rest;
-    bool continues = false;  // follows the piece before without a break in the reports
+    bool continues = false;  // follows the step before without a break in the reports
     std::int64_t reports = 0;
     PadTracks tracks;
   };
@@ -241,12 +241,13 @@ class CalibrationGuide {
   std::vector<Trigger> triggers_;
 
   PadTracker tracker_;  // tracks of the running step
-  std::vector<Piece> pieces_;
+  std::vector<StepTracks> finished_steps_;
   // Reports kept in all steps, and in the running step.
   std::int64_t reports_ = 0, running_reports_ = 0;
-  bool continues_ = false;  // the running step's tracks will follow the last piece without a break
-  bool is_cut_ = true;      // the reports were interrupted since the last one
-  bool is_placed_ = false;  // the position of the controls is known
+  // The running step's tracks will follow the last finished step's without a break.
+  bool continues_ = false;
+  bool is_cut_ = true;         // the reports were interrupted since the last one
+  bool has_position_ = false;  // of the controls: a report has come since the pad was plugged in
   std::int64_t time_ns_ = 0;
 };
 

@@ -276,11 +276,11 @@ constexpr double kGreatestError = 0.025;
 constexpr int kGap = 3;         // most unseen directions between seen ones that are filled in
 constexpr double kSharp = 0.6;  // sine of the least angle by which a corner turns
 
-// The reach to a side is known if the outline was seen within kOfSide (rad) both clockwise and
-// counter-clockwise of it, or within kStraight of the side itself.
-constexpr double kOfSide = 15.0 * kDegree, kStraight = 3.0 * kSpacing;
-// Parts of the line between two directions that circularity_error() samples.
-constexpr int kParts = 8;
+// The reach to a side is known if the outline was seen within kBesideSide_rad both clockwise and
+// counter-clockwise of it, or within kOnSide_rad of the side itself.
+constexpr double kBesideSide_rad = 15.0 * kDegree, kOnSide_rad = 3.0 * kSpacing;
+// circularity_error() samples the line between two directions at the ends of its parts.
+constexpr int kLineParts = 8;
 // Smallest radius that counts, as in dualshock-tools.
 constexpr double kLeastCircularityRadius = 0.2;
 // Fewest bins with a radius; with fewer the error is not comparable.
@@ -629,8 +629,8 @@ Reach reach_of(const Outline& outline) noexcept {
     for (int side = 0; side < 4; ++side) {
       furthest[side] = std::max(furthest[side], supported(outline, k, side));
       const double beside = wrapped((k - side * kOutlineDirections / 4) * kSpacing);
-      if (std::fabs(beside) <= kOfSide && beside <= kStraight) is_before[side] = true;
-      if (std::fabs(beside) <= kOfSide && beside >= -kStraight) is_behind[side] = true;
+      if (std::fabs(beside) <= kBesideSide_rad && beside <= kOnSide_rad) is_before[side] = true;
+      if (std::fabs(beside) <= kBesideSide_rad && beside >= -kOnSide_rad) is_behind[side] = true;
     }
   }
   const auto reach = [&](int side, double sign) {
@@ -645,8 +645,8 @@ namespace {
 using Bins = std::array<double, kCircularityBins>;
 
 void add_piece(const vec2& a, const vec2& b, Bins& greatest) noexcept {
-  for (int part = 0; part <= kParts; ++part) {
-    const vec2 p = a + (b - a) * (static_cast<double>(part) / kParts);
+  for (int part = 0; part <= kLineParts; ++part) {
+    const vec2 p = a + (b - a) * (static_cast<double>(part) / kLineParts);
     const double turn = gaitpad::atan2(p.y, p.x) / (2.0 * kPi) + 1.0;
     double& g = greatest[std::lround(turn * kCircularityBins) % kCircularityBins];
     g = std::max(g, std::sqrt(p.x * p.x + p.y * p.y));

@@ -202,18 +202,18 @@ void add_zones(const StickStatistics& s, StickAdvice& advice) noexcept {
 
 using Reasons = std::vector<std::string>;
 
-std::string displaced(const StickStatistics& s) {
+std::string displaced_text(const StickStatistics& s) {
   return fmt::format("after {} release{} it stayed {} {:.2f} off its centre", s.displaced,
                      s.displaced == 1 ? "" : "s", s.displaced == 1 ? "about" : "up to",
                      s.displaced_by);
 }
 
-std::string stuck(const StickStatistics& s) {
+std::string stuck_text(const StickStatistics& s) {
   return fmt::format("its value stuck {} while it moved",
                      s.stuck == 1 ? "once" : fmt::format("{} times", s.stuck));
 }
 
-Reasons useless(const StickStatistics& s, const StickAdvice& advice) {
+Reasons reasons_to_replace(const StickStatistics& s, const StickAdvice& advice) {
   Reasons reasons;
   const double drift = s.drift_per_s.value_or(0.0);
   // A short rest alone may have been a thumb that lay on the stick.
@@ -237,7 +237,7 @@ Reasons useless(const StickStatistics& s, const StickAdvice& advice) {
   for (std::string& reason : short_sides(s, s.unpressed ? 0.0 : kUselessReach))
     reasons.push_back(std::move(reason));
   if (s.displaced > 1 && s.displaced_by > kUselessZone) {
-    reasons.push_back(displaced(s));
+    reasons.push_back(displaced_text(s));
   }
   if (s.drop_outs >= kUselessDropOuts) {
     reasons.push_back(fmt::format("it lost contact {} times, for {:.0f} ms in all", s.drop_outs,
@@ -255,12 +255,12 @@ Reasons useless(const StickStatistics& s, const StickAdvice& advice) {
                     s.jumps, 100.0 * share_of_jumps(s)));
   }
   if (s.stuck >= kUselessStuck) {
-    reasons.push_back(stuck(s));
+    reasons.push_back(stuck_text(s));
   }
   return reasons;
 }
 
-Reasons missing(const StickStatistics& s) {
+Reasons missing_data(const StickStatistics& s) {
   if (s.rate_hz && *s.rate_hz < kLeastRate_hz) {
     return {fmt::format(
         "it reports only {:.0f} times a second, which shows neither noise nor faults", *s.rate_hz)};
@@ -292,13 +292,13 @@ Reasons missing(const StickStatistics& s) {
   return {fmt::format("its rim was not seen to the {}", unseen)};
 }
 
-Reasons worn(const StickStatistics& s) {
+Reasons signs_of_wear(const StickStatistics& s) {
   Reasons reasons;
   if (s.hysteresis && *s.hysteresis > kWornHysteresis) {
     reasons.push_back(
         fmt::format("let go from different sides it rests up to {:.3f} apart", *s.hysteresis));
   }
-  if (s.displaced > 1) reasons.push_back(displaced(s));
+  if (s.displaced > 1) reasons.push_back(displaced_text(s));
   const double sigma = greatest_sigma(s);
   if (sigma > std::max(kWornSigma, kWornSteps * step_of(s))) {
     reasons.push_back(fmt::format("its noise at rest is {:.3f}", sigma));
@@ -324,7 +324,7 @@ Reasons worn(const StickStatistics& s) {
   return reasons;
 }
 
-std::string good(const StickStatistics& s) {
+std::string good_text(const StickStatistics& s) {
   std::string text = fmt::format("its noise is {:.4f}{}", greatest_sigma(s),
                                  s.is_sigma_hidden ? " (hidden by its steps)" : "");
   if (s.hysteresis && *s.hysteresis < 0.0005) {
@@ -351,30 +351,31 @@ std::string sentence(std::string_view opening, const Reasons& reasons) {
 }
 
 void judge(const StickStatistics& s, StickAdvice& advice) {
-  const Reasons useless_for = useless(s, advice), missing_are = missing(s), worn_by = worn(s);
+  const Reasons faults = reasons_to_replace(s, advice), missing = missing_data(s),
+                wear = signs_of_wear(s);
   const bool is_slow = s.rate_hz && *s.rate_hz < kLeastRate_hz;
-  if (s.centre && !is_slow && !useless_for.empty()) {
+  if (s.centre && !is_slow && !faults.empty()) {
     advice.verdict = Verdict::replace;
-    advice.reason = sentence("", useless_for);
-  } else if (!missing_are.empty()) {
+    advice.reason = sentence("", faults);
+  } else if (!missing.empty()) {
     advice.verdict = Verdict::unknown;
-    advice.reason = sentence("too little was seen: ", missing_are);
-  } else if (!worn_by.empty()) {
+    advice.reason = sentence("too little was seen: ", missing);
+  } else if (!wear.empty()) {
     advice.verdict = Verdict::worn;
-    advice.reason = sentence("", worn_by) + "; calibration makes up for it";
+    advice.reason = sentence("", wear) + "; calibration makes up for it";
   } else {
     advice.verdict = Verdict::good;
-    advice.reason = sentence("", {good(s)});
+    advice.reason = sentence("", {good_text(s)});
   }
   const bool is_blamed = advice.verdict == Verdict::replace || advice.verdict == Verdict::worn;
   const bool looks_held =
       s.wander > kWornWander || s.drift_per_s.value_or(0.0) > 0.0 || off_middle(s) >= kHeldCentre;
   if (is_blamed && looks_held) advice.reason += "; or a thumb lay on it: once more, hands off";
-  if (s.stuck > 0 && s.stuck < kUselessStuck) advice.reason += "; " + stuck(s);
+  if (s.stuck > 0 && s.stuck < kUselessStuck) advice.reason += "; " + stuck_text(s);
   if (advice.verdict == Verdict::good && single_jumps(s) > 0)
     advice.reason += "; it jumped for a single report, so its reports are filtered";
   if (s.displaced == 1) {
-    advice.reason += "; " + displaced(s) +
+    advice.reason += "; " + displaced_text(s) +
                      ", which the inner zone covers: measure again if a thumb may have lain on it";
   }
   if (s.centre && !s.hysteresis) {
@@ -557,9 +558,9 @@ std::string why_useless(const PadAnalysis& analysis) {
   for (std::size_t i = 0; i < 2; ++i) {
     const auto& stick = analysis.stick[i];
     if (!stick || is_known(analysis, i)) continue;
-    const Reasons missing_are = missing(stick->statistics);
+    const Reasons missing = missing_data(stick->statistics);
     text += fmt::format("; {}: {}", kSideNames[i],
-                        missing_are.empty() ? stick->advice.reason : missing_are.front());
+                        missing.empty() ? stick->advice.reason : missing.front());
   }
   return text;
 }

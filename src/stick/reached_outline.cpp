@@ -8,7 +8,7 @@ namespace {
 
 constexpr double kTurn_rad = 2.0 * kPi;
 // Least raw radius at which a stick can be turning along its rim; the limit of dualshock-tools.
-constexpr double kLeastReach = 0.2;
+constexpr double kLeastRimRadius = 0.2;
 
 }  // namespace
 
@@ -23,7 +23,7 @@ void ReachedOutline::add(const vec2& before, const vec2& now, std::int64_t tick,
   if (!std::isfinite(before.x + before.y + now.x + now.y)) return;
   const double from = std::atan2(before.y, before.x), radius = glm::length(now);
   double turn = std::remainder(std::atan2(now.y, now.x) - from, kTurn_rad);
-  const bool is_along = std::fabs(turn) < kMostTurn_rad && glm::length(before) > kLeastReach;
+  const bool is_along = std::fabs(turn) < kMostTurn_rad && glm::length(before) > kLeastRimRadius;
   for (int part = is_along ? 1 : kParts; part <= kParts; ++part) {
     const double share = static_cast<double>(part) / kParts;
     const double angle = from + share * turn;

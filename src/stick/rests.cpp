@@ -205,17 +205,17 @@ std::vector<Release> releases_of(std::span<const StickTrack> tracks, std::span<c
 // ---- Explaining where it rests
 
 // Rests explained by the side of the release and by drift:
-// place = home + returns * from + drift * time. Each track has its own home.
+// place = centre + returns * from + drift * time. Each track has its own centre.
 struct ReturnModel {
   // For each release: it is used; odd ones and those without `from` are not.
   std::vector<bool> counts;
   int used = 0;
-  vec2 home{0.0};          // mean rest of the releases that are used
+  vec2 centre{0.0};        // mean over the releases that are used
   vec2 drift{0.0};         // drift per second; 0 unless it was asked for
   double residual = 0.0;   // sum of squared differences of both axes
   double spread_s2 = 0.0;  // spread of the times that `from` does not explain
 };
-enum class Explain { home, returns, returns_and_drift };
+enum class Explain { centre, returns, returns_and_drift };
 
 // One release and the possible causes of its place, relative to the means of its track.
 struct Row {
@@ -295,7 +295,7 @@ std::vector<Row> centred_rows(std::span<const Release> releases, const std::vect
 Solution solve(std::span<const Release> releases, const std::vector<bool>& counts,
                Explain explain) {
   const std::vector<Row> rows = centred_rows(releases, counts);
-  const std::size_t first = explain == Explain::home ? 2 : 0;
+  const std::size_t first = explain == Explain::centre ? 2 : 0;
   return solve(rows, first, explain == Explain::returns_and_drift ? 3 : 2);
 }
 
@@ -347,10 +347,10 @@ ReturnModel return_model(std::span<const Release> releases, Explain explain, dou
   for (std::size_t i = 0; i < releases.size(); ++i) {
     if (!model.counts[i]) continue;
     const Row row = row_of(releases[i]);
-    model.home += row.place;
-    for (std::size_t k = 0; k < 3; ++k) model.home -= row.cause[k] * solution.effect[k];
+    model.centre += row.place;
+    for (std::size_t k = 0; k < 3; ++k) model.centre -= row.cause[k] * solution.effect[k];
   }
-  if (model.used > 0) model.home /= static_cast<double>(model.used);
+  if (model.used > 0) model.centre /= static_cast<double>(model.used);
   return model;
 }
 
@@ -395,7 +395,7 @@ double greatest_distance(std::span<const vec2> places) noexcept {
 
 constexpr double kBlock_s = 0.1;
 constexpr double kFewestRestReports = 5.0;
-constexpr double kSettling_s = 1.0;  // time after a release in which some sticks creep home
+constexpr double kSettling_s = 1.0;  // after a release; some sticks creep to their rest
 constexpr double kShortestForDrift_s = 0.5;
 constexpr double kSlowestDrift_per_s = 0.0005;
 
@@ -480,10 +480,10 @@ Evidence evidence_of(std::span<const StickTrack> tracks, std::span<const Still> 
 constexpr double kSure = 16.0, kSureOfOne = 12.0;
 double log_odds(double without, double with, double freedom, double noise) noexcept {
   const double variance = noise * noise;
-  const double by_what_is_left =
+  const double by_residual =
       0.5 * freedom * std::log((without + freedom * variance) / (with + freedom * variance));
-  if (with > variance * (freedom + 3.0 * std::sqrt(2.0 * freedom))) return by_what_is_left;
-  return std::max(by_what_is_left, 0.5 * (without - with) / variance);
+  if (with > variance * (freedom + 3.0 * std::sqrt(2.0 * freedom))) return by_residual;
+  return std::max(by_residual, 0.5 * (without - with) / variance);
 }
 
 bool is_worth_reporting(const Evidence& evidence, const vec2& drift, double seconds, double steps) {
@@ -560,9 +560,9 @@ vec2 drift_of(const Evidence& evidence) {
 
 // ---- Centre
 
-struct Home {
-  vec2 centre{0.0};
-  std::vector<bool> counts;
+struct RestCentre {
+  vec2 place{0.0};
+  std::vector<bool> counts;  // for each release
 };
 
 // Marks the releases that count: those at most 2.5 times as far from the median as three quarters
@@ -619,38 +619,38 @@ std::vector<vec2> places_of(std::span<const Release> releases, const std::vector
 // Without hysteresis the mean of all samples is best. With hysteresis the rests lie round the true
 // place, but not evenly: if they follow the direction of the release, that effect is removed, else
 // the middle of all rests counts.
-Home home_of(std::span<const Release> releases, const Evidence& evidence) {
-  Home home;
-  home.counts = usual_releases(releases, evidence.mean_noise);
-  if (is_one_place(releases, home.counts, evidence)) {
-    home.centre = mean_of(releases, home.counts);
-    return home;
+RestCentre rest_centre_of(std::span<const Release> releases, const Evidence& evidence) {
+  RestCentre centre;
+  centre.counts = usual_releases(releases, evidence.mean_noise);
+  if (is_one_place(releases, centre.counts, evidence)) {
+    centre.place = mean_of(releases, centre.counts);
+    return centre;
   }
   const ReturnModel with = return_model(releases, Explain::returns, evidence.mean_noise);
-  const ReturnModel without = return_model(releases, Explain::home, evidence.mean_noise);
+  const ReturnModel without = return_model(releases, Explain::centre, evidence.mean_noise);
   const double freedom = 2.0 * (with.used - tracks_of(releases) - 2);
   const bool follows = freedom >= 4.0 && log_odds(without.residual, with.residual, freedom,
                                                   evidence.mean_noise) > 8.0;
   if (!follows) {
-    const std::vector<vec2> places = places_of(releases, home.counts);
-    home.centre = middle_of(places);
-    return home;
+    const std::vector<vec2> places = places_of(releases, centre.counts);
+    centre.place = middle_of(places);
+    return centre;
   }
-  home.centre = with.home;
+  centre.place = with.centre;
   // The model has found the odd releases; one of unknown direction counts if it lies no farther out
   // than the others.
   double radius = 0.0;
   for (std::size_t i = 0; i < releases.size(); ++i) {
     if (with.counts[i]) {
-      radius = std::max(radius, glm::length(releases[i].rest.place - home.centre));
+      radius = std::max(radius, glm::length(releases[i].rest.place - centre.place));
     }
   }
   for (std::size_t i = 0; i < releases.size(); ++i) {
-    const bool is_within = glm::length(releases[i].rest.place - home.centre) <=
+    const bool is_within = glm::length(releases[i].rest.place - centre.place) <=
                            1.2 * radius + 4.0 * evidence.mean_noise;
-    home.counts[i] = with.counts[i] || (releases[i].from == vec2(0.0) && is_within);
+    centre.counts[i] = with.counts[i] || (releases[i].from == vec2(0.0) && is_within);
   }
-  return home;
+  return centre;
 }
 
 // Whether the stick was moved and let go between two rests: its movement was seen, or the first
@@ -695,8 +695,8 @@ void set_sigma(RestStatistics& to, const Evidence& evidence, const vec2& step) {
 // on the stick in some of them.
 double wander_of(std::span<const HandsOff> times, const vec2& drift, const vec2& step) {
   constexpr std::size_t kLag = 2;  // compared blocks are 0.2 s apart
-  // In s: a random walk's means over 0.1 s, 0.2 s apart, differ as its values this far apart do.
-  constexpr double kShare = kLag * 0.1 - 0.1 / 3.0;
+  // A random walk's means over 0.1 s, 0.2 s apart, differ as its values this far apart do.
+  constexpr double kLagOfMeans_s = kLag * 0.1 - 0.1 / 3.0;
   constexpr double kFewest = 8.0;  // fewest changes, counted for each axis
   std::vector<double> squares, noises;
   double changes = 0.0;
@@ -719,7 +719,7 @@ double wander_of(std::span<const HandsOff> times, const vec2& drift, const vec2&
   const double square = median(std::move(squares));
   const double noise = median(std::move(noises)) + 0.5 * glm::dot(step, step);
   if (square < noise * (1.0 + 6.0 / std::sqrt(changes))) return 0.0;
-  const double wander = std::sqrt((square - noise) / (2.0 * kShare));
+  const double wander = std::sqrt((square - noise) / (2.0 * kLagOfMeans_s));
   return wander > 0.004 ? wander : 0.0;
 }
 
@@ -790,9 +790,9 @@ RestStatistics rest_statistics(std::span<const StickTrack> tracks, const vec2& s
   if (result.rest_s >= kShortestForDrift_s) result.drift_per_s = glm::length(result.drift);
   std::vector<Release> steady = evidence.releases;
   for (Release& release : steady) release.rest.place -= result.drift * release.rest.time_s;
-  const Home home = home_of(steady, evidence);
-  result.centre = home.centre;
-  result.rests = places_of(steady, home.counts);
+  const RestCentre centre = rest_centre_of(steady, evidence);
+  result.centre = centre.place;
+  result.rests = places_of(steady, centre.counts);
   if (result.rests.size() >= 2 && was_let_go(tracks, evidence.releases)) {
     result.hysteresis = hysteresis_of(result.rests, evidence.mean_noise);
   }

@@ -73,9 +73,9 @@ std::vector<Cell> cells_of(const StickTrack& track, double interval_s, std::size
   return cells;
 }
 
-// Few reports measure their variance badly; this factor on the variance allows for that. Four and
-// fewer get none, because a movement would pass for noise.
-double doubt(double reports) noexcept {
+// Few reports measure their variance badly; this factor allows for that. Four and fewer get none,
+// because a movement would pass for noise.
+double variance_factor(double reports) noexcept {
   return reports > 4.0 ? 1.0 + std::min(6.0 / reports, 1.0) : 1.0;
 }
 
@@ -91,7 +91,7 @@ bool is_still(std::span<const Cell> cells, std::size_t first, double slow) noexc
   // A movement that begins or ends here is in one half only.
   const double variance = std::min(before.variance(), after.variance());
   const double limit =
-      kNoiseLimit * kNoiseLimit * variance * doubt(std::min(before.weight, after.weight));
+      kNoiseLimit * kNoiseLimit * variance * variance_factor(std::min(before.weight, after.weight));
   const vec2 moved = after.mean() - before.mean();
   if (glm::dot(moved, moved) >
       std::max(slow * slow, limit * (1.0 / before.weight + 1.0 / after.weight))) {
@@ -186,14 +186,14 @@ std::vector<std::vector<Cell>> cells_of(std::span<const StickTrack> tracks, doub
 
 // ---- Which of them are rests
 
-constexpr double kFarthestHome = 0.5;  // farthest rest, raw; farther out a stick is held
+constexpr double kFarthestFromMiddle = 0.5;  // farthest rest, raw; farther out a stick is held
 
 // Least distance from a rest that counts as a movement between two rests, raw.
 constexpr double kReleaseMovement = 0.2;
 constexpr std::size_t kShortestMovement = 3;  // length in cells
 
 bool is_near_middle(const vec2& p) noexcept {
-  return std::max(std::fabs(p.x), std::fabs(p.y)) < kFarthestHome;
+  return std::max(std::fabs(p.x), std::fabs(p.y)) < kFarthestFromMiddle;
 }
 
 // `turned`: the extent of a stick that was turned round; a rest lies within 0.6 of it.
@@ -255,16 +255,16 @@ std::vector<Still>::iterator sort_out_rests(std::vector<Still>& found,
     together[place.group].count += place.count;
     together[place.group].sum += place.sum;
   }
-  std::size_t home = 0;
+  std::size_t rest = 0;
   double best = 0.0;
   for (std::size_t k = 0; k < groups; ++k) {
     if (together[k].count == 0.0) continue;
     const vec2 off = together[k].sum / together[k].count / kNearMiddle;
     const double score = together[k].seen_s * std::exp(-glm::dot(off, off));
-    if (score > best) best = score, home = k;
+    if (score > best) best = score, rest = k;
   }
   return std::stable_partition(found.begin(), found.end(), [&](const Still& still) {
-    return may_be_rest(still, turned) && places[square_of(still)].group == home;
+    return may_be_rest(still, turned) && places[square_of(still)].group == rest;
   });
 }
 
@@ -311,11 +311,11 @@ std::optional<vec2> usual_place(std::span<const Cell> cells) {
   return places.size() < 5 * kBlockCells ? std::nullopt : std::optional(median_of(places));
 }
 
-// The hands-off times of one track. `home`: where the stick rests; `reach`: from there; `late`:
-// cells per report, on slow pads.
-void add_hands_off(std::size_t track, std::span<const Cell> cells, const vec2& home, double reach,
+// The hands-off times of one track. `rest`: place where the stick rests; `reach`: from there;
+// `late`: cells per report, on slow pads.
+void add_hands_off(std::size_t track, std::span<const Cell> cells, const vec2& rest, double reach,
                    std::size_t late, std::vector<HandsOff>& found) {
-  const auto away = [&](std::size_t k) { return glm::length(cells[k].mean() - home) / reach; };
+  const auto away = [&](std::size_t k) { return glm::length(cells[k].mean() - rest) / reach; };
   for (std::size_t begin = 0, end; begin < cells.size(); begin = end) {
     end = begin + 1;
     if (away(begin) > kPushed) continue;
@@ -351,12 +351,12 @@ void add_hands_off(std::size_t track, std::span<const Cell> cells, const vec2& h
 }
 
 // The usual length of a push; a square gate's corners are far beyond it.
-double usual_reach(std::span<const std::vector<Cell>> cells, const vec2& home) {
+double usual_reach(std::span<const std::vector<Cell>> cells, const vec2& rest) {
   std::vector<double> away;
   double farthest = 0.5;
   for (const std::vector<Cell>& track : cells) {
     for (const Cell& cell : track) {
-      away.push_back(glm::length(cell.mean() - home));
+      away.push_back(glm::length(cell.mean() - rest));
       farthest = std::max(farthest, away.back());
     }
   }
@@ -390,13 +390,13 @@ Stills stills(std::span<const StickTrack> tracks, const vec2& step, double inter
     if (const auto place = usual_place(cells[t])) places.push_back(*place);
   }
   if (places.empty()) return found;
-  const vec2 home = median_of(places);
-  const double reach = usual_reach(cells, home);
+  const vec2 centre = median_of(places);
+  const double reach = usual_reach(cells, centre);
   const auto late = static_cast<std::size_t>(std::clamp(interval_s / kCell_s, 0.0, 10.0));
   for (std::size_t t = 0; t < tracks.size(); ++t)
-    add_hands_off(t, cells[t], home, reach, late, found.hands_off);
+    add_hands_off(t, cells[t], centre, reach, late, found.hands_off);
   std::copy_if(others, all.end(), std::back_inserter(found.pushes), [&](const Still& still) {
-    return glm::length(still.mean - home) >= kPushed * reach;
+    return glm::length(still.mean - centre) >= kPushed * reach;
   });
   return found;
 }

@@ -14,7 +14,7 @@
 namespace gaitpad {
 namespace {
 
-constexpr int kOwn = 5;  // index of the table of the data's own stride
+constexpr int kDataTable = 5;  // index of the table of the data's stride
 // Iterations of the first solve and of each later one. In most clips angles then are within 2e-2
 // rad of the converged solution (the rest is mostly at nearly straight knees); more iterations make
 // no walk smoother or closer to its data.
@@ -23,9 +23,9 @@ constexpr int kFirstSolve = 7, kNextSolve = 3;
 constexpr int kLongSolve = 6;
 // Iterations for backward strides, which change more from one to the next.
 constexpr int kNextBack = 5;
-// Extrapolation factor of the next start: its change of the data grows by half as much as in the
-// previous table. The full growth overshoots for short steps.
-constexpr double kGoesOn = 0.5;
+// A start's change of the data grows by half as much as in the previous table. The full growth
+// overshoots for short steps.
+constexpr double kExtrapolation = 0.5;
 // Backward strides: least knee angle (rad), factor on smoothness, weights of the data.
 constexpr double kLeastKneeBack = 8.0 * kDegree, kSmootherBack = 10.0, kHipBack = 0.3,
                  kAnkleBack = 0.17;
@@ -254,7 +254,7 @@ struct Builder {
   };
 
   // The start of the solve of `p`: its data plus the change that the neighbour's solution made.
-  // With a second stride `far`, the change is extrapolated: near + kGoesOn (near - far).
+  // With a second stride `far`, the change is extrapolated: near + kExtrapolation (near - far).
   static std::vector<StrideSample> start_of(const StrideProblem& p, const Solved& near,
                                             const Solved* far) {
     std::vector<StrideSample> start = p.wanted;
@@ -268,8 +268,8 @@ struct Builder {
         }
       }
     };
-    add(near, far == nullptr ? 1.0 : 1.0 + kGoesOn);
-    if (far != nullptr) add(*far, -kGoesOn);
+    add(near, far == nullptr ? 1.0 : 1.0 + kExtrapolation);
+    if (far != nullptr) add(*far, -kExtrapolation);
     return start;
   }
 
@@ -277,7 +277,8 @@ struct Builder {
   bool solve() {
     StrideSolver solver;
     const bool forwards = cycle.stride_m > 0.0;
-    const int tables = forwards ? kStrideRatios : kBackRatios, first = std::min(kOwn, tables - 1);
+    const int tables = forwards ? kStrideRatios : kBackRatios,
+              first = std::min(kDataTable, tables - 1);
     std::vector<Solved> all(tables);
     // Keeps a table's solution. False if there is none.
     const auto keep = [&](int k, StrideProblem p, std::vector<StrideSample> stride) {
@@ -290,20 +291,20 @@ struct Builder {
     StrideProblem own = problem(first * kRatioStep);
     std::vector<StrideSample> clean = solver.solve(own, own.wanted, kFirstSolve);
     if (!keep(first, std::move(own), std::move(clean))) return false;
-    const auto go_on = [&](int k, int from) {
+    const auto solve_from = [&](int k, int from) {
       const int beyond = 2 * from - k;
       const bool is_known = beyond >= 0 && beyond < tables && !all[beyond].stride.empty();
       StrideProblem p = problem(k * kRatioStep);
       std::vector<StrideSample> start = start_of(p, all[from], is_known ? &all[beyond] : nullptr);
-      const int steps = !forwards ? kNextBack : k > kOwn ? kLongSolve : kNextSolve;
+      const int steps = !forwards ? kNextBack : k > kDataTable ? kLongSolve : kNextSolve;
       std::vector<StrideSample> stride = solver.solve(p, std::move(start), steps);
       return keep(k, std::move(p), std::move(stride));
     };
     for (int k = first - 1; k >= 0; --k) {
-      if (!go_on(k, k + 1)) return false;
+      if (!solve_from(k, k + 1)) return false;
     }
     for (int k = first + 1; k < tables; ++k) {
-      if (!go_on(k, k - 1)) return false;
+      if (!solve_from(k, k - 1)) return false;
     }
     return true;
   }
@@ -327,7 +328,7 @@ std::optional<std::string> fault_of(const GaitCycle& cycle) {
     return "has events that are not in the order of a walk";
   for (const CycleSample& sample : cycle.samples) {
     if (std::abs(glm::dot(sample.pelvis, sample.pelvis) - 1.0) > 1e-6)
-      return "turns its pelvis by what is no rotation";
+      return "holds a rotation of the pelvis that is not a unit quaternion";
     for (const LegSample& leg : sample.leg) {
       for (const double angle : leg.angles) {
         if (std::abs(angle) > kMostAngle) return "turns a leg by more than a full turn";

@@ -298,7 +298,7 @@ std::optional<LegJoints> named_leg(const Figure& figure, NamedSide side) {
     if (leg.knee < 0) continue;
     leg.hip = named_ancestor(figure.skeleton, leg.knee, side, NamedPart::hip);
     if (leg.hip < 0 || !is_limb(figure, limb_of(leg))) continue;
-    // A foot that is named may have no length.
+    // A joint with the name of a foot may have no length.
     if (toe_of(figure, j) < 0) leg.toe = foot_point_of(figure, j);
     if (complete_foot(figure, leg)) return leg;
   }

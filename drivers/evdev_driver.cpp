@@ -23,9 +23,10 @@
 
 #include "drivers/driver_rows.h"
 #include "drivers/event_node.h"
-#include "drivers/posix.h"
 #include "drivers/system_nodes.h"
 #include "hid/evdev_layout.h"
+#include "system/clock.h"
+#include "system/descriptors.h"
 
 namespace gaitpad {
 

@@ -25,9 +25,10 @@
 #include "drivers/pads/packet_sender.h"
 #include "drivers/pads/pad_quirks.h"
 #include "drivers/pads/pads_of_devices.h"
-#include "drivers/posix.h"
 #include "drivers/system_nodes.h"
 #include "gaitpad/descriptor.h"
+#include "system/clock.h"
+#include "system/descriptors.h"
 
 namespace gaitpad {
 

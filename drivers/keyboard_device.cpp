@@ -5,8 +5,9 @@
 #include <cmath>
 #include <utility>
 
-#include "drivers/posix.h"
 #include "gaitpad/keyboard.h"
+#include "system/clock.h"
+#include "system/descriptors.h"
 
 namespace gaitpad {
 namespace {

@@ -23,11 +23,12 @@
 #include <utility>
 #include <vector>
 
-#include "base/files.h"
 #include "drivers/driver_rows.h"
-#include "drivers/posix.h"
 #include "drivers/system_nodes.h"
 #include "hid/sdl_lines.h"
+#include "system/clock.h"
+#include "system/descriptors.h"
+#include "system/whole_file.h"
 
 namespace gaitpad {
 namespace {

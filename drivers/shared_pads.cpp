@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "drivers/pads/pads_of_devices.h"
-#include "drivers/posix.h"
+#include "system/descriptors.h"
 
 namespace gaitpad {
 

@@ -12,8 +12,9 @@
 #include "base/text.h"
 #include "drivers/driver_rows.h"
 #include "drivers/pads/recorded_packets.h"
-#include "drivers/posix.h"
 #include "gaitpad/trace.h"
+#include "system/clock.h"
+#include "system/descriptors.h"
 
 namespace gaitpad {
 namespace {

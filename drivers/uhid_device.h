@@ -9,10 +9,10 @@
 #include <span>
 #include <vector>
 
-#include "drivers/posix.h"
 #include "gaitpad/report.h"
 #include "gaitpad/result.h"
 #include "gaitpad/trace.h"
+#include "system/descriptors.h"
 
 namespace gaitpad {
 

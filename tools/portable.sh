@@ -18,7 +18,7 @@ case $kind in
     compile=(clang++ -stdlib=libc++ -DGAITPAD_HAS_FILES -DFMT_HEADER_ONLY -DTOML_HEADER_ONLY=1 -pthread)
     link=(-lpng)
     run=()
-    files=(src/files/*.cpp src/base/files.cpp)
+    files=(src/system/*.cpp src/files/*.cpp)
     ;;
   aarch64)
     bash tools/install.sh g++-aarch64-linux-gnu qemu-user-static
@@ -56,7 +56,6 @@ objects=()
   printf 'builddir = %s\n' "$folder" # for the log of ninja
   printf 'rule compile\n  command = %s -MD -MF $out.d -c $in -o $out\n  depfile = $out.d\n' "${compile[*]}"
   for source in src/{base,motion,strides,control,animation}/*.cpp "${files[@]}" tests/animation/core_hash_main.cpp; do
-    [ "$source" != src/base/files.cpp ] || [ ${#files[@]} -gt 0 ] || continue  # POSIX: no part of the core
     object=${source//\//_}.o
     [[ " ${objects[*]} " != *" $object "* ]] || continue
     objects+=("$object")

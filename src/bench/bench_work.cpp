@@ -12,7 +12,6 @@
 #include "animation/walk_figure.h"
 #include "base/lanes.h"
 #include "drivers/system_users.h"
-#include "drivers/threads.h"
 #include "files/stride_cache.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/crowd.h"
@@ -20,6 +19,7 @@
 #include "gaitpad/session_spec.h"
 #include "gaitpad/trace.h"
 #include "session/workers.h"
+#include "system/threads.h"
 
 namespace gaitpad {
 namespace {

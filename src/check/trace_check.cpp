@@ -12,13 +12,13 @@
 #include <thread>
 #include <utility>
 
-#include "base/files.h"
 #include "base/text.h"
 #include "check/expectation.h"
 #include "check/pose_track.h"
 #include "files/toml_file.h"
 #include "session/playback.h"
 #include "session/workers.h"
+#include "system/whole_file.h"
 
 namespace gaitpad {
 namespace fs = std::filesystem;

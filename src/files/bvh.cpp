@@ -10,9 +10,9 @@
 #include <iterator>
 #include <optional>
 
-#include "base/files.h"
 #include "base/ranges.h"
 #include "base/text.h"
+#include "files/input_files.h"
 #include "gaitpad/motion_file.h"
 #include "gaitpad/skeleton.h"
 #include "motion/euler.h"

@@ -7,11 +7,11 @@
 #include <optional>
 #include <utility>
 
-#include "base/files.h"
 #include "base/numeric.h"
 #include "base/ranges.h"
 #include "base/text.h"
 #include "files/acclaim.h"
+#include "files/input_files.h"
 #include "files/keyframe.h"
 #include "files/toml_file.h"
 #include "gaitpad/bvh.h"

@@ -2,9 +2,9 @@
 
 #include <utility>
 
-#include "base/files.h"
 #include "base/text.h"
 #include "files/height_picture.h"
+#include "files/input_files.h"
 #include "files/toml_file.h"
 #include "gaitpad/config_files.h"
 

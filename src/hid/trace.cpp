@@ -13,11 +13,11 @@
 #include <utility>
 #include <vector>
 
-#include "base/files.h"
 #include "base/text.h"
 #include "gaitpad/descriptor.h"
 #include "hid/evdev_recording.h"
 #include "hid/trace_lines.h"
+#include "system/whole_file.h"
 
 namespace gaitpad {
 

@@ -7,11 +7,11 @@
 #include <string_view>
 #include <utility>
 
-#include "base/files.h"
 #include "base/text.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/hash.h"
 #include "hid/evdev_layout.h"
+#include "system/whole_file.h"
 
 namespace gaitpad {
 namespace {

@@ -8,9 +8,9 @@
 #include <iterator>
 #include <utility>
 
-#include "drivers/posix.h"
 #include "gaitpad/limbs.h"
 #include "pads/calibration_store.h"
+#include "system/clock.h"
 
 namespace gaitpad {
 namespace {

@@ -13,11 +13,11 @@
 
 #include "base/text.h"
 #include "drivers/driver_rows.h"
-#include "drivers/posix.h"
 #include "drivers/system_users.h"
 #include "drivers/virtual_pad.h"
 #include "gaitpad/driver_registry.h"
 #include "gaitpad/pad_stream.h"
+#include "system/descriptors.h"
 
 namespace gaitpad {
 namespace {

@@ -22,12 +22,12 @@
 #include <utility>
 #include <vector>
 
-#include "drivers/posix.h"
 #include "drivers/system_nodes.h"
 #include "gaitpad/driver.h"
 #include "gaitpad/pad_configuration.h"
 #include "gaitpad/pad_stream.h"
 #include "gaitpad/result.h"
+#include "system/descriptors.h"
 
 namespace gaitpad {
 

@@ -14,10 +14,10 @@
 #include "base/spsc_ring.h"
 #include "base/text.h"
 #include "drivers/realtime.h"
-#include "drivers/threads.h"
 #include "gaitpad/keyboard.h"
 #include "pads/newest_reports.h"
 #include "pads/pad_finder.h"
+#include "system/threads.h"
 
 namespace gaitpad {
 namespace {

@@ -12,11 +12,11 @@
 
 #include "drivers/effect_table.h"
 #include "drivers/event_node.h"
-#include "drivers/posix.h"
 #include "drivers/virtual_pad.h"
 #include "gaitpad/pad_configuration.h"
 #include "gaitpad/pads.h"
 #include "pads/calibrated_copy.h"
+#include "system/descriptors.h"
 
 namespace gaitpad {
 

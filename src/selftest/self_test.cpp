@@ -17,10 +17,8 @@
 #include <thread>
 #include <utility>
 
-#include "base/files.h"
 #include "base/numeric.h"
 #include "base/text.h"
-#include "drivers/posix.h"
 #include "drivers/system_nodes.h"
 #include "drivers/system_users.h"
 #include "gaitpad/decode.h"
@@ -32,6 +30,8 @@
 #include "stick/guide.h"
 #include "stick/new_values.h"
 #include "stick/pad_analysis.h"
+#include "system/clock.h"
+#include "system/whole_file.h"
 
 namespace gaitpad {
 namespace {

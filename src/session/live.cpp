@@ -10,14 +10,14 @@
 #include <thread>
 #include <utility>
 
-#include "drivers/posix.h"
 #include "drivers/realtime.h"
-#include "drivers/threads.h"
 #include "gaitpad/keyboard.h"
 #include "session/live_loop.h"
 #include "session/pad_forward.h"
 #include "session/pose_stream.h"
 #include "session/recorded_session.h"
+#include "system/clock.h"
+#include "system/threads.h"
 
 namespace gaitpad {
 

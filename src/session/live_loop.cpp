@@ -6,9 +6,9 @@
 #include <cmath>
 #include <utility>
 
-#include "drivers/posix.h"
 #include "drivers/realtime.h"
 #include "gaitpad/decode.h"
+#include "system/clock.h"
 
 namespace gaitpad {
 

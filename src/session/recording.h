@@ -17,11 +17,11 @@
 #include <vector>
 
 #include "base/spsc_ring.h"
-#include "drivers/posix.h"
 #include "gaitpad/report.h"
 #include "gaitpad/result.h"
 #include "gaitpad/style.h"
 #include "gaitpad/trace.h"
+#include "system/growing_file.h"
 
 namespace gaitpad {
 
@@ -150,7 +150,7 @@ class Recording {
   };
   static constexpr std::int64_t kNoClock = -1;
 
-  Recording(const Options& options, RecordedDevices devices, OwnedFd file);
+  Recording(const Options& options, RecordedDevices devices);
   void run();
   void drain_ring();
   void write(std::string_view text);
@@ -158,8 +158,7 @@ class Recording {
   std::vector<std::string> remarks() const;
 
   std::string path_, part_;
-  OwnedFd file_;
-  std::int64_t written_ = 0;     // bytes of the whole lines that were written
+  GrowingFile file_;
   std::atomic<int> problem_{0};  // errno of the first write that failed
   RecordingLines lines_;
   SpscRing<Item> ring_;

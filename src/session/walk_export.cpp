@@ -7,8 +7,8 @@
 #include <string_view>
 #include <utility>
 
-#include "base/files.h"
 #include "base/text.h"
+#include "system/whole_file.h"
 
 namespace gaitpad {
 namespace fs = std::filesystem;

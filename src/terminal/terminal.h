@@ -1,4 +1,5 @@
-// The terminal of a guided command: single keys of standard input, and the size of the screen.
+// The terminal of a guided command: single keys of standard input, the size of the screen, and text
+// that fits it.
 #pragma once
 #include <cstddef>
 #include <optional>
@@ -6,25 +7,16 @@
 #include <string_view>
 #include <vector>
 
+#include "system/terminal_mode.h"
+
 namespace gaitpad {
 
-// Opens standard descriptors that the caller has closed. Otherwise a pad or a recording would get
-// such a number, and output for the terminal would be written into it. They are opened in the wrong
-// direction, so that using them fails as on closed ones.
-void hold_standard_descriptors() noexcept;
-
 // Single keys of standard input: on a terminal at once and without echo, else the first letter of
-// each line. The terminal's mode is changed meanwhile. It is restored by the destructor and when
-// the process is stopped (Ctrl-Z) or quit (Ctrl-\), and changed again when the process continues.
-// Ctrl-C still sends a signal. At most one object at a time.
+// each line. At most one object at a time (SingleKeyMode).
 class TerminalKeys {
  public:
-  // Whether keys count that were pressed before the object was made.
-  enum class Earlier { count, forgotten };
-  explicit TerminalKeys(Earlier earlier = Earlier::count);
-  ~TerminalKeys();
-  TerminalKeys(const TerminalKeys&) = delete;
-  TerminalKeys& operator=(const TerminalKeys&) = delete;
+  using Earlier = SingleKeyMode::Earlier;
+  explicit TerminalKeys(Earlier earlier = Earlier::count) : mode_(earlier) {}
 
   // The next key, '\n' for Enter or an empty line; nothing if none was pressed. Never waits. Skips
   // arrows and other escape sequences.
@@ -35,7 +27,7 @@ class TerminalKeys {
  private:
   std::optional<char> byte();
 
-  bool is_terminal_ = false;
+  SingleKeyMode mode_;
   bool is_at_end_ = false;
   std::string line_;  // the beginning of a line whose end has not arrived
 };

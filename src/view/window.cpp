@@ -19,10 +19,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/files.h"
 #include "draw/picture.h"
 #include "draw/video.h"
-#include "drivers/posix.h"
 #include "drivers/process_memory.h"
 #include "gaitpad/config_files.h"
 #include "pads/unseen_pad.h"
@@ -31,6 +29,8 @@
 #include "session/script.h"
 #include "session/show.h"
 #include "session/undo.h"
+#include "system/clock.h"
+#include "system/whole_file.h"
 #include "view/controls.h"
 #include "view/ensemble.h"
 #include "view/file_browser.h"

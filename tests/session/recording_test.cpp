@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "drivers/posix.h"
 #include "session/live_loop.h"
+#include "system/clock.h"
 #include "tests/comes_true.h"
 #include "tests/own_folder.h"
 #include "tests/session/made_session.h"

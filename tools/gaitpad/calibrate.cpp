@@ -12,7 +12,6 @@
 #include <span>
 #include <utility>
 
-#include "base/files.h"
 #include "base/text.h"
 #include "gaitpad/config_files.h"
 #include "hid/sdl_lines.h"
@@ -22,6 +21,7 @@
 #include "stick/calibration_import.h"
 #include "stick/guide.h"
 #include "stick/pad_analysis.h"
+#include "system/whole_file.h"
 #include "tools/gaitpad/calibrate_guide.h"
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/options.h"

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "base/files.h"
 #include "check/check_report.h"
 #include "check/trace_check.h"
 #include "session/workers.h"
+#include "system/whole_file.h"
 #include "terminal/run_end.h"
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/options.h"

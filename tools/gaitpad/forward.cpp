@@ -14,13 +14,13 @@
 #include <utility>
 #include <vector>
 
-#include "base/files.h"
 #include "base/text.h"
 #include "doctor/user_unit.h"
 #include "drivers/system_nodes.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/pad_stream.h"
 #include "pads/stand_in.h"
+#include "system/whole_file.h"
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/install_rules.h"
 #include "tools/gaitpad/options.h"

@@ -7,8 +7,8 @@
 #include <iostream>
 #include <optional>
 
-#include "base/files.h"
 #include "drivers/system_users.h"
+#include "system/whole_file.h"
 #include "tools/gaitpad/print.h"
 
 namespace gaitpad {

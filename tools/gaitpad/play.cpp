@@ -8,7 +8,6 @@
 #include <optional>
 #include <utility>
 
-#include "base/files.h"
 #include "gaitpad/live.h"
 #include "session/walk_export.h"
 #include "tools/gaitpad/commands.h"
@@ -17,6 +16,7 @@
 #include "tools/gaitpad/window_options.h"
 #ifdef GAITPAD_HAS_WINDOW
 #include "session/show.h"
+#include "system/whole_file.h"
 #endif
 
 namespace gaitpad {

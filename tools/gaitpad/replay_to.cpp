@@ -7,12 +7,12 @@
 #include <utility>
 #include <vector>
 
-#include "base/files.h"
 #include "drivers/uhid_device.h"
 #include "drivers/virtual_pad.h"
 #include "gaitpad/trace.h"
 #include "hid/evemu.h"
 #include "session/timed_replay.h"
+#include "system/whole_file.h"
 #include "terminal/run_end.h"
 #include "tools/gaitpad/print.h"
 

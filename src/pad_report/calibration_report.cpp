@@ -90,10 +90,11 @@ void add_reports(std::string& text, const StickStatistics& s) {
             fmt::format("while it moved, {:.0f} % of {:.0f} reports a second repeat the one before",
                         100.0 * s.moving->repeats(), s.moving->report_hz));
   }
-  const std::string gaps = s.gaps ? fmt::format("{}", *s.gaps) : "not known";
-  add_row(text, "gaps, jumps, stuck", fmt::format("{:>9}, {}, {}", gaps, s.jumps, s.stuck), from);
-  if (s.drop_outs > 0) {
-    add_row(text, "drop-outs", fmt::format("{:>9}", s.drop_outs),
+  const std::string gaps = s.gap_count ? fmt::format("{}", *s.gap_count) : "not known";
+  add_row(text, "gaps, jumps, stuck",
+          fmt::format("{:>9}, {}, {}", gaps, s.jump_count, s.stuck_count), from);
+  if (s.drop_out_count > 0) {
+    add_row(text, "drop-outs", fmt::format("{:>9}", s.drop_out_count),
             fmt::format("{:.0f} ms in all", 1e3 * s.drop_out_s));
   }
 }
@@ -159,10 +160,10 @@ nlohmann::ordered_json stick_json(const StickAnalysis& stick) {
           {"jitter_ms", value_or_null(s.jitter_ms)},
           {"new_values_hz", s.moving ? nlohmann::ordered_json(s.moving->new_value_hz) : nullptr},
           {"repeats", s.moving ? nlohmann::ordered_json(s.moving->repeats()) : nullptr},
-          {"gaps", value_or_null(s.gaps)},
-          {"jumps", s.jumps},
-          {"stuck", s.stuck},
-          {"drop_outs", s.drop_outs},
+          {"gaps", value_or_null(s.gap_count)},
+          {"jumps", s.jump_count},
+          {"stuck", s.stuck_count},
+          {"drop_outs", s.drop_out_count},
           {"drop_out_s", s.drop_out_s},
           {"displaced_rests", s.displaced},
           {"displaced_by", s.displaced_by},

@@ -245,11 +245,11 @@ ShadowPlace CapsuleScene::draw_shadows() {
   shadow_program_.use();
   shadow_program_.set("centre", place.centre_m);
   shadow_program_.set("half_size", place.half_m);
-  const auto draw = [this](const vec2& slide, const vec2& softness, double fading,
+  const auto draw = [this](const vec2& slide, const vec2& edge_width, double fading_1_m,
                            std::size_t count) {
     shadow_program_.set("slide", slide);
-    shadow_program_.set("softness", softness);
-    shadow_program_.set("fading", fading);
+    shadow_program_.set("edge_width", edge_width);
+    shadow_program_.set("fading_1_m", fading_1_m);
     bodies_.draw_squares(static_cast<GLsizei>(count));
   };
   glColorMask(GL_TRUE, GL_FALSE, GL_FALSE, GL_FALSE);
@@ -286,7 +286,7 @@ void CapsuleScene::draw(const SceneView& view, int samples) const {
   const std::array<GLbitfield, 3> shares = {all, half, all & ~half};
   if (has_layers_ && samples > 1) glEnable(GL_SAMPLE_MASK);
   for (std::size_t layer = 0; layer < (has_layers_ ? shares.size() : 1); ++layer) {
-    program_.set("layer", static_cast<double>(layer));
+    program_.set("drawn_layer", static_cast<double>(layer));
     glSampleMaski(0, shares[layer]);
     bodies_.draw_triangles_of(static_cast<GLsizei>(capsules_));
   }

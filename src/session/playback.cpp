@@ -185,7 +185,7 @@ struct Playback::Impl {
     copy_frame(run.simulation(), frame);
   }
 
-  bool goes_on(std::int64_t ticks) const;
+  bool can_run_to(std::int64_t ticks) const;
   void jump(std::int64_t ticks);
   void step();
 
@@ -212,7 +212,7 @@ void Playback::Impl::name_later_styles(const std::vector<Style>& styles) {
 
 // True if the run can continue to `ticks`. False also if its samples begin too late: they were
 // begun for a later place.
-bool Playback::Impl::goes_on(std::int64_t ticks) const {
+bool Playback::Impl::can_run_to(std::int64_t ticks) const {
   const std::int64_t ahead = ticks - run.ticks();
   return ahead >= 0 && ahead <= kHistoryTicks && first_sample <= history_of(ticks);
 }
@@ -257,7 +257,7 @@ bool Playback::seek(std::int64_t tick, int budget) {
   Impl& impl = *impl_;
   if (ticks() == 0) return true;
   const std::int64_t wanted = std::clamp<std::int64_t>(tick, 0, ticks() - 1) + 1;
-  if (!impl.goes_on(wanted)) impl.jump(wanted);
+  if (!impl.can_run_to(wanted)) impl.jump(wanted);
   for (; budget > 0 && impl.run.ticks() < wanted; --budget) impl.step();
   copy_frame(impl.run.simulation(), impl.frame);
   return impl.run.ticks() == wanted;

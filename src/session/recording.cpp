@@ -61,7 +61,7 @@ void RecordingLines::clock(std::int64_t tick, std::int64_t time_ns, double pace)
 }
 
 bool RecordingLines::add(std::int64_t tick, const Report& report) {
-  if (is_over(tick)) return false;
+  if (is_full_before(tick)) return false;
   const bool is_command = report.kind == ReportKind::command;
   // A blank command is left out.
   if (is_command && trimmed(text_of(report), " \t\r\n").empty()) return true;
@@ -81,14 +81,14 @@ bool RecordingLines::add(std::int64_t tick, const Report& report) {
 }
 
 void RecordingLines::style(std::int64_t tick, const Style& style) {
-  if (is_over(tick)) return;
+  if (is_full_before(tick)) return;
   bridge(tick, latest_us_);
   writer_.tick(tick);
   writer_.file("styles/" + style.name + ".toml", style_text(style));
 }
 
 // True if the recording is full before this tick: a tick is recorded completely or not at all.
-bool RecordingLines::is_over(std::int64_t tick) {
+bool RecordingLines::is_full_before(std::int64_t tick) {
   if (is_full_ || (rate_hz_ && events_ > 0 && tick == tick_)) return is_full_;
   if (bytes_ + text_size() < limits_.bytes && events_ < limits_.events) return false;
   is_full_ = true;

@@ -42,7 +42,7 @@ struct RecordedSession {
   std::optional<Pace> pace;
   std::vector<std::string> options;  // texts of `O:` lines, as in Trace::options
   std::vector<TraceFile> files;
-  // The file of `config/pads` with an entry for the pad; null if there is none. May be empty.
+  // The file of `config/pads` with an entry for the pad; null if no file has one. May be empty.
   std::function<const TraceFile*(const DeviceInfo&)> pad_file;
 };
 
@@ -81,7 +81,7 @@ class RecordingLines {
     bool is_described = false;
     std::int64_t latest_us = 0;
   };
-  bool is_over(std::int64_t tick);
+  bool is_full_before(std::int64_t tick);
   void begin_time(std::int64_t time_ns);
   bool describe(std::uint16_t device);
   void bridge(std::int64_t tick, std::int64_t time_us);

@@ -124,10 +124,13 @@ bool may_be_held(const StickStatistics& s) noexcept {
 }
 
 // Number of jumps that the median of three reports removes.
-std::int64_t single_jumps(const StickStatistics& s) noexcept { return s.jumps - s.long_jumps; }
+std::int64_t single_jumps(const StickStatistics& s) noexcept {
+  return s.jump_count - s.long_jump_count;
+}
 
 double share_of_jumps(const StickStatistics& s) noexcept {
-  return static_cast<double>(s.jumps) / static_cast<double>(std::max<std::int64_t>(s.samples, 1));
+  return static_cast<double>(s.jump_count) /
+         static_cast<double>(std::max<std::int64_t>(s.samples, 1));
 }
 // The times a minute at which two jumps come within three reports, which the median of three lets
 // through: 2 share^2 of the reports.
@@ -210,7 +213,7 @@ std::string displaced_text(const StickStatistics& s) {
 
 std::string stuck_text(const StickStatistics& s) {
   return fmt::format("its value stuck {} while it moved",
-                     s.stuck == 1 ? "once" : fmt::format("{} times", s.stuck));
+                     s.stuck_count == 1 ? "once" : fmt::format("{} times", s.stuck_count));
 }
 
 Reasons reasons_to_replace(const StickStatistics& s, const StickAdvice& advice) {
@@ -239,22 +242,22 @@ Reasons reasons_to_replace(const StickStatistics& s, const StickAdvice& advice) 
   if (s.displaced > 1 && s.displaced_by > kUselessZone) {
     reasons.push_back(displaced_text(s));
   }
-  if (s.drop_outs >= kUselessDropOuts) {
-    reasons.push_back(fmt::format("it lost contact {} times, for {:.0f} ms in all", s.drop_outs,
-                                  1e3 * s.drop_out_s));
+  if (s.drop_out_count >= kUselessDropOuts) {
+    reasons.push_back(fmt::format("it lost contact {} times, for {:.0f} ms in all",
+                                  s.drop_out_count, 1e3 * s.drop_out_s));
   }
-  if (s.long_jumps >= kWornJumps) {
+  if (s.long_jump_count >= kWornJumps) {
     reasons.push_back(
         fmt::format("it jumped away for two or three reports {} times, which no filter takes out",
-                    s.long_jumps));
+                    s.long_jump_count));
   }
   if (passing_jumps(s) > kUselessPassing) {
     reasons.push_back(
         fmt::format("it jumped {} times, in {:.1f} % of its reports, too often to "
                     "filter: two jumps together pass",
-                    s.jumps, 100.0 * share_of_jumps(s)));
+                    s.jump_count, 100.0 * share_of_jumps(s)));
   }
-  if (s.stuck >= kUselessStuck) {
+  if (s.stuck_count >= kUselessStuck) {
     reasons.push_back(stuck_text(s));
   }
   return reasons;
@@ -371,7 +374,7 @@ void judge(const StickStatistics& s, StickAdvice& advice) {
   const bool looks_held =
       s.wander > kWornWander || s.drift_per_s.value_or(0.0) > 0.0 || off_middle(s) >= kHeldCentre;
   if (is_blamed && looks_held) advice.reason += "; or a thumb lay on it: once more, hands off";
-  if (s.stuck > 0 && s.stuck < kUselessStuck) advice.reason += "; " + stuck_text(s);
+  if (s.stuck_count > 0 && s.stuck_count < kUselessStuck) advice.reason += "; " + stuck_text(s);
   if (advice.verdict == Verdict::good && single_jumps(s) > 0)
     advice.reason += "; it jumped for a single report, so its reports are filtered";
   if (s.displaced == 1) {
@@ -448,13 +451,13 @@ StickAnalysis stick_analysis(std::vector<StickTrack> tracks, const vec2& step,
 // repeated values of a resting stick may look like lost reports.
 void share_timing(StickStatistics& a, StickStatistics& b) noexcept {
   const StickStatistics& best = a.rate_hz.value_or(0.0) >= b.rate_hz.value_or(0.0) ? a : b;
-  const bool is_silent_at_rest = (a.rate_hz && !a.gaps) || (b.rate_hz && !b.gaps);
+  const bool is_silent_at_rest = (a.rate_hz && !a.gap_count) || (b.rate_hz && !b.gap_count);
   const auto rate_hz = best.rate_hz, jitter_ms = best.jitter_ms;
-  const auto gaps = is_silent_at_rest ? std::nullopt : best.gaps;
+  const auto gaps = is_silent_at_rest ? std::nullopt : best.gap_count;
   for (StickStatistics* s : {&a, &b}) {
     s->rate_hz = rate_hz;
     s->jitter_ms = jitter_ms;
-    s->gaps = gaps;
+    s->gap_count = gaps;
   }
 }
 

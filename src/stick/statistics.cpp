@@ -49,9 +49,9 @@ StickStatistics stick_statistics(std::span<const StickTrack> tracks, const vec2&
   StickStatistics result;
   for (const StickTrack& track : tracks) result.samples += static_cast<std::int64_t>(track.size());
   const CleanTracks clean = clean_tracks(tracks);
-  result.jumps = clean.jumps;
-  result.long_jumps = clean.long_jumps;
-  result.drop_outs = clean.drop_outs;
+  result.jump_count = clean.jump_count;
+  result.long_jump_count = clean.long_jump_count;
+  result.drop_out_count = clean.drop_out_count;
   result.drop_out_s = clean.drop_out_s;
   result.step_x = quantisation_step(clean.tracks, 0, declared_step.x);
   result.step_y = quantisation_step(clean.tracks, 1, declared_step.y);
@@ -70,8 +70,8 @@ StickStatistics stick_statistics(std::span<const StickTrack> tracks, const vec2&
   for (const StickTrack& track : tracks)
     for (const StickSample& sample : track) new_values.take(sample.time_ns, sample.raw, vec2(0.0));
   result.moving = new_values.rate();
-  result.gaps = timing.gaps;
-  result.stuck =
+  result.gap_count = timing.gap_count;
+  result.stuck_count =
       stuck_values(clean.tracks, interval_s, result.is_sigma_hidden ? vec2(1.0) : repeats);
   return result;
 }

@@ -277,8 +277,8 @@ bool remove_spikes(StickTrack& track, const Scale& scale, CleanTracks& counts) {
     if (length == 0) continue;
     for (std::size_t k = i; k < i + length; ++k) track[k].raw = track[i - 1].raw;
     is_any = true;
-    ++counts.jumps;
-    counts.long_jumps += length > 1;
+    ++counts.jump_count;
+    counts.long_jump_count += length > 1;
     i += length - 1;
   }
   return is_any;
@@ -320,7 +320,7 @@ void remove_drop_outs(StickTrack& track, double interval_s, CleanTracks& counts)
       const double lasted_s = seconds_between(track[i].time_ns, track[i + length].time_ns);
       if (lasted_s < std::max(1.5 * interval_s, kShortestDropOut_s)) continue;
       for (std::size_t k = i; k < i + length; ++k) track[k].raw[axis] = track[i - 1].raw[axis];
-      ++counts.drop_outs;
+      ++counts.drop_out_count;
       counts.drop_out_s += lasted_s;
       i += length - 1;
     }
@@ -543,8 +543,8 @@ ReportTiming report_timing(std::span<const StickTrack> tracks, double repeats_ex
   timing.rate_hz = 1.0 / found->mean_s;
   timing.jitter_ms = 1e3 * found->deviation_s;
   if (!reports_at_rest(tracks, found->mean_s, repeats_expected)) return timing;
-  timing.gaps = 0;
-  for (const StickTrack& track : tracks) *timing.gaps += gaps_of(track, found->mean_s);
+  timing.gap_count = 0;
+  for (const StickTrack& track : tracks) *timing.gap_count += gaps_of(track, found->mean_s);
   return timing;
 }
 

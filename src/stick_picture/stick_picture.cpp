@@ -639,7 +639,8 @@ std::vector<Number> numbers_of(const StickStatistics& s, const StickAdvice* advi
       {"inner zone", zone(&StickAdvice::inner_zone)},
       {"outer zone", zone(&StickAdvice::outer_zone)},
       {"gaps, jumps, stuck",
-       fmt::format("{}, {}, {}", s.gaps ? std::to_string(*s.gaps) : "?", s.jumps, s.stuck)},
+       fmt::format("{}, {}, {}", s.gap_count ? std::to_string(*s.gap_count) : "?", s.jump_count,
+                   s.stuck_count)},
   };
 }
 

@@ -4,6 +4,7 @@
 
 #include <span>
 
+#include "base/shown_number.h"
 #include "base/text.h"
 #include "hid/usage_names.h"
 #include "pads/newest_reports.h"
@@ -163,8 +164,9 @@ std::string report_text(const DecodedDevice& device, const Report& report, bool 
     return fmt::format("{}  {} bytes: too short, or an unknown id\n", line, report.size);
   if (device.layout.is_pad) {
     const auto& a = device.state.axis;
-    line += fmt::format("  left {:+.3f} {:+.3f}  right {:+.3f} {:+.3f}  triggers {:.3f} {:.3f} ",
-                        a[kLeftX], a[kLeftY], a[kRightX], a[kRightY], a[kLeftTrigger],
+    line += fmt::format("  left {} {}  right {} {}  triggers {:.3f} {:.3f} ",
+                        signed_number(a[kLeftX], 3), signed_number(a[kLeftY], 3),
+                        signed_number(a[kRightX], 3), signed_number(a[kRightY], 3), a[kLeftTrigger],
                         a[kRightTrigger]);
     for (const std::string& name : pressed_names(device, report, id)) line += " " + name;
   }

@@ -18,6 +18,7 @@
 #include <utility>
 
 #include "base/numeric.h"
+#include "base/shown_number.h"
 #include "base/text.h"
 #include "drivers/system_nodes.h"
 #include "drivers/system_users.h"
@@ -405,7 +406,7 @@ class SelfTest {
 
 std::optional<Error> SelfTest::find_pad() {
   if (is_recording(options_.selector.pad))
-    return Error{options_.selector.pad + ": is a recording; the test needs the pad itself"};
+    return Error{options_.selector.pad + ": a recording, but the test needs the pad itself"};
   auto all = pad_sightings(options_.files, options_.selector, Drivers::all);
   if (!all) return all.error();
   auto mine = matching_pads(*all, options_.selector);
@@ -561,7 +562,8 @@ bool SelfTest::turn_stick(OpenPad& pad, ordered_json& driver) {
     }
     const int count = std::popcount(seen);
     p.done = static_cast<double>(count) / kDirections;
-    p.seen = fmt::format("{} of {} directions, {:+.2f} {:+.2f}", count, kDirections, x, y);
+    p.seen = fmt::format("{} of {} directions, {} {}", count, kDirections, signed_number(x, 2),
+                         signed_number(y, 2));
     return count == kDirections && is_at_rest(pad.state());
   });
   driver["rate"] = pad.rate();
@@ -573,7 +575,7 @@ bool SelfTest::turn_stick(OpenPad& pad, ordered_json& driver) {
                           {"min_y", min_y},
                           {"max_y", max_y}};
   if (answer == Answer::no)
-    fail(fmt::format("through {} the left stick is not shown as it was turned",
+    fail(fmt::format("through {} the left stick does not show how it was turned",
                      driver["driver"].get<std::string>()));
   return true;
 }
@@ -773,7 +775,8 @@ bool SelfTest::walk_straight() {
     std::this_thread::sleep_for(kLook);
     bool is_new = false;
     const SessionFrame& frame = (*session)->latest(is_new);
-    p.seen = fmt::format("stick {:+.2f} {:+.2f}", frame.stick.left.x, frame.stick.left.y);
+    p.seen = fmt::format("stick {} {}", signed_number(frame.stick.left.x, 2),
+                         signed_number(frame.stick.left.y, 2));
     // The walk was not straight ahead: measure from the beginning.
     if (static_cast<double>(frame.stick.left.y) < kForwardStick) {
       first_tick = -1, frames = straight = 0;

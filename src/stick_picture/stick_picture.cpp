@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "base/shown_number.h"
 #include "draw/plot.h"
 
 namespace gaitpad {
@@ -584,17 +585,18 @@ struct Number {
   std::string label, value;
 };
 
-std::string signed_text(double v) { return fmt::format("{:+.3f}", v); }
 std::string text_or(const std::optional<double>& v, const char* none, const char* unit = "") {
   return v && std::isfinite(*v) ? fmt::format("{:.3f}{}", *v, unit) : std::string(none);
 }
 std::string pair_text(const std::optional<vec2>& v, const char* none) {
   if (!v || !std::isfinite(v->x) || !std::isfinite(v->y)) return none;
-  return fmt::format("{}, {}", signed_text(v->x), signed_text(v->y));
+  return fmt::format("{}, {}", signed_number(v->x, 3), signed_number(v->y, 3));
 }
 std::string range_text(const std::optional<double>& min, const std::optional<double>& max) {
   if (!min && !max) return "not turned";
-  const auto end = [](const std::optional<double>& v) { return v ? signed_text(*v) : "not seen"; };
+  const auto end = [](const std::optional<double>& v) {
+    return v ? signed_number(*v, 3) : "not seen";
+  };
   return fmt::format("{} to {}", end(min), end(max));
 }
 

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/shown_number.h"
 #include "view/tooltips.h"
 
 namespace gaitpad {
@@ -160,12 +161,7 @@ constexpr double kMessages = 104.0;
 }  // namespace
 
 std::string signed_pair(const vec2& v) {
-  const auto number = [](double value) {
-    const double hundredths = std::round(100.0 * value);
-    // Adding 0.0 turns -0 into 0.
-    return std::isfinite(value) ? fmt::format("{:+.2f}", hundredths / 100.0 + 0.0) : "-";
-  };
-  return number(v.x) + "  " + number(v.y);
+  return signed_number(v.x, 2) + "  " + signed_number(v.y, 2);
 }
 
 float text_width(const ImFont* font, std::string_view text) { return size_of(font, text).x; }

@@ -98,15 +98,6 @@ double last_number(const std::string& command) {
   return std::stod(command.substr(command.rfind(' ') + 1));
 }
 
-TEST(SignedPair, ShowsNoNegativeZeroAndNoNumberThatIsNotFinite) {
-  EXPECT_EQ(signed_pair({-0.004, 0.004}), "+0.00  +0.00");
-  EXPECT_EQ(signed_pair({-0.0, -0.006}), "+0.00  -0.01");
-  EXPECT_EQ(signed_pair({1.0, -1.0}), "+1.00  -1.00");
-  EXPECT_EQ(signed_pair({std::numeric_limits<double>::quiet_NaN(),
-                         -std::numeric_limits<double>::infinity()}),
-            "-  -");
-}
-
 TEST_F(PanelTest, ASliderSendsEachNewValueOnceForTheChosenCharacter) {
   walk();
   state.walker = 1;

@@ -8,6 +8,7 @@
 #include <optional>
 #include <utility>
 
+#include "base/shown_number.h"
 #include "gaitpad/live.h"
 #include "session/walk_export.h"
 #include "tools/gaitpad/commands.h"
@@ -39,12 +40,12 @@ struct PlayArguments {
 std::string status_text(const LiveStatus& status, const TickSample& last, int rate_hz) {
   const PadStreamCounts& pads = status.pads;
   return fmt::format(
-      "{:.1f} s  pads {}  stick {:+.2f} {:+.2f}  reports {}  lost {}  tick {:.0f} us  wait {:.0f} "
+      "{:.1f} s  pads {}  stick {} {}  reports {}  lost {}  tick {:.0f} us  wait {:.0f} "
       "us"
       "  overruns {}",
-      static_cast<double>(status.ticks) / rate_hz, pads.plugged - pads.unplugged, last.stick_x,
-      last.stick_y, pads.reports, pads.lost, status.tick_us_median, status.wait_us_median,
-      status.overruns);
+      static_cast<double>(status.ticks) / rate_hz, pads.plugged - pads.unplugged,
+      signed_number(last.stick_x, 2), signed_number(last.stick_y, 2), pads.reports, pads.lost,
+      status.tick_us_median, status.wait_us_median, status.overruns);
 }
 
 // A file with a row for each input report: its arrival, and the begin of the tick that used it. The

@@ -189,6 +189,8 @@ TEST_F(UiTest, EveryItemIsExplainedUnderThePointer) {
     EXPECT_EQ(words_of_key(key.name).find('_'), std::string::npos) << key.name;
   }
   EXPECT_EQ(words_of_key("fatigue_model.per_100_m"), "tiring per 100 m");
+  EXPECT_EQ(words_of_key("trunk.over_left_deg"), "trunk over left, deg");
+  EXPECT_EQ(words_of_key("head.x_m"), "head x, m");
 }
 
 TEST_F(UiTest, ATooltipComesWhileThePointerRests) {

@@ -390,7 +390,7 @@ bool cannot_have_a_stick(const std::string& node) {
 
 // The facts about a node that were read when it was opened.
 struct Seen {
-  std::string other;  // the kind of device, if it is no pad
+  std::string other;  // the kind of device, if it is not a pad
   std::vector<std::uint8_t> descriptor;
 };
 // Nodes seen, by the sysfs path of the input device, whose number is never reused. They are kept

@@ -211,7 +211,7 @@ void Inbox::mark_removed() {
 }
 
 // Takes the next state out. SDL reports each control by itself, so entries are merged up to the
-// second change of one control, so that no change is lost. False: there is none.
+// second change of one control, so that no change is lost. False: the queue is empty.
 bool Inbox::take(Entry& entry) {
   std::uint32_t changed = 0;
   while (!entries.empty()) {

@@ -424,7 +424,7 @@ class UsbDevice final : public Device {
   }
 
   DeviceInfo info_;
-  Report first_;  // the first packet; its size is 0 if there is none
+  Report first_;  // the first packet; its size is 0 before it comes
   std::unique_ptr<PadQuirks> quirks_;
   std::unique_ptr<ClaimedInterface> interface_;
   // Declared after the interface, so that it is destroyed before it.

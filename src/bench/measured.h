@@ -27,7 +27,7 @@ std::vector<BenchRow> measured(const std::vector<Work>& works, int rounds, const
                                const std::function<void(double share)>& show);
 
 // Median of the first row with this name, number of characters and lanes; 0 matches any. Nothing if
-// there is none.
+// no row matches.
 double median_ns(const std::vector<BenchRow>& rows, std::string_view name, int characters,
                  int width);
 

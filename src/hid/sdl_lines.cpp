@@ -304,7 +304,7 @@ std::optional<Guid> guid_of(std::string_view line) {
   return guid;
 }
 
-// The text after `key:` in the line; empty: there is none.
+// The text after `key:` in the line; empty: the line lacks the key.
 std::string_view pair_of(std::string_view line, std::string_view key) {
   while (!line.empty()) {
     std::string_view pair = take_part(line, ',');
@@ -430,7 +430,7 @@ class FieldNumbers {
   }
 
  private:
-  // The descriptor's field at these bits; null: there is none. Sets the usage of `s`, and its
+  // The descriptor's field at these bits; null: not found. Sets the usage of `s`, and its
   // occurrence among the fields of the report that have that usage.
   const Field* source_of(std::uint8_t report_id, const FieldBits& bits, ControlSource& s) const {
     for (const Field& f : descriptor_.fields) {

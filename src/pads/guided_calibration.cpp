@@ -144,7 +144,7 @@ std::vector<std::string> calibration_comments(const PadAnalysis& analysis) {
     comments.push_back(
         fmt::format("{} stick: {}. {}{}", kSideNames[i], name_of(analysis.stick[i]->advice.verdict),
                     analysis.stick[i]->advice.reason,
-                    is_known(analysis, i) ? "" : "; its calibration stays as it was"));
+                    is_known(analysis, i) ? "" : "; its calibration is kept"));
   }
   return comments;
 }

@@ -671,7 +671,7 @@ void PadFinder::settle(const PadSighting& sighting, Result<std::unique_ptr<Devic
 
 // Fills in the device as the recording of this session will state it, and the configuration that a
 // replay will derive from that. Returns why the pad cannot be used; empty if users need not know,
-// because they named no pad and this device is none.
+// because they named no pad, and this device is not one.
 std::optional<std::string> PadFinder::set_up(const PadSighting& sighting, Device& device,
                                              KnownPad& pad) {
   const DeviceInfo& info = device.info();

@@ -41,7 +41,7 @@ class StandIn {
   // program's, or no virtual pad can be made.
   std::optional<Error> plug(const DeviceListing& listing);
   bool has_pad() const noexcept { return node_ != nullptr; }
-  // Node of the virtual pad; empty: there is none.
+  // Node of the virtual pad; empty: not made.
   std::string node() const { return pad_ ? pad_->node() : ""; }
 
   // The descriptors to poll. When one of them is ready, call serve().

@@ -74,7 +74,7 @@ class TickClock {
 class TimeHistogram {
  public:
   void add(std::int64_t time_ns) noexcept;  // Counts a time; a negative one counts as 0.
-  // Smallest duration that this share of all does not exceed, within 1 %; 0 if there is none.
+  // Smallest duration that this share of all does not exceed, within 1 %; 0 without durations.
   double percentile_us(double share) const noexcept;
   double median_us() const noexcept { return percentile_us(0.5); }
   double max_us() const noexcept;

@@ -25,7 +25,7 @@ class Receiver {
     ::getsockname(fd_.get(), reinterpret_cast<sockaddr*>(&address), &size);
     port = ntohs(address.sin_port);
   }
-  // The next datagram that has arrived; "none" if there is none.
+  // The next datagram that has arrived; "none" if none has.
   std::string next() {
     std::array<char, 100> bytes{};
     const ssize_t count = ::recv(fd_.get(), bytes.data(), bytes.size(), MSG_DONTWAIT);

@@ -299,11 +299,11 @@ int keep(const CalibrateArguments& arguments, const PadFiles& files, const Guide
     if (analysis.stick[i] && !is_known(analysis, i)) {
       print_remarks(
           kCalibrateCommand,
-          {fmt::format("the {} stick is unknown: its calibration stays as it was", kSideNames[i])});
+          {fmt::format("the {} stick is unknown: its calibration is kept", kSideNames[i])});
     }
   }
   if (asked && *target != "-" &&
-      !confirmed(fmt::format("Enter writes {}, q leaves it as it was.", printable(*target)),
+      !confirmed(fmt::format("Enter writes {}, q leaves it unchanged.", printable(*target)),
                  *asked))
     return fail(kCalibrateCommand, "left before the end; nothing written");
   return print_or_save(*target, file, calibration_comments(analysis));

@@ -511,6 +511,13 @@ void forget_pending(Ui& ui, const std::string& name) {
                 [&](const UiMemory::PendingValue& w) { return name.empty() || w.name == name; });
 }
 
+void open_menu(const char* name) {
+  const ImVec2 place(ImGui::GetItemRectMin().x, ImGui::GetItemRectMax().y);
+  ImGui::OpenPopup(name);
+  // Dear ImGui opens it at the pointer, where it hides the button. It still keeps it in the window.
+  ImGui::GetCurrentContext()->OpenPopupStack.back().OpenPopupPos = place;
+}
+
 bool is_menu_open() noexcept { return ImGui::GetCurrentContext()->OpenPopupStack.Size > 0; }
 
 void close_menus() noexcept {

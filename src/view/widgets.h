@@ -123,7 +123,8 @@ Colour walker_colour(const Ui& ui, int walker);
 std::string walker_name(const Ui& ui, int walker);
 std::string style_name(const Ui& ui, int style_index);
 
-// Menus opened by a button.
+// Opens a menu below the button that was drawn last.
+void open_menu(const char* name);
 bool is_menu_open() noexcept;
 void close_menus() noexcept;
 

@@ -67,6 +67,7 @@ TEST_F(UiTest, TheViewMenuSwitchesWhatHasNoKeyAndAsksForWhatHas) {
   walk();
   click("view");
   ASSERT_NE(find("grid"), nullptr);
+  EXPECT_GE(find("trails")->min.y, find("view")->max.y) << "the menu is below its button";
   EXPECT_TRUE(click("grid").actions.empty());
   EXPECT_FALSE(state.has_grid);
   EXPECT_EQ(click("trails").actions, Actions{Action::trails});

@@ -27,8 +27,8 @@ class EffectTable {
   // effects are kept for the next one.
   void set_target(EffectTarget* target) noexcept;
 
-  // Handle a program's requests to the virtual pad, with the program's numbers of effects. They
-  // return what EffectTarget's functions return.
+  // Handle a program's requests to the virtual pad, with the program's numbers of effects. upload()
+  // and erase() return what EffectTarget's functions return.
   int upload(const ff_effect& effect) noexcept;
   int erase(int id) noexcept;
   void send(std::uint16_t code, std::int32_t value) noexcept;

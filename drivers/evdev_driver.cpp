@@ -23,16 +23,18 @@
 
 #include "drivers/driver_rows.h"
 #include "drivers/event_node.h"
-#include "drivers/posix.h"
 #include "drivers/system_nodes.h"
 #include "hid/evdev_layout.h"
+#include "system/clock.h"
+#include "system/descriptors.h"
 
 namespace gaitpad {
 
 namespace {
 
-constexpr int kMaxEventsAtOpening = 4096;
-constexpr int kMaxErrorsInARow = 64;  // more errors in a row: the pad counts as gone
+constexpr int kMaxEventsAtOpening = 4096;  // most packets that are skipped at the opening
+constexpr int kMaxErrorsInARow = 64;       // more errors in a row: the pad counts as gone
+// A device that takes longer to upload an effect does not rumble.
 constexpr std::chrono::milliseconds kMaxUpload{250};
 
 // ---- An open node
@@ -45,10 +47,6 @@ struct InputNode {
   std::unique_ptr<libevdev, FreeLibevdev> device;
   bool may_write = false;
 };
-
-// A bit in the version, set by kernel drivers that choose their own codes (sony, playstation,
-// nintendo).
-constexpr int kArrangedByKernel = 0x8000;
 
 // A sentence for errno; if permission is missing it also says how to get it.
 Error open_error(const std::string& node, int error) {
@@ -68,8 +66,8 @@ EvdevAbilities abilities_of(const libevdev* device) {
   return abilities;
 }
 
-// Text of a file in the sysfs folder of the node's input device.
-std::string in_sysfs(const std::string& node, const char* name) {
+// A file of the node's input device.
+std::string sysfs_file_path(const std::string& node, const char* name) {
   return fmt::format("/sys/class/input/{}/device/{}", node.substr(node.rfind('/') + 1), name);
 }
 
@@ -83,7 +81,7 @@ Result<InputNode> open_input_node(const std::string& node, int mode) {
   // events.
   int clock = CLOCK_MONOTONIC;
   if (::ioctl(opened.fd.get(), EVIOCSCLOCKID, &clock) != 0) return open_error(node, errno);
-  // It would print warnings about unusual devices to stderr.
+  // Without this, libevdev prints warnings about unusual devices to stderr.
   libevdev_set_log_function(nullptr, nullptr);
   libevdev* device = nullptr;
   const int status = libevdev_new_from_fd(opened.fd.get(), &device);
@@ -95,8 +93,9 @@ Result<InputNode> open_input_node(const std::string& node, int mode) {
 // The node, stated as a HID device.
 EvdevLayout input_node_layout(const InputNode& opened, const std::string& node) {
   std::vector<std::uint8_t> own_descriptor;
-  if ((libevdev_get_id_version(opened.device.get()) & kArrangedByKernel) == 0) {
-    own_descriptor = sysfs_bytes(in_sysfs(node, "device/report_descriptor"));
+  const auto version = static_cast<unsigned>(libevdev_get_id_version(opened.device.get()));
+  if ((version & kKernelCodesBit) == 0) {
+    own_descriptor = sysfs_bytes(sysfs_file_path(node, "device/report_descriptor"));
   }
   return evdev_layout(abilities_of(opened.device.get()), own_descriptor);
 }
@@ -385,13 +384,13 @@ const char* what_else(const libevdev* device, const SystemNode& node) {
 // Keyboards, mice and power buttons have neither ABS_X nor ABS_Y, which sysfs tells without opening
 // them. The file holds words in hexadecimal, the lowest last.
 bool cannot_have_a_stick(const std::string& node) {
-  const std::string bits = sysfs_text(in_sysfs(node, "capabilities/abs"));
+  const std::string bits = sysfs_text(sysfs_file_path(node, "capabilities/abs"));
   return !bits.empty() && std::string_view("37bfBF").find(bits.back()) == std::string_view::npos;
 }
 
 // The facts about a node that were read when it was opened.
 struct Seen {
-  std::string other;  // the kind of device, if it is no pad
+  std::string other;  // the kind of device, if it is not a pad
   std::vector<std::uint8_t> descriptor;
 };
 // Nodes seen, by the sysfs path of the input device, whose number is never reused. They are kept

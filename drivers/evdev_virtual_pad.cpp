@@ -15,8 +15,8 @@
 #include <utility>
 
 #include "drivers/driver_rows.h"
-#include "drivers/posix.h"
 #include "drivers/virtual_pad.h"
+#include "system/descriptors.h"
 
 namespace gaitpad {
 namespace {

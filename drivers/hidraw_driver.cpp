@@ -25,9 +25,10 @@
 #include "drivers/pads/packet_sender.h"
 #include "drivers/pads/pad_quirks.h"
 #include "drivers/pads/pads_of_devices.h"
-#include "drivers/posix.h"
 #include "drivers/system_nodes.h"
 #include "gaitpad/descriptor.h"
+#include "system/clock.h"
+#include "system/descriptors.h"
 
 namespace gaitpad {
 
@@ -40,7 +41,8 @@ using Status = Device::Status;
 constexpr int kMaxRefusedInARow = 64;
 constexpr int kMaxErrorsInARow = 64;  // more errors in a row: the pad counts as gone
 constexpr int kKernelRing = 63;       // number of reports that hidraw keeps for a slow reader
-constexpr auto kKernelStart = 3s;
+constexpr auto kKernelStart = 3s;     // longest wait until hid-nintendo has started the pad
+// Time between two reads of a pad whose descriptor is unknown.
 constexpr long kBlindPeriod_ns = 1'000'000;
 
 // ---- An open node

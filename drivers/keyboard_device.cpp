@@ -5,15 +5,17 @@
 #include <cmath>
 #include <utility>
 
-#include "drivers/posix.h"
 #include "gaitpad/keyboard.h"
+#include "system/clock.h"
+#include "system/descriptors.h"
 
 namespace gaitpad {
 namespace {
 
-constexpr std::int64_t kPeriod_ns = 4'000'000;
+constexpr std::int64_t kPeriod_ns = 4'000'000;  // time between two steps of the stick
 // Longest step of the stick, so that it does not jump after a delay of the thread.
 constexpr std::int64_t kMaxStep_ns = 4 * kPeriod_ns;
+// Speeds: from the centre to the rim in 0.15 s, back in 0.10 s.
 constexpr double kOut_per_s = 1.0 / 0.15, kBack_per_s = 1.0 / 0.10;
 constexpr std::uint16_t kReportBytes = 4;
 

@@ -74,7 +74,7 @@ void unlock_memory() noexcept {
 // Uses the system call: glibc's pthread_setschedparam() does not know SCHED_RESET_ON_FORK. pid 0 is
 // the calling thread.
 std::optional<std::string> take_priority(RealtimeRank rank) {
-  // Latest end of a sleep, ns, while the thread is ordinary; the default is 50 us.
+  // How late a sleep may end while the thread is ordinary: 1 ns; the default is 50 us.
   ::prctl(PR_SET_TIMERSLACK, 1UL);
   sched_param parameter{};
   const int highest = allowed_priority();

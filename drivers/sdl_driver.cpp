@@ -23,11 +23,12 @@
 #include <utility>
 #include <vector>
 
-#include "base/files.h"
 #include "drivers/driver_rows.h"
-#include "drivers/posix.h"
 #include "drivers/system_nodes.h"
 #include "hid/sdl_lines.h"
+#include "system/clock.h"
+#include "system/descriptors.h"
+#include "system/whole_file.h"
 
 namespace gaitpad {
 namespace {
@@ -210,7 +211,7 @@ void Inbox::mark_removed() {
 }
 
 // Takes the next state out. SDL reports each control by itself, so entries are merged up to the
-// second change of one control, so that no change is lost. False: there is none.
+// second change of one control, so that no change is lost. False: the queue is empty.
 bool Inbox::take(Entry& entry) {
   std::uint32_t changed = 0;
   while (!entries.empty()) {

@@ -7,14 +7,14 @@
 #include <utility>
 
 #include "drivers/pads/pads_of_devices.h"
-#include "drivers/posix.h"
+#include "system/descriptors.h"
 
 namespace gaitpad {
 
 namespace {
 
 constexpr int kMaxPackets = 64;  // after this number of packets in a row other pads get their turn
-constexpr std::size_t kInbox = 64;
+constexpr std::size_t kInbox = 64;  // most packets of a pad that wait to be read
 
 // Lets quirks write to the device; reading is not possible here.
 class WritingPort final : public PadPort {

@@ -12,8 +12,9 @@
 #include "base/text.h"
 #include "drivers/driver_rows.h"
 #include "drivers/pads/recorded_packets.h"
-#include "drivers/posix.h"
 #include "gaitpad/trace.h"
+#include "system/clock.h"
+#include "system/descriptors.h"
 
 namespace gaitpad {
 namespace {
@@ -23,8 +24,8 @@ constexpr std::int64_t kTail_us = 1'000'000;
 
 // One run of a file. All of its open devices share it and its start time.
 struct Playback {
-  Trace trace;                            // the trace after the quirks of its pads
-  std::vector<TraceEvent> raw_events;     // the events before the quirks
+  Trace trace;                            // its packets turned into reports by quirks
+  std::vector<TraceEvent> raw_events;     // its events before that, for hand_on_raw()
   std::int64_t start_ns = 0;              // start by CLOCK_MONOTONIC
   std::int64_t first_us = 0, end_us = 0;  // times of the file's first event and of its end
 

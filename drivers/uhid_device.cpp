@@ -9,6 +9,8 @@
 #include <cerrno>
 #include <cstring>
 
+#include "base/text.h"
+
 namespace gaitpad {
 namespace {
 
@@ -80,6 +82,48 @@ bool UhidDevice::send(std::span<const std::uint8_t> report) noexcept {
   event.u.input2.size = static_cast<std::uint16_t>(report.size());
   std::ranges::copy(report, event.u.input2.data);
   return write_event(fd_.get(), event);
+}
+
+std::optional<Error> UhidDevices::plug(std::size_t device) {
+  if (devices_[device]) return std::nullopt;
+  auto made = UhidDevice::create(recorded_[device].info);
+  if (!made) return made.error();
+  devices_[device].emplace(std::move(*made));
+  return std::nullopt;
+}
+
+std::optional<Error> UhidDevices::plug_all() {
+  for (std::size_t i = 0; i < devices_.size(); ++i) {
+    if (auto problem = plug(i)) return problem;
+  }
+  return std::nullopt;
+}
+
+std::vector<pollfd> UhidDevices::fds() const {
+  std::vector<pollfd> fds;
+  for (const auto& device : devices_) {
+    if (device) fds.push_back(device->fd());
+  }
+  return fds;
+}
+
+void UhidDevices::answer() noexcept {
+  for (auto& device : devices_) {
+    if (device) device->answer();
+  }
+}
+
+bool UhidDevices::are_bound() const noexcept {
+  return std::ranges::all_of(devices_, [](const auto& d) { return !d || d->is_bound(); });
+}
+
+std::optional<Error> UhidDevices::take(const Report& report) {
+  if (report.kind == ReportKind::added) return plug(report.device);
+  auto& device = devices_[report.device];
+  if (report.kind == ReportKind::removed) device.reset();
+  if (report.kind != ReportKind::input || !device) return std::nullopt;
+  if (device->send({report.bytes.data(), report.size})) return std::nullopt;
+  return Error{printable(recorded_[report.device].info.name) + ": the kernel refuses its reports"};
 }
 
 }  // namespace gaitpad

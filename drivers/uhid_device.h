@@ -5,11 +5,14 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
+#include <vector>
 
-#include "drivers/posix.h"
 #include "gaitpad/report.h"
 #include "gaitpad/result.h"
+#include "gaitpad/trace.h"
+#include "system/descriptors.h"
 
 namespace gaitpad {
 
@@ -31,6 +34,28 @@ class UhidDevice {
   explicit UhidDevice(OwnedFd fd) : fd_(std::move(fd)) {}
   OwnedFd fd_;  // closing it unplugs the device
   bool is_bound_ = false;
+};
+
+// The devices of a recording, with their recorded descriptors and ids.
+class UhidDevices {
+ public:
+  // `recorded` must outlive this object.
+  explicit UhidDevices(const std::vector<TraceDevice>& recorded)
+      : recorded_(recorded), devices_(recorded.size()) {}
+
+  std::optional<Error> plug_all();
+  std::vector<pollfd> fds() const;
+  void answer() noexcept;  // calls UhidDevice::answer() of every device
+  bool are_bound()
+      const noexcept;  // true if the kernel's drivers of all plugged devices have begun
+  // Plugs, unplugs or sends, as the report says. Error: the kernel refuses it.
+  std::optional<Error> take(const Report& report);
+
+ private:
+  std::optional<Error> plug(std::size_t device);
+
+  const std::vector<TraceDevice>& recorded_;
+  std::vector<std::optional<UhidDevice>> devices_;
 };
 
 }  // namespace gaitpad

@@ -16,13 +16,14 @@
 #include "drivers/driver_rows.h"
 #include "drivers/pads/pad_quirks.h"
 #include "drivers/pads/pads_of_devices.h"
-#include "drivers/posix.h"
 #include "drivers/shared_pads.h"
 #include "drivers/system_nodes.h"
 #include "drivers/usb_interfaces.h"
 #include "drivers/usb_reattach.h"
 #include "drivers/usb_transfers.h"
 #include "gaitpad/descriptor.h"
+#include "system/clock.h"
+#include "system/descriptors.h"
 
 namespace gaitpad {
 
@@ -423,7 +424,7 @@ class UsbDevice final : public Device {
   }
 
   DeviceInfo info_;
-  Report first_;  // the first packet; its size is 0 if there is none
+  Report first_;  // the first packet; its size is 0 before it comes
   std::unique_ptr<PadQuirks> quirks_;
   std::unique_ptr<ClaimedInterface> interface_;
   // Declared after the interface, so that it is destroyed before it.

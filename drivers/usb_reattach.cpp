@@ -19,7 +19,7 @@ namespace gaitpad {
 namespace {
 
 // Everything up to `watch` runs in the child of a process with threads, so it uses system calls
-// only: no heap, no locks, nothing of which a sanitizer would need the parent's state.
+// only: no heap, no locks, and nothing that a sanitizer would check.
 
 // `again`: the attempt came too early. The dying process holds the interface until its node is
 // closed, a little later than the link.

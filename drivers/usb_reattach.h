@@ -7,8 +7,8 @@
 #include <string>
 #include <utility>
 
-#include "drivers/posix.h"
 #include "gaitpad/result.h"
+#include "system/descriptors.h"
 
 namespace gaitpad {
 

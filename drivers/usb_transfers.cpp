@@ -5,6 +5,8 @@
 
 #include <algorithm>
 
+#include "system/clock.h"
+
 namespace gaitpad {
 
 namespace {

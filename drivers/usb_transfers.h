@@ -15,9 +15,9 @@
 #include <vector>
 
 #include "drivers/pads/pad_quirks.h"
-#include "drivers/posix.h"
 #include "gaitpad/report.h"
 #include "gaitpad/result.h"
+#include "system/descriptors.h"
 
 namespace gaitpad {
 

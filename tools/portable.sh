@@ -1,8 +1,9 @@
 #!/usr/bin/env bash
-# portable.sh libc++|aarch64|wasm [FOLDER]: compiles the core and a program that walks with it for another standard library,
-# processor or machine, and prints what the program prints: a hash of each second of each walk, the same everywhere
+# portable.sh libc++|aarch64|wasm|scalar [FOLDER]: compiles the core and a program that walks with it for another standard
+# library, processor or machine, and prints what the program prints: a hash of each second of each walk, the same everywhere
 # (tests/tools/portable_test.py). libc++: clang++ and LLVM's library, with gaitpad::files. aarch64: g++, run by qemu.
-# wasm: Emscripten, run by node. Objects are kept in FOLDER (build-portable/KIND).
+# wasm: Emscripten, run by node. scalar: g++ without vector types, as for a compiler that has none. Objects are kept in FOLDER
+# (build-portable/KIND).
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 cd "$root"
@@ -17,7 +18,7 @@ case $kind in
     compile=(clang++ -stdlib=libc++ -DGAITPAD_HAS_FILES -DFMT_HEADER_ONLY -DTOML_HEADER_ONLY=1 -pthread)
     link=(-lpng)
     run=()
-    files=(src/files/*.cpp src/base/files.cpp)
+    files=(src/system/*.cpp src/files/*.cpp)
     ;;
   aarch64)
     bash tools/install.sh g++-aarch64-linux-gnu qemu-user-static
@@ -27,13 +28,20 @@ case $kind in
     ;;
   wasm)
     bash tools/install.sh emscripten
+    export NODE_PATH=/usr/share/nodejs # Debian's modules, which a node of another source does not look for
     # One file, for newer versions of node cannot fetch() another one from the disk.
     compile=(em++)
     link=(-sSINGLE_FILE=1 -sALLOW_MEMORY_GROWTH=1)
     run=(node)
     ;;
+  scalar)
+    bash tools/install.sh
+    compile=(g++ -DGAITPAD_NO_VECTORS -pthread)
+    link=()
+    run=()
+    ;;
   *)
-    echo "usage: bash tools/portable.sh libc++|aarch64|wasm [FOLDER]" >&2
+    echo "usage: bash tools/portable.sh libc++|aarch64|wasm|scalar [FOLDER]" >&2
     exit 2
     ;;
 esac
@@ -48,7 +56,6 @@ objects=()
   printf 'builddir = %s\n' "$folder" # for the log of ninja
   printf 'rule compile\n  command = %s -MD -MF $out.d -c $in -o $out\n  depfile = $out.d\n' "${compile[*]}"
   for source in src/{base,motion,strides,control,animation}/*.cpp "${files[@]}" tests/animation/core_hash_main.cpp; do
-    [ "$source" != src/base/files.cpp ] || [ ${#files[@]} -gt 0 ] || continue  # POSIX: no part of the core
     object=${source//\//_}.o
     [[ " ${objects[*]} " != *" $object "* ]] || continue
     objects+=("$object")

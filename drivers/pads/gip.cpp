@@ -11,7 +11,7 @@ namespace {
 constexpr std::size_t kHeaderBytes = 4;
 constexpr std::uint8_t kAcknowledge = 0x01, kAnnounce = 0x02, kPower = 0x05, kGuide = 0x07,
                        kRumble = 0x09, kInput = 0x20;
-// Bits of the sender: 0 the pad, else an accessory that is plugged into the pad.
+// Bits of the options. kClient: the sender, which is the pad (0) or an accessory plugged into it.
 constexpr std::uint8_t kClient = 0x0f;
 constexpr std::uint8_t kWantsAnswer = 0x10, kInternal = 0x20, kChunk = 0x80;
 

@@ -72,7 +72,8 @@ constexpr std::size_t kAckAt = 13, kSubcommandAt = 14, kAddressAt = 15, kLengthA
 // The addresses of the sticks' calibration in the flash memory, 9 bytes each.
 constexpr std::uint32_t kFactoryAddress = 0x603d;  // left stick, right stick
 constexpr std::size_t kFactoryBytes = 18;
-constexpr std::uint32_t kUserAddress = 0x8010;  // for each stick 2 marking bytes, then 9 bytes
+// For each stick 2 bytes that mark a calibration, then its 9 bytes.
+constexpr std::uint32_t kUserAddress = 0x8010;
 constexpr std::size_t kUserBytes = 22;
 constexpr std::size_t kStickBytes = 9, kMarkBytes = 2;
 constexpr std::array<std::uint8_t, kMarkBytes> kMark = {0xb2, 0xa1};
@@ -87,8 +88,8 @@ constexpr double kTurn_rad_s = 936.0 * kDegree;
 constexpr double kUsualTurn = 13371.0;  // counts at 936 degrees a second that most pads have
 
 constexpr int kBlank = 0xfff, kMaxCount = 0xfff;
-// Limits of a working stick: the centre is off by at most half of the way, and the way to each side
-// is at least an eighth of the range.
+// Limits of a working stick, in counts of 0..4095: the centre is at most 1024 off the middle, and
+// the way to each side is at least 256.
 constexpr int kMinCentre = 1024, kMaxCentre = 3072, kMinWay = 256;
 
 struct StickRange {  // counts of x, then of y
@@ -150,11 +151,6 @@ FactoryAxis factory_axis(const StickRange& range, std::size_t axis) noexcept {
   constexpr double kMiddle = kMaxCount / 2.0;
   const auto fraction = [](int count) { return (count - kMiddle) / kMiddle; };
   return {fraction(range.min[axis]), fraction(range.centre[axis]), fraction(range.max[axis])};
-}
-
-// The same axis of a stick that is turned by 180 degrees.
-FactoryAxis mirrored(const FactoryAxis& axis) noexcept {
-  return {-axis.max, -axis.centre, -axis.min};
 }
 
 // NES controllers have the ids of a Joy-Con and other buttons. This collection marks them, and
@@ -442,8 +438,7 @@ constexpr Switch2Command kStartSwitch2[] = {
     {0x0c, 0x04, 4, {kAllFeatures}},  // switches the features on
     {0x10, 0x01},
     {0x01, 0x01},                                                      // starts the motors
-    {0x03, 0x0d, 8, {0x01, 0x00, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff}}  // requests reports by this
-                                                                       // interface
+    {0x03, 0x0d, 8, {0x01, 0x00, 0xff, 0xff, 0xff, 0xff, 0xff, 0xff}}  // reports to this interface
 };
 constexpr std::uint32_t kFactoryBlock = 0x013080, kUserBlock = 0x1fc040, kNextStick = 0x40;
 // Places in the answer to a reading of the flash memory: where the block begins, and where the

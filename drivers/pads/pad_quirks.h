@@ -43,7 +43,7 @@ class PadPort {
 struct OutPacket {
   std::array<std::uint8_t, 128> bytes{};
   std::size_t size = 0;  // number of bytes; 0: nothing to send
-  // It is a feature report (HID pads only), which begins with its id, or 0.
+  // The packet is a feature report (HID pads only), which begins with its id, or 0.
   bool is_feature = false;
   // The packet is sent again after this time until another packet follows; 0: it is sent once.
   std::chrono::milliseconds repeat{0};
@@ -59,6 +59,11 @@ struct OutPacket {
 
 // Who started the pad: some start-up packets are only for a pad without a kernel driver.
 enum class StartedBy { kernel, us };
+
+// The same axis of a stick that is turned by 180 degrees.
+constexpr FactoryAxis mirrored(const FactoryAxis& axis) noexcept {
+  return {-axis.max, -axis.centre, -axis.min};
+}
 
 class PadQuirks {
  public:
@@ -84,8 +89,8 @@ class PadQuirks {
       std::span<const std::uint8_t> packet) const noexcept {
     return packet;
   }
-  // False while an adapter says that no pad is in this plug.
-  virtual bool is_plugged() const noexcept { return true; }
+  // False while a receiver or an adapter says that no pad is connected.
+  virtual bool has_pad() const noexcept { return true; }
   // The packet that sets the motors; size 0: the pad has none.
   virtual void rumble(const Rumble&, OutPacket& packet) noexcept { packet.size = 0; }
   virtual std::optional<FactorySticks> factory_sticks() const { return std::nullopt; }

@@ -76,11 +76,11 @@ class GameCubePlug final : public PadQuirks {
     reply.size = 0;
     if (packet.empty() || packet[0] != kPlugReport || packet.size() != kReportBytes) return false;
     const std::uint8_t type = packet[1 + kPlugBytes * plug_];
-    is_plugged_ = (type & kHasController) != 0;
+    has_pad_ = (type & kHasController) != 0;
     has_motor_ = (type & kHasPower) != 0 && (type & kIsWireless) == 0;
-    return is_plugged_;
+    return has_pad_;
   }
-  bool is_plugged() const noexcept override { return is_plugged_; }
+  bool has_pad() const noexcept override { return has_pad_; }
   // The motors can only be on or off.
   void rumble(const Rumble& rumble, OutPacket& packet) noexcept override {
     (*motors_)[plug_] = has_motor_ && (rumble.strong != 0 || rumble.weak != 0);
@@ -99,7 +99,7 @@ class GameCubePlug final : public PadQuirks {
  private:
   std::size_t plug_;  // number of the plug, from 0
   std::shared_ptr<AdapterMotors> motors_;
-  bool is_plugged_ = true, has_motor_ = false;
+  bool has_pad_ = true, has_motor_ = false;
 };
 
 // ---- Several pad collections in one descriptor
@@ -287,14 +287,8 @@ constexpr std::size_t kRightButtons = 3, kSharedButtons = 4, kLeftButtons = 5, k
 // Shared buttons of the left one (minus, stick, capture) and the right one (plus, ...).
 constexpr std::uint8_t kSharedLeft = 0x29, kSharedRight = 0x16;
 constexpr std::array<std::uint8_t, kStickBytes> kCentred = {0x00, 0x08, 0x80};
-// After this number of other reports in a row other pads get their turn.
+// After this number of skipped reports in a row read() returns, so that other pads are read.
 constexpr int kMaxSkippedInARow = 64;
-
-// Turns an axis: a single Joy-Con's factory sticks are for holding it sideways, a pair's for
-// holding it upright.
-FactoryAxis mirrored(const FactoryAxis& axis) noexcept {
-  return {-axis.max, -axis.centre, -axis.min};
-}
 
 DeviceInfo pair_info(const DeviceInfo& left, const DeviceInfo& right) {
   DeviceInfo pair = left;
@@ -339,6 +333,7 @@ class JoyConPair final : public Device {
     return left || right;
   }
 
+  // A single Joy-Con's sticks are for holding it sideways, a pair's for holding it upright.
   std::optional<FactorySticks> factory_sticks() const override {
     const auto left = sides_[0]->factory_sticks(), right = sides_[1]->factory_sticks();
     if (!left && !right) return std::nullopt;

@@ -47,7 +47,7 @@ class PlugWatch {
  public:
   // True if the plug's state has changed; then `report` says so.
   bool has_changed(const PadQuirks& quirks, Report& report) noexcept {
-    if (quirks.is_plugged() == was_plugged_) return false;
+    if (quirks.has_pad() == was_plugged_) return false;
     was_plugged_ = !was_plugged_;
     report.kind = was_plugged_ ? ReportKind::added : ReportKind::removed;
     report.size = 0;

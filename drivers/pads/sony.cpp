@@ -63,13 +63,13 @@ std::uint8_t motor(std::uint16_t strength) noexcept {
   return strength == 0 ? 0 : std::max<std::uint8_t>(1, static_cast<std::uint8_t>(strength >> 8));
 }
 
+// by_axis: plus and minus of each axis in turn; by_sign: plus of all axes, then minus of all.
+enum class TurnOrder { by_axis, by_sign };
+constexpr std::size_t kGyroBytes = 23;
 // The calibration of a gyroscope: its counts at rest and while it was turned both ways about each
 // axis, then the speed of both turns in degrees a second. The pad has already subtracted the counts
 // at rest from its reports (hid-playstation.c: "bias"). None: the numbers are impossible for such a
 // chip.
-// Plus and minus of each axis in turn; first plus of all axes, then minus.
-enum class TurnOrder { by_axis, by_way };
-constexpr std::size_t kGyroBytes = 23;
 std::optional<FactoryGyro> gyro_of(std::span<const std::uint8_t> feature, TurnOrder order) {
   constexpr double kUsual_rad_s = 2048.0 / 32767.0 * kDegree;
   if (feature.size() < kGyroBytes) return std::nullopt;
@@ -100,15 +100,15 @@ class SonyQuirks : public PadQuirks {
         is_bluetooth_(device.bus == BusType::bluetooth),
         full_report_(full_report) {}
 
-  // False for a wireless adapter without a pad, which sends reports all the same.
-  bool is_plugged() const noexcept final { return is_plugged_; }
+  // A wireless adapter without a pad sends reports all the same.
+  bool has_pad() const noexcept final { return has_pad_; }
 
   bool accept(std::span<const std::uint8_t> packet, OutPacket& reply) noexcept final {
     reply.size = 0;
     if (packet.empty()) return false;
     if (product_ == kAdapter && packet[0] == 0x01 && packet.size() > kAdapterStateAt) {
-      is_plugged_ = (packet[kAdapterStateAt] & kHasNoPad) == 0;
-      return is_plugged_;
+      has_pad_ = (packet[kAdapterStateAt] & kHasNoPad) == 0;
+      return has_pad_;
     }
     if (!is_bluetooth_ || packet[0] != full_report_) return true;
     const bool is_whole = packet.size() == kBluetoothBytes;
@@ -139,7 +139,7 @@ class SonyQuirks : public PadQuirks {
 
  private:
   std::uint8_t full_report_;
-  bool is_plugged_ = true;
+  bool has_pad_ = true;
   std::int64_t damaged_ = 0;
   std::optional<FactoryGyro> gyro_;
   std::vector<std::string> remarks_;
@@ -180,8 +180,8 @@ class DualShock4 final : public SonyQuirks {
   void start(PadPort& port, StartedBy started) final {
     if (!is_bluetooth_) {
       ask_for_gyro(port, 0x02, TurnOrder::by_axis);
-    } else if (!ask_for_gyro(port, 0x05, TurnOrder::by_way) && started == StartedBy::us &&
-               !ask_for_gyro(port, 0x02, TurnOrder::by_way)) {
+    } else if (!ask_for_gyro(port, 0x05, TurnOrder::by_sign) && started == StartedBy::us &&
+               !ask_for_gyro(port, 0x02, TurnOrder::by_sign)) {
       remark_short_reports();
     }
   }

@@ -105,11 +105,11 @@ class SteamQuirks final : public PadQuirks {
     const bool is_state = packet[kTypeAt] == (is_deck_ ? kDeckState : kControllerState);
     if (is_receiver_ && packet[kTypeAt] == kPresence && packet.size() > kPresenceAt)
       take_presence(packet[kPresenceAt]);
-    if (is_state) is_plugged_ = true;
+    if (is_state) has_pad_ = true;
     leave_lizard_mode(reply);
     return is_state;
   }
-  bool is_plugged() const noexcept override { return is_plugged_; }
+  bool has_pad() const noexcept override { return has_pad_; }
   bool replies() const noexcept override { return is_receiver_; }
 
   std::vector<std::string> take_remarks() override {
@@ -132,9 +132,9 @@ class SteamQuirks final : public PadQuirks {
   // A pad that was switched on acts as a mouse and keyboard again, so the start-up messages are
   // sent again.
   void take_presence(std::uint8_t state) noexcept {
-    if (state == kIsOff) is_plugged_ = false;
+    if (state == kIsOff) has_pad_ = false;
     if (state != kIsOn) return;
-    is_plugged_ = true;
+    has_pad_ = true;
     packets_since_on_ = 0;
   }
 
@@ -154,7 +154,7 @@ class SteamQuirks final : public PadQuirks {
 
   std::string name_;
   bool is_deck_, is_receiver_;
-  bool is_plugged_ = true;
+  bool has_pad_ = true;
   // Number of packets since the pad was switched on; -1: no message is to be sent.
   int packets_since_on_ = -1;
   std::string remark_;

@@ -11,13 +11,17 @@ std::atomic<int> g_lanes = 0;  // lanes in use; 0: not determined yet
 }  // namespace
 
 int widest_lanes() noexcept {
-#ifdef GAITPAD_WIDE_LANES
+#if defined(GAITPAD_WIDE_LANES) && !defined(GAITPAD_NO_VECTORS)
   if (__builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
       __builtin_cpu_supports("avx512vl"))
     return 16;
   if (__builtin_cpu_supports("avx2")) return 8;
 #endif
+#ifdef GAITPAD_NO_VECTORS
+  return 1;
+#else
   return 4;
+#endif
 }
 
 int lanes_in_use() noexcept {

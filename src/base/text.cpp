@@ -102,7 +102,7 @@ std::optional<double> parse_bounded(std::string_view text) noexcept {
   if (!is_decimal(text)) return std::nullopt;
   std::istringstream in{std::string(text)};
   in.imbue(std::locale::classic());
-  in >> value;  // sets the value where it is tiny or huge, too
+  in >> value;  // sets `value` also if the number is too small or too large for a double
 #endif
   return std::abs(value) <= kMaxValue ? std::optional(value) : std::nullopt;
 }

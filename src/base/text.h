@@ -22,10 +22,11 @@ std::string lower_case(std::string_view text);
 // The text without a UTF-8 byte order mark at its beginning.
 std::string_view without_byte_order_mark(std::string_view text) noexcept;
 
-// Cuts the first word off `rest`, with the blanks before it. Empty at the end.
+// Removes the first word, and the blanks before it, from `rest` and returns the word; empty at the
+// end.
 std::string_view take_word(std::string_view& rest, std::string_view blanks = kBlanks) noexcept;
-// Cuts the text before the first `divider` off `rest`, with the divider; all of it if there is
-// none.
+// Removes the text before the first `divider`, and the divider, from `rest` and returns the text;
+// without a divider all of `rest`.
 std::string_view take_part(std::string_view& rest, char divider) noexcept;
 // Cuts off the first line, and its '\n'.
 inline std::string_view take_line(std::string_view& rest) noexcept { return take_part(rest, '\n'); }

@@ -3,14 +3,13 @@
 #include <benchmark/benchmark.h>
 #include <fmt/format.h>
 #include <malloc.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <random>
 
 #include "base/lanes.h"
-#include "drivers/threads.h"
+#include "drivers/system_users.h"
 #include "files/stride_cache.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/crowd.h"
@@ -19,6 +18,7 @@
 #include "gaitpad/trace.h"
 #include "session/workers.h"
 #include "walk/leg_solve.h"
+#include "system/threads.h"
 
 namespace gaitpad {
 namespace {
@@ -617,7 +617,7 @@ std::shared_ptr<const std::filesystem::path> cache_folder(std::string_view what)
   namespace fs = std::filesystem;
   std::error_code ignored;
   const fs::path path =
-      fs::temp_directory_path(ignored) / fmt::format("gaitpad_bench_{}_{}", what, ::getpid());
+      fs::temp_directory_path(ignored) / fmt::format("gaitpad_bench_{}_{}", what, own_process_id());
   return {new fs::path(path), [](const fs::path* p) {
             std::error_code unused;
             fs::remove_all(*p, unused);

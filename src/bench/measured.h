@@ -1,7 +1,5 @@
 // Runs works in turns and reports the time of a unit of each.
 #pragma once
-#include <sched.h>
-
 #include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -9,36 +7,9 @@
 #include <vector>
 
 #include "bench/bench_work.h"
+#include "system/cores.h"
 
 namespace gaitpad {
-
-// Pins this thread to one core, so that no migration is measured, and unpins it for work with
-// several threads.
-class Cores {
- public:
-  Cores() {
-    CPU_ZERO(&all_);
-    CPU_ZERO(&one_);
-    if (::sched_getaffinity(0, sizeof all_, &all_) != 0) return;
-    for (int core = 0; core < CPU_SETSIZE; ++core)
-      if (CPU_ISSET(core, &all_)) core_ = core;  // the last core: the first serves most interrupts
-    if (core_ >= 0) CPU_SET(core_, &one_);
-  }
-  ~Cores() { use_all(); }
-  Cores(const Cores&) = delete;
-  Cores& operator=(const Cores&) = delete;
-  void use_one() const { use(one_); }
-  void use_all() const { use(all_); }
-  // The core that threads are pinned to; -1: it is unknown, and nothing is pinned.
-  int core() const { return core_; }
-
- private:
-  void use(const cpu_set_t& cores) const {
-    if (core_ >= 0) ::sched_setaffinity(0, sizeof cores, &cores);
-  }
-  cpu_set_t all_, one_;
-  int core_ = -1;
-};
 
 // Times of a unit of a work.
 struct BenchRow {
@@ -55,7 +26,7 @@ std::vector<BenchRow> measured(const std::vector<Work>& works, int rounds, const
                                const std::function<void(double share)>& show);
 
 // Median of the first row with this name, number of characters and lanes; 0 matches any. Nothing if
-// there is none.
+// no row matches.
 double median_ns(const std::vector<BenchRow>& rows, std::string_view name, int characters,
                  int width);
 

@@ -17,7 +17,7 @@
 #include "gaitpad/walk.h"
 #include "gaitpad/walk_output.h"
 
-// C functions stand in no namespace.
+// C functions belong to no namespace.
 using namespace gaitpad;  // NOLINT(google-build-using-namespace)
 
 // The ground as a function of the C API.
@@ -52,7 +52,7 @@ void tell(const std::string& sentence, char* error, size_t error_size) noexcept 
   error[length] = 0;
 }
 
-// Calls `make`, which may fail or throw; then it returns null and tells the cause.
+// Returns what `make` has made; null if it failed or threw, with the cause in `error`.
 template <class T, class Make>
 T* made_or_null(const Make& make, char* error, size_t error_size) noexcept {
   try {
@@ -176,7 +176,7 @@ std::optional<Error> start_problem(const gaitpad_model* model, const double* pla
   return range_problem(what + "heading_rad", heading_rad, -kFarthest_m, kFarthest_m);
 }
 
-// Counts a place that is null.
+// True if the pointer is null; counts it in gaitpad_walk::bad_numbers.
 bool is_missing(const double* place_m, gaitpad_walk& walk) noexcept {
   walk.bad_numbers += !place_m;
   return !place_m;

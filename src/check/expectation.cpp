@@ -30,6 +30,11 @@ std::string hash_text(std::uint64_t hash) { return fmt::format("{:016x}", hash);
 
 // --- measuring a run
 
+double worse_slip_m(double before_m, double slip_m) noexcept {
+  if (std::isnan(before_m) || slip_m <= before_m) return before_m;
+  return slip_m;
+}
+
 void RunMeter::look(const WalkerSample& sample, const Walker& walker, Character& character) const {
   const WalkFrame& frame = walker.state.frame;
   character.walking_ticks += sample.stage != Stage::idle;
@@ -49,10 +54,7 @@ void RunMeter::look(const WalkerSample& sample, const Walker& walker, Character&
     for (std::size_t p = 0; p < points.size(); ++p) {
       const auto& [is_planted, place_m] = points[p];
       if (is_planted && foot.is_planted[p]) {
-        const double slip_m = glm::length(place_m - foot.planted_m[p]);
-        // A slip that is not a number stays: later ones must not hide it.
-        if (!std::isnan(character.slip_m) && !(slip_m <= character.slip_m))
-          character.slip_m = slip_m;
+        character.slip_m = worse_slip_m(character.slip_m, glm::length(place_m - foot.planted_m[p]));
       } else if (is_planted) {
         foot.planted_m[p] = place_m;
       }

@@ -69,6 +69,9 @@ struct Measured {
   std::vector<std::array<double, kCharacterMeasures>> characters;
 };
 
+// The larger of two slips. One that is not a number stays: later ones must not hide it.
+double worse_slip_m(double before_m, double slip_m) noexcept;
+
 // Watches a run tick by tick.
 class RunMeter {
  public:

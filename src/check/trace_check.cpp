@@ -12,13 +12,13 @@
 #include <thread>
 #include <utility>
 
-#include "base/files.h"
 #include "base/text.h"
 #include "check/expectation.h"
 #include "check/pose_track.h"
 #include "files/toml_file.h"
 #include "session/playback.h"
 #include "session/workers.h"
+#include "system/whole_file.h"
 
 namespace gaitpad {
 namespace fs = std::filesystem;
@@ -325,15 +325,16 @@ std::optional<Error> check(const CheckedTrace& trace, const CheckOptions& option
   if (!files) return files.error();
   const Measured measured = measured_run(*prepared);
   judge(expectation, measured, result);
-  CheckResult parting;  // the first difference, found before an update replaces the stored poses
+  CheckResult first_difference;  // found before an update replaces the stored poses
   if (expectation.pose_hash && *expectation.pose_hash != measured.pose_hash)
-    find_difference(trace, expectation, *prepared, options.with_curves, parting);
+    find_difference(trace, expectation, *prepared, options.with_curves, first_difference);
   if (options.updates) {
     if (auto problem = update(trace, expectation, measured, *prepared, *files, result))
       return problem;
   }
-  result.curves = std::move(parting.curves);
-  result.details.insert(result.details.end(), parting.details.begin(), parting.details.end());
+  result.curves = std::move(first_difference.curves);
+  result.details.insert(result.details.end(), first_difference.details.begin(),
+                        first_difference.details.end());
   const std::vector<std::string>& remarks = prepared->config.remarks;
   result.details.insert(result.details.end(), remarks.begin(), remarks.end());
   blame_files(changed_files(expectation, *files), result);

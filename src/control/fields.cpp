@@ -215,14 +215,18 @@ std::optional<FoundField> field_of(std::string_view key) noexcept {
   return std::nullopt;
 }
 
-// The words of a field in the table, or its name: `weight.hip_x` is "hip x weight".
+// The words of a field in the table, or its name: `weight.hip_x` is "hip x weight", `lean_deg` is
+// "lean, deg".
 std::string words_of(const StyleField& field) {
   if (!field.words.empty()) return std::string(field.words);
   constexpr std::string_view kWeight = "weight.";
   std::string words(field.is_weight() ? field.name.substr(kWeight.size()) : field.name);
   if (field.is_weight()) words += " weight";
+  const std::string unit = "_" + std::string(field.unit);
+  const bool has_unit = !field.unit.empty() && words.ends_with(unit);
+  if (has_unit) words.erase(words.size() - unit.size());
   std::replace(words.begin(), words.end(), '_', ' ');
-  return words;
+  return has_unit ? words + ", " + std::string(field.unit) : words;
 }
 
 std::vector<StyleKey> all_style_keys() {

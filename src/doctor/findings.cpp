@@ -1,15 +1,12 @@
 #include "doctor/findings.h"
 
 #include <fmt/format.h>
-#include <grp.h>
-#include <sys/stat.h>
-#include <sys/utsname.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
 #include <utility>
 
+#include "drivers/system_users.h"
 #include "gaitpad/driver_registry.h"
 #include "pads/unseen_pad.h"
 
@@ -55,28 +52,21 @@ bool is_pad_event(const SystemNode& node) { return !node.is_motion_sensor && !no
 
 // --- access
 
-constexpr mode_t kGroupMayUse = 0060;
+constexpr unsigned kGroupMayUse = 0060;
 
-std::string group_name(gid_t id) {
-  const group* entry = ::getgrgid(id);
-  return entry ? entry->gr_name : std::to_string(id);
-}
-
-std::string permission_cause(const std::string& node, const struct stat& status) {
+std::string permission_cause(const std::string& node, const NodeRights& rights) {
   return fmt::format("{}: permission denied for {} (owner {}, group {}, mode {:04o})", node,
-                     own_user_name(), status.st_uid == 0 ? "root" : std::to_string(status.st_uid),
-                     group_name(status.st_gid), status.st_mode & 07777);
+                     own_user_name(), rights.owner, rights.group, rights.mode);
 }
 
 bool knows_seats() { return exists("/run/systemd/seats"); }
 
 std::string permission_fix(const RulesFile& shipped, const PadHardware& pad,
-                           const struct stat& status) {
+                           const NodeRights& rights) {
   const auto installed = installed_rules();
-  const bool group_may = (status.st_mode & kGroupMayUse) == kGroupMayUse && status.st_gid != 0;
+  const bool group_may = (rights.mode & kGroupMayUse) == kGroupMayUse && rights.group_id != 0;
   if (group_may) {
-    return fmt::format("sudo usermod -aG {} {}, then log in again{}", group_name(status.st_gid),
-                       own_user_name(),
+    return fmt::format("sudo usermod -aG {} {}, then log in again{}", rights.group, own_user_name(),
                        !installed && knows_seats() ? ", or: " + install_command() : "");
   }
   const std::string& rules = installed ? installed->text : shipped.text;
@@ -97,8 +87,8 @@ std::string permission_fix(const RulesFile& shipped, const PadHardware& pad,
 // Returns true if the node can be used.
 bool check_access(const std::string& node, const PadHardware& pad, Finding::State state,
                   Diagnosis& diagnosis) {
-  struct stat status = {};
-  if (::stat(node.c_str(), &status) != 0) {
+  const auto rights = node_rights(node);
+  if (!rights) {
     diagnosis.add(
         state, node, pad, node + ": the kernel has it, but it is not in /dev",
         diagnosis.machine.is_container
@@ -108,8 +98,8 @@ bool check_access(const std::string& node, const PadHardware& pad, Finding::Stat
     return false;
   }
   if (access_problem(node).empty()) return true;
-  diagnosis.add(state, node, pad, permission_cause(node, status),
-                permission_fix(diagnosis.shipped, pad, status));
+  diagnosis.add(state, node, pad, permission_cause(node, *rights),
+                permission_fix(diagnosis.shipped, pad, *rights));
   return false;
 }
 
@@ -139,9 +129,7 @@ constexpr std::uint16_t kNintendo = 0x057e, kSwitchPro = 0x2009, kValve = 0x28de
                         kSteamVirtual = 0x11ff;
 
 std::string module_fix(const std::string& module) {
-  utsname system = {};
-  ::uname(&system);
-  const std::string folder = fmt::format("/lib/modules/{}", system.release);
+  const std::string folder = "/lib/modules/" + kernel_name().release;
   if (exists(folder)) return "sudo modprobe " + module;
   return fmt::format("sudo modprobe {} (on the host: {} is not here)", module, folder);
 }
@@ -291,7 +279,7 @@ void check_machine(Diagnosis& diagnosis) {
     diagnosis.add(Finding::State::note, entry.name, none,
                   fmt::format("{}: built without {}", entry.name, entry.library));
   }
-  if (!machine.pads.empty() && ::geteuid() == 0) {
+  if (!machine.pads.empty() && is_root()) {
     diagnosis.add(Finding::State::note, "root", none,
                   "all nodes were tried as root, who may use everything",
                   "ask again as the user who plays");

@@ -1,8 +1,6 @@
 #include "doctor/machine.h"
 
 #include <fmt/format.h>
-#include <pwd.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -11,6 +9,7 @@
 
 #include "base/text.h"
 #include "doctor/udev_rules.h"
+#include "drivers/system_users.h"
 #include "gaitpad/decode.h"
 
 namespace gaitpad {
@@ -144,7 +143,7 @@ std::string users_of(const std::string& node) {
   for (const fs::directory_entry& process : fs::directory_iterator("/proc", error)) {
     const std::string id = process.path().filename().string();
     if (id.find_first_not_of("0123456789") != std::string::npos) continue;
-    if (id == std::to_string(::getpid())) continue;
+    if (id == std::to_string(own_process_id())) continue;
     std::error_code closed;  // another user's process, or one that has ended
     fs::directory_iterator file(process.path() / "fd", closed);
     for (; !closed && file != fs::directory_iterator(); file.increment(closed)) {
@@ -158,11 +157,6 @@ std::string users_of(const std::string& node) {
     }
   }
   return users;
-}
-
-std::string own_user_name() {
-  const passwd* user = ::getpwuid(::geteuid());
-  return user ? user->pw_name : fmt::format("user {}", ::geteuid());
 }
 
 }  // namespace gaitpad

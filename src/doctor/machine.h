@@ -38,6 +38,5 @@ Machine look_at_machine(std::vector<PadSighting> sightings, const PadOverrides& 
 
 // Other programs that have the node open, if this user may see them: `steam (1234), ...`.
 std::string users_of(const std::string& node);
-std::string own_user_name();
 
 }  // namespace gaitpad

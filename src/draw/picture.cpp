@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <cstring>
 
-#include "base/files.h"
 #include "base/text.h"
+#include "system/whole_file.h"
 
 namespace gaitpad {
 namespace {

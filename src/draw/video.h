@@ -1,6 +1,5 @@
 // Writes frames as a video, H.264 in MP4, with the program ffmpeg if it is installed.
 #pragma once
-#include <sys/types.h>
 
 #include <memory>
 #include <optional>
@@ -8,6 +7,7 @@
 
 #include "draw/picture.h"
 #include "gaitpad/result.h"
+#include "system/child_process.h"
 
 namespace gaitpad {
 
@@ -27,13 +27,9 @@ class VideoWriter {
   VideoWriter() = default;
   std::optional<Error> start(int frames_per_second);
   Error failure();
-  bool has_ended_well();
 
   std::string path_, part_;
-  int link_ = -1;       // socket to ffmpeg's standard input; -1: closed
-  int log_ = -1;        // file that receives ffmpeg's standard error; -1: none
-  pid_t process_ = -1;  // ffmpeg; -1: not started, or already waited for
-  int exit_status_ = -1;
+  ChildProcess ffmpeg_;
   int width_ = 0, height_ = 0;
 };
 

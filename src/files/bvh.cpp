@@ -10,9 +10,9 @@
 #include <iterator>
 #include <optional>
 
-#include "base/files.h"
 #include "base/ranges.h"
 #include "base/text.h"
+#include "files/input_files.h"
 #include "gaitpad/motion_file.h"
 #include "gaitpad/skeleton.h"
 #include "motion/euler.h"
@@ -230,7 +230,8 @@ class Parser {
     return line.starts_with(key) ? trimmed(line.substr(key.size())) : std::string_view();
   }
 
-  // A number and a blank take two bytes, so the length of the text limits the number of frames.
+  // A number and a blank take at least two bytes, so the length of the text limits the number of
+  // frames.
   bool plausible(long long frames) {
     if (bvh_.channels == 0) return fail("no joint has channels");
     if (frames * bvh_.channels > static_cast<long long>(in_.bytes_left() / 2 + 1)) {
@@ -288,7 +289,8 @@ class Parser {
   std::vector<bool> has_offset_;  // the joint has an OFFSET, one for each joint
 };
 
-// Sine of 30 degrees, nearest distance of rotations from the pole.
+// Sine of 30 degrees. A joint is written in the order ZYX if the second angle never reaches that;
+// otherwise in the order whose second angle stays farthest from 90 degrees.
 constexpr double kPoleLimit = 0.5;
 constexpr int kCountWidth = 10;
 
@@ -360,7 +362,7 @@ std::optional<Error> check(const BvhLayout& layout, const Skeleton& skeleton) {
   }
   for (std::size_t j = 0; j < layout.orders.size(); ++j) {
     BvhOrder axes = layout.orders[j];
-    std::ranges::sort(axes);
+    std::sort(axes.begin(), axes.end());
     if (axes != BvhOrder{0, 1, 2})
       return Error{fmt::format("{}orders[{}] does not have each of 0, 1 and 2 once", what, j)};
   }

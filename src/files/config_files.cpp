@@ -8,9 +8,10 @@
 #include <filesystem>
 #include <map>
 
-#include "base/files.h"
 #include "base/suggestion.h"
 #include "base/text.h"
+#include "files/input_files.h"
+#include "system/whole_file.h"
 
 namespace gaitpad {
 

@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <system_error>
 
-#include "base/files.h"
 #include "base/text.h"
+#include "system/whole_file.h"
 
 namespace gaitpad {
 namespace fs = std::filesystem;

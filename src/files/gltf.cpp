@@ -290,7 +290,8 @@ void GltfWriter::write(const Pose& pose) {
   for (std::size_t t = 0; t < turning(); ++t) {
     const auto joint = static_cast<std::size_t>(turning_[t]);
     quat q = glm::normalize(pose.local[joint]);
-    // Keeps neighbouring rotations in one hemisphere.
+    // Of q and -q, which are the same rotation, writes the one nearer to the last: players
+    // interpolate the numbers.
     if (glm::dot(q, before_[joint]) < 0.0) q = -q;
     before_[joint] = q;
     for (const double v : {q.x, q.y, q.z, q.w}) chunk_[t].push_back(static_cast<float>(v));

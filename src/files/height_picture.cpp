@@ -8,7 +8,7 @@
 #include <csetjmp>
 #include <cstring>
 
-#include "base/files.h"
+#include "files/input_files.h"
 
 namespace gaitpad {
 

@@ -7,11 +7,11 @@
 #include <optional>
 #include <utility>
 
-#include "base/files.h"
 #include "base/numeric.h"
 #include "base/ranges.h"
 #include "base/text.h"
 #include "files/acclaim.h"
+#include "files/input_files.h"
 #include "files/keyframe.h"
 #include "files/toml_file.h"
 #include "gaitpad/bvh.h"
@@ -241,7 +241,8 @@ bool has_position(const BvhJoint& joint) {
   return false;
 }
 
-// The origin of a joint's position channels: its parent (place) or its OFFSET (shift).
+// What a joint's position channels count from: its parent (place), or the place that its OFFSET
+// gives (shift).
 enum class PositionMeans { place, shift };
 
 PositionMeans position_means(const Bvh& bvh, const BvhJoint& joint) {

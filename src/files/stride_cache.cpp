@@ -8,11 +8,11 @@
 #include <string_view>
 #include <vector>
 
-#include "base/files.h"
 #include "files/made_strides.h"
 #include "gaitpad/clean_strides.h"
 #include "gaitpad/hash.h"
 #include "strides/solver_input.h"
+#include "system/whole_file.h"
 
 namespace gaitpad {
 namespace {

@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <filesystem>
 
-#include "base/files.h"
 #include "control/fields.h"
+#include "files/input_files.h"
 #include "files/toml_file.h"
 #include "gaitpad/config_files.h"
 

@@ -2,9 +2,9 @@
 
 #include <utility>
 
-#include "base/files.h"
 #include "base/text.h"
 #include "files/height_picture.h"
+#include "files/input_files.h"
 #include "files/toml_file.h"
 #include "gaitpad/config_files.h"
 
@@ -13,7 +13,8 @@ namespace gaitpad {
 namespace {
 
 constexpr double kMost_m = 1000.0;
-constexpr double kUsualBend_1_m = 0.25;  // default curvature of a rounding: 2 mm under a sole
+// Default curvature of a rounding: a sole of 0.25 m bends by 2 mm.
+constexpr double kUsualBend_1_m = 0.25;
 
 double length_of(TomlTable& section) {
   section.require("length_m");

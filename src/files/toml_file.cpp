@@ -7,9 +7,9 @@
 #include <cmath>
 #include <exception>
 
-#include "base/files.h"
 #include "base/suggestion.h"
 #include "base/text.h"
+#include "files/input_files.h"
 
 namespace gaitpad {
 

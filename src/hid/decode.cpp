@@ -20,44 +20,31 @@ struct Binding {
   ControlKind kind = ControlKind::axis;
   int control = 0;        // a PadAxis or a PadButton; not used for a hat
   std::size_t field = 0;  // index in ReportDescriptor::fields
+  // The other members are as in ControlSource.
   std::uint32_t mask = 0;
   bool reversed = false;
-  AxisPart part = AxisPart::whole;  // this member and those below are as in ControlSource
+  AxisPart part = AxisPart::whole;
   StickSide side = StickSide::both;
   std::uint8_t directions = 0;
 };
 
-// The n-th entry is button n, counted from 1.
-constexpr PadButton kEmpty = kButtonCount;
+constexpr PadButton kNoButton = kButtonCount;
+
+// Tables of the orders of buttons: the n-th entry is button n, counted from 1.
 constexpr PadButton kDirectInput[] = {
     kButtonX,     kButtonA,    kButtonB,    kButtonY,     kButtonLeftShoulder, kButtonRightShoulder,
-    kEmpty,       kEmpty,      kButtonBack, kButtonStart, kButtonLeftStick,    kButtonRightStick,
+    kNoButton,    kNoButton,   kButtonBack, kButtonStart, kButtonLeftStick,    kButtonRightStick,
     kButtonGuide, kButtonMisc1};
 constexpr PadButton kTopFirst[] = {kButtonY, kButtonB, kButtonA, kButtonX};
-constexpr PadButton kAndroid[] = {kButtonA,
-                                  kButtonB,
-                                  kEmpty,
-                                  kButtonX,
-                                  kButtonY,
-                                  kEmpty,
-                                  kButtonLeftShoulder,
-                                  kButtonRightShoulder,
-                                  kEmpty,
-                                  kEmpty,
-                                  kButtonBack,
-                                  kButtonStart,
-                                  kButtonGuide,
-                                  kButtonLeftStick,
-                                  kButtonRightStick,
-                                  kEmpty,
-                                  kEmpty,
-                                  kEmpty,
-                                  kEmpty,
-                                  kEmpty,
-                                  kButtonPaddle1,  // Linux's BTN_TRIGGER_HAPPY5 .. 8: upper and
-                                  kButtonPaddle3,  // lower right, upper and lower left paddle
-                                  kButtonPaddle2,
-                                  kButtonPaddle4};
+constexpr PadButton kAndroid[] = {
+    kButtonA,       kButtonB,         kNoButton,           kButtonX,
+    kButtonY,       kNoButton,        kButtonLeftShoulder, kButtonRightShoulder,
+    kNoButton,      kNoButton,        kButtonBack,         kButtonStart,
+    kButtonGuide,   kButtonLeftStick, kButtonRightStick,   kNoButton,
+    kNoButton,      kNoButton,        kNoButton,           kNoButton,
+    kButtonPaddle1,  // Linux's BTN_TRIGGER_HAPPY5 .. 8: upper and
+    kButtonPaddle3,  // lower right, upper and lower left paddle
+    kButtonPaddle2, kButtonPaddle4};
 constexpr PadButton kXinput[] = {kButtonA,
                                  kButtonB,
                                  kButtonX,
@@ -70,10 +57,10 @@ constexpr PadButton kXinput[] = {kButtonA,
                                  kButtonRightStick,
                                  kButtonGuide};
 
-// kButtonCount: the order has no such number.
+// The button with this number; kNoButton if the order has none.
 PadButton button_of(ButtonOrder order, std::uint32_t number) noexcept {
   const auto pick = [number](const auto& table) {
-    return number >= 1 && number <= std::size(table) ? table[number - 1] : kEmpty;
+    return number >= 1 && number <= std::size(table) ? table[number - 1] : kNoButton;
   };
   switch (order) {
     case ButtonOrder::direct_input:
@@ -85,10 +72,8 @@ PadButton button_of(ButtonOrder order, std::uint32_t number) noexcept {
     case ButtonOrder::xinput:
       return pick(kXinput);
   }
-  return kEmpty;
+  return kNoButton;
 }
-
-constexpr int kNone = kButtonCount;
 
 // The fields of one report by usage. If a usage occurs several times, the first one counts.
 class ReportFields {
@@ -166,7 +151,7 @@ AxisPair right_stick_of_two(const ReportFields& r) {
                                                                             : kRotationPair;
 }
 
-// Many game pads call themselves joysticks. Of a flight stick, a yoke or a wheel these axes are the
+// Many game pads call themselves joysticks. On a flight stick, a yoke or a wheel these axes are the
 // twist, the throttle and the pedals, which are not as wide as the stick.
 bool may_be_stick(const ReportFields& r, AxisPair pair) {
   return r.has(pair.x, pair.y) && (r.is_game_pad() || like_left_stick(r, pair));
@@ -253,7 +238,7 @@ int key_button(std::uint32_t u, const KeyRules& rules) {
     case usage::kStart:
       return kButtonStart;
     default:
-      return kNone;
+      return kNoButton;
   }
 }
 
@@ -268,7 +253,7 @@ int dpad_button(std::uint32_t u) {
     case usage::kDpadRight:
       return kButtonDpadRight;
     default:
-      return kNone;
+      return kNoButton;
   }
 }
 
@@ -281,7 +266,7 @@ void bind_buttons(const ReportDescriptor& d, const ReportFields& r, ButtonOrder 
       out.push_back({ControlKind::hat, 0, i, 0, false});
       continue;
     }
-    if (const int dpad = dpad_button(u); dpad != kNone) {
+    if (const int dpad = dpad_button(u); dpad != kNoButton) {
       out.push_back({ControlKind::dpad, dpad, i, 0, false});
       continue;
     }
@@ -289,10 +274,10 @@ void bind_buttons(const ReportDescriptor& d, const ReportFields& r, ButtonOrder 
     if (page_of(u) == usage::kButtonPage) {
       button = button_of(order, id_of(u));
       // The key is in another report; this button, which is never pressed, must not release it.
-      if (button == kButtonGuide && rules.has_home && !rules.home_is_start) button = kNone;
-      if (button == kButtonBack && rules.has_back) button = kNone;
+      if (button == kButtonGuide && rules.has_home && !rules.home_is_start) button = kNoButton;
+      if (button == kButtonBack && rules.has_back) button = kNoButton;
     }
-    if (button != kNone) out.push_back({ControlKind::button, button, i, 0, false});
+    if (button != kNoButton) out.push_back({ControlKind::button, button, i, 0, false});
   }
 }
 
@@ -312,7 +297,7 @@ std::vector<std::size_t> pad_fields(const ReportDescriptor& d) {
     const bool other_pad =
         f.application == kNoApplication || is_pad_application(d.applications[f.application]);
     const KeyRules no_rules;
-    const bool is_key = !other_pad && key_button(f.usage, no_rules) != kNone;
+    const bool is_key = !other_pad && key_button(f.usage, no_rules) != kNoButton;
     if (f.application == *pad || is_key) fields.push_back(i);
   }
   return fields;
@@ -511,7 +496,7 @@ void drop_defaults_on(const ReportDescriptor& d, const ControlMap& controls,
 }
 
 // SDL's data base has some pads' axes as a D-pad, without any left stick: the default stick is
-// bound, so that such a pad can drive as well.
+// bound, so that such a pad can also control the walk.
 std::vector<Binding> sdl_bindings(const ReportDescriptor& d, const ControlMap& controls) {
   std::vector<Binding> bindings;
   for (int i = 0; i < kAxisCount; ++i) {

@@ -327,8 +327,9 @@ bool stands_before(const ReportDescriptor& d, const Codes& codes, std::size_t in
   return next.report_id == f.report_id && f.bit_offset + f.bit_size == next.bit_offset;
 }
 
-// One field keeps a shared code: the first, but of several X (DragonRise and Mega Drive pads state
-// dead ones) the one beside Y, and so on. All fields of a D-pad keep theirs.
+// Lets one field keep a shared code: the first; but of several X (DragonRise and Mega Drive pads
+// state dead ones) the one beside Y, of several Z the one beside Rz, and so on. All fields of a
+// D-pad keep theirs.
 void keep_one_of_each(const ReportDescriptor& d, Codes& codes) {
   std::array<std::optional<std::size_t>, evdev::kAbsMax + 1> axis_owner;
   std::array<std::optional<std::size_t>, evdev::kKeyMax + 1> key_owner;
@@ -600,7 +601,7 @@ class LayoutBuilder {
     bits_ = static_cast<std::uint16_t>(bits_ + size * count);
   }
 
-  // Usages of one page; neighbours as a range.
+  // Writes usages of one page; neighbours as a range.
   void add_key_usages(const std::vector<std::uint32_t>& usages) {
     items_.page(usages.front());
     for (std::size_t first = 0; first < usages.size();) {
@@ -629,7 +630,7 @@ class LayoutBuilder {
   std::uint16_t bits_ = 0;
 };
 
-// Clockwise from up; y grows downwards.
+// Position of a HID hat: 0 is up, then clockwise; y grows downwards.
 std::int64_t hat_position(std::int32_t x, std::int32_t y) noexcept {
   constexpr std::int64_t kPositions[3][3] = {{7, 0, 1}, {6, kHatReleased, 2}, {5, 4, 3}};
   return kPositions[std::clamp(y, -1, 1) + 1][std::clamp(x, -1, 1) + 1];

@@ -37,6 +37,10 @@ constexpr StatedBy stated_by(std::string_view driver) noexcept {
   return driver == "evdev" || driver == "sdl" ? StatedBy::evdev_driver : StatedBy::device;
 }
 
+// Bit of an input node's version: the kernel's driver for that pad (sony, playstation, nintendo)
+// chose the codes itself.
+inline constexpr unsigned kKernelCodesBit = 0x8000;
+
 // For each field (index as in descriptor.fields) its code on the pad's input node, or none. A hat
 // and each of the four D-pad usages get the x code of their pair (ABS_HAT0X). Any other code
 // belongs to one field: of several X to the one that the pad uses. A field whose code is taken gets

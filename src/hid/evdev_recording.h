@@ -27,7 +27,7 @@ struct RecordedAxis : EvdevAxis {
   std::int64_t line = 0;  // number of the line that states the range
 };
 
-// One node. The add_ functions give why the line that they are called for is damaged.
+// One node. The add_ functions return why the line is damaged; none: it is not.
 class EvdevRecording {
  public:
   DeviceInfo info;  // the device, without driver and descriptor
@@ -61,7 +61,7 @@ class EvdevReader {
   std::int64_t line_number = 0;  // number of the line that is added next, from 1
 
   virtual ~EvdevReader() = default;
-  // Why the line is damaged, without its place; none: it is not.
+  // Takes a line. Returns why it is damaged, without its place; none: it is not.
   virtual std::optional<std::string> add(std::string_view line) = 0;
   // The text for an error if no node has an axis or a key.
   virtual std::string missing() const { return "no device with an axis or a key"; }

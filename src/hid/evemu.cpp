@@ -83,7 +83,8 @@ Cause EvemuReader::identity(Words words) {
   return std::nullopt;
 }
 
-// Eight bytes of the bits of one type of event; the lines of a type follow each other.
+// Reads 64 bits, one for each code of a type of event. The next line of the same type goes on with
+// the next code.
 Cause EvemuReader::mask(Words words) {
   const auto type = hexadecimal(words.next(), 0xff);
   std::array<std::uint32_t, kMaskBytes> bytes{};
@@ -145,7 +146,7 @@ class EvemuWriter {
         codes_(evdev_codes(descriptor_, stated_by_)) {}
 
   std::string header() const;
-  // The events of a report or of an unplugging; empty if it changes nothing.
+  // Appends the events of a report or of an unplugging; nothing if they change nothing.
   void add(std::int64_t time_us, std::span<const std::uint8_t> report, std::string& out);
   void release(std::int64_t time_us, std::string& out);
 
@@ -220,7 +221,7 @@ std::string EvemuWriter::header() const {
   append_mask(kAbs, codes, evdev::kAbsMax + 1, out);
   for (const auto& [code, axis] : all) {
     // hid-input sets noise to 1/256 and flat to 1/16 of a pad's range. Those of a recorded node are
-    // not known.
+    // not known: 0.
     const bool is_flat = stated_by_ == StatedBy::device && axis.max - axis.min > 2;
     const std::int64_t range = is_flat ? axis.max - axis.min : 0;
     out +=
@@ -237,7 +238,7 @@ void EvemuWriter::set(EvdevCode code, std::int64_t value) {
   changed_.push_back(key);
 }
 
-// Clockwise from up; y grows downwards.
+// Sets both axes of the hat. The hat's value counts clockwise from up; y grows downwards.
 void EvemuWriter::set_hat(const Field& field, std::int64_t value) {
   constexpr std::array<std::array<int, 2>, 9> kPlaces = {
       {{0, -1}, {1, -1}, {1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, 0}}};

@@ -104,7 +104,7 @@ Cause LibinputReader::identity(std::string_view text) {
   return std::nullopt;
 }
 
-// The axes are known by their ranges.
+// Only keys are taken: the list of ranges names the axes again.
 Cause LibinputReader::codes_of_type(std::string_view type, std::string_view text) {
   const auto codes = numbers_of(text);
   if (!codes || !std::ranges::all_of(*codes, is_word))

@@ -17,7 +17,7 @@ constexpr std::size_t kMaxMapPads = 256;
 constexpr std::size_t kMaxProducts = 64;
 constexpr std::size_t kMaxSources = 8;
 
-// Takes the text behind `mark` off the end of `text`.
+// Cuts `text` off before `mark` and returns what was behind it; empty: there is no such mark.
 std::string_view cut_behind(std::string_view& text, char mark) {
   const std::size_t at = text.find(mark);
   if (at == std::string_view::npos) return {};

@@ -284,7 +284,6 @@ Result<ControlMap> sdl_controls(std::string_view mapping, const ReportDescriptor
 
 namespace {
 
-constexpr unsigned kCodesByKernel = 0x8000;
 constexpr std::size_t kGuidDigits = 32, kMaxLines = 20'000;
 
 // The 16-bit words of a GUID (SDL 2.26, SDL_CreateJoystickGUID): bus, checksum of the name, vendor,
@@ -305,7 +304,7 @@ std::optional<Guid> guid_of(std::string_view line) {
   return guid;
 }
 
-// The text after `key:` in the line; empty: there is none.
+// The text after `key:` in the line; empty: the line lacks the key.
 std::string_view pair_of(std::string_view line, std::string_view key) {
   while (!line.empty()) {
     std::string_view pair = take_part(line, ',');
@@ -362,16 +361,17 @@ std::vector<std::string> mapping_lines(std::string_view text) {
 std::string fitting_mapping(std::span<const std::string> lines, const DeviceInfo& device) {
   if (device.vendor == 0) return {};
   const bool is_node = stated_by(device.driver) == StatedBy::evdev_driver;
-  const unsigned version = is_node ? device.version : device.version & ~kCodesByKernel;
+  const unsigned version = is_node ? device.version : device.version & ~kKernelCodesBit;
   const std::string* best = nullptr;
-  int best_fit = 0;  // 1, and 1 for buttons by position, 2 for the same version
+  // 1 for the same ids, 1 more for buttons by position, 2 more for the same version.
+  int best_fit = 0;
   for (const std::string& line : lines) {
     const auto guid = guid_of(line);
     if (!guid || (*guid)[kBus] != static_cast<unsigned>(device.bus) ||
         (*guid)[kVendor] != device.vendor || (*guid)[kProduct] != device.product)
       continue;
     const unsigned of_line = (*guid)[kVersion];
-    if ((*guid)[kDriverMark] != 0 || ((of_line ^ version) & kCodesByKernel) != 0) continue;
+    if ((*guid)[kDriverMark] != 0 || ((of_line ^ version) & kKernelCodesBit) != 0) continue;
     if (!is_for_name(line, *guid, device.name) || !is_hint_met(line)) continue;
     const int fit = 1 + (is_for_labels(line) ? 0 : 1) + (of_line == version ? 2 : 0);
     if (fit <= best_fit) continue;
@@ -430,7 +430,8 @@ class FieldNumbers {
   }
 
  private:
-  // The field that was bound, and the source by which a line's number is bound to it.
+  // The descriptor's field at these bits; null: not found. Sets the usage of `s`, and its
+  // occurrence among the fields of the report that have that usage.
   const Field* source_of(std::uint8_t report_id, const FieldBits& bits, ControlSource& s) const {
     for (const Field& f : descriptor_.fields) {
       if (f.kind != FieldKind::input || f.is_array || f.report_id != report_id) continue;
@@ -605,7 +606,7 @@ std::string kernel_numbers_problem(const DeviceInfo& device, const ReportDescrip
     const auto& all = descriptor.applications;
     return std::find(all.begin(), all.end(), u) != all.end();
   };
-  if ((device.version & kCodesByKernel) == 0 &&
+  if ((device.version & kKernelCodesBit) == 0 &&
       std::none_of(std::begin(kVendorPads), std::end(kVendorPads), is_vendor_pad)) {
     return {};
   }

@@ -13,11 +13,11 @@
 #include <utility>
 #include <vector>
 
-#include "base/files.h"
 #include "base/text.h"
 #include "gaitpad/descriptor.h"
 #include "hid/evdev_recording.h"
 #include "hid/trace_lines.h"
+#include "system/whole_file.h"
 
 namespace gaitpad {
 
@@ -513,7 +513,7 @@ Cause TraceReader::end(Words words) {
   return std::nullopt;
 }
 
-// Devices whose R: line was damaged; no event belongs to them.
+// Drops devices whose R: line was damaged; no event belongs to them.
 void TraceReader::drop_undescribed_devices() {
   std::vector<std::uint16_t> place(trace_.devices.size());
   std::vector<TraceDevice> kept;
@@ -879,7 +879,7 @@ Result<std::int64_t> assign_ticks(Trace& trace, int rate_hz) {
   std::int64_t last = 0;
   for (TraceEvent& event : trace.events) {
     if (!trace.has_ticks) {
-      // The first k with t_us * rate <= k * 1,000,000.
+      // The first tick at or after the event: the least k with t_us * rate <= k * 1,000,000.
       const std::int64_t t_us = event.time_us - trace.events.front().time_us;
       event.tick = (t_us * rate_hz + 999'999) / 1'000'000;
     }

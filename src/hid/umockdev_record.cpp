@@ -23,7 +23,7 @@ using Bytes = std::vector<std::uint8_t>;
 constexpr std::size_t kMaxAnswerBytes = 4096;
 constexpr std::int64_t kKey = 0x01;  // type of the events of keys
 
-// `0BFF00`, as far as a request can answer.
+// Reads hexadecimal digits such as `0BFF00`, at most as many as a request can answer.
 std::optional<Bytes> bytes_of(std::string_view digits) {
   if (digits.size() % 2 != 0 || digits.size() > 2 * kMaxAnswerBytes) return std::nullopt;
   Bytes bytes;
@@ -38,7 +38,7 @@ std::optional<Bytes> bytes_of(std::string_view digits) {
 std::uint16_t word(std::span<const std::uint8_t> bytes, std::size_t index) {
   return static_cast<std::uint16_t>(bytes[2 * index] | bytes[2 * index + 1] << 8);
 }
-// Number `i` of the kernel's input_absinfo.
+// The 32-bit number at `index` of the kernel's input_absinfo.
 std::int32_t number(std::span<const std::uint8_t> bytes, std::size_t index) {
   const std::uint32_t low = word(bytes, 2 * index), high = word(bytes, 2 * index + 1);
   return static_cast<std::int32_t>(low | high << 16);
@@ -111,8 +111,8 @@ Cause UmockdevReader::use(std::string_view path) {
   return std::nullopt;
 }
 
-// `EVIOCGABS(1) 0 0D0F...`: a request, with its number unless that is 0, what it returned, and the
-// bytes that it filled in. What it returned is their number where that varies.
+// `EVIOCGABS(1) 0 0D0F...`: a request with its number (no number: 0), what the call returned, and
+// the bytes that it filled in. Calls for names and keys return the number of these bytes.
 Cause UmockdevReader::answer(std::string_view line) {
   Words words(line);
   std::string_view index = words.next();
@@ -140,7 +140,8 @@ Cause UmockdevReader::answer(std::string_view line) {
   return std::nullopt;
 }
 
-// Value, minimum, maximum, noise, flat, resolution. A request is told again when the value differs.
+// Value, minimum, maximum, noise, flat, resolution. The file repeats the request when the answer
+// has changed.
 Cause UmockdevReader::axis_range(std::uint16_t code, const Bytes& bytes) {
   constexpr std::size_t kBytes = 24;
   if (bytes.size() != kBytes) return fmt::format("an axis' range has {} bytes", kBytes);

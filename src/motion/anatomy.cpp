@@ -298,15 +298,15 @@ std::optional<LegJoints> named_leg(const Figure& figure, NamedSide side) {
     if (leg.knee < 0) continue;
     leg.hip = named_ancestor(figure.skeleton, leg.knee, side, NamedPart::hip);
     if (leg.hip < 0 || !is_limb(figure, limb_of(leg))) continue;
-    // A foot that is named may have no length.
+    // Accept a foot without length if its ankle has a name.
     if (toe_of(figure, j) < 0) leg.toe = foot_point_of(figure, j);
     if (complete_foot(figure, leg)) return leg;
   }
   return std::nullopt;
 }
 
-// The two longest neighbouring bones between `ancestor` and a leaf. The foot follows them, so the
-// leaf itself is no ankle.
+// The leg between `ancestor` and a leaf: its two longest neighbouring bones. The foot follows them,
+// so the leaf itself is no ankle.
 std::optional<LegJoints> shaped_leg(const Figure& figure, int ancestor, int leaf) {
   std::vector<int> chain;  // joints from the leaf upwards; of joints in one place only one
   for (int j = leaf; j != ancestor; j = figure.parent(j)) {
@@ -351,7 +351,8 @@ std::optional<Legs> shaped_legs(const Figure& figure, int up_axis) {
   return std::nullopt;
 }
 
-// Toes point forward and ankles lie below hips, so left = up x forward needs no axis of the file.
+// Swaps the legs if the first is the right one. Left is up x forward, with up from ankle to hip and
+// forward from ankle to toe, so the file's axes need not be known.
 void put_left_first(const std::vector<JointFrames>& frames, Legs& legs) {
   double left = 0.0;
   for (const JointFrames& frame : frames) {
@@ -453,7 +454,8 @@ namespace {
 
 // --- Arms, spine, neck and head ------------------------------------------------------------------
 
-constexpr std::size_t kMostLeaves = 96;  // looked at for a shape: fingers and faces have many
+// Most leaf joints that are tried as the end of an arm: fingers and faces have many.
+constexpr std::size_t kMostLeaves = 96;
 
 bool is_in_leg(const Figure& figure, const Legs& legs, int j) {
   return figure.carries(legs[0].hip, j) || figure.carries(legs[1].hip, j);
@@ -496,7 +498,7 @@ ArmChain named_arm(const Figure& figure, const Legs& legs, NamedSide side) {
   return {};
 }
 
-// The two longest neighbouring bones of similar length between `top` and a leaf.
+// The arm between `top` and a leaf: its two longest neighbouring bones of similar length.
 ArmChain shaped_arm(const Figure& figure, int top, int leaf) {
   std::vector<int> chain;  // joints from the top; of joints in one place only one
   for (const int j : path_below(figure.skeleton, top, leaf)) {

@@ -15,8 +15,8 @@ namespace {
 
 constexpr int kPoints = 256;    // samples of the closed stride, before its harmonics are taken
 constexpr double kFade = 0.12;  // longest fade on either side of the seam, a share of the stride
-constexpr double kLeastFade = 0.08;
-constexpr int kFullHarmonics = 10;  // harmonics above this number fade out to kHarmonics
+constexpr double kLeastFade = 0.08;  // if there is less room, the gaps are spread
+constexpr int kFullHarmonics = 10;   // harmonics above this number fade out to kHarmonics
 
 // Natural cubic spline through values at 0, 1, 2 ...
 struct Spline {
@@ -69,16 +69,16 @@ StrideFrames frames_of(const StrideWindow& w) {
 // Makes x(phase), 0 .. 1, periodic. If the motion continues beyond the seam, both of its sides are
 // cross-faded. Otherwise the gaps in value and slope are spread around the seam. Samples away from
 // the seam do not change.
-class Closer {
+class SeamCloser {
  public:
-  explicit Closer(const StrideFrames& frames)
+  explicit SeamCloser(const StrideFrames& frames)
       : s_(frames), fades_(s_.before + s_.after >= kLeastFade) {}
 
   std::array<double, kPoints> closed(const Spline& x) const {
     std::array<double, kPoints> y;
     for (int i = 0; i < kPoints; ++i) {
       const double phase = double(i) / kPoints;
-      y[i] = fades_ ? faded(x, phase) : levelled(x, phase);
+      y[i] = fades_ ? faded(x, phase) : with_spread_gap(x, phase);
     }
     return y;
   }
@@ -96,7 +96,7 @@ class Closer {
     }
     return y;
   }
-  double levelled(const Spline& x, double phase) const {
+  double with_spread_gap(const Spline& x, double phase) const {
     constexpr double kReach = 0.15, kStep = 0.01;
     const double gap = x.at(s_.place(1.0)) - x.at(s_.place(0.0));
     const double slope_start = (x.at(s_.place(kStep)) - x.at(s_.place(0.0))) / kStep;
@@ -199,7 +199,7 @@ quat mean_rotation(const std::vector<quat>& all) {
 
 PeriodicMotion periodic_motion(const Motion& motion, const StrideWindow& window) {
   const StrideFrames s = frames_of(window);
-  const Closer closer(s);
+  const SeamCloser closer(s);
   const auto waves = std::make_unique<Waves>();
   PeriodicMotion out;
   out.duration_s = s.period * motion.frame_time_s;
@@ -406,9 +406,11 @@ namespace {
 
 // --- The standing pose ---------------------------------------------------------------------------
 
-constexpr double kOwnAnkle_legs = 0.08;      // if the skeleton has no toe: ankle above the floor
-constexpr double kLowestToe_legs = 0.16;     // a foot point deeper under the ankle is no sole
-constexpr double kMostToe = 70.0 * kDegree;  // toes bend no further; some clips turn them all round
+constexpr double kOwnAnkle_legs = 0.08;  // height of a toeless ankle above the floor
+// Greatest depth of a sole under the ankle; a lower foot point is ignored.
+constexpr double kLowestToe_legs = 0.16;
+// Greatest flexion of toes; some clips turn them all the way round.
+constexpr double kMostToe = 70.0 * kDegree;
 
 // Joints strictly between `from` and `to`, topmost first.
 std::vector<int> joints_between(const Skeleton& skeleton, int from, int to) {
@@ -518,7 +520,7 @@ void build_toes(const FlatPose& flat, const std::vector<quat>& local, GaitCycle&
   }
 }
 
-// Heel point and the toes' rest heights, for an ankle of this height above the floor.
+// Sets the heel point and the toes' rest heights, for an ankle of this height above the floor.
 void build_sole(double ankle_height_m, LegModel& leg) {
   const vec3 flat(leg.toe_m.x, 0.0, leg.toe_m.z);
   leg.heel_m = -kHeelShare * flat - ankle_height_m * kUp;

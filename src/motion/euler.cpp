@@ -21,7 +21,8 @@ double distance(const EulerAngles& a, const EulerAngles& b) noexcept {
 struct PoleParts {
   double sine, cosine;  // sine and cosine of the second angle
 };
-// With the rotation written in axes named first, second, third: sin(second) = h R[first][third].
+// sin(second) = handedness * R[first axis][third axis], where R[row][column] is the matrix of the
+// rotation.
 PoleParts second_angle(const EulerOrder& order, const mat3& r) noexcept {
   const double sine = std::clamp(handedness(order) * r[order[2]][order[0]], -1.0, 1.0);
   const double a = r[order[2]][order[1]], b = r[order[2]][order[2]];

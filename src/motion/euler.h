@@ -13,7 +13,7 @@ inline constexpr EulerOrder kEulerYxz = {1, 0, 2};
 inline constexpr std::array<EulerOrder, 6> kEulerOrders = {
     {{2, 1, 0}, {2, 0, 1}, {1, 0, 2}, {1, 2, 0}, {0, 1, 2}, {0, 2, 1}}};
 
-using EulerAngles = std::array<double, 3>;  // radians, in the order in which they are applied
+using EulerAngles = std::array<double, 3>;  // radians; angle i is about axis i of the order
 
 quat rotation_about_axis(int axis, double angle_rad) noexcept;
 quat from_euler(const EulerOrder& order, const EulerAngles& angles_rad) noexcept;
@@ -24,7 +24,7 @@ quat from_euler(const EulerOrder& order, const EulerAngles& angles_rad) noexcept
 EulerAngles nearest_euler(const EulerOrder& order, const quat& rotation,
                           const EulerAngles& previous_rad) noexcept;
 
-// Sine of the second angle: 1 is the pole.
+// |sine| of the second angle; 1 is the pole, where the outer angles are not unique.
 double pole_closeness(const EulerOrder& order, const quat& rotation) noexcept;
 
 }  // namespace gaitpad

@@ -102,7 +102,7 @@ std::optional<Swing> robust_flight(const Motion& motion, Side side) {
     const Swing& s = found.swings[i];
     double off =
         std::abs(times[i] / median(times) - 1.0) + std::abs(lengths[i] / median(lengths) - 1.0);
-    // The stance before it is cut off.
+    // The clip begins within the stance before this swing, so its heel-off is not known.
     const bool begins_before = s.heel_off < 1 || s.heel_off == s.lift;
     if (begins_before) off += 1.0;
     if (off >= least) continue;

@@ -63,8 +63,9 @@ namespace {
 
 // --- Building a cycle from a motion --------------------------------------------------------------
 
-constexpr double kBackwards = 0.5;  // cosine between the hips' front and the travel
-// Share of the stride after a strike at which the toe is down.
+// Least cosine of the angle between the hips' front and the travel.
+constexpr double kBackwards = 0.5;
+// Share of the stride within which the toe is down after a strike.
 constexpr double kLongestFlat = 0.35;
 // Share of the stride with both feet in the air; more is a run.
 constexpr double kMostFlight = 0.02;
@@ -174,7 +175,7 @@ double slide_m(const CapturedCycle& captured, const GaitCycle& cycle, Side side)
   return horizontal_length(toe[off] - toe[flat] + kForward * (stood * cycle.stride_m));
 }
 
-// Step length over cadence.
+// Walk ratio: step length over cadence, in metres per (step/min).
 double walk_ratio_m_min(const GaitCycle& cycle) {
   return 0.5 * cycle.stride_m * cycle.duration_s / 120.0;
 }

@@ -148,8 +148,9 @@ struct Run {
   Side side;
   int range;
   int first, last;
-  int rest_first, rest_last;  // the rest before it begins, the rest after it ends
-  double from, to;            // fractional samples where the speed crosses the limit
+  // Last sample of the run before, first of the run after; else the range's ends.
+  int rest_first, rest_last;
+  double from, to;  // fractional samples where the speed crosses the limit
 };
 
 // Fractional index between two neighbours at which the speed crosses the limit.
@@ -232,12 +233,14 @@ std::vector<Run> swing_runs(const FeetTracks& tracks, double moving_share, doubl
 
 // --- The two events of a swing, exactly ----------------------------------------------------------
 
-constexpr double kDown_m = 0.005, kStill_m_s = 0.3, kLeaving_m_s = 0.2;  // limits for an adult
-constexpr double kSpeed_s = 0.012;    // half the time over which a speed is averaged
-constexpr double kFlat_s = 0.025;     // half the time over which flatness is averaged
-constexpr double kRest_s = 0.05;      // a heel that has struck stays still for this time
-constexpr double kMostSink_m = 0.06;  // above its standing height; a higher heel only pauses
-constexpr double kPush_s = 0.15;      // time for which a toe stands while the heel rises
+// Limits for an adult: height and speed of a heel that strikes, speed of a toe that leaves.
+constexpr double kDown_m = 0.005, kStill_m_s = 0.3, kLeaving_m_s = 0.2;
+constexpr double kSpeed_s = 0.012;  // half the time over which a speed is averaged
+constexpr double kFlat_s = 0.025;   // half the time over which flatness is averaged
+constexpr double kRest_s = 0.05;    // a heel that has struck stays still for this time
+// Highest strike above the standing heel; higher up a heel only pauses.
+constexpr double kMostSink_m = 0.06;
+constexpr double kPush_s = 0.15;  // time for which a toe stands while the heel rises
 // Least double support, s. With 0.02, 0.04, 0.06, 0.08 and 0.10 s the heels of 23 captured walks
 // move 0.36, 0.42, 0.44, 0.57 and 0.72 m/s at their strikes (median). People have 0.1 s in a free
 // walk and 0.04 s in the fastest.
@@ -348,7 +351,8 @@ std::optional<double> strike_of(const FeetTracks& tracks, const SwingSearch& s, 
   };
   int rest = s.fastest_heel + 1;
   while (rest < s.flat && !rests(rest)) ++rest;
-  // The heel is down at the lowest height of this rest. Some feet sink into the floor later.
+  // A heel is down near the lowest height of this rest, not of the whole stance: some feet sink
+  // into the floor later.
   double low_m = heel[rest].y;
   for (int k = rest; k <= std::min(rest + r.half(kRest_s), s.flat); ++k) {
     low_m = std::min(low_m, heel[k].y);
@@ -370,7 +374,7 @@ std::optional<double> toe_off_of(const FeetTracks& tracks, const SwingSearch& s,
 }
 
 // The next swing in the same range if it is the other foot's, otherwise -1.
-int rival_after(const std::vector<SwingSearch>& swings, std::size_t i) {
+int other_foots_next_swing(const std::vector<SwingSearch>& swings, std::size_t i) {
   for (std::size_t k = i + 1; k < swings.size(); ++k) {
     if (swings[k].run.range != swings[i].run.range) continue;
     return swings[k].run.side == swings[i].run.side ? -1 : static_cast<int>(k);
@@ -433,12 +437,12 @@ std::vector<FootSwing> foot_swings(const FeetTracks& tracks, double moving_share
   }
   // A heel must strike before the other toe leaves. Widen the limits for feet that slide.
   for (std::size_t i = 0; i < all.size(); ++i) {
-    const int rival = rival_after(all, i);
-    if (rival < 0 || !found[i].strike || !found[rival].toe_off) continue;
+    const int other = other_foots_next_swing(all, i);
+    if (other < 0 || !found[i].strike || !found[other].toe_off) continue;
     for (double slide = 1.0 + kSlideStep; slide <= kMostSlide; slide += kSlideStep) {
-      if ((*found[rival].toe_off - *found[i].strike) * tracks.sample_s >= kLeastRoll_s) break;
+      if ((*found[other].toe_off - *found[i].strike) * tracks.sample_s >= kLeastRoll_s) break;
       found[i].strike = strike_of(tracks, all[i], slide);
-      found[rival].toe_off = toe_off_of(tracks, all[rival], slide);
+      found[other].toe_off = toe_off_of(tracks, all[other], slide);
     }
   }
   return found;

@@ -10,20 +10,22 @@ namespace {
 // Segment lengths as fractions of the stature H (Drillis & Contini, in Winter's tables). The hip
 // joints stand closer than Winter's .0955 H, which is half the pelvis' outer breadth.
 // Thigh and shank are 0.245 + 0.246 of the stature.
-constexpr double kStature = kReferenceLeg_m / 0.491;
-constexpr double kThigh = kReferenceLeg_m * 0.245 / 0.491;
-constexpr double kShank = kReferenceLeg_m - kThigh;
-constexpr double kHipHalf = 0.052 * kStature;
-constexpr double kHipDrop = 0.03 * kStature;  // height of the pelvis joint above the hip joints
-constexpr double kAnkleHeight = 0.039 * kStature;
-constexpr double kHeelBack = 0.05, kBallForward = 0.13, kToeLength = 0.06;
-constexpr double kBallRest = 0.02, kToeEndRest = 0.01;
+constexpr double kStature_m = kReferenceLeg_m / 0.491;
+constexpr double kThigh_m = kReferenceLeg_m * 0.245 / 0.491;
+constexpr double kShank_m = kReferenceLeg_m - kThigh_m;
+constexpr double kHipHalf_m = 0.052 * kStature_m;
+constexpr double kHipDrop_m = 0.03 * kStature_m;  // height of the pelvis joint above the hip joints
+constexpr double kAnkleHeight_m = 0.039 * kStature_m;
+// Heel and ball from the ankle, tip from the ball; then the heights of ball and tip of a standing
+// foot.
+constexpr double kHeelBack_m = 0.05, kBallForward_m = 0.13, kToeLength_m = 0.06;
+constexpr double kBallRest_m = 0.02, kToeEndRest_m = 0.01;
 constexpr double kToeOut = 7.0 * kDegree;
-constexpr double kShoulderHalf = 0.1295 * kStature;
-constexpr double kUpperArm = 0.186 * kStature, kForearm = 0.146 * kStature,
-                 kHand = 0.108 * kStature;
+constexpr double kShoulderHalf_m = 0.1295 * kStature_m;
+constexpr double kUpperArm_m = 0.186 * kStature_m, kForearm_m = 0.146 * kStature_m,
+                 kHand_m = 0.108 * kStature_m;
 // Distance from the pelvis joint to the height of the shoulders.
-constexpr double kTrunk = 0.288 * kStature - kHipDrop;
+constexpr double kTrunk_m = 0.288 * kStature_m - kHipDrop_m;
 
 struct Builder {
   Skeleton skeleton;
@@ -37,31 +39,33 @@ vec3 turned_out(double sign, const vec3& v) { return rotation_y(sign * kToeOut) 
 
 LegModel add_leg(Builder& body, int hips, const std::string& side, double sign) {
   LegModel leg;
-  leg.hip_m = vec3(sign * kHipHalf, -kHipDrop, 0.0);
-  leg.thigh_m = kThigh;
-  leg.shank_m = kShank;
-  leg.heel_m = turned_out(sign, vec3(0.0, -kAnkleHeight, -kHeelBack));
-  leg.toe_m = turned_out(sign, vec3(0.0, kBallRest - kAnkleHeight, kBallForward));
-  leg.toe_end_m = turned_out(sign, vec3(0.0, kToeEndRest - kBallRest, kToeLength));
-  leg.toe_rest_m = kBallRest;
-  leg.toe_end_rest_m = kToeEndRest;
+  leg.hip_m = vec3(sign * kHipHalf_m, -kHipDrop_m, 0.0);
+  leg.thigh_m = kThigh_m;
+  leg.shank_m = kShank_m;
+  leg.heel_m = turned_out(sign, vec3(0.0, -kAnkleHeight_m, -kHeelBack_m));
+  leg.toe_m = turned_out(sign, vec3(0.0, kBallRest_m - kAnkleHeight_m, kBallForward_m));
+  leg.toe_end_m = turned_out(sign, vec3(0.0, kToeEndRest_m - kBallRest_m, kToeLength_m));
+  leg.toe_rest_m = kBallRest_m;
+  leg.toe_end_rest_m = kToeEndRest_m;
   leg.standing = {kIdentity, kIdentity, kIdentity, kIdentity};
   LegJoints& j = leg.joints;
   j.hip = body.add(side + "UpLeg", hips, leg.hip_m);
-  j.knee = body.add(side + "Leg", j.hip, vec3(0.0, -kThigh, 0.0));
-  j.ankle = body.add(side + "Foot", j.knee, vec3(0.0, -kShank, 0.0));
+  j.knee = body.add(side + "Leg", j.hip, vec3(0.0, -kThigh_m, 0.0));
+  j.ankle = body.add(side + "Foot", j.knee, vec3(0.0, -kShank_m, 0.0));
   j.toe = body.add(side + "ToeBase", j.ankle, leg.toe_m);
   j.toe_end = body.add(side + "ToeBase_End", j.toe, leg.toe_end_m, true);
   return leg;
 }
 
 void add_arm(Builder& body, int chest, const std::string& side, double sign) {
-  const double collar = 0.035 * kStature;
-  const int shoulder = body.add(side + "Shoulder", chest, vec3(sign * collar, 0.45 * kTrunk, 0.0));
-  const int arm = body.add(side + "Arm", shoulder, vec3(sign * (kShoulderHalf - collar), 0.0, 0.0));
-  const int forearm = body.add(side + "ForeArm", arm, vec3(0.0, -kUpperArm, 0.0));
-  const int hand = body.add(side + "Hand", forearm, vec3(0.0, -kForearm, 0.0));
-  body.add(side + "Hand_End", hand, vec3(0.0, -kHand, 0.0), true);
+  const double collar = 0.035 * kStature_m;
+  const int shoulder =
+      body.add(side + "Shoulder", chest, vec3(sign * collar, 0.45 * kTrunk_m, 0.0));
+  const int arm =
+      body.add(side + "Arm", shoulder, vec3(sign * (kShoulderHalf_m - collar), 0.0, 0.0));
+  const int forearm = body.add(side + "ForeArm", arm, vec3(0.0, -kUpperArm_m, 0.0));
+  const int hand = body.add(side + "Hand", forearm, vec3(0.0, -kForearm_m, 0.0));
+  body.add(side + "Hand_End", hand, vec3(0.0, -kHand_m, 0.0), true);
 }
 
 }  // namespace
@@ -72,13 +76,13 @@ GaitCycle procedural_body() {
   const int hips = body.add("Hips", -1, vec3(0.0));
   cycle.leg[kLeftSide] = add_leg(body, hips, "Left", 1.0);
   cycle.leg[kRightSide] = add_leg(body, hips, "Right", -1.0);
-  const int spine = body.add("Spine", hips, vec3(0.0, 0.15 * kTrunk, 0.0));
-  const int chest = body.add("Chest", spine, vec3(0.0, 0.40 * kTrunk, 0.0));
+  const int spine = body.add("Spine", hips, vec3(0.0, 0.15 * kTrunk_m, 0.0));
+  const int chest = body.add("Chest", spine, vec3(0.0, 0.40 * kTrunk_m, 0.0));
   add_arm(body, chest, "Left", 1.0);
   add_arm(body, chest, "Right", -1.0);
-  const int neck = body.add("Neck", chest, vec3(0.0, 0.50 * kTrunk, 0.0));
-  const int head = body.add("Head", neck, vec3(0.0, 0.05 * kStature, 0.0));
-  body.add("Head_End", head, vec3(0.0, 0.115 * kStature, 0.0), true);
+  const int neck = body.add("Neck", chest, vec3(0.0, 0.50 * kTrunk_m, 0.0));
+  const int head = body.add("Head", neck, vec3(0.0, 0.05 * kStature_m, 0.0));
+  body.add("Head_End", head, vec3(0.0, 0.115 * kStature_m, 0.0), true);
   cycle.name = "procedural";
   cycle.skeleton = body.skeleton;
   cycle.pelvis = hips;
@@ -134,9 +138,9 @@ namespace {
 // images. Pelvis sway, shoulders, elbows: Boulic, Magnenat-Thalmann & Thalmann 1990, their knots
 // replaced by the nearest few harmonics.
 
-constexpr double kSpeed = 1.25;  // m/s, approximately: the stride's time is rounded to whole frames
-constexpr double kFrameRate = 120.0;
-constexpr double kTrack = 0.05;  // each foot from the middle line: step width .10 m
+constexpr double kSpeed_m_s = 1.25;  // approximately: the stride's time is rounded to whole frames
+constexpr double kFrameRate_hz = 120.0;
+constexpr double kTrack_m = 0.05;  // distance of each foot from the middle line
 constexpr int kHalf = kCycleSamples / 2;
 constexpr int kStridesInMotion = 4;
 
@@ -211,7 +215,7 @@ void fill_angles(GaitCycle& cycle) {
   for (int i = 0; i < kCycleSamples; ++i) {
     CycleSample& at = cycle.samples[i];
     at.leg[kRightSide] = right_leg_in_plane(cycle.leg[kRightSide], at,
-                                            sagittal_leg(double(i) / kCycleSamples), kTrack);
+                                            sagittal_leg(double(i) / kCycleSamples), kTrack_m);
     CycleSample& later = cycle.samples[(i + kHalf) % kCycleSamples];
     later.leg[kLeftSide] = mirrored(at.leg[kRightSide]);
   }
@@ -326,12 +330,12 @@ GaitCycle procedural_gait() {
   fill_pelvis_path(cycle);
   fill_locals(cycle);
   cycle.stride_m = stride_length(cycle);
-  cycle.duration_s = std::floor(cycle.stride_m / kSpeed * kFrameRate + 0.5) / kFrameRate;
-  cycle.frames = cycle.duration_s * kFrameRate;  // all of procedural_motion(), from its frame 0 on
+  cycle.duration_s = std::floor(cycle.stride_m / kSpeed_m_s * kFrameRate_hz + 0.5) / kFrameRate_hz;
+  cycle.frames = cycle.duration_s * kFrameRate_hz;  // procedural_motion() from its frame 0 on
   cycle.step_m = {0.5 * cycle.stride_m, 0.5 * cycle.stride_m};
   // The toes point outwards, so the heels are closer.
   const double heel_m = cycle.leg[kLeftSide].heel_m.x;
-  cycle.track_m = {kTrack + heel_m, -kTrack - heel_m};
+  cycle.track_m = {kTrack_m + heel_m, -kTrack_m - heel_m};
   cycle.strike = {0.5, 0.0};
   cycle.toe_off = {kToeOff - 0.5, kToeOff};
   return cycle;
@@ -345,8 +349,8 @@ Motion procedural_motion() {
   motion.skeleton = cycle.skeleton;
   motion.pelvis = cycle.pelvis;
   motion.legs = {cycle.leg[kLeftSide].joints, cycle.leg[kRightSide].joints};
-  motion.frame_time_s = 1.0 / kFrameRate;
-  const int stride_frames = static_cast<int>(std::floor(cycle.duration_s * kFrameRate + 0.5));
+  motion.frame_time_s = 1.0 / kFrameRate_hz;
+  const int stride_frames = static_cast<int>(std::floor(cycle.duration_s * kFrameRate_hz + 0.5));
   Pose pose;
   for (int f = 0; f <= kStridesInMotion * stride_frames; ++f) {
     const double strides = double(f) / stride_frames;

@@ -39,7 +39,8 @@ constexpr int kAsItStood = -3;  // unchanged: the joint keeps its standing rotat
 struct UpperBodyMatch {  // the counterpart of each joint of the character
   std::vector<Counterpart> from;
   std::vector<int> aim;
-  std::vector<vec3> direction;  // of the bone in the source's standing pose; unused without an aim
+  // Direction of each bone in the source's standing pose; unused without an aim.
+  std::vector<vec3> direction;
 };
 
 std::vector<vec3> standing_places(const GaitCycle& cycle) {

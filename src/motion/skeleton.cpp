@@ -12,7 +12,8 @@ void carry_root(const vec3& position_m, const quat& rotation, JointFrames& frame
   frames.rotation[0] = rotation;
 }
 
-// Eq. (1) for one joint below the root.
+// Eq. (1) for one joint below the root: place = parent's place + parent's rotation * offset;
+// rotation = parent's rotation * local.
 void carry_joint(int joint, int parent, const vec3& offset_m, const quat& local,
                  JointFrames& frames) noexcept {
   const quat& above = frames.rotation[parent];

@@ -6,8 +6,7 @@ namespace gaitpad {
 
 inline constexpr double kHeelShare = 0.3;           // heel behind the ankle, share of ankle to toe
 inline constexpr double kShortestFoot_legs = 0.04;  // length below which a foot has no toe joint
-inline constexpr double kOwnToe_legs = 0.155;       // distance from the ankle to the ball of such a
-                                                    // foot
+inline constexpr double kOwnToe_legs = 0.155;       // ankle to ball of a foot without toe joint
 inline constexpr double kLeastAnkle_legs = 0.02;    // least height of the ankle above the sole
 // Flat feet are slow and low: their score adds the speeds of ankle and toe and this rate times
 // their heights, so 1 m of height counts as 14 m/s.

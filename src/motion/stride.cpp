@@ -94,7 +94,8 @@ double heading_at(const WalkTrack& track, double frame) {
   return mix(track.heading_rad[f], track.heading_rad[f + 1], frame - f);
 }
 
-// Mean distance of the legs' points, seen from the pelvis along its heading, in leg lengths.
+// Mean distance of the legs' joints, relative to the pelvis and its heading, and of the pelvis'
+// height, in leg lengths.
 double pose_distance(const WalkTrack& track, double a, double b) {
   const quat back_a = rotation_y(-heading_at(track, a)), back_b = rotation_y(-heading_at(track, b));
   const vec3 pelvis_a = point_at(track.pelvis_m, a), pelvis_b = point_at(track.pelvis_m, b);
@@ -121,7 +122,7 @@ double seam(const WalkTrack& track, const SampleRange& range, double start, doub
 }
 
 constexpr double kLongestStride_s = 4.0;
-constexpr double kShortestStride_legs = 0.2;  // length of a shuffle's two steps
+constexpr double kShortestStride_legs = 0.2;  // least length: a shuffle's two steps
 constexpr double kSlowest_legs_s = 0.12;
 constexpr double kSharpestTurn_rad = 60.0 * kDegree;
 
@@ -140,8 +141,8 @@ bool is_stride(const std::vector<FootEvent>& events, std::size_t from, std::size
   return count == std::array{1, 1, 1, 1};
 }
 
-// The period within 4 % of the events' period at which the last pose fits the first one best (the
-// smallest seam).
+// The period within 4 % of the events' period with the smallest seam: the last pose fits the first
+// one best. A change costs up to 0.02 leg lengths.
 double best_period(const WalkTrack& track, const SampleRange& range, double start, double period) {
   double best = period, least = seam(track, range, start, period);
   for (int k = -16; k <= 16; ++k) {
@@ -309,7 +310,7 @@ void sort_best_first(const WalkTrack& track, std::vector<Candidate>& all) {
 constexpr double kLoop_legs = 0.12;  // mean distance of first and last pose in a looping clip
 
 // Spreads the difference of the last and the first pose over the clip, so that they differ only in
-// travel.
+// place and heading.
 void close_loop(Motion& motion, double turn_rad) {
   const int last = static_cast<int>(motion.frames.size()) - 1;
   const std::vector<quat> from = motion.frames.front().local, to = motion.frames.back().local;
@@ -351,7 +352,7 @@ Motion looped_twice(const Motion& motion) {
   twice.frames = motion.frames;
   close_loop(twice, turn);
   const quat onward = rotation_y(turn);
-  // The pelvis, because the root may stand still.
+  // Join the loops by the pelvis, because the root may stand still.
   const std::vector<vec3> pelvis = walk_track(twice).pelvis_m;
   for (int f = 1; f < frames; ++f) {
     MotionFrame frame = twice.frames[f];

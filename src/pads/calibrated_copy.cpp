@@ -6,7 +6,8 @@
 namespace gaitpad {
 namespace {
 
-// The control whose value is this field of the node alone; null: it is none, or only a part of one.
+// The operation that makes a whole control of this field alone; null: the field is no control, or
+// only a part of one.
 const AxisOp* whole_control(const EvdevField& field, const PadLayout& pad) {
   for (const ReportLayout& report : pad.reports) {
     for (const AxisOp& op : report.axes) {

@@ -12,8 +12,8 @@ namespace gaitpad {
 
 class CalibratedCopy {
  public:
-  // `pad`: by which the node's reports are decoded. An axis that is half a control, or one of
-  // several that are summed up to one, is passed on unchanged.
+  // `pad`: the layout by which the node's reports are decoded. An axis that is half a control, or
+  // one of several whose sum is a control, is passed on unchanged.
   CalibratedCopy(const EvdevLayout& node, const PadLayout& pad);
 
   // The node's axes and keys under their codes. A stick's full deflection is kFullStick, whatever

@@ -7,18 +7,17 @@
 #include <string_view>
 #include <utility>
 
-#include "base/files.h"
 #include "base/text.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/hash.h"
+#include "hid/evdev_layout.h"
+#include "system/whole_file.h"
 
 namespace gaitpad {
 namespace {
 
 constexpr std::size_t kMaxKeyBytes = 48;  // longest part of a file's name between ids and
                                           // ending
-// Bit of an event node's version that marks corrected sticks (config/README.md).
-constexpr std::uint16_t kKernelArranged = 0x8000;
 
 // Empty if it cannot identify a pad: cheap pads have serial numbers of zeros or blanks, or one that
 // is not UTF-8.
@@ -68,7 +67,8 @@ CalibrationFile calibration_for(const DeviceInfo& device, bool has_factory_stick
   file.unique_id = usable_id(device.unique_id);
   if (file.unique_id.empty() && is_utf8(device.physical_path)) file.port = device.physical_path;
   const bool is_arranged = device.driver == "evdev" || device.driver == "sdl";
-  if (is_arranged && (device.version & kKernelArranged) != 0) {
+  // The kernel's driver has corrected the sticks of such a node (config/README.md).
+  if (is_arranged && (device.version & kKernelCodesBit) != 0) {
     file.drivers = {"evdev", "sdl"};
   } else if (!is_arranged && has_factory_sticks) {
     file.drivers = {"hidraw", "usb"};
@@ -228,7 +228,7 @@ std::vector<std::string> changes_since(const CalibrationFile& then, const Calibr
                     *now.measured[side],
                     told};
     if (stick.then.frame != stick.now.frame) {
-      stick.tell("its axes lie otherwise than in the file: was another pad calibrated?");
+      stick.tell("its axes differ from the file: was another pad calibrated?");
       continue;
     }
     compare_centre(stick);

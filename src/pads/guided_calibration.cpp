@@ -8,9 +8,9 @@
 #include <iterator>
 #include <utility>
 
-#include "drivers/posix.h"
 #include "gaitpad/limbs.h"
 #include "pads/calibration_store.h"
+#include "system/clock.h"
 
 namespace gaitpad {
 namespace {
@@ -141,10 +141,10 @@ std::vector<std::string> calibration_comments(const PadAnalysis& analysis) {
       "keys mean. Edit it as you like."};
   for (std::size_t i = 0; i < 2; ++i) {
     if (!analysis.stick[i]) continue;
-    comments.push_back(
-        fmt::format("{} stick: {}. {}{}", kSideNames[i], name_of(analysis.stick[i]->advice.verdict),
-                    analysis.stick[i]->advice.reason,
-                    is_known(analysis, i) ? "" : "; its calibration stays as it was"));
+    comments.push_back(fmt::format("{} stick: {}. {}{}", kSideNames[i],
+                                   name_of(analysis.stick[i]->advice.verdict),
+                                   analysis.stick[i]->advice.reason,
+                                   is_known(analysis, i) ? "" : "; its calibration is kept"));
   }
   return comments;
 }

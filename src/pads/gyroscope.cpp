@@ -12,11 +12,11 @@ namespace {
 constexpr std::uint16_t kSony = 0x054c, kNintendo = 0x057e, kValve = 0x28de;
 
 constexpr std::array<GyroLayout::Axis, 3> kAsCounted = {{{0}, {1}, {2}}};
-// The range that hid-playstation.c assumes.
-constexpr double kSonyScale = 2048.0 / 32767.0 * kDegree;
-// The calibration that hid-nintendo.c assumes.
-constexpr double kSwitchScale = 936.0 / 13371.0 * kDegree;
-constexpr double kDeckScale = 2000.0 / 32768.0 * kDegree;
+// The range of 2048 degrees a second is hid-playstation.c's.
+constexpr double kSonyCount_rad_s = 2048.0 / 32767.0 * kDegree;
+// By the calibration that hid-nintendo.c assumes; then the Steam Deck's.
+constexpr double kSwitchCount_rad_s = 936.0 / 13371.0 * kDegree;
+constexpr double kDeckCount_rad_s = 2000.0 / 32768.0 * kDegree;
 
 constexpr std::size_t kBluetoothBytes = 78, kUsbBytes = 64;
 
@@ -27,7 +27,7 @@ GyroLayout sony(bool is_bluetooth, std::uint8_t bluetooth_id, std::size_t blueto
   return {.report_id = is_bluetooth ? bluetooth_id : std::uint8_t{0x01},
           .report_bytes = is_bluetooth ? kBluetoothBytes : kUsbBytes,
           .first = (is_bluetooth ? bluetooth_common : 1) + at,
-          .rad_s_per_count = kSonyScale,
+          .rad_s_per_count = kSonyCount_rad_s,
           .axes = kAsCounted};
 }
 
@@ -39,11 +39,12 @@ GyroLayout nintendo(double sign) {
           .first = 13 + 6,
           .samples = 3,
           .sample_bytes = 12,
-          .rad_s_per_count = kSwitchScale,
+          .rad_s_per_count = kSwitchCount_rad_s,
           .axes = {{{1, -sign}, {2, sign}, {0, -1.0}}}};
 }
 
-// Reports of both Joy-Cons come in turns.
+// Reports with the sensors of the left and of the right Joy-Con come in turns; the right one's are
+// taken.
 GyroLayout pair_of_joy_cons() {
   GyroLayout layout = nintendo(-1.0);
   layout.mark_at = kPairSideByte;
@@ -75,7 +76,7 @@ std::optional<GyroLayout> gyro_layout(const DeviceInfo& device) {
       return GyroLayout{.report_id = 0x01,
                         .report_bytes = 64,
                         .first = 30,
-                        .rad_s_per_count = kDeckScale,
+                        .rad_s_per_count = kDeckCount_rad_s,
                         .axes = {{{0}, {2}, {1, -1.0}}}};
     default:
       return std::nullopt;

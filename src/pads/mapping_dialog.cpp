@@ -7,10 +7,10 @@
 #include <span>
 #include <utility>
 
-#include "drivers/posix.h"
 #include "hid/sdl_lines.h"
 #include "hid/usage_names.h"
 #include "pads/newest_reports.h"
+#include "system/clock.h"
 
 namespace gaitpad {
 namespace {

@@ -9,11 +9,11 @@
 #include <iterator>
 #include <utility>
 
-#include "base/files.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/driver_registry.h"
 #include "hid/sdl_lines.h"
 #include "pads/calibration_store.h"
+#include "system/whole_file.h"
 
 namespace gaitpad {
 namespace {

@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 #include <poll.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -15,9 +13,11 @@
 
 #include "base/text.h"
 #include "drivers/driver_rows.h"
+#include "drivers/system_users.h"
 #include "drivers/virtual_pad.h"
 #include "gaitpad/driver_registry.h"
 #include "gaitpad/pad_stream.h"
+#include "system/descriptors.h"
 
 namespace gaitpad {
 namespace {
@@ -53,8 +53,8 @@ bool is_asked(const DriverEntry& entry, Drivers which, std::span<const DriverEnt
 }
 
 std::uint64_t file_number(const std::string& node) {
-  struct stat status = {};
-  return ::stat(node.c_str(), &status) == 0 ? status.st_ino : 0;
+  const auto rights = node_rights(node);
+  return rights ? rights->file : 0;
 }
 
 PadSighting judged(const PadFiles& files, DeviceListing listing, const DriverEntry& driver) {
@@ -289,9 +289,11 @@ constexpr auto kDriverPatience = 700ms, kKernelPatience = 2000ms;
 // Longest wait for a pad's unique id: its node appears before the kernel's driver has asked for the
 // id.
 constexpr auto kIdPatience = 1000ms;
+// Longest wait until the I/O thread gives back a pad that drivers no longer see.
 constexpr auto kGonePatience = 3000ms;
 // A problem is told after this time, because permissions come a moment after the node.
 constexpr auto kProblemPatience = 1500ms;
+// Longest times between two looks at the devices: usually, without an open pad, without udev.
 constexpr auto kIdleLook = 30'000ms, kLookWithoutPads = 5000ms, kLookWithoutUdev = 1000ms;
 
 // A key that stays the same while one driver sees one device.
@@ -399,11 +401,10 @@ void PadFinder::let_settle(int changes_fd) {
   const Clock::time_point end = Clock::now() + kMaxUnrest;
   pollfd changes{changes_fd, POLLIN, 0};
   do {
-    std::uint64_t ignored = 0;
     if (monitor_)
       monitor_->has_changed();
     else
-      static_cast<void>(!::read(changes_fd, &ignored, sizeof(ignored)));
+      clear_event(changes_fd);
   } while (!is_ending_ && Clock::now() < end &&
            ::poll(&changes, 1, static_cast<int>(kQuiet.count())) > 0);
 }
@@ -539,7 +540,8 @@ bool PadFinder::clear_the_way(const PadSighting& sighting) {
   return is_clear;
 }
 
-// Plugged in again before the I/O thread noticed the removal: wait, then reuse its index.
+// True if the pad was plugged in again before the I/O thread noticed that it was gone. Its opening
+// waits for that, to have the same index again.
 bool PadFinder::is_awaiting_gone(const PadSighting& sighting) const {
   return std::ranges::any_of(open_, [this, &info = sighting.listing.info](const Open& open) {
     return open.missing_since && now_ < *open.missing_since + kGonePatience &&
@@ -669,7 +671,7 @@ void PadFinder::settle(const PadSighting& sighting, Result<std::unique_ptr<Devic
 
 // Fills in the device as the recording of this session will state it, and the configuration that a
 // replay will derive from that. Returns why the pad cannot be used; empty if users need not know,
-// because they named no pad and this device is none.
+// because they named no pad, and this device is not one.
 std::optional<std::string> PadFinder::set_up(const PadSighting& sighting, Device& device,
                                              KnownPad& pad) {
   const DeviceInfo& info = device.info();

@@ -22,12 +22,12 @@
 #include <utility>
 #include <vector>
 
-#include "drivers/posix.h"
 #include "drivers/system_nodes.h"
 #include "gaitpad/driver.h"
 #include "gaitpad/pad_configuration.h"
 #include "gaitpad/pad_stream.h"
 #include "gaitpad/result.h"
+#include "system/descriptors.h"
 
 namespace gaitpad {
 
@@ -108,7 +108,7 @@ class PadFinder {
   struct Candidate {
     Clock::time_point first_seen, next_try;
     int failures = 0;
-    bool is_refused = false;     // its opening showed that it is no pad
+    bool is_refused = false;     // its opening showed that it is not a pad
     bool is_from_start = false;  // it was there when the finder started
     bool is_seen = true;         // it was there at the last look
     std::string problem;
@@ -123,7 +123,7 @@ class PadFinder {
     Clock::time_point since;
     std::vector<std::string> parts;  // pad paths of the joined devices, as in
                                      // DeviceListing
-    // Since when it is no longer seen, though its device was not given back.
+    // Since when it has not been seen, though its device was not given back.
     std::optional<Clock::time_point> missing_since;
     bool is_stickless = false, is_released = false;
   };
@@ -179,7 +179,7 @@ class PadFinder {
 
   Bell bell_;
   std::atomic<bool> is_ending_{false};
-  // Number of a recording's devices that have not ended; -1: it is no recording.
+  // Number of a recording's devices that have not ended; -1: it is not a recording.
   std::atomic<int> awaited_ends_{-1};
   std::mutex mutex_;
   std::vector<Gone> gone_;            // guarded by the mutex

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <utility>
 
-#include "drivers/posix.h"
+#include "system/clock.h"
 
 namespace gaitpad {
 namespace {
@@ -25,7 +25,7 @@ void watch_sticks(MonitoredPad& pad, std::int64_t time_ns) {
   pad.untouched += pad.watch[1].take(time_ns, c.right, {axis[kRightX], axis[kRightY]}, stick.right);
 }
 
-// Asks for the battery; called once a minute.
+// Called once a second: asks for the battery once a minute, and takes the answer when it has come.
 void look_at_battery(MonitoredPad& pad, const DeviceInfo& info, std::int64_t time_ns) {
   constexpr std::int64_t kMinuteNs = 60'000'000'000;
   if (pad.battery_ns == 0 || time_ns >= pad.battery_ns + kMinuteNs) {

@@ -36,7 +36,8 @@ struct MonitoredPad {
   bool is_warned = false;  // the user was warned that a stick moves by itself
   bool is_plugged = true;
   std::optional<Battery> battery;
-  // A pending request, because the kernel may wait for the pad.
+  // The request for the battery that has not been answered; on its own thread, because the kernel
+  // may wait for the pad.
   std::future<std::optional<Battery>> asked_battery;
   std::int64_t battery_ns = 0;           // time of the last request for the battery;
                                          // 0: there was none

@@ -14,10 +14,10 @@
 #include "base/spsc_ring.h"
 #include "base/text.h"
 #include "drivers/realtime.h"
-#include "drivers/threads.h"
 #include "gaitpad/keyboard.h"
 #include "pads/newest_reports.h"
 #include "pads/pad_finder.h"
+#include "system/threads.h"
 
 namespace gaitpad {
 namespace {
@@ -117,8 +117,8 @@ bool PadQueue::flush() {
   return true;
 }
 
-// Of two threads that change `reader_sleeps_`, the second sees what the first wrote before, so no
-// wake-up is missed.
+// The second of two threads that change `reader_sleeps_` sees everything that the first wrote
+// before its change, so no wake-up is missed.
 void PadQueue::wake_reader() noexcept {
   if (reader_sleeps_.exchange(false, std::memory_order_acq_rel)) bell_.ring();
 }
@@ -146,8 +146,8 @@ struct PadCounters {
 
 // Most reports that are read from one device before the others get their turn.
 constexpr int kReadsInRound = 64;
-// More wakes without a report than any sound source makes (SDL's: one each millisecond). Such a
-// source would keep the thread busy all the time.
+// Close a device that wakes this thread more often without a report: it would keep the thread busy
+// all the time. SDL wakes it once each millisecond.
 constexpr int kMaxIdleWakes = 500;
 constexpr auto kIdleWindow = 100ms;
 constexpr int kMaxErrorWakes = 200;  // most wakes with an error between two reports
@@ -155,8 +155,9 @@ constexpr auto kRoomPoll = 2ms;      // wait between two attempts to write to a 
 constexpr auto kMaxRumble = 10s;     // longest rumble; a longer request is a mistake of the caller
 // Wait until the stop of a motor is sent again, if it could not be sent.
 constexpr auto kStopRetry = 20ms;
+// How often the thread measures its own processor time, and the share of the time above which it
+// gives up its real-time priority.
 constexpr auto kWatch = 500ms;
-// Most processor time of a thread with real-time priority, as a share.
 constexpr double kMaxBusy = 0.8;
 constexpr std::size_t kMaxCommands = 1024;
 constexpr std::int64_t kClockSlack_ns = 1'000'000'000;
@@ -169,7 +170,7 @@ std::int64_t nanoseconds(std::chrono::steady_clock::time_point time) {
   return std::chrono::nanoseconds(time.time_since_epoch()).count();
 }
 
-// Makes it a report without content. Its bytes are not cleared, because they are many and are not
+// Makes `report` one without content. Its bytes are not cleared, because they are many and are not
 // read.
 void make_event(Report& report, ReportKind kind, std::uint16_t device, std::int64_t time_ns) {
   report.time_ns = time_ns;

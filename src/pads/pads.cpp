@@ -16,7 +16,7 @@ constexpr double kNearCentre = 0.1;     // calibrated deflection below which a s
                                         // centred
 // Change of the calibrated deflection that counts as a movement; noise is below the inner zone.
 constexpr double kMoved = 0.1;
-constexpr int kYielding_s = 5;
+constexpr int kYielding_s = 5;  // a driving pad at rest for this time gives way to one that moves
 constexpr int kSilencesInSecond = 10;  // silences of 100 ms
 const PadState kAtRest;
 

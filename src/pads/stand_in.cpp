@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "gaitpad/calibration.h"
+#include "system/clock.h"
 
 namespace gaitpad {
 namespace {

@@ -12,11 +12,11 @@
 
 #include "drivers/effect_table.h"
 #include "drivers/event_node.h"
-#include "drivers/posix.h"
 #include "drivers/virtual_pad.h"
 #include "gaitpad/pad_configuration.h"
 #include "gaitpad/pads.h"
 #include "pads/calibrated_copy.h"
+#include "system/descriptors.h"
 
 namespace gaitpad {
 
@@ -41,7 +41,7 @@ class StandIn {
   // program's, or no virtual pad can be made.
   std::optional<Error> plug(const DeviceListing& listing);
   bool has_pad() const noexcept { return node_ != nullptr; }
-  // Node of the virtual pad; empty: there is none.
+  // Node of the virtual pad; empty: not made.
   std::string node() const { return pad_ ? pad_->node() : ""; }
 
   // The descriptors to poll. When one of them is ready, call serve().

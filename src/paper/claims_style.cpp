@@ -59,7 +59,7 @@ void stiff_hip_claims(const WeightWalks& w, const Ticks& stride, ClaimList& list
            both_text(hip) +
                "; planar prototype 0.82 without joint limits, 0.94 with; 3-D prototype 0.994 to "
                "0.997 with pelvis and foot pinned to the plan, 0.85 to 0.94 with the pitch left "
-               "free, as it is in robust mode");
+               "free (robust mode)");
   const auto others = each_leg([&](Side s) {
     return sum_of_others(*w.stiff_hip, stride, s) / sum_of_others(*w.even, stride, s);
   });

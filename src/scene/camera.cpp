@@ -14,8 +14,10 @@ constexpr double kFollow_1_s = 4.0;
 constexpr double kFastest_m_s = 20.0;
 // Share of the picture's width and height in which the characters are framed.
 constexpr double kUsed = 0.92;
-constexpr double kLeastUsed = 0.3;  // the least such share; labels may take the rest
-constexpr double kNearestPoint_m = 0.5;
+constexpr double kLeastUsed = 0.3;       // the least such share; labels may take the rest
+constexpr double kNearestPoint_m = 0.5;  // least distance from the eye to the nearest point
+// Times after which approach() has gone 63 % of the way outwards and inwards; and the share of the
+// distance above which it does not move inwards.
 constexpr double kOutTime_s = 0.25, kInTime_s = 0.6, kLetPass = 0.97;
 
 // The picture's axes as unit vectors of the world.

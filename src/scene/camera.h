@@ -18,7 +18,7 @@ struct Camera {
   vec3 target_m{0.0, 0.8, 0.0};
   double distance_m = 6.0;
   double yaw_rad = 0.16;   // 0: looks along -z, at the front of a character that walks along +z
-  double pitch_rad = 0.2;  // above the horizon
+  double pitch_rad = 0.2;  // angle of the eye above the horizon
   double field_of_view_rad = 0.66;  // angle between the picture's lower and upper edge
   // Ground heights below target and eye; the limits are relative to them.
   double floor_m = 0.0, eye_floor_m = 0.0;
@@ -35,8 +35,8 @@ struct Camera {
   mat4 projection(double aspect) const noexcept;
 };
 
-// Both keep the camera above the floor and 1 to 40 m from the target, as do the functions below.
-// Positive yaw moves the eye counter-clockwise as seen from above, positive pitch upwards.
+// All functions below keep the camera above the floor and 1 to 40 m from the target. Positive yaw
+// moves the eye counter-clockwise as seen from above, positive pitch upwards.
 void orbit(Camera& camera, double yaw_rad, double pitch_rad) noexcept;
 void dolly(Camera& camera, double factor) noexcept;  // Multiplies the distance by `factor`.
 // Moves the picture at the target's distance by this number of pixels, y downwards. Ends following.

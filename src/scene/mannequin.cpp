@@ -386,14 +386,12 @@ void Builder::build_coarsely() {
 constexpr Colour kPale = {0.83, 0.84, 0.86};
 constexpr double kPaleShare = 0.48;
 constexpr double kStickLine_px = 3.2;
-constexpr double kLongestEnd = 0.5,
-                 kLongestLine = 0.9;  // longest drawn bone, in leg lengths; joints of meshes may be
-                                      // far off
+// Longest bones of a stick figure that are drawn, in leg lengths: joints of meshes may be far off.
+constexpr double kLongestEnd = 0.5, kLongestLine = 0.9;
 // Greatest depth of a foot in the ground; a deeper foot is beside a riser.
 constexpr double kDeepest_m = 0.05;
-constexpr double kShortestLine = 0.015,
-                 kShortestDotted = 0.045;  // shortest bone with dots at its joints, in leg lengths;
-                                           // fingers get none
+// Shortest bones that are drawn, and that get a dot at the joint, in leg lengths: fingers get none.
+constexpr double kShortestLine = 0.015, kShortestDotted = 0.045;
 
 // Lifts an end that is slightly below the ground. A deeper end is beside a riser, not on its tread,
 // and stays.

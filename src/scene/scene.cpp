@@ -105,7 +105,8 @@ bool is_drawable(const Capsule& c) {
          std::isfinite(c.radius_a_m + c.radius_b_m + c.width_a + c.width_b);
 }
 
-// High bodies use the mean height, so that their shadow does not jump at each riser.
+// Height of the floor below a place; below a high place the mean over a step's length, so that the
+// place's shadow does not jump at each riser.
 double floor_below(const SceneContent& content, const vec3& place_m) {
   constexpr double kNear_m = 0.35;
   if (content.terrain == nullptr) return 0.0;
@@ -204,7 +205,8 @@ void CapsuleScene::load(const SceneContent& content, const SceneView& view) {
   bodies_.load(GlRows::Of::instance, rows_);
 }
 
-// Contains all bodies and their shadows, in whole texels, so that shadows do not flicker.
+// The square that holds all bodies and their shadows. It moves by whole texels, so that shadows do
+// not flicker.
 ShadowPlace CapsuleScene::shadow_place() const noexcept {
   if (rows_.empty()) return {};
   vec2 low(1e9), high(-1e9);
@@ -243,11 +245,11 @@ ShadowPlace CapsuleScene::draw_shadows() {
   shadow_program_.use();
   shadow_program_.set("centre", place.centre_m);
   shadow_program_.set("half_size", place.half_m);
-  const auto draw = [this](const vec2& slide, const vec2& softness, double fading,
+  const auto draw = [this](const vec2& slide, const vec2& edge_width, double fading_1_m,
                            std::size_t count) {
     shadow_program_.set("slide", slide);
-    shadow_program_.set("softness", softness);
-    shadow_program_.set("fading", fading);
+    shadow_program_.set("edge_width", edge_width);
+    shadow_program_.set("fading_1_m", fading_1_m);
     bodies_.draw_squares(static_cast<GLsizei>(count));
   };
   glColorMask(GL_TRUE, GL_FALSE, GL_FALSE, GL_FALSE);
@@ -284,7 +286,7 @@ void CapsuleScene::draw(const SceneView& view, int samples) const {
   const std::array<GLbitfield, 3> shares = {all, half, all & ~half};
   if (has_layers_ && samples > 1) glEnable(GL_SAMPLE_MASK);
   for (std::size_t layer = 0; layer < (has_layers_ ? shares.size() : 1); ++layer) {
-    program_.set("layer", static_cast<double>(layer));
+    program_.set("drawn_layer", static_cast<double>(layer));
     glSampleMaski(0, shares[layer]);
     bodies_.draw_triangles_of(static_cast<GLsizei>(capsules_));
   }
@@ -420,7 +422,7 @@ std::optional<Error> FloorScene::open() {
   return sky_.link("background", shader::kSkyVertex, background + shader::kSkyFragment);
 }
 
-// A square around the focus. It is behind all bodies, because they stand on it.
+// Draws level floor as a square around the focus, behind all bodies, because they stand on it.
 void FloorScene::draw_floor(const SceneContent& content, const SceneView& view,
                             const ShadowPlace& place) const {
   floor_.use();

@@ -7,7 +7,7 @@ namespace gaitpad::shader {
 // A vertex has the direction around the axis (cosine, sine), the position between a cap's pole and
 // its seam, and the cap. The caps continue the cone between them tangentially.
 inline constexpr const char* kBodyVertex = R"(#version 330 core
-layout(location = 0) in vec4 spot;
+layout(location = 0) in vec4 direction_latitude_cap;
 layout(location = 1) in vec4 a_radius;
 layout(location = 2) in vec4 b_radius;
 layout(location = 3) in vec4 across_width_a;
@@ -15,29 +15,30 @@ layout(location = 4) in vec4 colour_width_b;
 layout(location = 5) in vec3 ground_layer;  // height of the floor below a, below b
 layout(location = 6) in vec3 across_b;
 uniform mat4 to_clip;
-uniform float layer;  // that is drawn
+uniform float drawn_layer;
 out vec3 place;
 out vec3 normal;
-out float above;  // the floor
+out float above_floor_m;
 flat out vec3 colour;
 void main() {
   vec3 along = b_radius.xyz - a_radius.xyz;
   float span = length(along);
   vec3 axis = span > 1e-6 ? along / span : vec3(0.0, 1.0, 0.0);
-  bool at_b = spot.w > 0.5;
+  bool at_b = direction_latitude_cap.w > 0.5;
   vec3 side = at_b ? across_b : across_width_a.xyz;
   vec3 deep = cross(axis, side);
   float seam = asin(clamp((a_radius.w - b_radius.w) / max(span, 1e-6), -1.0, 1.0));
-  float latitude = at_b ? mix(1.5707963, seam, spot.z) : mix(-1.5707963, seam, spot.z);
-  vec3 round = vec3(cos(latitude) * spot.xy, sin(latitude));
+  float latitude = mix(at_b ? 1.5707963 : -1.5707963, seam, direction_latitude_cap.z);
+  vec3 round = vec3(cos(latitude) * direction_latitude_cap.xy, sin(latitude));
   float radius = at_b ? b_radius.w : a_radius.w;
   float width = at_b ? colour_width_b.w : across_width_a.w;
   place = (at_b ? b_radius.xyz : a_radius.xyz) +
           radius * (side * (round.x * width) + deep * round.y + axis * round.z);
   normal = side * (round.x / width) + deep * round.y + axis * round.z;
-  above = place.y - (at_b ? ground_layer.y : ground_layer.x);
+  above_floor_m = place.y - (at_b ? ground_layer.y : ground_layer.x);
   colour = colour_width_b.rgb;
-  gl_Position = ground_layer.z == layer ? to_clip * vec4(place, 1.0) : vec4(0.0, 0.0, 2.0, 1.0);
+  bool is_drawn = ground_layer.z == drawn_layer;
+  gl_Position = is_drawn ? to_clip * vec4(place, 1.0) : vec4(0.0, 0.0, 2.0, 1.0);
 }
 )";
 
@@ -63,13 +64,13 @@ vec3 lit(vec3 base, vec3 n, float facing, float near_floor, float gloss) {
 inline constexpr const char* kBodyFragment = R"(
 in vec3 place;
 in vec3 normal;
-in float above;
+in float above_floor_m;
 flat in vec3 colour;
 uniform vec3 eye;
 void main() {
   vec3 n = normalize(normal);
   vec3 to_eye = normalize(eye - place);
-  float near_floor = mix(0.55, 1.0, smoothstep(0.0, 0.35, above));
+  float near_floor = mix(0.55, 1.0, smoothstep(0.0, 0.35, above_floor_m));
   float gloss = 0.16 * pow(max(dot(n, normalize(light + to_eye)), 0.0), 46.0);
   vec3 base = colour * colour * (0.25 + 0.75 * colour);  // nearly the power 2.2
   vec3 seen = lit(base, n, max(dot(n, to_eye), 0.0), near_floor, gloss);
@@ -90,8 +91,8 @@ uniform mat4 to_clip;
 uniform vec3 eye;
 uniform vec3 light;
 uniform vec3 moved;
-out float height;  // above the floor
-out vec2 spot;  // metres aside of the axis, and along it from a as it is seen
+out float above_floor_m;
+out vec2 aside_along_m;  // aside of the axis, and along it from a as it is seen
 flat out vec3 aside;
 flat out vec3 upwards;
 flat out vec3 radii;  // at a, at b; and the seen length
@@ -117,9 +118,9 @@ void main() {
   float reach = max(radii.x, radii.y) * 1.05;
   bool at_b = gl_VertexID > 1;
   float aside_m = (gl_VertexID & 1) == 1 ? reach : -reach;
-  spot = vec2(aside_m, at_b ? radii.z + radii.y * 1.05 : -radii.x * 1.05);
+  aside_along_m = vec2(aside_m, at_b ? radii.z + radii.y * 1.05 : -radii.x * 1.05);
   vec3 place = (at_b ? b + upwards * radii.y * 1.05 : a - upwards * radii.x * 1.05) + aside * aside_m;
-  height = place.y - moved.y - ground;
+  above_floor_m = place.y - moved.y - ground;
   half_way = normalize(light + to_eye);
   vec3 c = colour_width_b.rgb;
   base = c * c * (0.25 + 0.75 * c);
@@ -129,8 +130,8 @@ void main() {
 
 // The light of kLight with cheaper powers, for the crowd.
 inline constexpr const char* kCrowdFragment = R"(
-in float height;
-in vec2 spot;
+in float above_floor_m;
+in vec2 aside_along_m;
 flat in vec3 aside;
 flat in vec3 upwards;
 flat in vec3 radii;
@@ -139,9 +140,9 @@ flat in vec3 half_way;
 flat in float cap;
 uniform float samples;  // more than 1: the cover becomes samples
 void main() {
-  float along = clamp(spot.y, 0.0, radii.z);
+  float along = clamp(aside_along_m.y, 0.0, radii.z);
   float radius = mix(radii.x, radii.y, radii.z > 1e-5 ? along / radii.z : 0.5);
-  vec2 off = vec2(spot.x, spot.y - along) / radius;
+  vec2 off = vec2(aside_along_m.x, aside_along_m.y - along) / radius;
   float far = dot(off, off);
   float cover = 1.0;
   if (samples > 1.0) {
@@ -155,7 +156,7 @@ void main() {
   float bent = off.y * cap;
   float facing = sqrt(max(1.0 - off.x * off.x - bent * bent, 0.0));
   vec3 n = aside * off.x + upwards * bent + to_eye * facing;
-  float near_floor = mix(0.55, 1.0, clamp(height * 3.0, 0.0, 1.0));
+  float near_floor = mix(0.55, 1.0, clamp(above_floor_m * 3.0, 0.0, 1.0));
   float gloss = max(dot(n, half_way), 0.0);
   gloss *= gloss;
   gloss *= gloss;
@@ -173,7 +174,7 @@ layout(location = 2) in vec4 b_radius;
 layout(location = 3) in float dark_in;
 uniform mat4 to_clip;
 uniform vec3 moved;
-out vec2 spot;  // from a
+out vec2 from_a_m;
 flat out vec2 along;
 flat out vec2 radii;
 flat out float dark;
@@ -184,7 +185,7 @@ void main() {
   bool at_b = gl_VertexID > 1;
   vec2 corner = u * (at_b ? reach : -reach) +
                 vec2(-u.y, u.x) * ((gl_VertexID & 1) == 1 ? reach : -reach);
-  spot = (at_b ? along : vec2(0.0)) + corner;
+  from_a_m = (at_b ? along : vec2(0.0)) + corner;
   radii = vec2(a_radius.w, b_radius.w);
   dark = dark_in;
   vec3 place = (at_b ? b_radius.xyz : a_radius.xyz) + vec3(corner.x, 0.0, corner.y) + moved;
@@ -193,14 +194,14 @@ void main() {
 )";
 
 inline constexpr const char* kShadeFragment = R"(#version 330 core
-in vec2 spot;
+in vec2 from_a_m;
 flat in vec2 along;
 flat in vec2 radii;
 flat in float dark;
 out vec4 shown;
 void main() {
-  float part = clamp(dot(spot, along) / max(dot(along, along), 1e-8), 0.0, 1.0);
-  float off = length(spot - along * part) / mix(radii.x, radii.y, part);
+  float part = clamp(dot(from_a_m, along) / max(dot(along, along), 1e-8), 0.0, 1.0);
+  float off = length(from_a_m - along * part) / mix(radii.x, radii.y, part);
   float fading = max(1.0 - off * off, 0.0);
   shown = vec4(0.0, 0.0, 0.0, dark * fading * fading * (1.0 - 0.5 * part));
 }
@@ -215,12 +216,12 @@ layout(location = 2) in vec4 b_radius;
 layout(location = 3) in vec4 across_width_a;
 layout(location = 4) in vec4 colour_width_b;
 layout(location = 5) in vec2 ground;
-uniform vec2 slide;     // metres on the floor per metre of height
-uniform vec2 softness;  // of an edge: at the floor, more per metre of height
+uniform vec2 slide;       // metres on the floor per metre of height
+uniform vec2 edge_width;  // metres at the floor, more metres per metre of height
 uniform vec2 centre;
 uniform float half_size;
-uniform float fading;  // per metre of edge
-out vec2 spot;          // from a
+uniform float fading_1_m;  // of a metre of edge
+out vec2 from_a_m;
 flat out vec2 along;
 flat out float per_span;
 flat out vec4 discs;  // radius and edge at a, at b
@@ -231,7 +232,7 @@ void main() {
   vec2 radius = vec2(a_radius.w * (0.5 + 0.5 * across_width_a.w),
                      b_radius.w * (0.5 + 0.5 * colour_width_b.w));
   vec2 height = max(above - vec2(a_radius.w, b_radius.w), 0.0);
-  vec2 edge = softness.x + softness.y * height;
+  vec2 edge = edge_width.x + edge_width.y * height;
   float reach = max(radius.x + edge.x, radius.y + edge.y);
   along = b - a;
   float span = length(along);
@@ -239,32 +240,32 @@ void main() {
   vec2 u = span > 1e-5 ? along / span : vec2(1.0, 0.0);
   vec2 v = vec2(-u.y, u.x);
   vec2 corner = vec2(float(gl_VertexID & 1), float(gl_VertexID >> 1)) * 2.0 - 1.0;
-  spot = 0.5 * along + u * corner.x * (0.5 * span + reach) + v * corner.y * reach;
+  from_a_m = 0.5 * along + u * corner.x * (0.5 * span + reach) + v * corner.y * reach;
   discs = vec4(radius.x, edge.x, radius.y, edge.y);
   // What is thin hardly hides a light that has a size.
-  dark = min(vec2(1.0), 0.45 + radius / edge) * exp(-fading * edge);
-  gl_Position = vec4((a + spot - centre) / half_size, 0.0, 1.0);
+  dark = min(vec2(1.0), 0.45 + radius / edge) * exp(-fading_1_m * edge);
+  gl_Position = vec4((a + from_a_m - centre) / half_size, 0.0, 1.0);
 }
 )";
 
 inline constexpr const char* kShadowFragment = R"(#version 330 core
-in vec2 spot;
+in vec2 from_a_m;
 flat in vec2 along;
 flat in float per_span;
 flat in vec4 discs;
 flat in vec2 dark;
 out vec4 shown;
 void main() {
-  float share = clamp(dot(spot, along) * per_span, 0.0, 1.0);
+  float share = clamp(dot(from_a_m, along) * per_span, 0.0, 1.0);
   vec2 disc = mix(discs.xy, discs.zw, share);
-  float inside = clamp(0.5 + 0.5 * (disc.x - length(spot - share * along)) / disc.y, 0.0, 1.0);
+  float inside = clamp(0.5 + 0.5 * (disc.x - length(from_a_m - share * along)) / disc.y, 0.0, 1.0);
   shown = vec4(inside * inside * (3.0 - 2.0 * inside) * mix(dark.x, dark.y, share));
 }
 )";
 
 // --- floor and background ------------------------------------------------------------------------
-// Both use the same background colour, so that the floor fades into it without blending. `spot`
-// goes from -1 to 1 over the picture.
+// Both use the same background colour, so that the floor fades into it without blending.
+// `in_picture` goes from -1 to 1 over the picture.
 inline constexpr const char* kBackground = R"(#version 330 core
 uniform vec3 sky_top;
 uniform vec3 sky_bottom;
@@ -274,8 +275,9 @@ uniform float band_px;
 out vec4 shown;
 vec2 picture_px() { return gl_FragCoord.xy + vec2(0.0, band_px); }
 vec3 background() {
-  vec2 spot = picture_px() / size_px * 2.0 - 1.0;
-  return mix(sky_bottom, sky_top, 0.5 + 0.5 * spot.y) * (1.0 - vignette * dot(spot, spot));
+  vec2 in_picture = picture_px() / size_px * 2.0 - 1.0;
+  return mix(sky_bottom, sky_top, 0.5 + 0.5 * in_picture.y) *
+         (1.0 - vignette * dot(in_picture, in_picture));
 }
 // Half a step of noise, against bands.
 void show(vec3 colour) {
@@ -286,8 +288,8 @@ void show(vec3 colour) {
 
 inline constexpr const char* kSkyVertex = R"(#version 330 core
 void main() {
-  vec2 spot = vec2(float((gl_VertexID & 1) * 4), float((gl_VertexID >> 1) * 4)) - 1.0;
-  gl_Position = vec4(spot, 1.0, 1.0);
+  vec2 in_picture = vec2(float((gl_VertexID & 1) * 4), float((gl_VertexID >> 1) * 4)) - 1.0;
+  gl_Position = vec4(in_picture, 1.0, 1.0);
 }
 )";
 
@@ -359,7 +361,7 @@ void main() { show_floor(world, 1.0, 0.0, 0.0); }
 )";
 
 inline constexpr const char* kGroundVertex = R"(#version 330 core
-layout(location = 0) in vec3 spot;
+layout(location = 0) in vec3 vertex_m;
 layout(location = 1) in vec3 normal_in;
 layout(location = 2) in vec2 edges_in;
 uniform mat4 to_clip;
@@ -374,7 +376,7 @@ out vec3 place;
 out vec3 normal;
 out vec2 edges;  // metres to a riser's upper and to its lower edge
 void main() {
-  place = spot + moved;
+  place = vertex_m + moved;
   normal = normal_in;
   edges = edges_in;
   from_focus = place.xz - focus;
@@ -419,7 +421,7 @@ layout(location = 2) in vec3 b;
 layout(location = 3) in vec4 colour_in;
 uniform mat4 to_clip;
 uniform vec2 size_px;
-out vec2 spot;
+out vec2 along_aside_px;
 flat out float span;
 flat out float radius;
 flat out vec4 colour;
@@ -429,7 +431,7 @@ void main() {
   colour = colour_in;
   radius = a_radius.w;
   span = 0.0;
-  spot = vec2(0.0);
+  along_aside_px = vec2(0.0);
   gl_Position = vec4(2.0, 2.0, 2.0, 1.0);
   if (from.w < kNear && to.w < kNear) return;  // behind the eye
   if (from.w < kNear) from = mix(from, to, (kNear - from.w) / (to.w - from.w));
@@ -440,21 +442,21 @@ void main() {
   vec2 u = span > 1e-3 ? along / span : vec2(1.0, 0.0);
   float reach = radius + 1.0;
   bool at_end = (gl_VertexID & 1) == 1;
-  spot = vec2(at_end ? span + reach : -reach, (gl_VertexID >> 1) == 1 ? reach : -reach);
-  vec2 moved = u * (at_end ? reach : -reach) + vec2(-u.y, u.x) * spot.y;
+  along_aside_px = vec2(at_end ? span + reach : -reach, (gl_VertexID >> 1) == 1 ? reach : -reach);
+  vec2 moved = u * (at_end ? reach : -reach) + vec2(-u.y, u.x) * along_aside_px.y;
   vec3 place = at_end ? end : start;
   gl_Position = vec4(place.xy + moved * 2.0 / size_px, place.z, 1.0);
 }
 )";
 
 inline constexpr const char* kLineFragment = R"(#version 330 core
-in vec2 spot;
+in vec2 along_aside_px;
 flat in float span;
 flat in float radius;
 flat in vec4 colour;
 out vec4 shown;
 void main() {
-  float off = length(vec2(spot.x - clamp(spot.x, 0.0, span), spot.y));
+  float off = length(vec2(along_aside_px.x - clamp(along_aside_px.x, 0.0, span), along_aside_px.y));
   float cover = clamp(radius + 0.5 - off, 0.0, 1.0);
   if (cover <= 0.0) discard;
   float round = 1.0 - 0.28 * smoothstep(0.25, 1.0, off / max(radius, 0.5));

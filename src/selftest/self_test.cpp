@@ -2,11 +2,6 @@
 
 #include <fmt/chrono.h>
 #include <fmt/format.h>
-#include <grp.h>
-#include <pwd.h>
-#include <sys/stat.h>
-#include <sys/utsname.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -22,11 +17,11 @@
 #include <thread>
 #include <utility>
 
-#include "base/files.h"
 #include "base/numeric.h"
+#include "base/shown_number.h"
 #include "base/text.h"
-#include "drivers/posix.h"
 #include "drivers/system_nodes.h"
+#include "drivers/system_users.h"
 #include "gaitpad/decode.h"
 #include "gaitpad/limbs.h"
 #include "gaitpad/live.h"
@@ -36,6 +31,8 @@
 #include "stick/guide.h"
 #include "stick/new_values.h"
 #include "stick/pad_analysis.h"
+#include "system/clock.h"
+#include "system/whole_file.h"
 
 namespace gaitpad {
 namespace {
@@ -233,25 +230,22 @@ std::string installed_rule() {
 }
 
 ordered_json permissions(const std::string& node) {
-  struct stat status = {};
-  if (::stat(node.c_str(), &status) != 0) return nullptr;
-  const passwd* owner = ::getpwuid(status.st_uid);
-  const group* owners = ::getgrgid(status.st_gid);
-  return {{"mode", fmt::format("{:04o}", status.st_mode & 07777u)},
-          {"owner", owner != nullptr ? owner->pw_name : std::to_string(status.st_uid)},
-          {"group", owners != nullptr ? owners->gr_name : std::to_string(status.st_gid)},
+  const auto rights = node_rights(node);
+  if (!rights) return nullptr;
+  return {{"mode", fmt::format("{:04o}", rights->mode)},
+          {"owner", rights->owner},
+          {"group", rights->group},
           {"problem", access_problem(node)}};
 }
 
 ordered_json system_facts() {
-  utsname system = {};
-  ::uname(&system);
+  const KernelName kernel = kernel_name();
   const std::string rule = installed_rule();
-  return {{"kernel", system.release},
-          {"machine", system.machine},
+  return {{"kernel", kernel.release},
+          {"machine", kernel.machine},
           {"distribution", distribution()},
           {"udev_rule", rule.empty() ? ordered_json(nullptr) : ordered_json(rule)},
-          {"is_root", ::geteuid() == 0}};
+          {"is_root", is_root()}};
 }
 
 // The controls that a pad has, and the requests to operate them.
@@ -412,7 +406,7 @@ class SelfTest {
 
 std::optional<Error> SelfTest::find_pad() {
   if (is_recording(options_.selector.pad))
-    return Error{options_.selector.pad + ": is a recording; the test needs the pad itself"};
+    return Error{options_.selector.pad + ": a recording, but the test needs the pad itself"};
   auto all = pad_sightings(options_.files, options_.selector, Drivers::all);
   if (!all) return all.error();
   auto mine = matching_pads(*all, options_.selector);
@@ -568,7 +562,8 @@ bool SelfTest::turn_stick(OpenPad& pad, ordered_json& driver) {
     }
     const int count = std::popcount(seen);
     p.done = static_cast<double>(count) / kDirections;
-    p.seen = fmt::format("{} of {} directions, {:+.2f} {:+.2f}", count, kDirections, x, y);
+    p.seen = fmt::format("{} of {} directions, {} {}", count, kDirections, signed_number(x, 2),
+                         signed_number(y, 2));
     return count == kDirections && is_at_rest(pad.state());
   });
   driver["rate"] = pad.rate();
@@ -580,7 +575,7 @@ bool SelfTest::turn_stick(OpenPad& pad, ordered_json& driver) {
                           {"min_y", min_y},
                           {"max_y", max_y}};
   if (answer == Answer::no)
-    fail(fmt::format("through {} the left stick is not shown as it was turned",
+    fail(fmt::format("through {} the left stick does not show how it was turned",
                      driver["driver"].get<std::string>()));
   return true;
 }
@@ -780,7 +775,8 @@ bool SelfTest::walk_straight() {
     std::this_thread::sleep_for(kLook);
     bool is_new = false;
     const SessionFrame& frame = (*session)->latest(is_new);
-    p.seen = fmt::format("stick {:+.2f} {:+.2f}", frame.stick.left.x, frame.stick.left.y);
+    p.seen = fmt::format("stick {} {}", signed_number(frame.stick.left.x, 2),
+                         signed_number(frame.stick.left.y, 2));
     // The walk was not straight ahead: measure from the beginning.
     if (static_cast<double>(frame.stick.left.y) < kForwardStick) {
       first_tick = -1, frames = straight = 0;

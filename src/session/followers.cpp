@@ -13,8 +13,8 @@ namespace {
 
 // The formation: rows behind the first character; every second row is shifted by half a place.
 constexpr double kRow_m = 1.2, kPlace_m = 1.2;
-constexpr double kWidth_m = 1.5;   // width of the formation, multiplied by sqrt(number of members)
-constexpr double kAstray_m = 0.1;  // random offset, so that rows are not straight
+constexpr double kWidth_m = 1.5;  // width of the formation, multiplied by sqrt(number of members)
+constexpr double kMostOffset_m = 0.1;  // of a random offset, so that rows are not straight
 
 // Keeps a member in its place of the formation. It walks faster by this share for each metre that
 // it is behind, slower if it is ahead (stairs slow the first character down earlier), and turns
@@ -34,11 +34,11 @@ std::uint64_t mixed_bits(std::uint64_t number) noexcept {
   return x ^ (x >> 31);
 }
 // The n-th number in [0, 1) of a member.
-double share_of(std::uint64_t member, std::uint64_t n) noexcept {
+double random_number(std::uint64_t member, std::uint64_t n) noexcept {
   return static_cast<double>(mixed_bits(member * 8 + n) >> 11) * 0x1p-53;
 }
 int pick(std::uint64_t member, std::uint64_t n, std::size_t count) noexcept {
-  return static_cast<int>(share_of(member, n) * static_cast<double>(count));
+  return static_cast<int>(random_number(member, n) * static_cast<double>(count));
 }
 
 vec3 place_of(int member, int count, const vec3& middle_m) noexcept {
@@ -46,12 +46,12 @@ vec3 place_of(int member, int count, const vec3& middle_m) noexcept {
       1, static_cast<int>(std::ceil(std::sqrt(static_cast<double>(count)) * kWidth_m / kPlace_m)));
   const int row = member / columns, column = member % columns;
   const int in_row = std::min(columns, count - row * columns);
-  const auto astray_m = [member](std::uint64_t n) {
-    return (2.0 * share_of(static_cast<std::uint64_t>(member), n) - 1.0) * kAstray_m;
+  const auto offset_m = [member](std::uint64_t n) {
+    return (2.0 * random_number(static_cast<std::uint64_t>(member), n) - 1.0) * kMostOffset_m;
   };
   const double from_middle = column - 0.5 * (in_row - 1) + (row % 2 == 0 ? 0.25 : -0.25);
-  return middle_m + kLeft * (from_middle * kPlace_m + astray_m(4)) -
-         kForward * ((row + 1) * kRow_m + astray_m(5));
+  return middle_m + kLeft * (from_middle * kPlace_m + offset_m(4)) -
+         kForward * ((row + 1) * kRow_m + offset_m(5));
 }
 
 // Indices of the styles with different names; of equal names the first one counts.
@@ -83,8 +83,8 @@ Character follower_build(const Character& first, int number) {
   const auto n = static_cast<std::uint64_t>(number) + 0x10000;
   Character build = first;
   build.skeleton.clear();
-  build.scale *= 0.88 + 0.24 * share_of(n, 0);
-  build.leg_ratio *= 0.95 + 0.1 * share_of(n, 1);
+  build.scale *= 0.88 + 0.24 * random_number(n, 0);
+  build.leg_ratio *= 0.95 + 0.1 * random_number(n, 1);
   return build;
 }
 
@@ -165,7 +165,7 @@ GaitParams Followers::params_of(int member, const GaitParams& first, const WalkS
   const vec3 off_m = (first_state.root.place_m - first_m_) -
                      (root.place_m - start_m_[static_cast<std::size_t>(member)]);
   const double behind_m = glm::dot(vec3(off_m.x, 0.0, off_m.z), ahead);
-  // Distance from the way, + to the left.
+  // Sideways distance to its place, + to the left.
   const double beside_m = off_m.x * ahead.z - off_m.z * ahead.x;
   const double speed = speed_m_s(first);  // speed_m_s() is at least 0
 

@@ -12,7 +12,7 @@ namespace gaitpad {
 struct HumanoidBone {
   const char* name;
   int joint = -1;           // index of the joint in the skeleton
-  int parent = -1;          // in Humanoid::bones, before this one; -1: a child of the root
+  int parent = -1;          // index in Humanoid::bones, below this bone's; -1: the root
   quat t_pose = kIdentity;  // the joint's world rotation in the T pose
 };
 struct Humanoid {

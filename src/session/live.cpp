@@ -10,14 +10,14 @@
 #include <thread>
 #include <utility>
 
-#include "drivers/posix.h"
 #include "drivers/realtime.h"
-#include "drivers/threads.h"
 #include "gaitpad/keyboard.h"
 #include "session/live_loop.h"
 #include "session/pad_forward.h"
 #include "session/pose_stream.h"
 #include "session/recorded_session.h"
+#include "system/clock.h"
+#include "system/threads.h"
 
 namespace gaitpad {
 
@@ -94,7 +94,7 @@ std::optional<Error> LiveSession::Impl::open_recording() {
 }
 
 void LiveSession::Impl::start_loop() {
-  // Recorded as a command, so that a replay needs no option.
+  // The option is recorded as a command, so that a replay does not need it.
   if (spec.walk.stick == StickMeans::points) pads->command("stick points");
   const LiveLoop::Options options = {rate_hz, spec.live.rumble, spec.live.frame_ticks,
                                      stream ? &stream->newest() : nullptr,
@@ -140,13 +140,12 @@ void LiveSession::Impl::stop_loop() {
 
 void LiveSession::Impl::remark_on_time(const LiveStatus& now) {
   if (now.standstills > remarked.standstills) {
-    remarks.push_back(
-        fmt::format("the program stood still; the session goes on {:.1f} s later than the time",
-                    now.skipped_s));
+    remarks.push_back(fmt::format(
+        "the program stood still; the session is {:.1f} s behind real time", now.skipped_s));
   }
   if (now.overloads > 0 && remarked.overloads == 0) {
     remarks.push_back(fmt::format(
-        "a tick takes {:.0f} us and there are {} a second: the session is slower than the time; "
+        "a tick takes {:.0f} us and there are {} a second: the session runs slower than real time; "
         "fewer characters or a lower --rate help",
         now.tick_us_median, rate_hz));
   }
@@ -295,8 +294,8 @@ bool LiveSession::has_ended() const noexcept { return impl_->loop->has_ended(); 
 
 LiveStatus LiveSession::status() const noexcept {
   LiveStatus status = impl_->loop->status();
-  // After an overload the loop runs at normal priority.
   if (impl_->stream) status.streamed = impl_->stream->frames();
+  // After an overload the loop runs at normal priority.
   status.time_policy = status.overloads > 0 ? "normal priority" : impl_->time_policy;
   const std::lock_guard lock(impl_->mutex);
   status.pads = impl_->final ? *impl_->final : impl_->pads->counts();

@@ -6,9 +6,9 @@
 #include <cmath>
 #include <utility>
 
-#include "drivers/posix.h"
 #include "drivers/realtime.h"
 #include "gaitpad/decode.h"
+#include "system/clock.h"
 
 namespace gaitpad {
 
@@ -209,9 +209,11 @@ bool TickReports::is_known(std::uint16_t device) const noexcept {
 
 namespace {
 
-constexpr std::int64_t kNap_ns = 20'000'000;  // longest sleep between two looks at the orders
-constexpr std::size_t kSamples = 1024;        // samples that wait to be taken: 4 s
-constexpr std::size_t kUsed = 4096;           // reports that wait for a frame: over 1 s
+// Longest sleep: then pace, steps and stop are read again.
+constexpr std::int64_t kNap_ns = 20'000'000;
+constexpr std::size_t kSamples = 1024;  // samples that wait to be taken: 4 s
+constexpr std::size_t kUsed = 4096;     // reports that wait for a frame: over 1 s
+// latest_due(): the longest wait for a due tick, and its parts.
 constexpr std::int64_t kDueWait_ns = 2'000'000, kDueNap_ns = 100'000;
 constexpr std::chrono::milliseconds kBeat{80};
 constexpr double kFullBeatSpeed_m_s = 1.5;
@@ -263,7 +265,7 @@ void LiveLoop::run() noexcept {
     if (has_steps) {
       --steps_left_;
     } else {
-      keep_time(begin_ns);
+      note_lateness(begin_ns);
     }
     run_tick(begin_ns, has_steps ? begin_ns : clock_.due_ns(tick_));
   }
@@ -278,11 +280,11 @@ void LiveLoop::advance(int ticks) noexcept {
 // Returns false if the loop must stop.
 bool LiveLoop::wait_for_tick() noexcept {
   while (!is_stopping_.load(kRelaxed)) {
-    follow_orders();
+    read_pace_and_steps();
     drop_recording();
     const std::int64_t due = due_ns(), time_ns = now_ns();
     if (time_ns >= due) return true;
-    if (clock_.pace() == 0.0) look_at_pads(time_ns);
+    if (clock_.pace() == 0.0) show_new_reports(time_ns);
     sleep_until(std::min(due, time_ns + kNap_ns));
   }
   return false;
@@ -298,7 +300,7 @@ void LiveLoop::step(int ticks) noexcept {
 
 // Reads the steps first: if a thread sets the pace to 0 and then asks for steps, they run at pace
 // 0.
-void LiveLoop::follow_orders() noexcept {
+void LiveLoop::read_pace_and_steps() noexcept {
   const std::int64_t steps = wanted_steps_.exchange(0, std::memory_order_acquire);
   const double pace = wanted_pace_.load(std::memory_order_acquire);
   if (pace != clock_.pace()) {
@@ -325,11 +327,11 @@ std::int64_t LiveLoop::due_ns() const noexcept {
 }
 
 // While ticks stand still, the frame shows new reports although no tick has used them.
-void LiveLoop::look_at_pads(std::int64_t now_ns) noexcept {
+void LiveLoop::show_new_reports(std::int64_t now_ns) noexcept {
   if (reports_.gather(now_ns)) publish(shown_ns_);
 }
 
-void LiveLoop::keep_time(std::int64_t now_ns) noexcept {
+void LiveLoop::note_lateness(std::int64_t now_ns) noexcept {
   late_times_.add(now_ns - clock_.due_ns(tick_));
   const TickClock::Begin begin = clock_.begin(tick_, now_ns);
   if (begin == TickClock::Begin::on_time) return;
@@ -384,7 +386,7 @@ void LiveLoop::use(std::span<const Report> reports, std::int64_t now_ns) noexcep
     if (report.kind != ReportKind::input) continue;
     const bool is_real_time = clock_.pace() == 1.0 && report.time_ns >= real_time_ns_;
     if (is_real_time) wait_times_.add(now_ns - report.time_ns);
-    // If the ring is full, nobody shows frames: the report is left out of the measurement.
+    // The ring is full if no viewer shows frames: then the report is left out of the measurement.
     static_cast<void>(used_.push({{tick_, report.time_ns, now_ns, report.device}, is_real_time}));
   }
 }

@@ -50,15 +50,13 @@ class TickClock {
     on_time,  // the tick began at most one tick late
     late,
     // More than a second late: this tick is due now, and the clock restarts with it.
-    after_standstill,  // much too late all at once: the process was stopped
-    after_overload,    // late by degrees: ticks take longer than their time
+    after_standstill,  // suddenly, because the process was stopped
+    after_overload,    // gradually, because ticks take longer than their time
   };
   // Must not be called at pace 0.
   Begin begin(std::int64_t tick, std::int64_t now_ns) noexcept;
-  std::int64_t skipped_ns() const noexcept {
-    return skipped_ns_;
-  }  // total time by which the clock
-     // was set forward
+  // Total time by which the clock was set forward.
+  std::int64_t skipped_ns() const noexcept { return skipped_ns_; }
 
  private:
   void run_anew(std::int64_t tick, std::int64_t due_ns) noexcept;
@@ -76,7 +74,7 @@ class TickClock {
 class TimeHistogram {
  public:
   void add(std::int64_t time_ns) noexcept;  // Counts a time; a negative one counts as 0.
-  // Smallest duration that this share of all does not exceed, within 1 %; 0 if there is none.
+  // Smallest duration that this share of all does not exceed, within 1 %; 0 without durations.
   double percentile_us(double share) const noexcept;
   double median_us() const noexcept { return percentile_us(0.5); }
   double max_us() const noexcept;
@@ -101,7 +99,8 @@ class TimeHistogram {
 // gathered, the rest stays in the PadStream, which keeps the newest state of each device.
 class TickReports {
  public:
-  static constexpr std::size_t kMaxInTick = 256;  // more reports wait for the next tick
+  // Most reports that a tick uses; the others wait for the next.
+  static constexpr std::size_t kMaxInTick = 256;
 
   // `pads` and `simulation` must outlive this object.
   TickReports(PadStream& pads, Simulation& simulation);
@@ -157,14 +156,14 @@ class LiveLoop {
   LiveLoop(const Options& options, const Script& script, Simulation& simulation, PadStream& pads,
            Recording* recording);
 
-  // Use either run(), which runs ticks by the clock on the calling thread until stop(),
+  // Use either run(), which runs ticks by the clock on the calling thread until stop(); or, without
+  // a clock, begin() and then advance() at any time.
   void run() noexcept;
-  // or, without a clock, begin() and then advance() at any time.
   void begin() noexcept;
   void advance(int ticks) noexcept;
   void stop() noexcept { is_stopping_.store(true, std::memory_order_relaxed); }
 
-  // All from one thread; see LiveSession.
+  // Call these from one thread, the viewing one; see LiveSession.
   const SessionFrame& latest(bool& is_new) noexcept;
   const SessionFrame& latest_due() noexcept;
   void end_frame(FrameEnd end) noexcept;
@@ -184,7 +183,7 @@ class LiveLoop {
   std::int64_t recorded_ticks() const noexcept {
     return recorded_ticks_.load(std::memory_order_acquire);
   }
-  // Any thread.
+  // Call these from any thread.
   bool has_ended() const noexcept { return has_ended_.load(std::memory_order_relaxed); }
   bool is_known(std::uint16_t device) const noexcept { return reports_.is_known(device); }
   // Fills the fields of LiveStatus that the loop itself knows.
@@ -192,11 +191,11 @@ class LiveLoop {
 
  private:
   bool wait_for_tick() noexcept;
-  void follow_orders() noexcept;
+  void read_pace_and_steps() noexcept;
   void drop_recording() noexcept;
   std::int64_t due_ns() const noexcept;
-  void look_at_pads(std::int64_t now_ns) noexcept;
-  void keep_time(std::int64_t now_ns) noexcept;
+  void show_new_reports(std::int64_t now_ns) noexcept;
+  void note_lateness(std::int64_t now_ns) noexcept;
   void run_tick(std::int64_t now_ns, std::int64_t shown_ns) noexcept;
   void follow_script(std::int64_t now_ns) noexcept;
   void use(std::span<const Report> reports, std::int64_t now_ns) noexcept;
@@ -217,8 +216,8 @@ class LiveLoop {
   std::int64_t steps_left_ = 0;  // ticks to run at pace 0
   std::int64_t last_begin_ns_ = 0;
   std::int64_t shown_ns_ = 0;  // SessionFrame::time_ns of the last tick
-  std::int64_t real_time_ns_ =
-      0;  // time of the last change of pace; waits that began earlier are not measured
+  // Time of the last change of pace; waits that began earlier are not measured.
+  std::int64_t real_time_ns_ = 0;
   std::int64_t ticks_behind_end_ = 0;
   Latest<SessionFrame> frames_;
   TickSample sample_;
@@ -227,7 +226,9 @@ class LiveLoop {
   // Reports that a tick has used and no frame has shown yet.
   struct UsedReport {
     ReportTime time;
-    bool is_real_time = false;  // the report arrived and was used at pace 1
+    // False: the session was not at real-time pace all the way from the report's arrival to this
+    // tick.
+    bool is_real_time = false;
   };
   SpscRing<UsedReport> used_;
   // Tick and time of the last frame read; viewing thread only.

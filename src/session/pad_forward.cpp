@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "drivers/threads.h"
+#include "system/threads.h"
 
 namespace gaitpad {
 

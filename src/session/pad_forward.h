@@ -10,10 +10,10 @@
 #include <thread>
 
 #include "base/latest.h"
-#include "drivers/posix.h"
 #include "drivers/virtual_pad.h"
 #include "gaitpad/pads.h"
 #include "gaitpad/result.h"
+#include "system/descriptors.h"
 
 namespace gaitpad {
 

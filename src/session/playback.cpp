@@ -112,7 +112,8 @@ std::optional<std::string> mark_of(const Trace& trace, const TraceEvent& event) 
     case ReportKind::command: {
       const char* text = reinterpret_cast<const char*>(trace.bytes.data()) + event.first_byte;
       const std::string_view command(text, event.size);
-      if (command == "mark") return std::nullopt;  // long pauses are recorded with one
+      // A mark without a name fills a long pause of a recording.
+      if (command == "mark") return std::nullopt;
       return std::string(command);
     }
     case ReportKind::added:
@@ -184,7 +185,7 @@ struct Playback::Impl {
     copy_frame(run.simulation(), frame);
   }
 
-  bool goes_on(std::int64_t ticks) const;
+  bool can_run_to(std::int64_t ticks) const;
   void jump(std::int64_t ticks);
   void step();
 
@@ -197,7 +198,7 @@ struct Playback::Impl {
 
   TraceRun run;
   Snapshots snapshots;
-  std::int64_t first_sample = 0;  // earlier ticks are in no history that is needed
+  std::int64_t first_sample = 0;  // samples of earlier ticks are not needed
   std::deque<TickSample> samples;
   SessionFrame frame;
 };
@@ -211,7 +212,7 @@ void Playback::Impl::name_later_styles(const std::vector<Style>& styles) {
 
 // True if the run can continue to `ticks`. False also if its samples begin too late: they were
 // begun for a later place.
-bool Playback::Impl::goes_on(std::int64_t ticks) const {
+bool Playback::Impl::can_run_to(std::int64_t ticks) const {
   const std::int64_t ahead = ticks - run.ticks();
   return ahead >= 0 && ahead <= kHistoryTicks && first_sample <= history_of(ticks);
 }
@@ -256,7 +257,7 @@ bool Playback::seek(std::int64_t tick, int budget) {
   Impl& impl = *impl_;
   if (ticks() == 0) return true;
   const std::int64_t wanted = std::clamp<std::int64_t>(tick, 0, ticks() - 1) + 1;
-  if (!impl.goes_on(wanted)) impl.jump(wanted);
+  if (!impl.can_run_to(wanted)) impl.jump(wanted);
   for (; budget > 0 && impl.run.ticks() < wanted; --budget) impl.step();
   copy_frame(impl.run.simulation(), impl.frame);
   return impl.run.ticks() == wanted;

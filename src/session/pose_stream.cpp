@@ -1,23 +1,21 @@
 #include "session/pose_stream.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <netdb.h>
-#include <sys/socket.h>
 #ifdef GAITPAD_HAS_OSC
 #include <lo/lo.h>
 #endif
 
 #include <algorithm>
 #include <chrono>
-#include <cstring>
 #include <iterator>
 #include <nlohmann/json.hpp>
 #include <utility>
 
 #include "base/text.h"
-#include "drivers/threads.h"
 #include "session/live_loop.h"
+#include "system/clock.h"
+#include "system/datagrams.h"
+#include "system/threads.h"
 
 namespace gaitpad {
 
@@ -171,27 +169,6 @@ void copy_tick(const Simulation& simulation, StreamedTick& streamed) noexcept {
   }
 }
 
-namespace {
-
-// A non-blocking socket that sends to this address alone.
-Result<OwnedFd> socket_to(const std::string& host, int port) {
-  addrinfo hints{}, *found = nullptr;
-  hints.ai_socktype = SOCK_DGRAM;
-  const int status = ::getaddrinfo(host.c_str(), std::to_string(port).c_str(), &hints, &found);
-  if (status != 0) return Error{fmt::format("{}: {}", host, ::gai_strerror(status))};
-  const std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)> addresses(found, &::freeaddrinfo);
-  int error = 0;
-  for (const addrinfo* a = found; a != nullptr; a = a->ai_next) {
-    OwnedFd fd(::socket(a->ai_family, SOCK_DGRAM | SOCK_CLOEXEC | SOCK_NONBLOCK, 0));
-    if (fd.get() >= 0 && ::connect(fd.get(), a->ai_addr, a->ai_addrlen) == 0) return fd;
-    error = errno;
-  }
-  return Error{
-      fmt::format("{}:{}: nothing can be sent there: {}", host, port, std::strerror(error))};
-}
-
-}  // namespace
-
 Result<std::unique_ptr<PoseStream>> PoseStream::open(const std::string& text, int fps,
                                                      const Cast& cast) {
   const auto address = StreamAddress::parse(text);
@@ -204,7 +181,7 @@ Result<std::unique_ptr<PoseStream>> PoseStream::open(const std::string& text, in
     if (port > kLastPort)
       return Error{fmt::format("{}: {} characters need as many ports from there on", text,
                                cast.members.size())};
-    auto socket = socket_to(address->host, port);
+    auto socket = datagram_socket(address->host, port);
     if (!socket) return socket.error();
     stream->sources_.push_back(
         {member.character, member.model, humanoid_of(*member.model), std::move(*socket)});
@@ -244,7 +221,6 @@ void PoseStream::run() {
   }
 }
 
-// A missing or slow receiver is no error: the datagrams are lost.
 void PoseStream::send(const StreamedTick& tick) {
   for (std::size_t i = 0; i < sources_.size(); ++i) {
     const Source& source = sources_[i];
@@ -262,8 +238,7 @@ void PoseStream::send(const StreamedTick& tick) {
     const bool is_json = format_ == StreamAddress::Format::json;
     for (const std::string& datagram :
          is_json ? std::vector{json_datagram(frame)} : osc_datagrams(frame)) {
-      static_cast<void>(
-          ::send(source.socket.get(), datagram.data(), datagram.size(), MSG_NOSIGNAL));
+      send_datagram(source.socket, datagram);
     }
   }
   frames_.fetch_add(1, std::memory_order_relaxed);

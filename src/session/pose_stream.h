@@ -16,10 +16,10 @@
 #include <vector>
 
 #include "base/latest.h"
-#include "drivers/posix.h"
 #include "gaitpad/result.h"
 #include "gaitpad/session_frame.h"
 #include "session/humanoid.h"
+#include "system/descriptors.h"
 
 namespace gaitpad {
 

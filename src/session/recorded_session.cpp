@@ -25,7 +25,7 @@ std::string held_name(const std::string& path, const std::vector<std::string>& f
   return name;
 }
 
-// Path of the file with an entry for the device; empty if there is none.
+// Path of the file with an entry for the device; empty if no file has one.
 std::string pad_file_of(const PadOverrides& overrides, const DeviceInfo& info) {
   const PadOverride* own = find_override(overrides, info);
   return own == nullptr ? "" : own->origin.substr(0, own->origin.rfind(':'));

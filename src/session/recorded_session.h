@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "base/files.h"
+#include "files/input_files.h"
 #include "gaitpad/pad_overrides.h"
 #include "gaitpad/session_spec.h"
 #include "gaitpad/trace.h"

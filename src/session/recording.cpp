@@ -1,9 +1,6 @@
 #include "session/recording.h"
 
-#include <fcntl.h>
 #include <fmt/format.h>
-#include <sys/file.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
@@ -14,11 +11,12 @@
 #include <string_view>
 #include <utility>
 
-#include "base/files.h"
 #include "base/text.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/descriptor.h"
 #include "session/live_loop.h"
+#include "system/clock.h"
+#include "system/whole_file.h"
 
 namespace gaitpad {
 namespace fs = std::filesystem;
@@ -63,7 +61,7 @@ void RecordingLines::clock(std::int64_t tick, std::int64_t time_ns, double pace)
 }
 
 bool RecordingLines::add(std::int64_t tick, const Report& report) {
-  if (is_over(tick)) return false;
+  if (is_full_before(tick)) return false;
   const bool is_command = report.kind == ReportKind::command;
   // A blank command is left out.
   if (is_command && trimmed(text_of(report), " \t\r\n").empty()) return true;
@@ -83,14 +81,14 @@ bool RecordingLines::add(std::int64_t tick, const Report& report) {
 }
 
 void RecordingLines::style(std::int64_t tick, const Style& style) {
-  if (is_over(tick)) return;
+  if (is_full_before(tick)) return;
   bridge(tick, latest_us_);
   writer_.tick(tick);
   writer_.file("styles/" + style.name + ".toml", style_text(style));
 }
 
-// Records a tick completely or not at all.
-bool RecordingLines::is_over(std::int64_t tick) {
+// True if the recording is full before this tick: a tick is recorded completely or not at all.
+bool RecordingLines::is_full_before(std::int64_t tick) {
   if (is_full_ || (rate_hz_ && events_ > 0 && tick == tick_)) return is_full_;
   if (bytes_ + text_size() < limits_.bytes && events_ < limits_.events) return false;
   is_full_ = true;
@@ -186,20 +184,6 @@ constexpr std::size_t kRingItems = 4096;
 constexpr std::chrono::milliseconds kPause{20};  // pause between two looks at the ring
 constexpr std::size_t kWriteBytes = std::size_t{1} << 18;
 
-// Creates and locks the file; replaces one that a killed session has left.
-Result<OwnedFd> opened_part(const std::string& part) {
-  // O_NONBLOCK: a pipe without a reader is an error instead of a wait.
-  OwnedFd left(::open(part.c_str(), O_WRONLY | O_CLOEXEC | O_NOFOLLOW | O_NONBLOCK));
-  if (left.get() >= 0 && ::flock(left.get(), LOCK_EX | LOCK_NB) != 0)
-    return Error{part + ": another session is recording into it"};
-  if (left.get() < 0 && errno != ENOENT) return write_error(part, errno);
-  ::unlink(part.c_str());
-  OwnedFd file(::open(part.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC | O_NOFOLLOW, 0666));
-  if (file.get() < 0) return write_error(part, errno);
-  if (::flock(file.get(), LOCK_EX | LOCK_NB) != 0) return write_error(part, errno);
-  return file;
-}
-
 }  // namespace
 
 Result<std::unique_ptr<Recording>> Recording::start(const Options& options,
@@ -207,20 +191,20 @@ Result<std::unique_ptr<Recording>> Recording::start(const Options& options,
   std::error_code ignored;
   const fs::file_status status = fs::status(options.path, ignored);
   if (fs::exists(status) && !fs::is_regular_file(status)) {
-    return Error{options.path + ": this is no file, a recording cannot take its place"};
+    return Error{options.path + ": not a regular file; choose another name"};
   }
-  auto file = opened_part(options.path + ".part");
-  if (!file) return file.error();
-  std::unique_ptr<Recording> recording(
-      new Recording(options, std::move(devices), std::move(*file)));
+  std::unique_ptr<Recording> recording(new Recording(options, std::move(devices)));
+  const std::string& part = recording->part_;
+  const int problem = recording->file_.create(part);
+  if (problem == EWOULDBLOCK) return Error{part + ": another session is recording into it"};
+  if (problem != 0) return write_error(part, problem);
   recording->thread_ = std::thread([r = recording.get()] { r->run(); });
   return recording;
 }
 
-Recording::Recording(const Options& options, RecordedDevices devices, OwnedFd file)
+Recording::Recording(const Options& options, RecordedDevices devices)
     : path_(options.path),
       part_(options.path + ".part"),
-      file_(std::move(file)),
       lines_(options.rate_hz, std::move(devices), options.limits, options.session),
       ring_(kRingItems) {}
 
@@ -229,7 +213,8 @@ Recording::~Recording() { end_thread(); }
 void Recording::add(std::int64_t tick, const Report& report) noexcept {
   Item item;
   item.tick = tick;
-  copy_used_bytes(report, now_ns(), item.report);  // a future time would end the recording
+  // Not later than now: a time far ahead would end the recording.
+  copy_used_bytes(report, now_ns(), item.report);
   if (!ring_.push(item)) lost_.fetch_add(1, std::memory_order_relaxed);
 }
 
@@ -281,21 +266,9 @@ void Recording::drain_ring() {
   }
 }
 
+// Half a line would damage the trace. If the file still ends with one, `replay --lenient` skips it.
 void Recording::write(std::string_view text) {
-  if (problem_ != 0) return;
-  const auto whole = static_cast<std::int64_t>(text.size());
-  while (!text.empty()) {
-    const ssize_t count = ::write(file_.get(), text.data(), text.size());
-    if (count >= 0) {
-      text.remove_prefix(static_cast<std::size_t>(count));
-    } else if (errno != EINTR) {
-      problem_ = errno;
-      // Half a line would damage the trace. If truncation fails, `replay --lenient` skips the line.
-      static_cast<void>(!::ftruncate(file_.get(), written_));
-      return;
-    }
-  }
-  written_ += whole;
+  if (problem_ == 0) problem_ = file_.append(text);
 }
 
 void Recording::end_thread() {
@@ -314,7 +287,8 @@ Result<std::vector<std::string>> Recording::finish(std::int64_t ticks, std::int6
   write(lines_.take_text());
   if (auto failed = problem()) return *failed;
   if (!lines_.has_devices()) {
-    ::unlink(part_.c_str());
+    std::error_code ignored;
+    fs::remove(part_, ignored);
     return Error{path_ + ": nothing was recorded: there was no pad"};
   }
   if (std::rename(part_.c_str(), path_.c_str()) != 0) return write_error(path_, errno);

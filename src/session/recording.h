@@ -17,11 +17,11 @@
 #include <vector>
 
 #include "base/spsc_ring.h"
-#include "drivers/posix.h"
 #include "gaitpad/report.h"
 #include "gaitpad/result.h"
 #include "gaitpad/style.h"
 #include "gaitpad/trace.h"
+#include "system/growing_file.h"
 
 namespace gaitpad {
 
@@ -42,7 +42,7 @@ struct RecordedSession {
   std::optional<Pace> pace;
   std::vector<std::string> options;  // texts of `O:` lines, as in Trace::options
   std::vector<TraceFile> files;
-  // The file of `config/pads` with an entry for the pad; null if there is none. May be empty.
+  // The file of `config/pads` with an entry for the pad; null if no file has one. May be empty.
   std::function<const TraceFile*(const DeviceInfo&)> pad_file;
 };
 
@@ -81,7 +81,7 @@ class RecordingLines {
     bool is_described = false;
     std::int64_t latest_us = 0;
   };
-  bool is_over(std::int64_t tick);
+  bool is_full_before(std::int64_t tick);
   void begin_time(std::int64_t time_ns);
   bool describe(std::uint16_t device);
   void bridge(std::int64_t tick, std::int64_t time_us);
@@ -141,15 +141,16 @@ class Recording {
  private:
   struct Item {
     std::int64_t tick = 0;
-    std::int64_t clock_ns = kNoClock;  // if it is set, the item is a clock() instead of a report
+    // Set: the item is the argument of a call of clock(), not a report.
+    std::int64_t clock_ns = kNoClock;
     double pace = 1.0;
-    // If they are set, the item is a styles().
+    // Set: the item holds the arguments of a call of styles().
     const std::vector<Style>*styles_before = nullptr, *styles = nullptr;
     Report report;
   };
   static constexpr std::int64_t kNoClock = -1;
 
-  Recording(const Options& options, RecordedDevices devices, OwnedFd file);
+  Recording(const Options& options, RecordedDevices devices);
   void run();
   void drain_ring();
   void write(std::string_view text);
@@ -157,8 +158,7 @@ class Recording {
   std::vector<std::string> remarks() const;
 
   std::string path_, part_;
-  OwnedFd file_;
-  std::int64_t written_ = 0;     // bytes of the whole lines that were written
+  GrowingFile file_;
   std::atomic<int> problem_{0};  // errno of the first write that failed
   RecordingLines lines_;
   SpscRing<Item> ring_;

@@ -22,8 +22,8 @@ struct Command {
     style,    // needs a name
     set,      // a style value; needs a name and a value
     gait,     // a gait parameter; needs a name and a value
-    release,  // `gait KEY stick`; needs a name
-    stick,    // `gait stick`, for all parameters
+    release,  // `gait KEY stick`: the stick sets the parameter again; needs a name
+    stick,    // `gait stick`: the stick sets all parameters again
     steers,   // `stick steers`
     points,   // `stick points`; value: the camera's heading, degrees
     restart,  // `reset`
@@ -43,8 +43,8 @@ std::optional<Command> parsed_command(std::string_view text) noexcept;
 std::optional<std::string> command_problem(std::string_view text,
                                            std::span<const std::string> styles, int characters);
 
-inline constexpr std::array<std::string_view, 2> kIkNames = {"paper",
-                                                             "robust"};  // names, indexed by IkMode
+// Names, indexed by IkMode.
+inline constexpr std::array<std::string_view, 2> kIkNames = {"paper", "robust"};
 
 inline constexpr std::size_t kMaxScriptEvents = 4096;
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "drivers/posix.h"
+#include "system/clock.h"
 
 namespace gaitpad {
 namespace {

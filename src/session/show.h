@@ -66,10 +66,8 @@ class Show {
   virtual void add_style(const Style&) {}
   virtual void rumble() {}
   virtual std::optional<Error> end_recording() { return std::nullopt; }
-  virtual bool has_ended() const noexcept {
-    return false;
-  }  // the recording that plays as the pad
-     // has ended
+  // True if the recording that plays as the pad has ended.
+  virtual bool has_ended() const noexcept { return false; }
   virtual const LiveStatus* status() { return nullptr; }
   // Playback only.
   virtual const Timeline* timeline() { return nullptr; }

@@ -7,8 +7,8 @@
 #include <string_view>
 #include <utility>
 
-#include "base/files.h"
 #include "base/text.h"
+#include "system/whole_file.h"
 
 namespace gaitpad {
 namespace fs = std::filesystem;
@@ -42,7 +42,7 @@ Result<std::fstream> OutputFiles::scratch() const {
   std::fstream stream(file->name_for_streams(),
                       std::ios::binary | std::ios::in | std::ios::out | std::ios::trunc);
   if (!stream) return write_error(file->path(), errno);
-  return stream;  // the stream keeps the file open, though the name goes now
+  return stream;  // the stream keeps the file open although its name is deleted now
 }
 
 std::optional<Error> OutputFiles::publish() {

@@ -9,7 +9,6 @@
 #include <string>
 #include <vector>
 
-#include "base/files.h"
 #include "gaitpad/bvh.h"
 #include "gaitpad/gltf.h"
 #include "gaitpad/result.h"
@@ -17,6 +16,7 @@
 #include "gaitpad/stick.h"
 #include "gaitpad/summary.h"
 #include "gaitpad/walk.h"
+#include "system/whole_file.h"
 
 namespace gaitpad {
 

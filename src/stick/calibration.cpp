@@ -18,12 +18,13 @@ double centred(const AxisCalibration& axis, double raw) noexcept {
   return offset >= 0.0 ? offset / (axis.max - axis.centre) : offset / (axis.centre - axis.min);
 }
 
-// Deflection >= 0 to response: 0 up to `inner`, 1 from `outer` on.
+// Deflection >= 0 to response: 0 up to `inner`, 1 from `outer` on, between them
+// t + curve (t^3 - t), where t grows evenly from 0 to 1.
 double response(double deflection, double inner, double outer, double curve) noexcept {
   if (deflection <= inner) return 0.0;
   if (deflection >= outer) return 1.0;
   const double t = std::min((deflection - inner) / (outer - inner), 1.0);
-  // t + curve (t^3 - t), in a form that rounding cannot take above 1.
+  // The same in a form that rounding cannot take above 1.
   return t * (1.0 - curve * (1.0 - t * t));
 }
 
@@ -106,7 +107,7 @@ double trigger_position(const TriggerCalibration& c, double raw) noexcept {
 
 namespace {
 
-// A range of values that must be in order and so far apart.
+// Checks that `high` exceeds `low` by `least` to `most`.
 std::optional<Error> span_problem(const std::string& what, double low, double high, double least,
                                   double most) {
   return range_problem(what, high - low, least, most);

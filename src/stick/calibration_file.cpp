@@ -104,7 +104,7 @@ void read_trigger(TomlTable& root, std::string_view key, TriggerCalibration& c) 
   }
 }
 
-// "*" or exactly four hex digits.
+// Reads "*" (any; -1) or exactly four hex digits.
 bool read_id(std::string_view text, int& id) {
   if (text == "*") {
     id = -1;
@@ -145,7 +145,7 @@ void read_drivers(TomlTable& root, std::vector<std::string>& drivers) {
   }
 }
 
-// Checks the line itself; which controls the device has is known when the file is used.
+// Checks only the line's grammar: the device's controls are known when the file is used.
 void read_mapping(TomlTable& root, std::string& mapping) {
   auto line = root.string("mapping");
   if (!line || line->empty()) return;
@@ -210,8 +210,8 @@ std::string measured_text(std::string_view stick, const StickMeasured& m) {
   return text;
 }
 
-// Everything that changes the output is written, even a default: the file keeps its meaning if a
-// default changes. The filter is off unless it is named.
+// Writes all numbers and the shape, even defaults, so that the file keeps its meaning if a default
+// changes. Leaves out a frame that turns nothing and a filter that is off.
 std::string stick_text(std::string_view name, const StickCalibration& c) {
   const auto axis = [](const AxisCalibration& a) {
     return fmt::format("{{ min = {}, centre = {}, max = {} }}", a.min, a.centre, a.max);

@@ -34,7 +34,7 @@ bool is_mapping(std::string_view line) {
          line.find_first_not_of("0123456789abcdefABCDEF") == kDigits;
 }
 
-// Other lines are skipped.
+// The text's mapping lines and their numbers; other lines are skipped.
 Result<std::vector<MappingLine>> mapping_lines_of(std::string_view text,
                                                   const std::string& source) {
   std::vector<MappingLine> mappings;
@@ -51,13 +51,13 @@ Result<std::vector<MappingLine>> mapping_lines_of(std::string_view text,
 constexpr double kLeastImportedHalfRange = 0.1;  // least half range, raw, as in calibration files
 constexpr double kLeastImportedInner = 0.05, kMostInner = 0.9;
 constexpr double kLeastTriggerWay = 0.1;
-constexpr unsigned kCodesByKernel = 0x8000;
 
-// The claims of a tool about one axis of the pad, in counts.
-struct Claim {
+// What a recording states about one axis of the pad, in counts: its range min..max, its dead zone
+// low..high.
+struct AxisRange {
   std::string axis;  // name of the axis in sentences
   double min = 0.0, low = 0.0, high = 0.0, max = 0.0;
-  bool is_zone_told = false;  // the user was told about the zone
+  bool states_zone = false;  // false: low and high are the middle of the range
 };
 
 bool is_hat_field(const Field& f) {
@@ -82,7 +82,7 @@ NodeAxes node_axes(const ReportDescriptor& d, const DeviceInfo& device) {
   return axes;
 }
 
-// The axes of the pad that the whole field is bound to.
+// The pad's axes that use the whole range of the field.
 std::vector<AxisOp> ops_of(const PadLayout& layout, const Field& f) {
   std::vector<AxisOp> ops;
   for (const ReportLayout& report : layout.reports) {
@@ -102,29 +102,29 @@ double raw_of(const AxisOp& op, double count) {
   return op.reversed ? 0.0 - raw : raw;
 }
 
-// The calibration that the claims have built so far.
+// The calibration that the axes' ranges have built so far.
 struct Sticks {
   Calibration calibration;
-  std::array<double, 2> inner{};  // inner zones of the left and the right stick; 0: not stated
-  bool is_any_told = false;
+  std::array<double, 2> inner{};  // inner zones of the left and the right stick; 0: not axis
+  bool has_stick_axis = false;
 };
 
-std::string apply_to_trigger(const Claim& claim, const AxisOp& op, Sticks& sticks) {
-  const double a = (raw_of(op, claim.min) + 1.0) / 2.0, b = (raw_of(op, claim.max) + 1.0) / 2.0;
+std::string apply_to_trigger(const AxisRange& range, const AxisOp& op, Sticks& sticks) {
+  const double a = (raw_of(op, range.min) + 1.0) / 2.0, b = (raw_of(op, range.max) + 1.0) / 2.0;
   if (std::fabs(b - a) < kLeastTriggerWay) {
     return fmt::format("{}: the range {:g} to {:g} is too small a part of the pad's {} to {}",
-                       claim.axis, claim.min, claim.max, op.bits.min, op.bits.max);
+                       range.axis, range.min, range.max, op.bits.min, op.bits.max);
   }
   Calibration& c = sticks.calibration;
   (op.axis == kLeftTrigger ? c.left_trigger : c.right_trigger) = {std::min(a, b), std::max(a, b)};
   return {};
 }
 
-std::string apply_to_stick(const Claim& claim, const AxisOp& op, Sticks& sticks) {
+std::string apply_to_stick(const AxisRange& range, const AxisOp& op, Sticks& sticks) {
   const bool is_left = op.axis == kLeftX || op.axis == kLeftY;
   const bool is_x = op.axis == kLeftX || op.axis == kRightX;
-  const double ends[2] = {raw_of(op, claim.min), raw_of(op, claim.max)};
-  const double zone[2] = {raw_of(op, claim.low), raw_of(op, claim.high)};
+  const double ends[2] = {raw_of(op, range.min), raw_of(op, range.max)};
+  const double zone[2] = {raw_of(op, range.low), raw_of(op, range.high)};
   AxisCalibration axis;
   axis.min = std::min(ends[0], ends[1]);
   axis.max = std::max(ends[0], ends[1]);
@@ -133,66 +133,67 @@ std::string apply_to_stick(const Claim& claim, const AxisOp& op, Sticks& sticks)
   if (nearest < kLeastImportedHalfRange) {
     return fmt::format(
         "{}: the range {:g} to {:g} about {:g} is too small a part of the pad's {} to {}",
-        claim.axis, claim.min, claim.max, (claim.low + claim.high) / 2.0, op.bits.min, op.bits.max);
+        range.axis, range.min, range.max, (range.low + range.high) / 2.0, op.bits.min, op.bits.max);
   }
-  if (claim.is_zone_told) {
+  if (range.states_zone) {
     double& inner = sticks.inner[is_left ? 0 : 1];
     inner = std::max(inner,
                      std::max(std::fabs(zone[1] - zone[0]) / 2.0 / nearest, kLeastImportedInner));
     if (inner > kMostInner) {
-      return fmt::format("{}: its dead zone from {:g} to {:g} leaves hardly any range", claim.axis,
-                         claim.low, claim.high);
+      return fmt::format("{}: its dead zone from {:g} to {:g} leaves hardly any range", range.axis,
+                         range.low, range.high);
     }
   }
   StickCalibration& stick = is_left ? sticks.calibration.left : sticks.calibration.right;
   (is_x ? stick.x : stick.y) = axis;
-  sticks.is_any_told = true;
+  sticks.has_stick_axis = true;
   return {};
 }
 
-// Returns the problem; empty if the claim was applied or the pad does not use the axis.
-std::string apply(const Claim& claim, const PadLayout& layout, const Field& field, Sticks& sticks) {
+// Returns the problem; empty if the range was applied or the pad does not use the axis.
+std::string apply(const AxisRange& range, const PadLayout& layout, const Field& field,
+                  Sticks& sticks) {
   for (const AxisOp& op : ops_of(layout, field)) {
     const auto low = static_cast<double>(op.bits.min), high = static_cast<double>(op.bits.max);
-    if (claim.high < low || claim.low > high) {
-      return fmt::format("{}: its centre {:g} is outside of the pad's {} to {}", claim.axis,
-                         (claim.low + claim.high) / 2.0, op.bits.min, op.bits.max);
+    if (range.high < low || range.low > high) {
+      return fmt::format("{}: its centre {:g} is outside of the pad's {} to {}", range.axis,
+                         (range.low + range.high) / 2.0, op.bits.min, op.bits.max);
     }
     const bool is_trigger = op.axis == kLeftTrigger || op.axis == kRightTrigger;
     std::string problem =
-        is_trigger ? apply_to_trigger(claim, op, sticks) : apply_to_stick(claim, op, sticks);
+        is_trigger ? apply_to_trigger(range, op, sticks) : apply_to_stick(range, op, sticks);
     if (!problem.empty()) return problem;
   }
   return {};
 }
 
-// The middle of the range is taken as the centre: the kernel knows no other.
+// Takes the middle of each axis' range as its centre, because the kernel states no other.
 Result<Sticks> apply_ranges(const EvdevRecording& node, const std::string& source,
                             const NodeAxes& axes, const PadLayout& layout) {
   Sticks sticks;
-  for (const RecordedAxis& told : node.axes()) {
-    const auto found = axes.find(told.code);
+  for (const RecordedAxis& axis : node.axes()) {
+    const auto found = axes.find(axis.code);
     if (found == axes.end() || found->second == nullptr) continue;
     const Field& field = *found->second;
-    const double min = told.min, max = told.max, flat = std::max(told.flat, 0);
+    const double min = axis.min, max = axis.max, flat = std::max(axis.flat, 0);
     const double middle = (min + max) / 2.0;
-    const Claim claim{
-        fmt::format("axis {:02x}", told.code), min, middle - flat, middle + flat, max, flat > 0.0};
-    const auto where = [&source, &told](const std::string& cause) {
-      return Error{fmt::format("{}:{}: {}", source, told.line, cause)};
+    const AxisRange range{
+        fmt::format("axis {:02x}", axis.code), min, middle - flat, middle + flat, max, flat > 0.0};
+    const auto where = [&source, &axis](const std::string& cause) {
+      return Error{fmt::format("{}:{}: {}", source, axis.line, cause)};
     };
     if (!(min < max))
-      return where(fmt::format("{}: the range {} to {} is empty", claim.axis, min, max));
+      return where(fmt::format("{}: the range {} to {} is empty", range.axis, min, max));
     // A wider range comes from a pad with another scale.
     const auto width = static_cast<double>(field.logical_max - field.logical_min);
     if (max - min > width * 1.01 + 1.0) {
       return where(fmt::format("{}: the range {} to {} is wider than the pad's {} to {}",
-                               claim.axis, min, max, field.logical_min, field.logical_max));
+                               range.axis, min, max, field.logical_min, field.logical_max));
     }
-    const std::string problem = apply(claim, layout, field, sticks);
+    const std::string problem = apply(range, layout, field, sticks);
     if (!problem.empty()) return where(problem);
   }
-  if (!sticks.is_any_told) return Error{source + ": it states no axis of this pad's sticks"};
+  if (!sticks.has_stick_axis) return Error{source + ": it states no axis of this pad's sticks"};
   return sticks;
 }
 
@@ -220,7 +221,7 @@ unsigned guid_word(const std::string& line, std::size_t byte) {
 std::string mapping_problem(const std::string& line, const DeviceInfo& device) {
   if (!is_one_line(line)) return "SDL mapping: it holds a control character";
   const unsigned vendor = guid_word(line, 4), product = guid_word(line, 8);
-  // The GUID holds a name instead of ids.
+  // A GUID without these zeros holds a name instead of ids, which cannot be compared.
   if (guid_word(line, 6) != 0 || guid_word(line, 10) != 0) return {};
   if (vendor != 0 && (vendor != device.vendor || product != device.product)) {
     return fmt::format("SDL mapping: it is for {}, the pad is {}", ids_text(vendor, product),
@@ -231,8 +232,8 @@ std::string mapping_problem(const std::string& line, const DeviceInfo& device) {
     return "SDL mapping: it is for another platform, where controls have other numbers";
   }
   const bool is_node = stated_by(device.driver) == StatedBy::evdev_driver;
-  const unsigned mark = is_node ? device.version & kCodesByKernel : 0;
-  if (vendor != 0 && (guid_word(line, 12) & kCodesByKernel) != mark) {
+  const unsigned mark = is_node ? device.version & kKernelCodesBit : 0;
+  if (vendor != 0 && (guid_word(line, 12) & kKernelCodesBit) != mark) {
     return mark == 0 ? "SDL mapping: it counts what the kernel's driver for that pad numbers; give "
                        "its event node (/dev/input/event...)"
                      : "SDL mapping: it counts the pad without the kernel's driver for it";

@@ -16,9 +16,9 @@ namespace gaitpad {
 namespace {
 
 constexpr std::int64_t kBucketNs = 100 * kMillisecondNs;
-// Limit on the difference of means over 0.1 s: 3 sigma of a very noisy stick.
+// Limit on the raw distance of two means over 0.1 s: 3 sigma of a very noisy stick.
 constexpr double kStillWithin = 0.04;
-// Anything shorter is a spike: to another place and back within three reports.
+// A shorter movement is a spike: wrong reports, at most three, between right ones.
 constexpr std::int64_t kSpikeNs = 40 * kMillisecondNs;
 
 constexpr std::int64_t kStillNs = 500 * kMillisecondNs;
@@ -32,8 +32,10 @@ constexpr std::size_t kMaxRests = 64;  // places of further releases are ignored
 // A rest this far from the middle is rare, so more releases are asked for.
 constexpr double kAside = 0.1;
 
-constexpr double kOfReach = 0.6;      // share of the farthest position: pushed out
-constexpr double kOfMedianRim = 0.6;  // less is a cut corner; a square gate has 0.71
+constexpr double kRimOfReach = 0.6;  // share of the stick's farthest distance
+// Below this share a direction counts as not seen, because a corner was cut; the sides of a square
+// gate have 0.71 of its corners.
+constexpr double kLeastOfMedianRadius = 0.6;
 // Limits of the travel between two reports along the rim: less is noise, more is a spike.
 constexpr double kLeastTravel = 15.0 * kDegree, kMostTravel = 90.0 * kDegree;
 
@@ -41,7 +43,7 @@ constexpr double kUnpressed = 0.1;  // raw; a turn that stays this far inside of
                                     // pressed to the rim
 
 constexpr std::int64_t kHeldNs = 250 * kMillisecondNs;
-constexpr double kInOfRim = 0.6;  // share of the rim's radius below which the stick was released
+constexpr double kReleasedOfRim = 0.6;  // share of the rim's distance; nearer it is released
 
 // 0 right, 1 front, 2 left, 3 back.
 std::size_t quarter_of(const vec2& v) noexcept {
@@ -75,7 +77,7 @@ void ReleaseWatch::hold(const vec2& raw, std::int64_t duration_ns) {
     away_ns_ += duration_ns;
     away_ = from_rest;
     if (away_ns_ > kSpikeNs) {
-      if (!is_away_) still_ = StillWatch();  // forgets the place of the rest before
+      if (!is_away_) still_ = StillWatch();  // forget where it stood before this push
       reach_ = std::max(reach_, glm::length(from_rest));
       is_away_ = true;
       near_ns_ = 0;
@@ -137,7 +139,7 @@ void ReleaseWatch::lose() noexcept {
 }
 
 double ReleaseWatch::rim() const noexcept {
-  return reach_ > 0.0 ? std::min(kHalfWay, kOfReach * reach_) : kHalfWay;
+  return reach_ > 0.0 ? std::min(kHalfWay, kRimOfReach * reach_) : kHalfWay;
 }
 
 int ReleaseWatch::sides() const noexcept {
@@ -161,7 +163,7 @@ void TurnWatch::add_position(const vec2& from_rest, double rim) noexcept {
 double TurnWatch::least_radius() const noexcept {
   std::array<double, kTurnBins> sorted = radius_;
   const auto end = std::remove(sorted.begin(), sorted.end(), 0.0);
-  return std::max(rim_, kOfMedianRim * median({sorted.begin(), end}));
+  return std::max(rim_, kLeastOfMedianRadius * median({sorted.begin(), end}));
 }
 
 double TurnWatch::radius_towards(const vec2& to) const noexcept {
@@ -195,7 +197,9 @@ std::optional<vec2> TurnWatch::missing() const noexcept {
 
 void PushWatch::hold(const vec2& from_rest, double rim, std::int64_t duration_ns) noexcept {
   const double radius = glm::length(from_rest);
-  const Zone zone = radius > rim ? Zone::out : radius < kInOfRim * rim ? Zone::in : Zone::between;
+  const Zone zone = radius > rim                    ? Zone::out
+                    : radius < kReleasedOfRim * rim ? Zone::in
+                                                    : Zone::between;
   zone_ns_ = zone == zone_ ? zone_ns_ + duration_ns : duration_ns;
   zone_ = zone;
   if (zone == Zone::out && is_armed_) {
@@ -233,10 +237,10 @@ std::optional<vec2> PushWatch::take_push() noexcept {
 
 namespace {
 
-// Longer silence adds nothing and would cost time.
+// Longest silence that counts: no step waits for longer, and StillWatch takes it in parts of 0.1 s.
 constexpr std::int64_t kLongestHoldNs = 5000 * kMillisecondNs;
 
-// Larger over smaller part of a push: at most 30 degrees off an axis.
+// Least ratio of a push's larger to its smaller component: at most 30 degrees off an axis.
 constexpr double kClearRatio = 1.7;
 
 constexpr int kPushes = 4;
@@ -325,7 +329,7 @@ void CalibrationGuide::take_report(const Report& report) {
   is_cut_ = false;
   ++running_reports_;
   ++reports_;
-  if (!std::exchange(is_placed_, true)) time_ns_ = report.time_ns;
+  if (!std::exchange(has_position_, true)) time_ns_ = report.time_ns;
   if (step() != GuideStep::turn) return;
   for (Stick& stick : sticks_) stick.turn.add_position(from_rest(stick), stick.release.rim());
   if (is_complete()) finish_step();
@@ -338,7 +342,7 @@ void CalibrationGuide::tick(std::int64_t now_ns) {
 void CalibrationGuide::unplugged() noexcept {
   tracker_.cut();
   is_cut_ = true;
-  is_placed_ = false;
+  has_position_ = false;
   for (Stick& stick : sticks_) {
     stick.release.lose();
     stick.turn.lose();
@@ -352,7 +356,7 @@ void CalibrationGuide::unplugged() noexcept {
 
 // Counts the time since the last call as time in which no control moved.
 void CalibrationGuide::advance(std::int64_t now_ns) {
-  if (!is_placed_ || now_ns <= time_ns_ || step() == GuideStep::done) return;
+  if (!has_position_ || now_ns <= time_ns_ || step() == GuideStep::done) return;
   // The stamps of a damaged recording may be any numbers.
   const std::uint64_t passed_ns =
       static_cast<std::uint64_t>(now_ns) - static_cast<std::uint64_t>(time_ns_);
@@ -431,12 +435,12 @@ bool CalibrationGuide::is_complete() const noexcept {
 }
 
 void CalibrationGuide::finish_step() {
-  pieces_.push_back({step(), continues_, running_reports_, tracker_.take_tracks()});
+  finished_steps_.push_back({step(), continues_, running_reports_, tracker_.take_tracks()});
   running_reports_ = 0;
   ++index_;
   for (Stick& stick : sticks_) stick.push.restart();
   for (Trigger& trigger : triggers_) trigger.push.restart();
-  if (pieces_.back().step == GuideStep::left) turn_again();
+  if (finished_steps_.back().step == GuideStep::left) turn_again();
 }
 
 // Goes back to the turn, once, for sticks whose pushes went farther than it. The pushes stay.
@@ -485,14 +489,15 @@ void CalibrationGuide::back() {
   drop_step();
   if (index_ == 0) return;
   --index_;
-  reports_ -= pieces_.back().reports;
-  pieces_.pop_back();
+  reports_ -= finished_steps_.back().reports;
+  finished_steps_.pop_back();
   drop_step();
 }
 
 PadTracks CalibrationGuide::tracks() const {
   PadTracks tracks;
-  for (const Piece& piece : pieces_) join(tracks, piece.tracks, piece.continues);
+  for (const StepTracks& finished : finished_steps_)
+    join(tracks, finished.tracks, finished.continues);
   join(tracks, tracker_.tracks(), continues_);
   return tracks;
 }

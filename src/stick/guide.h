@@ -25,7 +25,7 @@ inline constexpr std::int64_t kMillisecondNs = 1'000'000;
 class StillWatch {
  public:
   void hold(const vec2& raw, std::int64_t duration_ns) noexcept;
-  // Time for which the stick has stood still, in whole tenths of a second.
+  // Time for which the stick has stood still, a multiple of 0.1 s.
   std::int64_t still_ns() const noexcept { return still_ns_; }
   // Mean position over the time in which it stood still.
   const vec2& mean() const noexcept { return mean_; }
@@ -37,12 +37,12 @@ class StillWatch {
   std::int64_t still_ns_ = 0;
 };
 
-// Distance from the rest beyond which a control counts as pushed.
+// Raw distance from the rest beyond which a control counts as pushed.
 inline constexpr double kHalfWay = 0.5;
 
 inline constexpr int kWantedReleases = 6, kWantedSides = 3;
-inline constexpr int kWantedReleasesAside = 10;  // if the stick rests off its middle, where a thumb
-                                                 // may hold it
+// Wanted number if the stick rests off its middle, where a thumb may hold it.
+inline constexpr int kWantedReleasesAside = 10;
 // Wanted time of rest at the end, which shows drift.
 inline constexpr std::int64_t kWantedRestNs = 2500 * kMillisecondNs;
 
@@ -61,14 +61,14 @@ class ReleaseWatch {
   bool is_away() const noexcept { return is_away_; }
   // Time of rest since the last release.
   std::int64_t rested_ns() const noexcept { return near_ns_; }
-  // Stays true while the other stick is moved.
+  // Once true, stays true: the player may go on to the other stick.
   bool is_complete() const noexcept { return is_complete_; }
   // The stick stands still, but too far out to be at rest.
   bool is_held() const noexcept;
   // The median of the rests, else where the stick first stood; none: not seen at rest.
   std::optional<vec2> rest() const noexcept { return rest_; }
-  // Distance from rest that counts as pushed out in the other steps: half of the way, less if the
-  // stick does not reach that far.
+  // Raw distance from the rest beyond which the stick counts as pushed out in the other steps: 0.5,
+  // or 0.6 of the farthest place that it reached if that is less.
   double rim() const noexcept;
 
  private:
@@ -77,10 +77,11 @@ class ReleaseWatch {
 
   StillWatch still_;
   std::vector<vec2> rests_;
-  std::array<bool, 4> sides_{};  // sides of the raw axes that were seen: right, front, left, back
+  // Sides from which it was let go, by the raw axes: right, front, left, back.
+  std::array<bool, 4> sides_{};
   std::optional<vec2> rest_;
   vec2 away_{0.0};            // position from the rest where the stick was last seen away
-  double reach_ = 0.0;        // the farthest of these positions, without spikes
+  double reach_ = 0.0;        // greatest distance from the rest, raw, without spikes
   std::int64_t away_ns_ = 0;  // time for which it has been away without a break
   std::int64_t near_ns_ = 0;  // time since it was away, without spikes
   vec2 near_sum_{0.0};        // sum of its positions over that time, times nanoseconds
@@ -98,24 +99,26 @@ class TurnWatch {
   void lose() noexcept { anchor_rad_.reset(); }
 
   int filled() const noexcept;
-  // Greatest radius near that direction; 0: none was seen.
+  // Greatest radius in the direction `to` and the bins beside it; 0: none was seen.
   double radius_towards(const vec2& to) const noexcept;
   // Number of turns, in either direction.
   double turns() const noexcept { return travelled_rad_ / (2.0 * kPi); }
   bool is_complete() const noexcept { return filled() == kTurnBins && turns() >= kWantedTurns; }
-  // Direction (unit) of the middle of the greatest gap; none without gaps.
+  // Unit vector to the middle of the longest run of directions that were not seen; none if all
+  // were.
   std::optional<vec2> missing() const noexcept;
 
  private:
   double least_radius() const noexcept;
 
   double rim_ = 0.0;
-  std::array<double, kTurnBins> radius_{};  // greatest; bin k is centred on k times 7.5 degrees
+  // Greatest radius, raw; bin k is centred on k times 7.5 degrees.
+  std::array<double, kTurnBins> radius_{};
   std::optional<double> anchor_rad_;
   double travelled_rad_ = 0.0;
 };
 
-// Sees pushes: beyond the rim for a quarter of a second, then back near the rest.
+// Detects pushes: beyond the rim for a quarter of a second, then back near the rest.
 class PushWatch {
  public:
   enum class State : std::uint8_t { waiting, out, held };
@@ -170,7 +173,8 @@ class CalibrationGuide {
   // Adds a report. The next step begins when all controls have completed this one; at the end
   // reports are ignored.
   void take_report(const Report& report);
-  // Tells the time during silence: most pads report changes only and send nothing while held.
+  // Tells the time while no report comes: most pads report changes only and send nothing while a
+  // stick is held still.
   void tick(std::int64_t now_ns);
   void unplugged() noexcept;  // keeps what was seen; the step goes on with the next report
 
@@ -209,9 +213,9 @@ class CalibrationGuide {
     std::optional<double> released;  // the lowest level that was seen
     bool is_done = false;
   };
-  struct Piece {  // the tracks of a finished step
+  struct StepTracks {
     GuideStep step = GuideStep::rest;
-    bool continues = false;  // goes on from the piece before without a cut
+    bool continues = false;  // follows the step before without a break in the reports
     std::int64_t reports = 0;
     PadTracks tracks;
   };
@@ -237,12 +241,13 @@ class CalibrationGuide {
   std::vector<Trigger> triggers_;
 
   PadTracker tracker_;  // tracks of the running step
-  std::vector<Piece> pieces_;
+  std::vector<StepTracks> finished_steps_;
   // Reports kept in all steps, and in the running step.
   std::int64_t reports_ = 0, running_reports_ = 0;
-  bool continues_ = false;  // the piece of the running step continues
-  bool is_cut_ = true;      // a cut came since the last report
-  bool is_placed_ = false;  // the position of the controls is known
+  // The running step's tracks will follow the last finished step's without a break.
+  bool continues_ = false;
+  bool is_cut_ = true;         // the reports were interrupted since the last one
+  bool has_position_ = false;  // of the controls: a report has come since the pad was plugged in
   std::int64_t time_ns_ = 0;
 };
 

@@ -4,8 +4,9 @@ namespace gaitpad {
 
 namespace {
 
-constexpr std::uint64_t kPause_ns = 50'000'000;  // a pause, as long as a slow pad's interval
-// Least travel of a movement, raw; less is noise, or too slow for every report.
+// The longest pause within a movement: slow pads send every 45 ms.
+constexpr std::uint64_t kPause_ns = 50'000'000;
+// Least travel of a movement, raw; less is noise, or so slow that not every report differs.
 constexpr double kMovementTravel = 0.5;
 constexpr double kOutOfRange = 8.0;
 
@@ -16,7 +17,7 @@ void NewValueCount::take(std::int64_t time_ns, const vec2& left, const vec2& rig
   if (!(glm::length(left) + glm::length(right) <= kOutOfRange)) return;
   ++reports_;
   if (has_position_ && left == left_ && right == right_) return;
-  // Unsigned: a time that went back is a pause as well.
+  // Unsigned, so that a time that goes back counts as a long pause.
   const auto pause_ns =
       static_cast<std::uint64_t>(time_ns) - static_cast<std::uint64_t>(changed_ns_);
   const bool goes_on = has_position_ && pause_ns <= kPause_ns;

@@ -18,13 +18,13 @@ struct MovementRate {
 
 class NewValueCount {
  public:
-  // Each report, in the order of time: the raw positions of both sticks.
+  // Takes the raw positions of both sticks from each report, in the order of time.
   void take(std::int64_t time_ns, const vec2& left, const vec2& right) noexcept;
-  // Over all movements so far; none: there was no whole one.
+  // Rates over all movements so far; none: no movement was long enough.
   std::optional<MovementRate> rate() const noexcept;
 
  private:
-  // A run of positions that follow each other within kPause_ns.
+  // Positions that follow each other without a pause of more than 50 ms.
   struct Movement {
     std::int64_t time_ns = 0;
     std::int64_t reports = 0, values = 0;
@@ -34,7 +34,7 @@ class NewValueCount {
 
   bool has_position_ = false;
   vec2 left_{0.0}, right_{0.0};
-  std::int64_t changed_ns_ = 0;  // time at which the position was new
+  std::int64_t changed_ns_ = 0;  // time of the last new position
   std::int64_t reports_ = 0;     // reports since then
   Movement running_, sum_;
 };

@@ -13,29 +13,33 @@ namespace {
 
 // ---- The samples on the rim
 
-constexpr double kSpacing = 2.0 * kPi / kOutlineDirections;
+constexpr double kSpacing = 2.0 * kPi / kOutlineDirections;  // rad
 // Least radius of a gate, raw; no gate is nearer to the middle.
 constexpr double kLeastRadius = 0.25;
 constexpr double kLeastNoise = 0.003;  // least noise, raw; rounding to 8 bits gives 0.0023
-// Overlap at the seam, which is more than any window reaches.
+// Angle (rad) on either side of the seam, 0 = 2 pi, whose samples are repeated at the other end; no
+// window reaches farther.
 constexpr double kSeam = 30.0 * kDegree;
 constexpr double kMeanOfUpperHalf = 0.8;  // mean of the upper half of a Gaussian, in sigma
 
 constexpr double kGreatestRadius = 4.0;  // more than from any middle to any corner of the range
-// Share of the convex hull's radius; no gate bends inwards by more.
+// Least radius of a gate as a share of its convex hull's: no gate bends inwards by more.
 constexpr double kInsideHull = 0.85;
-constexpr double kSteepest = 2.0;  // slope over radius; at a square's corner it is 1
-constexpr int kSteepReach = 8;     // directions; farther off the hull is the better bound
-constexpr double kLeastSpread = 0.1 * kSpacing * kSpacing;
+// Greatest slope of a gate, in radii per rad; at a square's corner it is 1.
+constexpr double kSteepest = 2.0;
+// Number of directions to either side that the slope limits; farther off the hull is the better
+// limit.
+constexpr int kSteepReach = 8;
+constexpr double kLeastSpread = 0.1 * kSpacing * kSpacing;  // rad^2; less gives no slope
 
-// Half width of the lines that tell the rim from samples inside it: wide enough for two samples of
-// the slowest pad's two turns, narrow enough for a corner.
+// Half width, rad, of the lines that tell the rim from samples inside it: wide enough for two
+// samples of the slowest pad after two turns, narrow enough for a corner.
 constexpr double kSelectionWidth = 3.0 * kSpacing;
 constexpr int kFewOfDirection = 8;
 constexpr int kSelectionRounds = 6;  // rounds of selecting samples; three or four are enough
 // Quantile of the samples' heights at which the search begins.
 constexpr double kSelectionQuantile = 0.9;
-constexpr double kSigmas = 3.0;  // this far below the line a sample is still on the rim
+constexpr double kSigmas = 3.0;  // a sample that lies less far below the line is on the rim
 
 using Radii = std::array<double, kOutlineDirections>;  // raw radius in each direction
 
@@ -45,7 +49,8 @@ struct Polar {
 
 // A straight line radius(angle) through samples.
 struct Line {
-  // Sums and means of a line, which passes through the means.
+  // Number of samples, means of angle (rad) and radius (raw), slope (raw per rad); the line passes
+  // through the means.
   double samples = 0.0, angle = 0.0, radius = 0.0, slope = 0.0;
   double spread = 0.0;    // sum of squared angles about their mean
   double residual = 0.0;  // mean square of the differences from the line
@@ -70,7 +75,7 @@ std::span<const Polar> between(std::span<const Polar> samples, double from, doub
   return {first, std::lower_bound(first, samples.end(), to, is_below)};
 }
 
-// Least squares, no steeper than a gate can be.
+// Least-squares line, no steeper than a gate can be.
 Line line_through(std::span<const Polar> samples) noexcept {
   Line line;
   if (samples.empty()) return line;
@@ -96,8 +101,8 @@ Line line_through(std::span<const Polar> samples) noexcept {
   return line;
 }
 
-// The radial noise of samples on a rim that is not at right angles to the radius; at least that of
-// rounding to 8 bits.
+// The radial noise of samples on a rim that is not at right angles to the radius:
+// sigma sqrt(1 + (slope / radius)^2), at least that of rounding to 8 bits.
 double radial_noise(const Line& line, double sigma) noexcept {
   const double steepness = line.slope / std::max(line.radius, kLeastRadius);
   return std::max(sigma * std::sqrt(1.0 + steepness * steepness), kLeastNoise);
@@ -188,8 +193,8 @@ std::vector<Polar> sort_by_angle(std::vector<Polar> samples) {
   return samples;
 }
 
-// Upper envelope: a line that starts high and comes down until the samples below it are more than
-// its noise.
+// Upper envelope: begins high, then fits the line again to the samples that are not below it by
+// more than 3 sigma, up to six times.
 Line envelope(std::span<const Polar> samples, double sigma) {
   Line line = line_through(samples);
   std::vector<double> heights;
@@ -258,22 +263,24 @@ std::vector<Polar> rim_samples(std::span<const StickTrack> tracks, const vec2& m
 // ---- The gate through them
 
 constexpr double kGreatestNoise = 0.2;  // largest noise, raw, with which a rim can be found
-// Half widths of the windows; the radius comes from the widest line that agrees with the narrower.
+// Half widths of the windows, rad. Wider ones are used as long as their lines agree with the
+// narrower ones'.
 constexpr double kWidths[] = {1.0 * kSpacing, 1.5 * kSpacing, 2.0 * kSpacing, 3.0 * kSpacing,
                               4.0 * kSpacing, 6.0 * kSpacing, 8.0 * kSpacing};
 // The greatest difference, in standard errors, between the estimates (fewer: noisy; more: rounds
 // the corners of a square; 1.5 gives the least circularity error over all made gates) and between
 // an estimate and the direction's own samples.
 constexpr double kAgreement = 1.5, kOwnAgreement = 3.0;
-constexpr double kGreatestError =
-    0.025;                      // raw, one standard error; beyond it the direction was not seen
+// Greatest standard error, raw; beyond it the direction was not seen.
+constexpr double kGreatestError = 0.025;
 constexpr int kGap = 3;         // most unseen directions between seen ones that are filled in
-constexpr double kSharp = 0.6;  // sine of the angle by which a corner turns at least
+constexpr double kSharp = 0.6;  // sine of the least angle by which a corner turns
 
-// A side's reach is known if the outline was seen this near to it: on both sides of it, or straight
-// there.
-constexpr double kOfSide = 15.0 * kDegree, kStraight = 3.0 * kSpacing;
-constexpr int kParts = 8;  // parts of each piece of the outline, for the bins
+// The reach to a side is known if the outline was seen within kBesideSide_rad both clockwise and
+// counter-clockwise of it, or within kOnSide_rad of the side itself.
+constexpr double kBesideSide_rad = 15.0 * kDegree, kOnSide_rad = 3.0 * kSpacing;
+// circularity_error() samples the line between two directions at the ends of its parts.
+constexpr int kLineParts = 8;
 // Smallest radius that counts, as in dualshock-tools.
 constexpr double kLeastCircularityRadius = 0.2;
 // Fewest bins with a radius; with fewer the error is not comparable.
@@ -317,7 +324,7 @@ Neighbourhood about(std::span<const Polar> all, double direction) {
 struct Estimate {
   double radius = 0.0, error = 1.0;  // radius and its standard error
   double width = 0.0;                // width of the window
-  double residual = 0.0;             // mean square of the differences
+  double residual = 0.0;             // mean square of the samples' distances from the line
 };
 
 // Whether the line passes through the middle of the direction's own samples.
@@ -414,7 +421,7 @@ void sharpen(Outline& outline) noexcept {
     const auto corner = corner_between(round, {k - 5, k - 2, k + 2, k + 5});
     if (!corner) continue;
     const vec2 at = *corner - outline.middle;
-    if (direction_of(gaitpad::atan2(at.y, at.x)) != k) continue;  // a sample of another direction
+    if (direction_of(gaitpad::atan2(at.y, at.x)) != k) continue;  // another k adds this corner
     const vec2 in = *corner - point_of(round, k - 2), out = point_of(round, k + 2) - *corner;
     for (int n = k - 1; n <= k + 1; ++n) {
       // Intersection of the ray and the side.
@@ -435,13 +442,15 @@ void keep_in_range(Outline& outline) noexcept {
   }
 }
 
-// Samples of whole turns, without their beginnings and ends, where the stick moves outwards and
-// back: a sector that reaches less far shows in them alone, because one may also push less far.
+// Samples of whole turns, without the 10 degrees at either end, where the stick moves outwards and
+// back. Only a whole turn shows that a sector of the gate reaches less far: a single push may just
+// have been shorter.
 std::vector<Polar> turned_samples(std::span<const StickTrack> tracks, const vec2& middle) {
   constexpr double kOfTurn = 10.0 * kDegree;
   std::vector<Polar> turned;
   for (const StickTrack& track : tracks) {
-    std::vector<std::pair<Polar, double>> run;  // samples, each with the angle turned until then
+    // Samples, each with the angle (rad) turned until then.
+    std::vector<std::pair<Polar, double>> run;
     const auto end_run = [&] {
       const double whole = run.empty() ? 0.0 : run.back().second;
       for (const auto& [polar, way] : run) {
@@ -467,8 +476,9 @@ std::vector<Polar> turned_samples(std::span<const StickTrack> tracks, const vec2
   return turned;
 }
 
-// Sets the directions in which whole turns stay well inside the line round all samples, a sector of
-// the gate that reaches less far: rim_samples() leaves these out.
+// Sets the radius in directions in which even the farthest sample stays below 0.88 of the convex
+// hull although whole turns passed: a sector of the gate that reaches less far. rim_samples()
+// leaves such samples out.
 void take_weak_sectors(std::span<const StickTrack> tracks, double sigma, Outline& outline) {
   constexpr double kWeak = 0.88, kSlack = 0.02;
   constexpr std::size_t kFewest = 3;
@@ -619,8 +629,8 @@ Reach reach_of(const Outline& outline) noexcept {
     for (int side = 0; side < 4; ++side) {
       furthest[side] = std::max(furthest[side], supported(outline, k, side));
       const double beside = wrapped((k - side * kOutlineDirections / 4) * kSpacing);
-      if (std::fabs(beside) <= kOfSide && beside <= kStraight) is_before[side] = true;
-      if (std::fabs(beside) <= kOfSide && beside >= -kStraight) is_behind[side] = true;
+      if (std::fabs(beside) <= kBesideSide_rad && beside <= kOnSide_rad) is_before[side] = true;
+      if (std::fabs(beside) <= kBesideSide_rad && beside >= -kOnSide_rad) is_behind[side] = true;
     }
   }
   const auto reach = [&](int side, double sign) {
@@ -635,8 +645,8 @@ namespace {
 using Bins = std::array<double, kCircularityBins>;
 
 void add_piece(const vec2& a, const vec2& b, Bins& greatest) noexcept {
-  for (int part = 0; part <= kParts; ++part) {
-    const vec2 p = a + (b - a) * (static_cast<double>(part) / kParts);
+  for (int part = 0; part <= kLineParts; ++part) {
+    const vec2 p = a + (b - a) * (static_cast<double>(part) / kLineParts);
     const double turn = gaitpad::atan2(p.y, p.x) / (2.0 * kPi) + 1.0;
     double& g = greatest[std::lround(turn * kCircularityBins) % kCircularityBins];
     g = std::max(g, std::sqrt(p.x * p.x + p.y * p.y));
@@ -674,7 +684,7 @@ namespace {
 // Counts whole turns in either direction; turning back begins anew.
 struct Turning {
   int turns = 0;
-  // The running turn and its farthest point, as parts of a whole turn.
+  // The running turn and its farthest point, in whole turns.
   double turned = 0.0, farthest = 0.0;
   void add(double angle) noexcept {
     turned += angle;
@@ -694,10 +704,10 @@ struct Turning {
 }  // namespace
 
 int whole_turns(std::span<const StickTrack> tracks, const vec2& middle, double radius) {
-  constexpr int kStray = 3;  // reports that may be spikes
+  constexpr int kStray = 3;  // most reports in a row that may be spikes
   Turning turning;
   for (const StickTrack& track : tracks) {
-    vec2 before(0.0);  // radius of the report before; 0: inside the radius
+    vec2 before(0.0);  // the position before, from the middle; 0: it was within `radius`
     int strays = 0;
     for (const StickSample& sample : track) {
       const vec2 p = sample.raw - middle;

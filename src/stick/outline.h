@@ -28,7 +28,7 @@ vec2 point_of(const Outline& outline, int k) noexcept;
 
 // The direction in which the outline reaches least far; none if no direction was seen.
 std::optional<int> worst_direction(const Outline& outline) noexcept;
-// The direction in which the outline lies deepest inside the shapes that gates have, as if
+// The direction in which the outline lies deepest (by more than 0.1) inside its convex hull, as if
 // the stick was turned there without being pressed to its rim; none if there is no such direction.
 // Directions in which a push (`pushes`: raw) was held and reached no farther are left out: there
 // the gate itself is short.
@@ -36,12 +36,12 @@ std::optional<int> unpressed_direction(const Outline& outline, std::span<const v
 // The least radius of the directions in each of the 48 bins about the middle; 0: not seen.
 std::array<double, kCircularityBins> least_reaches(const Outline& outline) noexcept;
 
-// Degrees from the right, counter-clockwise, in whole ones.
+// Whole degrees of direction k from the right, counter-clockwise.
 int degrees_of(int k) noexcept;
 // "front left (135 degrees from the right)"
 std::string direction_text(int k);
 
-// The number of the 48 bins about the middle that the outline covers.
+// The number of bins, of 48 about the middle, in which the outline was seen.
 int filled_bins(const Outline& outline) noexcept;
 // The raw ends of the outline to the left, right, back and front; none if it was not seen there.
 struct Reach {

@@ -27,11 +27,12 @@ constexpr double kAssumedHysteresis = 0.05;
 constexpr double kSigmasOfRest = 5.5;
 // Distance of full output from the rim in sigmas: one report in 300,000 is not full.
 constexpr double kSigmasOfRim = 4.5;
-// From 0.14 on full deflection could be less than 0.96, where the sideways zone takes most off it.
+// Bounds of the sideways zone: above 0.14 a full push 57 degrees off the side gives less than 0.96.
 constexpr double kLeastSideways = 0.11, kGreatestSideways = 0.14;
 constexpr double kSigmasOfForward = 4.0;
 constexpr double kSpreadOfDisplaced = 1.1;
-constexpr double kSigmasOfWander = 5.0;  // a minute shows more of it than the second measured
+// In sigmas of the wander, which is measured within one second and grows within a minute.
+constexpr double kSigmasOfWander = 5.0;
 
 // Limits beyond which no calibration helps.
 // Greatest useful inner zone, raw: beyond it a third of the stick's way does nothing.
@@ -43,19 +44,19 @@ constexpr double kUselessSigma = 0.05;
 constexpr double kUselessDrift = 0.002;
 // Greatest useful wander, raw in a second: a greater one leaves any zone within a minute.
 constexpr double kUselessWander = 0.029;
-// Least rest for a drift of a stick that was released only once.
+// Least rest from which a drift is believed if the stick was released only once.
 constexpr double kDriftSure_s = 5.0;
-// Least report rate: slower reports show no movement by itself.
+// Least report rate: slower reports do not show whether the stick moves by itself.
 constexpr double kLeastRate_hz = 22.5;
 constexpr int kFewestDirections = 44;  // fewest directions of 48; the unseen ones may be weak
 constexpr int kUselessDropOuts = 2;
-// Jumps a minute beyond the filter that make a stick useless.
+// Jumps a minute that pass the filter, beyond which a stick is useless.
 constexpr double kUselessPassing = 0.2;
 constexpr int kUselessStuck = 2;  // a single frozen time may be a lost report
 // Beyond these a stick is worn: two or three times what new ones show.
 constexpr double kWornHysteresis = 0.06, kWornSigma = 0.01, kWornCentre = 0.12, kWornReach = 0.8;
 constexpr double kWornWander = 0.01;
-// Noise of a worn stick, in steps: smaller noise comes from the steps.
+// Least noise of a worn stick, in steps: less comes from the steps.
 constexpr double kWornSteps = 1.5;
 constexpr int kWornJumps = 3;
 // A thumb or a finger that lies on a stick holds it aside, while its range stays symmetric. After
@@ -84,8 +85,9 @@ double reach_in(const Outline& outline, int direction) noexcept {
   return outline.radius[static_cast<std::size_t>(direction)];
 }
 
-// Reasons for which a side, or the worst of all directions, reaches less far than `least`. If the
-// worst direction is beside a side, its number replaces the side's, because the picture shows it.
+// Reasons for which a side counts as short: sentences about each side, and the worst of all
+// directions, that reaches less far than `least`. If the worst direction is beside a side, its
+// number replaces the side's, because the picture shows it.
 std::vector<std::string> short_sides(const StickStatistics& s, double least) {
   constexpr int kBeside = kOutlineDirections / 16;
   std::optional<int> worst = worst_direction(s.outline);
@@ -122,13 +124,16 @@ bool may_be_held(const StickStatistics& s) noexcept {
 }
 
 // Number of jumps that the median of three reports removes.
-std::int64_t single_jumps(const StickStatistics& s) noexcept { return s.jumps - s.long_jumps; }
+std::int64_t single_jumps(const StickStatistics& s) noexcept {
+  return s.jump_count - s.long_jump_count;
+}
 
 double share_of_jumps(const StickStatistics& s) noexcept {
-  return static_cast<double>(s.jumps) / static_cast<double>(std::max<std::int64_t>(s.samples, 1));
+  return static_cast<double>(s.jump_count) /
+         static_cast<double>(std::max<std::int64_t>(s.samples, 1));
 }
-// The times a minute at which two jumps come in three reports, which the median of three lets
-// through.
+// The times a minute at which two jumps come within three reports, which the median of three lets
+// through: 2 share^2 of the reports.
 double passing_jumps(const StickStatistics& s) noexcept {
   const double share = share_of_jumps(s);
   return 2.0 * share * share * 60.0 * s.rate_hz.value_or(250.0);
@@ -179,9 +184,10 @@ void add_zones(const StickStatistics& s, StickAdvice& advice) noexcept {
   StickCalibration& c = advice.calibration;
   const double half = least_half(c), sigma = greatest_sigma(s);
   advice.inner_zone = std::max(kLeastInner, 3.0 * sigma + hysteresis_of(s));
-  // With little hysteresis that formula covers too little of the noise. It also ignores wander, and
-  // single rests far from the others, which may be a little farther off on other sides. A single
-  // one may have been a thumb, but a zone that is too wide is better than a walk by itself.
+  // The formula of `inner_zone` covers too little of the noise if the hysteresis is small. It
+  // ignores wander, and displaced rests, which may be 10 % farther off on sides that were not seen.
+  // A single one may come from a thumb, but a wide zone is better than a character that walks by
+  // itself.
   const double away = 0.5 * hysteresis_of(s) + kSpreadOfDisplaced * s.displaced_by;
   const double rest =
       std::max(advice.inner_zone, away + kSigmasOfRest * sigma + kSigmasOfWander * s.wander);
@@ -199,18 +205,18 @@ void add_zones(const StickStatistics& s, StickAdvice& advice) noexcept {
 
 using Reasons = std::vector<std::string>;
 
-std::string displaced(const StickStatistics& s) {
+std::string displaced_text(const StickStatistics& s) {
   return fmt::format("after {} release{} it stayed {} {:.2f} off its centre", s.displaced,
                      s.displaced == 1 ? "" : "s", s.displaced == 1 ? "about" : "up to",
                      s.displaced_by);
 }
 
-std::string stuck(const StickStatistics& s) {
+std::string stuck_text(const StickStatistics& s) {
   return fmt::format("its value stuck {} while it moved",
-                     s.stuck == 1 ? "once" : fmt::format("{} times", s.stuck));
+                     s.stuck_count == 1 ? "once" : fmt::format("{} times", s.stuck_count));
 }
 
-Reasons useless(const StickStatistics& s, const StickAdvice& advice) {
+Reasons reasons_to_replace(const StickStatistics& s, const StickAdvice& advice) {
   Reasons reasons;
   const double drift = s.drift_per_s.value_or(0.0);
   // A short rest alone may have been a thumb that lay on the stick.
@@ -234,30 +240,30 @@ Reasons useless(const StickStatistics& s, const StickAdvice& advice) {
   for (std::string& reason : short_sides(s, s.unpressed ? 0.0 : kUselessReach))
     reasons.push_back(std::move(reason));
   if (s.displaced > 1 && s.displaced_by > kUselessZone) {
-    reasons.push_back(displaced(s));
+    reasons.push_back(displaced_text(s));
   }
-  if (s.drop_outs >= kUselessDropOuts) {
-    reasons.push_back(fmt::format("it lost contact {} times, for {:.0f} ms in all", s.drop_outs,
-                                  1e3 * s.drop_out_s));
+  if (s.drop_out_count >= kUselessDropOuts) {
+    reasons.push_back(fmt::format("it lost contact {} times, for {:.0f} ms in all",
+                                  s.drop_out_count, 1e3 * s.drop_out_s));
   }
-  if (s.long_jumps >= kWornJumps) {
+  if (s.long_jump_count >= kWornJumps) {
     reasons.push_back(
         fmt::format("it jumped away for two or three reports {} times, which no filter takes out",
-                    s.long_jumps));
+                    s.long_jump_count));
   }
   if (passing_jumps(s) > kUselessPassing) {
     reasons.push_back(
         fmt::format("it jumped {} times, in {:.1f} % of its reports, too often to "
                     "filter: two jumps together pass",
-                    s.jumps, 100.0 * share_of_jumps(s)));
+                    s.jump_count, 100.0 * share_of_jumps(s)));
   }
-  if (s.stuck >= kUselessStuck) {
-    reasons.push_back(stuck(s));
+  if (s.stuck_count >= kUselessStuck) {
+    reasons.push_back(stuck_text(s));
   }
   return reasons;
 }
 
-Reasons missing(const StickStatistics& s) {
+Reasons missing_data(const StickStatistics& s) {
   if (s.rate_hz && *s.rate_hz < kLeastRate_hz) {
     return {fmt::format(
         "it reports only {:.0f} times a second, which shows neither noise nor faults", *s.rate_hz)};
@@ -289,13 +295,13 @@ Reasons missing(const StickStatistics& s) {
   return {fmt::format("its rim was not seen to the {}", unseen)};
 }
 
-Reasons worn(const StickStatistics& s) {
+Reasons signs_of_wear(const StickStatistics& s) {
   Reasons reasons;
   if (s.hysteresis && *s.hysteresis > kWornHysteresis) {
     reasons.push_back(
         fmt::format("let go from different sides it rests up to {:.3f} apart", *s.hysteresis));
   }
-  if (s.displaced > 1) reasons.push_back(displaced(s));
+  if (s.displaced > 1) reasons.push_back(displaced_text(s));
   const double sigma = greatest_sigma(s);
   if (sigma > std::max(kWornSigma, kWornSteps * step_of(s))) {
     reasons.push_back(fmt::format("its noise at rest is {:.3f}", sigma));
@@ -321,7 +327,7 @@ Reasons worn(const StickStatistics& s) {
   return reasons;
 }
 
-std::string good(const StickStatistics& s) {
+std::string good_text(const StickStatistics& s) {
   std::string text = fmt::format("its noise is {:.4f}{}", greatest_sigma(s),
                                  s.is_sigma_hidden ? " (hidden by its steps)" : "");
   if (s.hysteresis && *s.hysteresis < 0.0005) {
@@ -348,30 +354,31 @@ std::string sentence(std::string_view opening, const Reasons& reasons) {
 }
 
 void judge(const StickStatistics& s, StickAdvice& advice) {
-  const Reasons useless_for = useless(s, advice), missing_are = missing(s), worn_by = worn(s);
+  const Reasons faults = reasons_to_replace(s, advice), missing = missing_data(s),
+                wear = signs_of_wear(s);
   const bool is_slow = s.rate_hz && *s.rate_hz < kLeastRate_hz;
-  if (s.centre && !is_slow && !useless_for.empty()) {
+  if (s.centre && !is_slow && !faults.empty()) {
     advice.verdict = Verdict::replace;
-    advice.reason = sentence("", useless_for);
-  } else if (!missing_are.empty()) {
+    advice.reason = sentence("", faults);
+  } else if (!missing.empty()) {
     advice.verdict = Verdict::unknown;
-    advice.reason = sentence("too little was seen: ", missing_are);
-  } else if (!worn_by.empty()) {
+    advice.reason = sentence("too little was seen: ", missing);
+  } else if (!wear.empty()) {
     advice.verdict = Verdict::worn;
-    advice.reason = sentence("", worn_by) + "; calibration makes up for it";
+    advice.reason = sentence("", wear) + "; calibration makes up for it";
   } else {
     advice.verdict = Verdict::good;
-    advice.reason = sentence("", {good(s)});
+    advice.reason = sentence("", {good_text(s)});
   }
   const bool is_blamed = advice.verdict == Verdict::replace || advice.verdict == Verdict::worn;
   const bool looks_held =
       s.wander > kWornWander || s.drift_per_s.value_or(0.0) > 0.0 || off_middle(s) >= kHeldCentre;
   if (is_blamed && looks_held) advice.reason += "; or a thumb lay on it: once more, hands off";
-  if (s.stuck > 0 && s.stuck < kUselessStuck) advice.reason += "; " + stuck(s);
+  if (s.stuck_count > 0 && s.stuck_count < kUselessStuck) advice.reason += "; " + stuck_text(s);
   if (advice.verdict == Verdict::good && single_jumps(s) > 0)
     advice.reason += "; it jumped for a single report, so its reports are filtered";
   if (s.displaced == 1) {
-    advice.reason += "; " + displaced(s) +
+    advice.reason += "; " + displaced_text(s) +
                      ", which the inner zone covers: measure again if a thumb may have lain on it";
   }
   if (s.centre && !s.hysteresis) {
@@ -444,13 +451,13 @@ StickAnalysis stick_analysis(std::vector<StickTrack> tracks, const vec2& step,
 // repeated values of a resting stick may look like lost reports.
 void share_timing(StickStatistics& a, StickStatistics& b) noexcept {
   const StickStatistics& best = a.rate_hz.value_or(0.0) >= b.rate_hz.value_or(0.0) ? a : b;
-  const bool is_silent_at_rest = (a.rate_hz && !a.gaps) || (b.rate_hz && !b.gaps);
+  const bool is_silent_at_rest = (a.rate_hz && !a.gap_count) || (b.rate_hz && !b.gap_count);
   const auto rate_hz = best.rate_hz, jitter_ms = best.jitter_ms;
-  const auto gaps = is_silent_at_rest ? std::nullopt : best.gaps;
+  const auto gaps = is_silent_at_rest ? std::nullopt : best.gap_count;
   for (StickStatistics* s : {&a, &b}) {
     s->rate_hz = rate_hz;
     s->jitter_ms = jitter_ms;
-    s->gaps = gaps;
+    s->gap_count = gaps;
   }
 }
 
@@ -554,9 +561,9 @@ std::string why_useless(const PadAnalysis& analysis) {
   for (std::size_t i = 0; i < 2; ++i) {
     const auto& stick = analysis.stick[i];
     if (!stick || is_known(analysis, i)) continue;
-    const Reasons missing_are = missing(stick->statistics);
+    const Reasons missing = missing_data(stick->statistics);
     text += fmt::format("; {}: {}", kSideNames[i],
-                        missing_are.empty() ? stick->advice.reason : missing_are.front());
+                        missing.empty() ? stick->advice.reason : missing.front());
   }
   return text;
 }

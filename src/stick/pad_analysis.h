@@ -20,7 +20,7 @@ struct StickAdvice {
   double outer_zone = 0.0;       // raw radius
   Verdict verdict = Verdict::unknown;
   std::string reason;  // the reason of the verdict: one sentence with numbers
-  // Parts of `calibration` that were seen and are not doubted.
+  // Whether these parts of `calibration` were seen and are certain.
   bool has_centre = false, has_range = false;
 };
 // The positions of `statistics` are given in `frame`.

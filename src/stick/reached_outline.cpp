@@ -7,8 +7,8 @@ namespace gaitpad {
 namespace {
 
 constexpr double kTurn_rad = 2.0 * kPi;
-// Least reach in a direction that counts, as in dualshock-tools.
-constexpr double kLeastReach = 0.2;
+// Least raw radius at which a stick can be turning along its rim; the limit of dualshock-tools.
+constexpr double kLeastRimRadius = 0.2;
 
 }  // namespace
 
@@ -16,14 +16,14 @@ void ReachedOutline::add(const vec2& before, const vec2& now, std::int64_t tick,
                          int rate_hz) noexcept {
   constexpr std::int64_t kKept_s = 10;
   constexpr int kParts = 8;
-  // Largest turn between two frames; more is no turn along the rim.
+  // Largest turn between two frames; a larger one may have crossed the middle.
   constexpr double kMostTurn_rad = 1.0;
   for (Reached& r : reached_)
     if (tick - r.tick > kKept_s * rate_hz) r.radius = 0.0;
   if (!std::isfinite(before.x + before.y + now.x + now.y)) return;
   const double from = std::atan2(before.y, before.x), radius = glm::length(now);
   double turn = std::remainder(std::atan2(now.y, now.x) - from, kTurn_rad);
-  const bool is_along = std::fabs(turn) < kMostTurn_rad && glm::length(before) > kLeastReach;
+  const bool is_along = std::fabs(turn) < kMostTurn_rad && glm::length(before) > kLeastRimRadius;
   for (int part = is_along ? 1 : kParts; part <= kParts; ++part) {
     const double share = static_cast<double>(part) / kParts;
     const double angle = from + share * turn;

@@ -10,7 +10,8 @@ namespace gaitpad {
 
 class ReachedOutline {
  public:
-  // Takes the raw place of a stick; the way from `before` counts as well.
+  // Takes the raw position of a stick. The directions that it passed since `before` count as well,
+  // at radii between the two.
   void add(const vec2& before, const vec2& now, std::int64_t tick, int rate_hz) noexcept;
   // Raw; 0: nothing was seen in this direction. Direction k is k times 7.5 degrees from the right.
   double radius(std::size_t k) const noexcept { return reached_[k].radius; }

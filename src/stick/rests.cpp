@@ -21,7 +21,7 @@ struct RestPoint {
   double weight = 0.0;
 };
 
-// A mean is a sum until it is divided.
+// Sums up for a weighted mean; divide() completes it.
 void add(RestPoint& sum, const RestPoint& point) noexcept {
   sum.weight += point.weight;
   sum.time_s += point.weight * point.time_s;
@@ -44,7 +44,7 @@ struct RestTrend {
 // count as noise, rounding does.
 struct RestNoise {
   vec2 squares{0.0};
-  double freedom = 0.0;
+  double freedom = 0.0;  // degrees of freedom of each axis
   vec2 variance() const noexcept { return freedom > 0.0 ? squares / freedom : vec2(0.0); }
 };
 
@@ -166,9 +166,10 @@ struct Release {
   vec2 from{0.0};  // unit vector to the side from which the stick returned; 0: not seen
 };
 
-constexpr double kSamePlace = 0.02;
-constexpr double kOdd = 0.005;          // odd rests that are nearer, raw, do no harm
-constexpr std::size_t kMostTried = 64;  // most releases that are left out one by one
+constexpr double kSamePlace = 0.02;  // raw; stills this near to each other are one rest
+constexpr double kOdd = 0.005;       // raw; a rest that is off by less is not left out
+// With more releases no odd one is searched, because the time grows with the cube.
+constexpr std::size_t kMostTried = 64;
 
 // One release from the longest of the stills and those at its place.
 Release release_of(std::span<const StickTrack> tracks, std::span<const Still> stills,
@@ -204,18 +205,19 @@ std::vector<Release> releases_of(std::span<const StickTrack> tracks, std::span<c
 // ---- Explaining where it rests
 
 // Rests explained by the side of the release and by drift:
-// place = home + returns * from + drift * time. Each track has its own home.
+// place = centre + returns * from + drift * time. Each track has its own centre.
 struct ReturnModel {
-  std::vector<bool> counts;  // of each release; odd ones and those without `from` do not count
+  // For each release: it is used; odd ones and those without `from` are not.
+  std::vector<bool> counts;
   int used = 0;
-  vec2 home{0.0};          // mean rest of the releases that are used
+  vec2 centre{0.0};        // mean over the releases that are used
   vec2 drift{0.0};         // drift per second; 0 unless it was asked for
   double residual = 0.0;   // sum of squared differences of both axes
   double spread_s2 = 0.0;  // spread of the times that `from` does not explain
 };
-enum class Explain { home, returns, returns_and_drift };
+enum class Explain { centre, returns, returns_and_drift };
 
-// One release and what may explain its place, relative to the means of its track.
+// One release and the possible causes of its place, relative to the means of its track.
 struct Row {
   std::array<double, 3> cause{};  // variables of the fit: from.x, from.y, time
   vec2 place{0.0};
@@ -227,8 +229,8 @@ struct Solution {
   double spread_s2 = 0.0;
 };
 
-// Least squares of both axes on the causes first .. last - 1; a little ridge keeps it solvable if
-// the causes hardly differ.
+// Least squares of both axes on the causes first .. last - 1. A small ridge term keeps it solvable
+// if the causes hardly differ.
 Solution solve(std::span<const Row> rows, std::size_t first, std::size_t last) {
   std::array<std::array<double, 3>, 3> a{};
   std::array<vec2, 3> b{};
@@ -293,7 +295,7 @@ std::vector<Row> centred_rows(std::span<const Release> releases, const std::vect
 Solution solve(std::span<const Release> releases, const std::vector<bool>& counts,
                Explain explain) {
   const std::vector<Row> rows = centred_rows(releases, counts);
-  const std::size_t first = explain == Explain::home ? 2 : 0;
+  const std::size_t first = explain == Explain::centre ? 2 : 0;
   return solve(rows, first, explain == Explain::returns_and_drift ? 3 : 2);
 }
 
@@ -325,8 +327,8 @@ bool leave_odd_out(std::span<const Release> releases, Explain explain, double no
   return true;
 }
 
-// `noise`: standard deviation of one rest's mean, one axis; odd releases are farther off than that
-// explains.
+// `noise`: standard deviation of one rest's mean, one axis; an odd release is farther off than this
+// noise explains.
 ReturnModel return_model(std::span<const Release> releases, Explain explain, double noise) {
   ReturnModel model;
   model.counts.resize(releases.size());
@@ -345,10 +347,10 @@ ReturnModel return_model(std::span<const Release> releases, Explain explain, dou
   for (std::size_t i = 0; i < releases.size(); ++i) {
     if (!model.counts[i]) continue;
     const Row row = row_of(releases[i]);
-    model.home += row.place;
-    for (std::size_t k = 0; k < 3; ++k) model.home -= row.cause[k] * solution.effect[k];
+    model.centre += row.place;
+    for (std::size_t k = 0; k < 3; ++k) model.centre -= row.cause[k] * solution.effect[k];
   }
-  if (model.used > 0) model.home /= static_cast<double>(model.used);
+  if (model.used > 0) model.centre /= static_cast<double>(model.used);
   return model;
 }
 
@@ -393,11 +395,11 @@ double greatest_distance(std::span<const vec2> places) noexcept {
 
 constexpr double kBlock_s = 0.1;
 constexpr double kFewestRestReports = 5.0;
-constexpr double kSettling_s = 1.0;  // time after a release in which some sticks creep home
+constexpr double kSettling_s = 1.0;  // after a release; some sticks creep to their rest
 constexpr double kShortestForDrift_s = 0.5;
 constexpr double kSlowestDrift_per_s = 0.0005;
 
-// All that the rests show; drift, centre and noise are concluded from it.
+// Everything known about the rests; drift, centre and noise are derived from it.
 struct Evidence {
   std::vector<Release> releases;
   RestNoise noise;
@@ -409,7 +411,8 @@ struct Evidence {
   std::vector<std::vector<RestPoint>> blocks;  // blocks of each still time, each of weight 1
   std::vector<RestPoint> settled;              // blocks of the longest still, without settling
   double step = 0.0;
-  double step_noise = 0.0;  // noise of a mean by rounding, unless noise averages it out
+  // Noise of a mean by rounding, step / sqrt(12); 0 if other noise averages rounding out.
+  double step_noise = 0.0;
 };
 
 void add_still(Evidence& evidence, std::span<const StickTrack> tracks, const Release& release,
@@ -462,7 +465,7 @@ Evidence evidence_of(std::span<const StickTrack> tracks, std::span<const Still> 
     evidence.step_noise = evidence.step / std::sqrt(12.0);
   }
   const double measured = freedom >= 6.0 ? std::sqrt(squares / freedom) : 0.0;
-  // A code that never flips only tells that the place is within a step.
+  // If the reported value never changes, the place is known to within a step only.
   evidence.block_noise = std::max({evidence.white_noise, measured, 0.02 * evidence.step, 1e-7});
   const double blocks_each = blocks / static_cast<double>(evidence.releases.size());
   evidence.mean_noise = evidence.block_noise / std::sqrt(blocks_each);
@@ -471,16 +474,16 @@ Evidence evidence_of(std::span<const StickTrack> tracks, std::span<const Still> 
 
 // ---- Drift
 
-// Logarithm of the odds of the rests with a trend to those without. 16 is one in ten million:
-// chance and the habits of a hand seldom look that much like a line. If noise explains the residual
-// with the trend, the odds are measured against the noise, else against the residual.
+// Logarithm of the likelihood of the rests with a trend over that without one. kSure = 16 is one in
+// ten million: neither chance nor habits of the hand often look that much like a line. If noise
+// explains the residual with the trend, the noise is the measure, else the residual.
 constexpr double kSure = 16.0, kSureOfOne = 12.0;
 double log_odds(double without, double with, double freedom, double noise) noexcept {
   const double variance = noise * noise;
-  const double by_what_is_left =
+  const double by_residual =
       0.5 * freedom * std::log((without + freedom * variance) / (with + freedom * variance));
-  if (with > variance * (freedom + 3.0 * std::sqrt(2.0 * freedom))) return by_what_is_left;
-  return std::max(by_what_is_left, 0.5 * (without - with) / variance);
+  if (with > variance * (freedom + 3.0 * std::sqrt(2.0 * freedom))) return by_residual;
+  return std::max(by_residual, 0.5 * (without - with) / variance);
 }
 
 bool is_worth_reporting(const Evidence& evidence, const vec2& drift, double seconds, double steps) {
@@ -525,7 +528,7 @@ vec2 drift_across_rests(const Evidence& evidence) {
   return is_worth ? with.drift : vec2(0.0);
 }
 
-// Drift within the longest rest, for few releases: a line over eight parts.
+// Drift within the longest rest, used if there are few releases: a line over eight parts.
 vec2 drift_within_rest(const Evidence& evidence) {
   const std::span<const RestPoint> blocks = evidence.settled;
   const std::vector<RestPoint> parts = rest_blocks(blocks, 8);
@@ -557,13 +560,13 @@ vec2 drift_of(const Evidence& evidence) {
 
 // ---- Centre
 
-struct Home {
-  vec2 centre{0.0};
-  std::vector<bool> counts;
+struct RestCentre {
+  vec2 place{0.0};
+  std::vector<bool> counts;  // for each release
 };
 
-// Marks the releases that count. A thumb on the stick does not: a minority of rests, several times
-// farther off than the others.
+// Marks the releases that count: those at most 2.5 times as far from the median as three quarters
+// of all are. Farther off a thumb may have lain on the stick.
 std::vector<bool> usual_releases(std::span<const Release> releases, double noise) {
   std::vector<bool> counts(releases.size(), true);
   if (releases.size() < 4) return counts;
@@ -616,38 +619,38 @@ std::vector<vec2> places_of(std::span<const Release> releases, const std::vector
 // Without hysteresis the mean of all samples is best. With hysteresis the rests lie round the true
 // place, but not evenly: if they follow the direction of the release, that effect is removed, else
 // the middle of all rests counts.
-Home home_of(std::span<const Release> releases, const Evidence& evidence) {
-  Home home;
-  home.counts = usual_releases(releases, evidence.mean_noise);
-  if (is_one_place(releases, home.counts, evidence)) {
-    home.centre = mean_of(releases, home.counts);
-    return home;
+RestCentre rest_centre_of(std::span<const Release> releases, const Evidence& evidence) {
+  RestCentre centre;
+  centre.counts = usual_releases(releases, evidence.mean_noise);
+  if (is_one_place(releases, centre.counts, evidence)) {
+    centre.place = mean_of(releases, centre.counts);
+    return centre;
   }
   const ReturnModel with = return_model(releases, Explain::returns, evidence.mean_noise);
-  const ReturnModel without = return_model(releases, Explain::home, evidence.mean_noise);
+  const ReturnModel without = return_model(releases, Explain::centre, evidence.mean_noise);
   const double freedom = 2.0 * (with.used - tracks_of(releases) - 2);
   const bool follows = freedom >= 4.0 && log_odds(without.residual, with.residual, freedom,
                                                   evidence.mean_noise) > 8.0;
   if (!follows) {
-    const std::vector<vec2> places = places_of(releases, home.counts);
-    home.centre = middle_of(places);
-    return home;
+    const std::vector<vec2> places = places_of(releases, centre.counts);
+    centre.place = middle_of(places);
+    return centre;
   }
-  home.centre = with.home;
-  // The model decides which releases are odd; one of unknown direction counts if it lies no farther
-  // out than the others.
+  centre.place = with.centre;
+  // The model has found the odd releases; one of unknown direction counts if it lies no farther out
+  // than the others.
   double radius = 0.0;
   for (std::size_t i = 0; i < releases.size(); ++i) {
     if (with.counts[i]) {
-      radius = std::max(radius, glm::length(releases[i].rest.place - home.centre));
+      radius = std::max(radius, glm::length(releases[i].rest.place - centre.place));
     }
   }
   for (std::size_t i = 0; i < releases.size(); ++i) {
-    const bool is_within = glm::length(releases[i].rest.place - home.centre) <=
+    const bool is_within = glm::length(releases[i].rest.place - centre.place) <=
                            1.2 * radius + 4.0 * evidence.mean_noise;
-    home.counts[i] = with.counts[i] || (releases[i].from == vec2(0.0) && is_within);
+    centre.counts[i] = with.counts[i] || (releases[i].from == vec2(0.0) && is_within);
   }
-  return home;
+  return centre;
 }
 
 // Whether the stick was moved and let go between two rests: its movement was seen, or the first
@@ -677,7 +680,7 @@ double hysteresis_of(std::span<const vec2> places, double noise) noexcept {
 void set_sigma(RestStatistics& to, const Evidence& evidence, const vec2& step) {
   if (evidence.noise.freedom < 10.0) return;
   const vec2 shown = evidence.noise.variance();
-  // Rounding adds the variance of an even distribution over one step.
+  // Rounding adds the variance step^2 / 12.
   const vec2 own = glm::sqrt(glm::max(shown - step * step / 12.0, vec2(0.0)));
   const bool is_x_hidden = own.x < step.x, is_y_hidden = own.y < step.y;
   to.is_sigma_hidden = is_x_hidden || is_y_hidden;
@@ -687,12 +690,14 @@ void set_sigma(RestStatistics& to, const Evidence& evidence, const vec2& step) {
 
 // ---- Moving by itself
 
-// Estimated from the changes over 0.2 s, less the part that noise and flipping codes explain. The
-// median over the hands-off times, because a thumb may lie on the stick in some of them.
+// sqrt((d^2 - n^2) / (2 * 0.167 s)); d: change over 0.2 s of both axes together; n: the part of it
+// that noise and steps explain. Both are medians over the hands-off times, because a thumb may lie
+// on the stick in some of them.
 double wander_of(std::span<const HandsOff> times, const vec2& drift, const vec2& step) {
-  constexpr std::size_t kLag = 2;                    // compared blocks are 0.2 s apart
-  constexpr double kShare = kLag * 0.1 - 0.1 / 3.0;  // s; a block is a mean over 0.1 s
-  constexpr double kFewest = 8.0;                    // fewest changes of both axes
+  constexpr std::size_t kLag = 2;  // compared blocks are 0.2 s apart
+  // A random walk's means over 0.1 s, 0.2 s apart, differ as its values this far apart do.
+  constexpr double kLagOfMeans_s = kLag * 0.1 - 0.1 / 3.0;
+  constexpr double kFewest = 8.0;  // fewest changes, counted for each axis
   std::vector<double> squares, noises;
   double changes = 0.0;
   for (const HandsOff& time : times) {
@@ -704,7 +709,7 @@ double wander_of(std::span<const HandsOff> times, const vec2& drift, const vec2&
       count += 1.0;
     }
     changes += 2.0 * count;
-    // A long time has many votes.
+    // A time counts once in the medians for each four changes.
     for (double vote = 0.0; count > 0.0 && vote < count; vote += 4.0) {
       squares.push_back(square / count);
       noises.push_back(noise / count);
@@ -714,12 +719,12 @@ double wander_of(std::span<const HandsOff> times, const vec2& drift, const vec2&
   const double square = median(std::move(squares));
   const double noise = median(std::move(noises)) + 0.5 * glm::dot(step, step);
   if (square < noise * (1.0 + 6.0 / std::sqrt(changes))) return 0.0;
-  const double wander = std::sqrt((square - noise) / (2.0 * kShare));
+  const double wander = std::sqrt((square - noise) / (2.0 * kLagOfMeans_s));
   return wander > 0.004 ? wander : 0.0;
 }
 
-// Releases after which it stood still far from its centre: farther than most, and than a good stick
-// ever rests.
+// Marks releases after which the stick stood still far from its centre: at least 0.07 (raw; good
+// sticks rest nearer) and 1.5 times the median distance.
 void add_displaced(RestStatistics& to) {
   constexpr double kFarOff = 0.07, kOfUsual = 1.5, kQuiet = 0.02;
   std::vector<double> away;
@@ -734,7 +739,7 @@ void add_displaced(RestStatistics& to) {
       mean += time.places[k] / static_cast<double>(time.places.size());
       noise = std::max(noise, time.variances[k]);
     }
-    // The stick was moved.
+    // The stick moved during this time.
     if (glm::length(most - least) > kQuiet + 5.0 * std::sqrt(noise)) continue;
     away.push_back(glm::length(mean - *to.centre));
     quiet.push_back(&time);
@@ -765,8 +770,7 @@ RestStatistics rest_statistics(std::span<const StickTrack> tracks, const vec2& s
   result.hands_off = std::move(found.hands_off);
   for (const Still& push : found.pushes) result.pushes.push_back(push.mean);
   if (rests.empty()) {
-    // A stick that never stood still: its centre is the middle of its places while it moved by
-    // itself.
+    // The stick never stood still: the centre is the median of its places while it moved by itself.
     std::vector<vec2> places;
     for (const HandsOff& time : result.hands_off)
       places.insert(places.end(), time.places.begin(), time.places.end());
@@ -786,9 +790,9 @@ RestStatistics rest_statistics(std::span<const StickTrack> tracks, const vec2& s
   if (result.rest_s >= kShortestForDrift_s) result.drift_per_s = glm::length(result.drift);
   std::vector<Release> steady = evidence.releases;
   for (Release& release : steady) release.rest.place -= result.drift * release.rest.time_s;
-  const Home home = home_of(steady, evidence);
-  result.centre = home.centre;
-  result.rests = places_of(steady, home.counts);
+  const RestCentre centre = rest_centre_of(steady, evidence);
+  result.centre = centre.place;
+  result.rests = places_of(steady, centre.counts);
   if (result.rests.size() >= 2 && was_let_go(tracks, evidence.releases)) {
     result.hysteresis = hysteresis_of(result.rests, evidence.mean_noise);
   }

@@ -9,7 +9,7 @@ namespace gaitpad {
 namespace {
 
 // For each axis, the chance that a report at rest repeats the one before it, by noise and steps
-// alone; 1 if the noise is not known.
+// alone: step / (2 sqrt(pi) sigma), at most 1; 1 if the noise is not known.
 vec2 repeats_expected(const StickStatistics& s) noexcept {
   if (!s.sigma) return vec2(1.0);
   const auto chance = [](double sigma, double step) {
@@ -23,13 +23,13 @@ void add_rim(StickStatistics& to, std::span<const StickTrack> tracks, const Exte
   const vec2 sigma = to.sigma.value_or(vec2(0.0));
   to.outline = outline_of(tracks, middle, std::max(sigma.x, sigma.y));
   const Reach reach = reach_of(to.outline);
-  // A corner that was extrapolated from its two sides goes no farther than the stick was seen.
+  // The outline extrapolates corners from their two sides; the reach ends at the farthest sample.
   if (reach.min_x) to.min_x = std::max(*reach.min_x, extent.least.x);
   if (reach.max_x) to.max_x = std::min(*reach.max_x, extent.most.x);
   if (reach.min_y) to.min_y = std::max(*reach.min_y, extent.least.y);
   if (reach.max_y) to.max_y = std::min(*reach.max_y, extent.most.y);
   to.circularity_error = circularity_error(to.outline);
-  // A stick that wanders has moved between its turn and its pushes.
+  // A stick that wanders may have moved between its turn and its pushes: they cannot be compared.
   constexpr double kWanders = 0.02;
   if (to.wander < kWanders) to.unpressed = unpressed_direction(to.outline, to.pushes);
   to.rim_samples = to.outline.samples;
@@ -49,9 +49,9 @@ StickStatistics stick_statistics(std::span<const StickTrack> tracks, const vec2&
   StickStatistics result;
   for (const StickTrack& track : tracks) result.samples += static_cast<std::int64_t>(track.size());
   const CleanTracks clean = clean_tracks(tracks);
-  result.jumps = clean.jumps;
-  result.long_jumps = clean.long_jumps;
-  result.drop_outs = clean.drop_outs;
+  result.jump_count = clean.jump_count;
+  result.long_jump_count = clean.long_jump_count;
+  result.drop_out_count = clean.drop_out_count;
   result.drop_out_s = clean.drop_out_s;
   result.step_x = quantisation_step(clean.tracks, 0, declared_step.x);
   result.step_y = quantisation_step(clean.tracks, 1, declared_step.y);
@@ -70,8 +70,8 @@ StickStatistics stick_statistics(std::span<const StickTrack> tracks, const vec2&
   for (const StickTrack& track : tracks)
     for (const StickSample& sample : track) new_values.take(sample.time_ns, sample.raw, vec2(0.0));
   result.moving = new_values.rate();
-  result.gaps = timing.gaps;
-  result.stuck =
+  result.gap_count = timing.gap_count;
+  result.stuck_count =
       stuck_values(clean.tracks, interval_s, result.is_sigma_hidden ? vec2(1.0) : repeats);
   return result;
 }
@@ -122,7 +122,7 @@ TriggerStatistics trigger_statistics(std::span<const TriggerTrack> tracks) {
     result.samples += static_cast<std::int64_t>(track.size());
   const std::vector<Held> values = values_of(tracks);
   if (values.empty()) return result;
-  // A report or two at either end may be spikes.
+  // Up to three reports at either end may be spikes.
   const std::size_t odd = std::min<std::size_t>(values.size() / 100, 3);
   const double low = values[odd].raw, high = values[values.size() - 1 - odd].raw;
   if (low < 0.5) result.released = median_within(values, low - 1.0, low + kNear);

@@ -13,13 +13,13 @@
 
 namespace gaitpad {
 
-// Positions and lengths are raw, as in StickSample. A value is none if there are too few data for
-// it.
+// Positions and lengths are raw, as in StickSample. A value is left out if there are too few data
+// for it.
 struct StickStatistics : RestStatistics {
   std::int64_t samples = 0;  // number of all reports
 
   // At the rim, see outline.h.
-  Outline outline;  // outline about `centre`; about 0 if there is none
+  Outline outline;  // outline about `centre`, or about 0 without it
   std::optional<double> min_x, max_x, min_y, max_y;
   std::optional<double> circularity_error;  // circularity error in percent
   std::optional<int> unpressed;             // direction from unpressed_direction()
@@ -32,12 +32,13 @@ struct StickStatistics : RestStatistics {
   std::optional<double> rate_hz;       // report rate without gaps
   std::optional<MovementRate> moving;  // rates while the stick moved
   std::optional<double> jitter_ms;     // standard deviation of the intervals, without gaps
-  std::optional<std::int64_t> gaps;    // where reports were lost; none: the pad is silent at rest
-  std::int64_t jumps = 0;              // spikes: to another place and back within three reports
-  std::int64_t long_jumps = 0;         // those of them that last for more than one report
-  std::int64_t drop_outs = 0;          // number of times that an axis lost contact for longer
+  // Number of gaps, where reports were lost; none: the pad is silent at rest.
+  std::optional<std::int64_t> gap_count;
+  std::int64_t jump_count = 0;       // spikes: to another place and back within three reports
+  std::int64_t long_jump_count = 0;  // number of them that last for more than one report
+  std::int64_t drop_out_count = 0;   // times that an axis lost contact for longer than a spike
   double drop_out_s = 0.0;
-  std::int64_t stuck = 0;  // the value froze while the stick moved; seen if the pad repeats values
+  std::int64_t stuck_count = 0;  // number of times that the value froze while the stick moved
 };
 // `declared_step` (x, y): of the layout, 0 if not known.
 StickStatistics stick_statistics(std::span<const StickTrack> tracks, const vec2& declared_step);

@@ -61,7 +61,8 @@ double declared_step(const PadLayout& layout, PadAxis axis) noexcept {
 bool PadTracker::add_report(const Report& report) {
   const ReportLayout* read = layout_of(*layout_, report);
   if (read == nullptr || !decode(*layout_, report, state_)) return false;
-  // An axis that was never reported would look as if it stood in its middle.
+  // An axis that was never reported would seem to stand in its middle, so samples begin when both
+  // axes of a stick are known.
   for (const AxisOp& op : read->axes) known_ |= 1u << op.axis;
   const auto is_known = [this](PadAxis axis) { return (known_ >> axis & 1u) != 0; };
   for (int side = 0; side < 2; ++side) {
@@ -139,10 +140,10 @@ namespace {
 
 constexpr double kSmallestSpike = 0.03;    // least height of a spike, raw; less is noise
 constexpr double kShortMovement_s = 0.04;  // no hand moves there and back in a shorter time
-// Longest jump there and back with edges of one report, which no hand can make.
+// Longest drop-out: a hand cannot move away and back in it, each within one report.
 constexpr double kLongestDropOut_s = 0.12;
 constexpr double kShortestDropOut_s = 0.0035;
-// Longest interval for drop-outs: a spring takes two reports or more.
+// Longest interval at which drop-outs are searched: a spring's return takes two reports or more.
 constexpr double kSlowestForDropOuts_s = 0.025;
 constexpr double kFarthest = 4.0;  // greatest raw position; those beyond are damaged
 // Latest time, so that sums of times fit in 64 bits.
@@ -177,7 +178,7 @@ struct Scale {
 };
 
 // A stick held against its end has small, one-sided noise, so a spike must be long compared with
-// the steps of the whole track.
+// the steps of the whole track: 5 times their lower quartile.
 double smallest_spike(const StickTrack& track) {
   constexpr std::size_t kMost = std::size_t{1} << 18;
   const std::size_t stride = track.size() / kMost + 1;
@@ -199,7 +200,7 @@ struct Steps {
   }
 };
 
-// Up to four before and four behind, without the steps into and out of i .. i + length - 1.
+// Up to four steps before and four behind, without those into and out of i .. i + length - 1.
 std::array<Steps, 2> steps_around(const StickTrack& track, std::size_t i, std::size_t length,
                                   double interval_s) noexcept {
   constexpr std::size_t kEach = 4;
@@ -233,8 +234,8 @@ bool stands_out(double height, const std::array<Steps, 2>& around) noexcept {
          height > 7.0 * all.length[all.count / 2] && height > 4.5 * all.length[third];
 }
 
-// Nearer to the middle in the same direction: a sector of the gate that reaches less far, which the
-// stick is turned through.
+// Whether `place` lies in the same direction as `before` but nearer to the middle: the stick is
+// turned through a sector of the gate that reaches less far, which is no fault of its reports.
 bool is_weak_sector(const vec2& before, const vec2& place) noexcept {
   constexpr double kOut = 0.5, kSameDirection = 0.95;  // a raw distance; the cosine of an angle
   const double far = glm::length(before), near = glm::length(place);
@@ -276,8 +277,8 @@ bool remove_spikes(StickTrack& track, const Scale& scale, CleanTracks& counts) {
     if (length == 0) continue;
     for (std::size_t k = i; k < i + length; ++k) track[k].raw = track[i - 1].raw;
     is_any = true;
-    ++counts.jumps;
-    counts.long_jumps += length > 1;
+    ++counts.jump_count;
+    counts.long_jump_count += length > 1;
     i += length - 1;
   }
   return is_any;
@@ -287,7 +288,7 @@ bool remove_spikes(StickTrack& track, const Scale& scale, CleanTracks& counts) {
 // jumps to another value, stays there and jumps back, each within one report. A hand needs several.
 std::size_t drop_out_length(const StickTrack& track, std::size_t i, int axis,
                             double interval_s) noexcept {
-  // Raw heights, and a share of the height.
+  // Least height and height of the plateau's noise, raw; a share of the height.
   constexpr double kSmallest = 0.2, kPlateau = 0.04, kOfHeight = 0.2;
   const auto at = [&](std::size_t k) { return track[std::min(k, track.size() - 1)].raw[axis]; };
   const double before = at(i - 1), height = std::fabs(at(i) - before);
@@ -319,15 +320,15 @@ void remove_drop_outs(StickTrack& track, double interval_s, CleanTracks& counts)
       const double lasted_s = seconds_between(track[i].time_ns, track[i + length].time_ns);
       if (lasted_s < std::max(1.5 * interval_s, kShortestDropOut_s)) continue;
       for (std::size_t k = i; k < i + length; ++k) track[k].raw[axis] = track[i - 1].raw[axis];
-      ++counts.drop_outs;
+      ++counts.drop_out_count;
       counts.drop_out_s += lasted_s;
       i += length - 1;
     }
   }
 }
 
-// The first and the last report have only one neighbour each, so a movement that has just begun
-// loses a report here.
+// Removes a first or last report that stands out. It has only one neighbour, so a movement that has
+// just begun may lose a report.
 void remove_odd_ends(StickTrack& track, const Scale& scale) {
   if (track.size() < 6) return;
   const std::size_t last = track.size() - 1;
@@ -364,8 +365,9 @@ namespace {
 // Number of intervals that is enough for a median.
 constexpr std::size_t kMostIntervals = std::size_t{1} << 20;
 constexpr std::size_t kFewestIntervals = 20;
-constexpr double kSilence_s = 0.1, kSlowest_s = 0.5;
+constexpr double kSilence_s = 0.1, kSlowest_s = 0.5;  // longer: silence; on a slow pad
 constexpr double kBurst_s = 0.0007;  // nearly all pads send at most 1000 reports a second
+// Time between reports that is assumed if there are too few.
 constexpr double kUnknownInterval_s = 0.004;
 constexpr double kFrozen_s = 0.07;
 
@@ -472,7 +474,7 @@ std::vector<double> distinct_values(std::span<const StickTrack> tracks, int axis
   return values;
 }
 
-// The stick's place this long before or after a sample.
+// The stick's position `seconds` after sample i; negative: before it.
 vec2 place_at(const StickTrack& track, std::size_t i, double seconds) noexcept {
   while (seconds < 0.0 && i > 0 &&
          seconds_between(track[i - 1].time_ns, track[i].time_ns) <= -seconds) {
@@ -488,13 +490,14 @@ vec2 place_at(const StickTrack& track, std::size_t i, double seconds) noexcept {
 }
 
 // Whether the values of these axes (one or both), the same from `first` to `last`, were frozen:
-// they jump on afterwards, by far more than they move then, and something moved meanwhile.
-// `quiet`: the chance that noise shows the same value so often.
+// afterwards they jump by far more than they move in the next reports, and something moved
+// meanwhile. `quiet`: the chance that noise repeats the value so often.
 bool is_frozen(const StickTrack& track, std::size_t first, std::size_t last, const vec2& axes,
                double quiet) {
-  // A raw distance, seconds, and raw distances.
+  // kRun_s is in seconds; the others are raw distances.
   constexpr double kMoved = 0.1, kRun_s = 0.03, kRunning = 0.02, kOut = 0.4;
-  constexpr double kUnlikely = 1e-6, kInside = 0.7;  // noise may end where the range does
+  // kInside: farther out the end of the range may hide the noise.
+  constexpr double kUnlikely = 1e-6, kInside = 0.7;
   // Greatest raw speed of a stick that snaps back, and its tolerance.
   constexpr double kSpring_per_s = 60.0, kSlack = 0.2;
   if (last + 1 >= track.size()) return false;
@@ -540,8 +543,8 @@ ReportTiming report_timing(std::span<const StickTrack> tracks, double repeats_ex
   timing.rate_hz = 1.0 / found->mean_s;
   timing.jitter_ms = 1e3 * found->deviation_s;
   if (!reports_at_rest(tracks, found->mean_s, repeats_expected)) return timing;
-  timing.gaps = 0;
-  for (const StickTrack& track : tracks) *timing.gaps += gaps_of(track, found->mean_s);
+  timing.gap_count = 0;
+  for (const StickTrack& track : tracks) *timing.gap_count += gaps_of(track, found->mean_s);
   return timing;
 }
 
@@ -550,7 +553,7 @@ double quantisation_step(std::span<const StickTrack> tracks, int axis, double de
   double least = 4.0;
   for (std::size_t i = 1; i < values.size(); ++i)
     least = std::min(least, values[i] - values[i - 1]);
-  // Values without steps also come close to each other, but seldom, and not at multiples.
+  // Values without steps may also lie close to each other, but seldom, and not at multiples.
   int ones = 0, few = 0, whole = 0;
   for (std::size_t i = 1; i < values.size(); ++i) {
     const double steps = (values[i] - values[i - 1]) / least;

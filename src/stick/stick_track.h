@@ -97,10 +97,11 @@ struct CleanTracks {
   // Tracks with as many samples as before. A sample that does not count (no number, out of range, a
   // spike) repeats the position before it; times never go back.
   std::vector<StickTrack> tracks;
-  std::int64_t jumps = 0;       // spikes: to another place and back within three reports
-  std::int64_t long_jumps = 0;  // those of them that a median of three reports lets through
+  std::int64_t jump_count = 0;  // spikes: to another place and back within three reports
+  std::int64_t long_jump_count =
+      0;  // number of jumps that the median of three reports lets through
   // An axis jumped to another value, stayed there for two reports to 0.12 s, and jumped back.
-  std::int64_t drop_outs = 0;
+  std::int64_t drop_out_count = 0;
   double drop_out_s = 0.0;  // duration of all drop-outs together
 };
 CleanTracks clean_tracks(std::span<const StickTrack> tracks);
@@ -114,7 +115,7 @@ double typical_interval_s(std::span<const StickTrack> tracks);
 struct ReportTiming {
   std::optional<double> rate_hz, jitter_ms;  // none: there are too few reports
   // None: there are too few reports, or the pad is silent at rest.
-  std::optional<std::int64_t> gaps;
+  std::optional<std::int64_t> gap_count;
 };
 // `repeats_expected`: the chance that a report at rest repeats the one before it, given noise and
 // step. A pad that repeats less often reports changes only, so its gaps cannot be counted.

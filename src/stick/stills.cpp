@@ -16,7 +16,7 @@ namespace {
 // ---- Finding the stills
 
 constexpr double kCell_s = 0.02;
-// Most cells, for all tracks together: those of a day.
+// Most cells, for all tracks together: 24 hours.
 constexpr std::size_t kMostCells = 86400 * 50;
 // A place is still if the means of the 0.1 s before it and behind it are equal.
 constexpr std::size_t kHalfWindow = 5, kWindow = 2 * kHalfWindow;  // lengths in cells
@@ -73,14 +73,14 @@ std::vector<Cell> cells_of(const StickTrack& track, double interval_s, std::size
   return cells;
 }
 
-// Few reports measure their variance badly; this factor on the variance allows for that. Four and
-// fewer get none, because a movement would pass for noise.
-double doubt(double reports) noexcept {
+// Few reports measure their variance badly; this factor allows for that. Four and fewer get none,
+// because a movement would pass for noise.
+double variance_factor(double reports) noexcept {
   return reports > 4.0 ? 1.0 + std::min(6.0 / reports, 1.0) : 1.0;
 }
 
 // Whether the window of cells from `first` on shows a single place, apart from noise. The noise is
-// measured between successive reports, where a movement's own steps are too small to matter.
+// measured between successive reports, between which even a movement is small.
 bool is_still(std::span<const Cell> cells, std::size_t first, double slow) noexcept {
   Cell before, after;
   for (std::size_t k = 0; k < kHalfWindow; ++k) {
@@ -91,7 +91,7 @@ bool is_still(std::span<const Cell> cells, std::size_t first, double slow) noexc
   // A movement that begins or ends here is in one half only.
   const double variance = std::min(before.variance(), after.variance());
   const double limit =
-      kNoiseLimit * kNoiseLimit * variance * doubt(std::min(before.weight, after.weight));
+      kNoiseLimit * kNoiseLimit * variance * variance_factor(std::min(before.weight, after.weight));
   const vec2 moved = after.mean() - before.mean();
   if (glm::dot(moved, moved) >
       std::max(slow * slow, limit * (1.0 / before.weight + 1.0 / after.weight))) {
@@ -123,8 +123,8 @@ bool stays(std::span<const Cell> cells, const Run& run, std::size_t end) noexcep
   return true;
 }
 
-// Runs of cells in the middle of still windows, extended by the part of the outermost windows that
-// is certainly rest: a movement begins and ends within the noise, and on a slow pad between two
+// Runs of cells whose windows are still. A run is extended into its outermost windows, except for
+// the cells beside the movement: it begins within the noise and, on a slow pad, between two
 // reports.
 std::vector<Run> still_runs(std::span<const Cell> cells, double slow, double interval_s) {
   std::vector<Run> runs;
@@ -186,17 +186,17 @@ std::vector<std::vector<Cell>> cells_of(std::span<const StickTrack> tracks, doub
 
 // ---- Which of them are rests
 
-constexpr double kFarthestHome = 0.5;  // farthest rest, raw; farther out a stick is held
+constexpr double kFarthestFromMiddle = 0.5;  // farthest rest, raw; farther out a stick is held
 
 // Least distance from a rest that counts as a movement between two rests, raw.
 constexpr double kReleaseMovement = 0.2;
 constexpr std::size_t kShortestMovement = 3;  // length in cells
 
 bool is_near_middle(const vec2& p) noexcept {
-  return std::max(std::fabs(p.x), std::fabs(p.y)) < kFarthestHome;
+  return std::max(std::fabs(p.x), std::fabs(p.y)) < kFarthestFromMiddle;
 }
 
-// `turned`: where the stick went if it was turned round; a rest lies well inside of it.
+// `turned`: the extent of a stick that was turned round; a rest lies within 0.6 of it.
 bool may_be_rest(const Still& still, const std::optional<Extent>& turned) noexcept {
   if (!is_near_middle(still.mean)) return false;
   return !turned || glm::length((still.mean - turned->middle()) / turned->half()) < 0.6;
@@ -217,7 +217,8 @@ std::optional<Extent> turned_extent(std::span<const StickTrack> tracks) {
 std::vector<Still>::iterator sort_out_rests(std::vector<Still>& found,
                                             std::span<const StickTrack> tracks) {
   constexpr double kSquare = 0.0625, kSame = 3;  // side of a square, raw; distance in squares
-  // Distance from the middle, raw; worn sticks rest up to that far off.
+  // Raw distance from the middle at which a place counts exp(-1) as much; worn sticks rest up to
+  // that far off.
   constexpr double kNearMiddle = 0.25;
   struct Place {
     double seen_s = 0.0, count = 0.0;
@@ -254,16 +255,16 @@ std::vector<Still>::iterator sort_out_rests(std::vector<Still>& found,
     together[place.group].count += place.count;
     together[place.group].sum += place.sum;
   }
-  std::size_t home = 0;
+  std::size_t rest = 0;
   double best = 0.0;
   for (std::size_t k = 0; k < groups; ++k) {
     if (together[k].count == 0.0) continue;
     const vec2 off = together[k].sum / together[k].count / kNearMiddle;
     const double score = together[k].seen_s * std::exp(-glm::dot(off, off));
-    if (score > best) best = score, home = k;
+    if (score > best) best = score, rest = k;
   }
   return std::stable_partition(found.begin(), found.end(), [&](const Still& still) {
-    return may_be_rest(still, turned) && places[square_of(still)].group == home;
+    return may_be_rest(still, turned) && places[square_of(still)].group == rest;
   });
 }
 
@@ -289,8 +290,8 @@ vec2 side_of_return(std::span<const Cell> way, const vec2& place) noexcept {
 
 // ---- Hands-off time
 
-// Shares of the reach. A spring brings the stick from the farther place to the nearer one within
-// kSpringCells; a hand that leads it back is slower.
+// Shares of the reach. A spring brings the stick from kFar to kBack within kSpringCells; a hand
+// that leads it back is slower.
 constexpr double kPushed = 0.5, kFar = 0.7, kBack = 0.45;
 constexpr std::size_t kSpringCells = 7, kSettlingCells = 15, kLeastSettlingCells = 8;
 constexpr std::size_t kBlockCells = 5;
@@ -310,10 +311,11 @@ std::optional<vec2> usual_place(std::span<const Cell> cells) {
   return places.size() < 5 * kBlockCells ? std::nullopt : std::optional(median_of(places));
 }
 
-// The hands-off times of one track. `home`: where the stick rests; `reach`: from there.
-void add_hands_off(std::size_t track, std::span<const Cell> cells, const vec2& home, double reach,
+// The hands-off times of one track. `rest`: place where the stick rests; `reach`: from there;
+// `late`: cells per report, on slow pads.
+void add_hands_off(std::size_t track, std::span<const Cell> cells, const vec2& rest, double reach,
                    std::size_t late, std::vector<HandsOff>& found) {
-  const auto away = [&](std::size_t k) { return glm::length(cells[k].mean() - home) / reach; };
+  const auto away = [&](std::size_t k) { return glm::length(cells[k].mean() - rest) / reach; };
   for (std::size_t begin = 0, end; begin < cells.size(); begin = end) {
     end = begin + 1;
     if (away(begin) > kPushed) continue;
@@ -332,7 +334,7 @@ void add_hands_off(std::size_t track, std::span<const Cell> cells, const vec2& h
         if ((away(last - 1) - away(last - 4)) * reach < kOutwards) break;
       }
     }
-    // If the time is short, its end counts, although the stick may not quite have settled.
+    // A short time counts from earlier on, although the stick may not quite have settled.
     if (is_released && last < first + kBlockCells)
       first = std::max(begin + kLeastSettlingCells, last - std::min(last, kBlockCells));
     if (last < first + kBlockCells) continue;
@@ -349,12 +351,12 @@ void add_hands_off(std::size_t track, std::span<const Cell> cells, const vec2& h
 }
 
 // The usual length of a push; a square gate's corners are far beyond it.
-double usual_reach(std::span<const std::vector<Cell>> cells, const vec2& home) {
+double usual_reach(std::span<const std::vector<Cell>> cells, const vec2& rest) {
   std::vector<double> away;
   double farthest = 0.5;
   for (const std::vector<Cell>& track : cells) {
     for (const Cell& cell : track) {
-      away.push_back(glm::length(cell.mean() - home));
+      away.push_back(glm::length(cell.mean() - rest));
       farthest = std::max(farthest, away.back());
     }
   }
@@ -388,13 +390,13 @@ Stills stills(std::span<const StickTrack> tracks, const vec2& step, double inter
     if (const auto place = usual_place(cells[t])) places.push_back(*place);
   }
   if (places.empty()) return found;
-  const vec2 home = median_of(places);
-  const double reach = usual_reach(cells, home);
+  const vec2 centre = median_of(places);
+  const double reach = usual_reach(cells, centre);
   const auto late = static_cast<std::size_t>(std::clamp(interval_s / kCell_s, 0.0, 10.0));
   for (std::size_t t = 0; t < tracks.size(); ++t)
-    add_hands_off(t, cells[t], home, reach, late, found.hands_off);
+    add_hands_off(t, cells[t], centre, reach, late, found.hands_off);
   std::copy_if(others, all.end(), std::back_inserter(found.pushes), [&](const Still& still) {
-    return glm::length(still.mean - home) >= kPushed * reach;
+    return glm::length(still.mean - centre) >= kPushed * reach;
   });
   return found;
 }

@@ -7,13 +7,13 @@ namespace gaitpad {
 namespace {
 
 constexpr std::int64_t kPart_ns = 125'000'000, kJudged_ns = 250'000'000, kPush_ns = 40'000'000;
-// Shares of the inner zone, which covers 5.5 sigma: noise moves a single report by less than kNoise
-// and the mean over an eighth of a second by far less than kMoved.
+// Shares of the inner zone, which is 5.5 sigma or more: noise moves a single report by less than
+// kNoise and the mean over an eighth of a second by far less than kMoved.
 constexpr double kNoise = 0.4, kMoved = 0.35;
-// A push goes this many inner zones from its begin for kPush_ns; a jump does not last that long.
+// In a push the stick is this many inner zones from where it began for kPush_ns; a jump is shorter.
 constexpr double kPushedOnce = 1.0;
 
-// The inner zone in raw units, along the shorter half of the shorter axis.
+// The inner zone in raw units, by the shortest half range.
 double zone_of(const StickCalibration& c) noexcept {
   return c.inner * std::min({c.x.centre - c.x.min, c.x.max - c.x.centre, c.y.centre - c.y.min,
                              c.y.max - c.y.centre});
@@ -21,7 +21,7 @@ double zone_of(const StickCalibration& c) noexcept {
 
 }  // namespace
 
-// Silence means that the last position holds.
+// Fills the parts since the last report: without reports the last position holds.
 void UntouchedWatch::move_on(std::int64_t part) noexcept {
   if (part_ < 0) first_part_ = part_ = part;
   if (part - part_ > kParts) part_ = part - kParts;

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "base/shown_number.h"
 #include "draw/plot.h"
 
 namespace gaitpad {
@@ -252,7 +253,7 @@ void draw_calibrated_plane(cairo_t* cr, const Box& box, const StickPicture& stic
 constexpr double kLeastHalfHeight = 0.02;  // least half height of the magnified plane, raw
 constexpr std::size_t kMaxDots = 20000;
 
-// Magnified so that the inner zone fills most of the height.
+// A plane around the stick's rest, magnified so that the inner zone fills most of the height.
 Plane plane_about_rest(const Box& box, const StickPicture& stick) {
   Plane plane{box};
   plane.half_height = 0.1;
@@ -314,7 +315,7 @@ void draw_grid(cairo_t* cr, const Plane& plane) {
   });
 }
 
-// Reported positions, darker where they were reported often.
+// Draws each reported position as a dot; places that were reported often are darker.
 void draw_positions(cairo_t* cr, const Plane& plane, const StickPicture& stick) {
   std::vector<vec2> dots;
   for (const StickTrack& track : stick.tracks) {
@@ -584,17 +585,18 @@ struct Number {
   std::string label, value;
 };
 
-std::string signed_text(double v) { return fmt::format("{:+.3f}", v); }
 std::string text_or(const std::optional<double>& v, const char* none, const char* unit = "") {
   return v && std::isfinite(*v) ? fmt::format("{:.3f}{}", *v, unit) : std::string(none);
 }
 std::string pair_text(const std::optional<vec2>& v, const char* none) {
   if (!v || !std::isfinite(v->x) || !std::isfinite(v->y)) return none;
-  return fmt::format("{}, {}", signed_text(v->x), signed_text(v->y));
+  return fmt::format("{}, {}", signed_number(v->x, 3), signed_number(v->y, 3));
 }
 std::string range_text(const std::optional<double>& min, const std::optional<double>& max) {
   if (!min && !max) return "not turned";
-  const auto end = [](const std::optional<double>& v) { return v ? signed_text(*v) : "not seen"; };
+  const auto end = [](const std::optional<double>& v) {
+    return v ? signed_number(*v, 3) : "not seen";
+  };
   return fmt::format("{} to {}", end(min), end(max));
 }
 
@@ -639,7 +641,8 @@ std::vector<Number> numbers_of(const StickStatistics& s, const StickAdvice* advi
       {"inner zone", zone(&StickAdvice::inner_zone)},
       {"outer zone", zone(&StickAdvice::outer_zone)},
       {"gaps, jumps, stuck",
-       fmt::format("{}, {}, {}", s.gaps ? std::to_string(*s.gaps) : "?", s.jumps, s.stuck)},
+       fmt::format("{}, {}, {}", s.gap_count ? std::to_string(*s.gap_count) : "?", s.jump_count,
+                   s.stuck_count)},
   };
 }
 

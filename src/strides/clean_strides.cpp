@@ -14,24 +14,27 @@
 namespace gaitpad {
 namespace {
 
-constexpr int kOwn = 5;  // index of the table of the data's own stride
-// Iterations. In most clips angles then are within 2e-2 rad of the converged solution (the rest is
-// mostly at nearly straight knees); more iterations make no walk smoother or closer to its data.
+constexpr int kDataTable = 5;  // index of the table of the data's stride
+// Iterations of the first solve and of each later one. In most clips angles then are within 2e-2
+// rad of the converged solution (the rest is mostly at nearly straight knees); more iterations make
+// no walk smoother or closer to its data.
 constexpr int kFirstSolve = 7, kNextSolve = 3;
 // Iterations for strides longer than the data's, which stretch the legs.
 constexpr int kLongSolve = 6;
 // Iterations for backward strides, which change more from one to the next.
 constexpr int kNextBack = 5;
-// Extrapolation factor of the next start: its change of the data grows by half as much as in the
-// previous table. The full growth overshoots for short steps.
-constexpr double kGoesOn = 0.5;
+// A start's change of the data grows by half as much as in the previous table. The full growth
+// overshoots for short steps.
+constexpr double kExtrapolation = 0.5;
+// Backward strides: least knee angle (rad), factor on smoothness, weights of the data.
 constexpr double kLeastKneeBack = 8.0 * kDegree, kSmootherBack = 10.0, kHipBack = 0.3,
                  kAnkleBack = 0.17;
 constexpr double kLeastStandingKnee = 5.0 * kDegree;
 // Share of the data's knee and ankle angles in steps of length 0: the foot still has to leave the
 // floor.
 constexpr double kLeastLift = 0.3;
-constexpr double kFlatPhase = 0.2;  // phase for which a foot stands flat after its roll
+// Share of the cycle for which a foot stands flat after its roll.
+constexpr double kFlatPhase = 0.2;
 // Limits of valid input. A step is shorter than two legs, so a stride is shorter than four.
 constexpr double kLeastBone_m = 0.01, kMostLegs = 4.0, kMostAngle = 2.0 * kPi;
 
@@ -56,10 +59,10 @@ struct Builder {
   const GaitCycle& cycle;
   StrideFamily family;
   std::array<vec3, 2> own_footprint_m{};
-  std::array<double, 4> phase_share{};
+  std::array<double, 4> phase_share{};  // the four stages' shares of the cycle
   std::array<LegAngles, 2> mean_rad{};
   vec3 mean_tilt{0.0};
-  std::array<vec3, kCycleSamples> tilt{};
+  std::array<vec3, kCycleSamples> tilt{};  // rotation vector (rad) of the pelvis without its yaw
   std::array<double, kCycleSamples> yaw{};
 
   explicit Builder(const GaitCycle& data) : cycle(data) {
@@ -124,13 +127,14 @@ struct Builder {
     for (const LegModel& leg : cycle.leg) family.lead_m += 0.5 * (-leg.heel_m.z - leg.hip_m.z);
   }
 
-  // The pelvis' rotation without its yaw in a stride of another length, relative to standing.
+  // The pelvis' rotation without its yaw, relative to standing, as a rotation vector (rad); the
+  // stride is `ratio` times as long as the data's.
   vec3 tilt_at(int i, double ratio) const {
     const vec3 stand(0.0, 0.0, family.stand_roll_rad);
     return (mean_tilt - stand) * std::min(1.0, 2.0 * ratio) + (tilt[i] - mean_tilt) * ratio;
   }
 
-  // The data scaled to a stride of another length.
+  // Sample i of the data, scaled to a stride `ratio` times as long.
   StrideSample scaled(int i, double ratio) const {
     const CycleSample& data = cycle.samples[i];
     const double lift = mix(kLeastLift, 1.0, ratio), square = ratio * ratio;
@@ -146,7 +150,8 @@ struct Builder {
       LegAngles& a = s.leg[side];
       for (int j = 0; j < kLegDofs; ++j) a[j] = mean[j] + ratio * (all[j] - mean[j]);
       for (int j : {kKneeX, kAnkleX}) a[j] = stand[j] + lift * (all[j] - stand[j]);
-      // In short steps the thigh lifts the foot straight up.
+      // The thigh undoes half of the knee's additional bend, so that a short step lifts the foot
+      // straight up.
       a[kHipX] = stand[kHipX] + ratio * (all[kHipX] - stand[kHipX]) -
                  0.5 * (lift - ratio) * (all[kKneeX] - stand[kKneeX]);
     }
@@ -234,7 +239,7 @@ struct Builder {
     const auto rest_of = [&](double pitch) {
       return rotation_vector(glm::conjugate(rotation_about(across, pitch)) * rotation);
     };
-    // The rest's turn about the transverse axis belongs to the pitch. Each pass leaves 1 % of it.
+    // Adds the rest's turn about the transverse axis to the pitch; each pass leaves 1 % of it.
     for (int n = 0; n < 4; ++n) foot.pitch_rad += glm::dot(rest_of(foot.pitch_rad), across);
     const vec3 rest = rest_of(foot.pitch_rad);
     foot.twist_rad = rest.y;
@@ -249,7 +254,7 @@ struct Builder {
   };
 
   // The start of the solve of `p`: its data plus the change that the neighbour's solution made.
-  // With a second stride `far`, the change is extrapolated: near + kGoesOn (near - far).
+  // With a second stride `far`, the change is extrapolated: near + kExtrapolation (near - far).
   static std::vector<StrideSample> start_of(const StrideProblem& p, const Solved& near,
                                             const Solved* far) {
     std::vector<StrideSample> start = p.wanted;
@@ -263,8 +268,8 @@ struct Builder {
         }
       }
     };
-    add(near, far == nullptr ? 1.0 : 1.0 + kGoesOn);
-    if (far != nullptr) add(*far, -kGoesOn);
+    add(near, far == nullptr ? 1.0 : 1.0 + kExtrapolation);
+    if (far != nullptr) add(*far, -kExtrapolation);
     return start;
   }
 
@@ -272,7 +277,8 @@ struct Builder {
   bool solve() {
     StrideSolver solver;
     const bool forwards = cycle.stride_m > 0.0;
-    const int tables = forwards ? kStrideRatios : kBackRatios, first = std::min(kOwn, tables - 1);
+    const int tables = forwards ? kStrideRatios : kBackRatios,
+              first = std::min(kDataTable, tables - 1);
     std::vector<Solved> all(tables);
     // Keeps a table's solution. False if there is none.
     const auto keep = [&](int k, StrideProblem p, std::vector<StrideSample> stride) {
@@ -285,20 +291,20 @@ struct Builder {
     StrideProblem own = problem(first * kRatioStep);
     std::vector<StrideSample> clean = solver.solve(own, own.wanted, kFirstSolve);
     if (!keep(first, std::move(own), std::move(clean))) return false;
-    const auto go_on = [&](int k, int from) {
+    const auto solve_from = [&](int k, int from) {
       const int beyond = 2 * from - k;
       const bool is_known = beyond >= 0 && beyond < tables && !all[beyond].stride.empty();
       StrideProblem p = problem(k * kRatioStep);
       std::vector<StrideSample> start = start_of(p, all[from], is_known ? &all[beyond] : nullptr);
-      const int steps = !forwards ? kNextBack : k > kOwn ? kLongSolve : kNextSolve;
+      const int steps = !forwards ? kNextBack : k > kDataTable ? kLongSolve : kNextSolve;
       std::vector<StrideSample> stride = solver.solve(p, std::move(start), steps);
       return keep(k, std::move(p), std::move(stride));
     };
     for (int k = first - 1; k >= 0; --k) {
-      if (!go_on(k, k + 1)) return false;
+      if (!solve_from(k, k + 1)) return false;
     }
     for (int k = first + 1; k < tables; ++k) {
-      if (!go_on(k, k - 1)) return false;
+      if (!solve_from(k, k - 1)) return false;
     }
     return true;
   }
@@ -322,7 +328,7 @@ std::optional<std::string> fault_of(const GaitCycle& cycle) {
     return "has events that are not in the order of a walk";
   for (const CycleSample& sample : cycle.samples) {
     if (std::abs(glm::dot(sample.pelvis, sample.pelvis) - 1.0) > 1e-6)
-      return "turns its pelvis by what is no rotation";
+      return "holds a rotation of the pelvis that is not a unit quaternion";
     for (const LegSample& leg : sample.leg) {
       for (const double angle : leg.angles) {
         if (std::abs(angle) > kMostAngle) return "turns a leg by more than a full turn";
@@ -373,7 +379,7 @@ Result<StrideFamily> stride_family(const GaitCycle& cycle) {
   std::thread beside;
   if (std::thread::hardware_concurrency() > 1) {
     beside = std::thread(solve_back);
-  } else {  // there is no second core, or no thread can be started
+  } else {  // there is no second core
     solve_back();
   }
   const bool forwards_solved = builder.solve();

@@ -6,7 +6,7 @@
 
 namespace gaitpad {
 
-// Cycles with equal numbers have equal families.
+// All numbers of a cycle that its family depends on: cycles with equal numbers have equal families.
 std::vector<double> solver_input(const GaitCycle& cycle);
 
 // Calls `each` with every number of a family, const or not, in a fixed order. The family has all of

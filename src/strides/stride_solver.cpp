@@ -18,24 +18,28 @@ constexpr int kPelvis = 3, kUnknowns = kPelvis + 2 * kLegDofs;  // numbers of un
 // Weights of squared residuals, relative to a change of 1 rad of a knee.
 constexpr double kDegreeCosts_m = 0.04;  // an error of the pelvis that costs as much as 1 degree
 constexpr double kPelvisWeight = (kDegree / kDegreeCosts_m) * (kDegree / kDegreeCosts_m);
-constexpr double kHip = 1.8, kAnkle = 1.8;
-constexpr double kSmooth = 20.0;  // weight of second differences between samples
-// Factors on kSmooth for the pelvis.
+constexpr double kHipWeight = 1.8, kAnkleWeight = 1.8;
+constexpr double kSmoothWeight = 20.0;  // of second differences between samples
+// Factors on kSmoothWeight for the pelvis.
 constexpr double kPelvisSmooth = 5000.0, kPelvisSmoothUp = 4000.0;
-// Weights per square metre, for the knee per square radian.
-constexpr double kPlanted = 3e5, kFloor = 3e6, kKnee = 1e4;
-constexpr double kLevel = 5e2;  // weight of a sole that is level and points ahead, per square metre
+// Weights of a planted point's error, of a point's depth in the floor (both per square metre) and
+// of a knee's lack of bend (per square radian).
+constexpr double kPlantedWeight = 3e5, kFloorWeight = 3e6, kKneeWeight = 1e4;
+// Of a sole that is level and points ahead, per square metre.
+constexpr double kLevelWeight = 5e2;
 // Weights per square metre of second differences, for heels that come to rest and toes that begin
 // to move smoothly.
-constexpr double kSoftStrike = 3e4, kSoftToeDown = 1.3e4;
+constexpr double kSoftStrikeWeight = 3e4, kSoftToeDownWeight = 1.3e4;
 constexpr int kLanding = 3;  // number of samples over which these weights fade
-// People's hips accelerate by 2 to 4 m/s^2 along the path. Excess costs kSurge per square metre of
-// a second difference.
-constexpr double kMostSurge_m_s2 = 2.8, kSoftSurge_m_s2 = 0.8, kSurge = 1e6;
-constexpr double kSoftHeave_m_s2 = 2.0;  // bound on the vertical acceleration, which is soft
-constexpr double kSide_m = 0.1;          // lever of kLevel across the foot
-// Depth to which the edge of a heel may sink into the floor.
+// People's hips accelerate by 2 to 4 m/s^2 along the path. Excess costs kSurgeWeight per square
+// metre of a second difference.
+constexpr double kMostSurge_m_s2 = 2.8, kSoftSurge_m_s2 = 0.8, kSurgeWeight = 1e6;
+constexpr double kSoftHeave_m_s2 = 2.0;  // width of the soft limit on the vertical acceleration
+// Distance beside the heel at which kLevelWeight measures the sole's roll.
+constexpr double kSide_m = 0.1;
+// Depth to which the edge of a heel may sink into the floor, and the width of that soft limit.
 constexpr double kMostSink_m = 0.002, kSoftEdge_m = 0.0015;
+// Widths of the soft limits on toes, heels and knees.
 constexpr double kSoftFloor_m = 0.004, kSoftHeel_m = 0.001;
 constexpr double kSoftKnee = 2.0 * kDegree;
 constexpr double kToeClearance_m = 0.01;  // height of the toe in the middle of the flight
@@ -63,7 +67,7 @@ Mirrored mirror_of(int k) {
 double weight_of(int k) {
   if (k < kPelvis) return kPelvisWeight;
   const int j = (k - kPelvis) % kLegDofs;
-  return j < kKneeX ? kHip : j == kKneeX ? 1.0 : kAnkle;
+  return j < kKneeX ? kHipWeight : j == kKneeX ? 1.0 : kAnkleWeight;
 }
 
 // Place of a foot's point and its derivatives by the unknowns of its sample.
@@ -287,9 +291,9 @@ struct StrideSolver::System {
     const double error = std::copysign(soft_positive(over, soft_m), bend);
     for (int d : {0, 1, 2}) {
       const double slope = share * slope_of[d];
-      gradient[where[d].unknown] += kSurge * slope * error;
+      gradient[where[d].unknown] += kSurgeWeight * slope * error;
       for (int e = 0; e <= d; ++e)
-        at(where[d].unknown, where[e].unknown) += kSurge * slope * share * slope_of[e];
+        at(where[d].unknown, where[e].unknown) += kSurgeWeight * slope * share * slope_of[e];
     }
   }
 
@@ -298,7 +302,7 @@ struct StrideSolver::System {
     const double low = least_m - point.place_m.y;
     if (low <= -soft_m) return;
     const double slope = soft_slope(low, soft_m);
-    add_row(sample, side, point, kUp * slope, -soft_positive(low, soft_m), kFloor);
+    add_row(sample, side, point, kUp * slope, -soft_positive(low, soft_m), kFloorWeight);
   }
 };
 
@@ -355,12 +359,12 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
   System& s = *system_;
   const int n = s.samples, solved = s.solved;
   s.clear();
-  // A small and smooth change of the data.
+  // A small and smooth change of the data costs least.
   for (int i = 0; i < solved; ++i) {
     for (int k = 0; k < kUnknowns; ++k) {
       const int at = i * kUnknowns + k;
       const double weight = weight_of(k) * factor_of(problem, k);
-      const double smooth = problem.smoothness * kSmooth * weight *
+      const double smooth = problem.smoothness * kSmoothWeight * weight *
                             (k == 1        ? kPelvisSmoothUp
                              : k < kPelvis ? kPelvisSmooth
                                            : 1.0);
@@ -414,8 +418,8 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
       const auto soften = [&](int sample, const std::vector<PointRows>& point, double soft) {
         s.add_bend((sample + n) % n, side, point, path_m, problem.stride_m, weight * soft);
       };
-      soften(strike - d, heels, kSoftStrike);
-      soften(down - d, toes, kSoftToeDown);
+      soften(strike - d, heels, kSoftStrikeWeight);
+      soften(down - d, toes, kSoftToeDownWeight);
       soften(lift + d, toes, problem.soft_toe);
     }
   }
@@ -441,7 +445,7 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
       const bool rolls = own <= roll + sample,
                  supports = own >= roll - sample && own <= support + sample;
       if (rolls) {
-        s.add_place(i, side, heel, heel_goal, kPlanted);
+        s.add_place(i, side, heel, heel_goal, kPlantedWeight);
       } else {
         s.add_floor(i, side, heel, 0.0, kSoftHeel_m);
         // Keep the edges of a twisted or rolled heel out of the floor.
@@ -451,7 +455,7 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
         }
       }
       if (supports) {
-        s.add_place(i, side, toe, toe_goal, kPlanted);
+        s.add_place(i, side, toe, toe_goal, kPlantedWeight);
       } else {
         const double u = rolls ? 0.0 : std::max(0.0, own - support) / (1.0 - support);
         const double least =
@@ -476,15 +480,15 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
                                                  std::tuple{&along, 0, along.place_m.x - want_x}}) {
           std::array<double, kLegDofs> row;
           for (int j = 0; j < kLegDofs; ++j) row[j] = point->by_angle[j][axis];
-          s.add_square(row, where, error, kLevel);
+          s.add_square(row, where, error, kLevelWeight);
         }
       }
       const double bend = problem.least_knee_rad - x[i].leg[side][kKneeX];
       if (bend > -kSoftKnee) {
         const int at = i * kUnknowns + leg_unknown(side) + kKneeX;
         const double slope = soft_slope(bend, kSoftKnee);
-        s.at(at, at) += kKnee * slope * slope;
-        s.gradient[at] -= kKnee * slope * soft_positive(bend, kSoftKnee);
+        s.at(at, at) += kKneeWeight * slope * slope;
+        s.gradient[at] -= kKneeWeight * slope * soft_positive(bend, kSoftKnee);
       }
     }
   }

@@ -10,29 +10,29 @@
 #include <string_view>
 #include <vector>
 
-#include "drivers/posix.h"
+#include "system/clock.h"
+#include "system/end_signals.h"
+#include "system/terminal_mode.h"
 
 namespace gaitpad {
 
 // The end of a command: SIGINT, SIGTERM, SIGHUP, or a time limit. Make it before any thread starts:
-// it blocks these signals, so that no work is cut off, and reads them. Another signal more than a
-// second after the first ends the process at once. SIGPIPE is ignored: writing to a reader that has
-// gone is an ordinary write error.
+// it blocks these signals, so that no work is cut off, and reads them (EndSignals). Another signal
+// more than a second after the first ends the process at once.
 class RunEnd {
  public:
-  RunEnd();
   // Ends the command this number of seconds after this call; 0: only signals end it.
   void end_after(double seconds) noexcept;
   bool is_reached() noexcept;
   // Exit status of an interrupted command: 128 + signal, as in shells; 0: no signal came.
   int cut_off_status() const noexcept { return signal_ == 0 ? 0 : 128 + signal_; }
   // Readable when a signal has arrived.
-  pollfd fd() const noexcept { return {signals_.get(), POLLIN, 0}; }
+  pollfd fd() const noexcept { return {signals_.fd(), POLLIN, 0}; }
   // Sleeps until the end, until one of `others` is ready, or for `time`.
   void wait(std::chrono::milliseconds time, std::span<const pollfd> others = {});
 
  private:
-  OwnedFd signals_;
+  EndSignals signals_;
   bool is_reached_ = false;
   int signal_ = 0;
   std::int64_t end_ns_ = 0;  // time of the end; 0: there is no limit
@@ -52,7 +52,7 @@ class InputLines {
 // Lines on a terminal, rewritten in place. Shows nothing if `file` is not a terminal.
 class StatusLine {
  public:
-  explicit StatusLine(int file);
+  explicit StatusLine(int file) : file_(file), is_terminal_(gaitpad::is_terminal(file)) {}
   ~StatusLine() { clear(); }
   bool is_terminal() const noexcept { return is_terminal_; }
   void show(std::span<const std::string> lines);
@@ -60,8 +60,6 @@ class StatusLine {
   void clear();  // Erases the lines; call it before other output.
 
  private:
-  void write_all(std::string_view text) const;
-
   int file_;
   bool is_terminal_;
   std::size_t shown_ = 0;  // number of lines on the terminal now

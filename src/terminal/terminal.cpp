@@ -1,17 +1,12 @@
 #include "terminal/terminal.h"
 
-#include <poll.h>
-#include <signal.h>
-#include <sys/ioctl.h>
-#include <termios.h>
-#include <unistd.h>
+#include <fmt/format.h>
 
 #include <algorithm>
-#include <cassert>
-#include <cerrno>
 #include <utility>
 
 #include "base/text.h"
+#include "system/descriptors.h"
 
 namespace gaitpad {
 namespace {
@@ -20,73 +15,24 @@ constexpr std::size_t kMaxTypedBytes = 256;
 constexpr char kEscape = 0x1b, kEndOfInput = 0x04;
 constexpr int kMaxEscapeBytes = 16;
 
-// Used by the signal handlers, which are installed while a TerminalKeys exists.
-termios mode_before, mode_of_keys;
-bool is_in_use = false;
-constexpr int kHandledSignals[] = {SIGTSTP, SIGQUIT};
-struct sigaction actions_before[2];
-
-void put_back_and_obey(int signal) {
-  const int error = errno;
-  ::tcsetattr(0, TCSANOW, &mode_before);
-  if (signal == SIGTSTP) {
-    ::kill(::getpid(), SIGSTOP);  // stops the process; the call returns when it is continued
-    ::tcsetattr(0, TCSANOW, &mode_of_keys);
-  } else {
-    ::signal(signal, SIG_DFL);
-    ::raise(signal);  // the signal is delivered when the handler has returned
-  }
-  errno = error;
-}
-
-void handle_signals() noexcept {
-  struct sigaction action = {};
-  action.sa_handler = &put_back_and_obey;
-  action.sa_flags = SA_RESTART;
-  for (std::size_t i = 0; i < std::size(kHandledSignals); ++i)
-    ::sigaction(kHandledSignals[i], &action, &actions_before[i]);
-}
-
 }  // namespace
-
-TerminalKeys::TerminalKeys(Earlier earlier) {
-  assert(!is_in_use);
-  if (::tcgetattr(0, &mode_before) != 0) return;
-  mode_of_keys = mode_before;
-  mode_of_keys.c_lflag &= ~static_cast<tcflag_t>(ICANON | ECHO);
-  mode_of_keys.c_cc[VMIN] = 1;
-  mode_of_keys.c_cc[VTIME] = 0;
-  handle_signals();
-  is_terminal_ = is_in_use = true;
-  ::tcsetattr(0, earlier == Earlier::count ? TCSANOW : TCSAFLUSH, &mode_of_keys);
-}
-
-TerminalKeys::~TerminalKeys() {
-  if (!is_terminal_) return;
-  ::tcsetattr(0, TCSANOW, &mode_before);
-  for (std::size_t i = 0; i < std::size(kHandledSignals); ++i)
-    ::sigaction(kHandledSignals[i], &actions_before[i], nullptr);
-  is_in_use = false;
-}
 
 // Reads only one byte: later bytes may be for the next reader.
 std::optional<char> TerminalKeys::byte() {
-  pollfd ready = {0, POLLIN, 0};
-  if (is_at_end_ || ::poll(&ready, 1, 0) <= 0) return std::nullopt;
+  if (is_at_end_) return std::nullopt;
   char value = 0;
-  const ssize_t count = ::read(0, &value, 1);
-  if (count == 1) return value;
-  if (count == 0 || (errno != EINTR && errno != EAGAIN)) is_at_end_ = true;
-  return std::nullopt;
+  const auto count = read_ready(0, {&value, 1});
+  if (count == 0u) is_at_end_ = true;
+  return count == 1u ? std::optional(value) : std::nullopt;
 }
 
 std::optional<char> TerminalKeys::take_key() {
   while (const std::optional<char> next = byte()) {
-    if (!is_terminal_ && *next != '\n') {
+    if (!mode_.is_terminal() && *next != '\n') {
       if (line_.size() < kMaxTypedBytes && *next != '\r') line_ += *next;
       continue;
     }
-    if (!is_terminal_) {
+    if (!mode_.is_terminal()) {
       const std::string line = std::exchange(line_, {});
       return line.empty() ? '\n' : line.front();
     }
@@ -100,17 +46,15 @@ std::optional<char> TerminalKeys::take_key() {
 }
 
 ScreenSize screen_size() noexcept {
-  winsize window = {};
-  if (::ioctl(2, TIOCGWINSZ, &window) != 0 || window.ws_col < 2 || window.ws_row < 2) return {};
-  return {window.ws_col - 1u, window.ws_row};
+  const auto size = terminal_size(2);
+  if (!size || size->columns < 2 || size->rows < 2) return {};
+  return {size->columns - 1, size->rows};
 }
 
 std::optional<std::size_t> terminal_columns(int descriptor) noexcept {
-  winsize window = {};
-  if (::isatty(descriptor) == 0 || ::ioctl(descriptor, TIOCGWINSZ, &window) != 0 ||
-      window.ws_col == 0)
-    return std::nullopt;
-  return window.ws_col;
+  const auto size = terminal_size(descriptor);
+  if (!size || size->columns == 0) return std::nullopt;
+  return size->columns;
 }
 
 namespace {
@@ -183,6 +127,22 @@ std::string fitted(std::string_view text, std::size_t width) {
     if (is_whole) all += '\n';
   }
   return all;
+}
+
+std::string table_text(const std::vector<TableRow>& table) {
+  if (table.empty()) return "";
+  std::vector<std::size_t> widths(table.front().size(), 0);
+  for (const TableRow& row : table) {
+    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
+  }
+  std::string text;
+  for (const TableRow& row : table) {
+    std::string line;
+    for (std::size_t c = 0; c < row.size(); ++c) line += fmt::format("{:<{}}  ", row[c], widths[c]);
+    line.erase(line.find_last_not_of(' ') + 1);
+    text += printable(line) + "\n";
+  }
+  return text;
 }
 
 }  // namespace gaitpad

@@ -1,4 +1,5 @@
-// The terminal of a guided command: single keys of standard input, and the size of the screen.
+// The terminal of a guided command: single keys of standard input, the size of the screen, and text
+// that fits it.
 #pragma once
 #include <cstddef>
 #include <optional>
@@ -6,20 +7,16 @@
 #include <string_view>
 #include <vector>
 
+#include "system/terminal_mode.h"
+
 namespace gaitpad {
 
 // Single keys of standard input: on a terminal at once and without echo, else the first letter of
-// each line. The terminal's mode is changed meanwhile. It is restored by the destructor and when
-// the process is stopped (Ctrl-Z) or quit (Ctrl-\), and changed again when the process continues.
-// Ctrl-C still sends a signal. At most one object at a time.
+// each line. At most one object at a time (SingleKeyMode).
 class TerminalKeys {
  public:
-  // Whether keys count that were pressed before the object was made.
-  enum class Earlier { count, forgotten };
-  explicit TerminalKeys(Earlier earlier = Earlier::count);
-  ~TerminalKeys();
-  TerminalKeys(const TerminalKeys&) = delete;
-  TerminalKeys& operator=(const TerminalKeys&) = delete;
+  using Earlier = SingleKeyMode::Earlier;
+  explicit TerminalKeys(Earlier earlier = Earlier::count) : mode_(earlier) {}
 
   // The next key, '\n' for Enter or an empty line; nothing if none was pressed. Never waits. Skips
   // arrows and other escape sequences.
@@ -30,7 +27,7 @@ class TerminalKeys {
  private:
   std::optional<char> byte();
 
-  bool is_terminal_ = false;
+  SingleKeyMode mode_;
   bool is_at_end_ = false;
   std::string line_;  // the beginning of a line whose end has not arrived
 };
@@ -44,9 +41,12 @@ ScreenSize screen_size() noexcept;
 // Lines of at most `width` characters, broken at blanks.
 std::vector<std::string> wrapped_lines(const std::string& text, std::size_t width);
 
-// Breaks the text's lines at blanks to at most `width` characters. Continuation lines are indented
-// to the last column that begins in the left half; two blanks precede a column.
+// Breaks the text's lines at blanks to at most `width` characters. A continuation line begins below
+// the last column of its line that begins in the left half; a column begins after two blanks.
 std::string fitted(std::string_view text, std::size_t width);
+// Columns as wide as their widest text, two blanks apart. All rows have the same number of columns.
+using TableRow = std::vector<std::string>;
+std::string table_text(const std::vector<TableRow>& table);
 // Columns of a terminal; nothing if the descriptor is not one.
 std::optional<std::size_t> terminal_columns(int descriptor) noexcept;
 

@@ -82,6 +82,9 @@ constexpr auto kActions = [] {
   return all;
 }();
 
+static_assert(shared_key(kActions) == kNoKey,
+              "two actions have the same key: see the tables above and kPanelTable");
+
 constexpr Chord kChords[] = {
     {SDLK_z, false, Action::undo, "Ctrl+Z"},
     {SDLK_y, false, Action::redo, "Ctrl+Y"},

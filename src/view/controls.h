@@ -69,6 +69,18 @@ struct ActionInfo {
   std::string_view group;  // heading on the help page
   std::string_view text;   // one line for the help page
 };
+// A key that two of these actions have; SDLK_UNKNOWN: each key has one action.
+constexpr SDL_Keycode shared_key(std::span<const ActionInfo> table) noexcept {
+  for (std::size_t i = 0; i < table.size(); ++i) {
+    for (const SDL_Keycode key : {table[i].key, table[i].second_key}) {
+      if (key == SDLK_UNKNOWN) continue;
+      if (table[i].key == table[i].second_key) return key;
+      for (std::size_t j = i + 1; j < table.size(); ++j)
+        if (table[j].key == key || table[j].second_key == key) return key;
+    }
+  }
+  return SDLK_UNKNOWN;
+}
 // Every action once, in the order of the help page. The walking keys (WASD, arrows) are not listed.
 std::span<const ActionInfo> actions() noexcept;
 const ActionInfo& info_of(Action action) noexcept;

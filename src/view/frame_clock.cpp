@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "drivers/posix.h"
+#include "system/clock.h"
 
 namespace gaitpad {
 namespace {

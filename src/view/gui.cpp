@@ -12,8 +12,8 @@
 #include <cstring>
 #include <vector>
 
-#include "base/files.h"
 #include "draw/theme.h"
+#include "system/whole_file.h"
 #include "view/ui.h"
 
 namespace gaitpad {

@@ -64,7 +64,7 @@ void add_marks(const History& history, const GraphSpan& span, int walker, Side s
   const auto at = [&](std::size_t i) {
     return PlotPoint{span.x_of(i), sample(history, i, walker).heel_above_m[side] * 100.0};
   };
-  std::size_t peak = span.end;  // index of the present flight's highest sample; end: there is none
+  std::size_t peak = span.end;  // index of the present flight's highest sample; end: not yet seen
   for (std::size_t i = span.begin; i < span.end; ++i) {
     const bool is_up = is_flying(sample(history, i, walker), side);
     const bool was_up = i > span.begin && is_flying(sample(history, i - 1, walker), side);

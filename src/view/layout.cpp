@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <string_view>
 
-#include "base/files.h"
 #include "base/text.h"
 #include "files/toml_file.h"
+#include "system/whole_file.h"
 
 namespace gaitpad {
 namespace fs = std::filesystem;

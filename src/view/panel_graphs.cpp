@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "base/shown_number.h"
 #include "session/script.h"
 #include "view/history_plots.h"
 #include "view/panels.h"
@@ -36,8 +37,8 @@ void draw_title(Ui& ui, std::string_view title, std::string_view unit, const Plo
   const float gap = ui.px(8);
   for (const PlotSeries& series : plot.series) {
     if (series.points.empty() || !std::isfinite(series.points.back().y)) continue;
-    values.push_back({fmt::format("{}{}{:.{}f}", series.letter, series.letter.empty() ? "" : ": ",
-                                  series.points.back().y, decimals),
+    values.push_back({fmt::format("{}{}{}", series.letter, series.letter.empty() ? "" : ": ",
+                                  shown_number(series.points.back().y, decimals)),
                       with_alpha(series.colour, 1.0)});
     needed += text_width(ui.fonts.tick, values.back().text) + gap;
   }

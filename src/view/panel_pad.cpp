@@ -320,13 +320,6 @@ void draw_name(Ui& ui) {
   ImGui::Dummy({width, std::max(y - at.y, height)});
 }
 
-std::string signed_pair(const vec2& v) {
-  const auto number = [](double value) {
-    return std::isfinite(value) ? fmt::format("{:+.2f}", value) : std::string("-");
-  };
-  return number(v.x) + "  " + number(v.y);
-}
-
 void draw_sticks(Ui& ui) {
   const float width = ImGui::GetContentRegionAvail().x;
   const float side = std::floor(std::min((width - ui.px(10)) / 2.0f, ui.px(106)));

@@ -102,7 +102,7 @@ constexpr Tip kBeginnings[] = {
     {"give back ", "Let the stick and the style set this value again."},
     {"overlay ",
      "Two that are marked stand in one place, half transparent, the second where the first walks."},
-    {"own ", "The value of the style as it was loaded."},
+    {"own ", "The value in the style's file."},
     {"style slider ", ""},  // the style key's own tip
     {"slider ", ""},
     {"style ", "Walk like this. The change blends in over the style's time."},

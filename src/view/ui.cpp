@@ -406,7 +406,7 @@ void press(Ui& ui, const Entry& entry) {
   if (entry.action) {
     ui.out.actions.push_back(*entry.action);
   } else {
-    ImGui::OpenPopup("view menu");
+    open_menu("view menu");
   }
 }
 
@@ -563,7 +563,7 @@ void draw_top_bar(Ui& ui, const UiRect& rect) {
   }
   if (i < all.size() && x + menu <= rect.width) {
     ImGui::SetCursorPos({x, y});
-    if (button(ui, "menu", i == kBarButtons ? "Panels" : "Menu")) ImGui::OpenPopup("menu");
+    if (button(ui, "menu", i == kBarButtons ? "Panels" : "Menu")) open_menu("menu");
     x += menu;
   }
   draw_facts(ui, rect, rect.x + x + ui.px(10));

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "base/shown_number.h"
 #include "view/tooltips.h"
 
 namespace gaitpad {
@@ -158,6 +159,10 @@ constexpr double kRoom = 24.0;  // least distance from a box to the window's edg
 constexpr double kMessages = 104.0;
 
 }  // namespace
+
+std::string signed_pair(const vec2& v) {
+  return signed_number(v.x, 2) + "  " + signed_number(v.y, 2);
+}
 
 float text_width(const ImFont* font, std::string_view text) { return size_of(font, text).x; }
 
@@ -504,6 +509,13 @@ void remember_pending(Ui& ui, const std::string& name, double value) {
 void forget_pending(Ui& ui, const std::string& name) {
   std::erase_if(ui.state.memory.pending,
                 [&](const UiMemory::PendingValue& w) { return name.empty() || w.name == name; });
+}
+
+void open_menu(const char* name) {
+  const ImVec2 place(ImGui::GetItemRectMin().x, ImGui::GetItemRectMax().y);
+  ImGui::OpenPopup(name);
+  // Dear ImGui opens it at the pointer, where it hides the button. It still keeps it in the window.
+  ImGui::GetCurrentContext()->OpenPopupStack.back().OpenPopupPos = place;
 }
 
 bool is_menu_open() noexcept { return ImGui::GetCurrentContext()->OpenPopupStack.Size > 0; }

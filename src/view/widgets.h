@@ -36,6 +36,10 @@ inline Colour with_alpha(Colour colour, double alpha) noexcept {
   return colour;
 }
 
+// Both numbers with their signs and two decimals; `-` for one that is not finite. Zero is +0.00 on
+// either side of it.
+std::string signed_pair(const vec2& v);
+
 float text_width(const ImFont* font, std::string_view text);
 // Draws one line at `at`, after drawable(); text wider than `max_width` is cut and ends with `...`.
 void put_text(ImDrawList& list, const ImFont* font, const Colour& colour, const ImVec2& at,
@@ -119,7 +123,8 @@ Colour walker_colour(const Ui& ui, int walker);
 std::string walker_name(const Ui& ui, int walker);
 std::string style_name(const Ui& ui, int style_index);
 
-// Menus opened by a button.
+// Opens a menu below the button that was drawn last.
+void open_menu(const char* name);
 bool is_menu_open() noexcept;
 void close_menus() noexcept;
 

@@ -19,10 +19,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/files.h"
 #include "draw/picture.h"
 #include "draw/video.h"
-#include "drivers/posix.h"
 #include "drivers/process_memory.h"
 #include "gaitpad/config_files.h"
 #include "pads/unseen_pad.h"
@@ -31,6 +29,8 @@
 #include "session/script.h"
 #include "session/show.h"
 #include "session/undo.h"
+#include "system/clock.h"
+#include "system/whole_file.h"
 #include "view/controls.h"
 #include "view/ensemble.h"
 #include "view/file_browser.h"
@@ -210,7 +210,7 @@ class WindowLoop {
   WindowResult result_;
   std::optional<Error> failure_;  // why the window has to end; none: it goes on
 
-  // In the order of their dependencies.
+  // Each member uses only those before it, so they are destroyed in a valid order.
   std::unique_ptr<WindowSurface> surface_;
   std::unique_ptr<Gui> gui_;
   std::unique_ptr<Scene> scene_;

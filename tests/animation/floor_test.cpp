@@ -1,4 +1,4 @@
-// Ground that a game is asked for, in every direction.
+// Ground that a game answers through a function, sloped in every direction.
 #include "animation/floor.h"
 
 #include <gtest/gtest.h>

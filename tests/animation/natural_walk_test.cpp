@@ -16,8 +16,8 @@ namespace {
 constexpr double kWindow_s = 1.0 / 14.0;
 constexpr double kGentle_m_s2 = 4.0, kGravity_m_s2 = 9.81;
 constexpr int kMoments = 24;
-constexpr int kJustLanding =
-    5;  // ticks, 21 ms: a landing within this time belongs to a step that had begun before
+// Ticks, 21 ms: a landing within this time belongs to a step that had begun before.
+constexpr int kJustLanding = 5;
 
 // A walker that also records the places of its hips.
 struct Posed {

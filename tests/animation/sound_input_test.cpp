@@ -11,6 +11,7 @@
 #include "control/params_range.h"
 #include "gaitpad/crowd.h"
 #include "tests/animation/made_walker.h"
+#include "tests/finite_pose.h"
 
 namespace gaitpad::test {
 namespace {
@@ -31,15 +32,6 @@ std::vector<double> bad_values(std::size_t number) {
           numbers_of(range.least)[number] - 0.01,
           numbers_of(range.most)[number] + 0.01};
 }
-bool is_finite(const vec3& root_m, std::span<const quat> local) {
-  double sum = root_m.x + root_m.y + root_m.z;
-  for (const quat& q : local) sum += q.w + q.x + q.y + q.z;
-  return std::isfinite(sum);
-}
-bool is_finite(const Pose& pose) {
-  return is_finite(pose.root_m, std::span(pose.local).first(pose.joint_count));
-}
-
 TEST(SoundInput, EveryBadParameterIsCountedAndLeavesThePoseFinite) {
   const GaitParams usual = usual_params();
   int fed = 0;

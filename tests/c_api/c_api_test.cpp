@@ -1,5 +1,5 @@
-// gaitpad.h as a program in C sees it: linked with libgaitpad.so alone, beside the core as a second
-// way to the same walk.
+// Uses gaitpad.h as a program in C does, linked with libgaitpad.so; the core in C++ computes the
+// same walks for comparison.
 #include <gtest/gtest.h>
 
 #include <array>

@@ -43,6 +43,14 @@ std::string refusal(const std::string& text) {
   return read ? "none" : read.error().message;
 }
 
+TEST(RunMeter, ASlipThatIsNotANumberStays) {
+  const double no_number = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_EQ(worse_slip_m(0.001, 0.002), 0.002);
+  EXPECT_EQ(worse_slip_m(0.002, 0.001), 0.002);
+  EXPECT_TRUE(std::isnan(worse_slip_m(0.002, no_number)));
+  EXPECT_TRUE(std::isnan(worse_slip_m(no_number, 0.001)));
+}
+
 TEST(Expectation, HoldsOptionsHashCountsAndNumbers) {
   const Expectation e = value_of(parsed_expectation(kWhole, "x"));
   EXPECT_EQ(e.heading, "# Walks around the hall.\n# Kept by hand.\n");

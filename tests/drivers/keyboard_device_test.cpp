@@ -8,9 +8,9 @@
 #include <thread>
 #include <vector>
 
-#include "drivers/posix.h"
 #include "gaitpad/decode.h"
 #include "gaitpad/keyboard.h"
+#include "system/clock.h"
 #include "tests/comes_true.h"
 #include "tests/value_of.h"
 

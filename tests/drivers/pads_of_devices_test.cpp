@@ -113,13 +113,13 @@ TEST(SeveralPads, AnEmptyPlugIsAPadThatIsUnplugged) {
   ASSERT_EQ(port.written.size(), 1u);
   EXPECT_EQ(port.written[0], (Packet{0x13, 0x00}));
   OutPacket reply;
-  EXPECT_TRUE(quirks->is_plugged());
+  EXPECT_TRUE(quirks->has_pad());
   EXPECT_FALSE(quirks->accept(adapter_report(1, 0x10, {}), reply)) << "another plug";
-  EXPECT_FALSE(quirks->is_plugged());
+  EXPECT_FALSE(quirks->has_pad());
   EXPECT_TRUE(quirks->accept(adapter_report(2, 0x22, {}), reply)) << "wireless";
-  EXPECT_TRUE(quirks->is_plugged());
+  EXPECT_TRUE(quirks->has_pad());
   EXPECT_FALSE(quirks->accept(Packet{0x21, 0x10}, reply)) << "too short";
-  EXPECT_TRUE(quirks->is_plugged());
+  EXPECT_TRUE(quirks->has_pad());
   ASSERT_TRUE(quirks->factory_sticks());
   EXPECT_NEAR(quirks->factory_sticks()->left_x.max, 0.694, 0.001);
 }

@@ -141,7 +141,8 @@ TEST(DualShock4, RumblesOverUsbIn32BytesWithoutTouchingTheLight) {
   EXPECT_EQ(rumble_of(*pad, {}), expected);
 }
 
-// Bit 2 of the second status byte tells it (hid-playstation.c, DS4_STATUS1_DONGLE_STATE).
+// Bit 2 of the second status byte is set if no pad is connected (hid-playstation.c,
+// DS4_STATUS1_DONGLE_STATE).
 TEST(DualShock4, ItsAdapterTellsWhetherAPadIsConnected) {
   const auto adapter = quirks(0x0ba0, BusType::usb);
   Packet report(64, 0x80);
@@ -149,14 +150,14 @@ TEST(DualShock4, ItsAdapterTellsWhetherAPadIsConnected) {
   OutPacket reply;
   report[31] = 0x04;
   EXPECT_FALSE(adapter->accept(report, reply));
-  EXPECT_FALSE(adapter->is_plugged());
+  EXPECT_FALSE(adapter->has_pad());
   report[31] = 0x00;
   EXPECT_TRUE(adapter->accept(report, reply));
-  EXPECT_TRUE(adapter->is_plugged());
+  EXPECT_TRUE(adapter->has_pad());
   report[31] = 0x04;
   const auto cable = quirks(kDualShock4, BusType::usb);
   EXPECT_TRUE(cable->accept(report, reply)) << "no adapter";
-  EXPECT_TRUE(cable->is_plugged());
+  EXPECT_TRUE(cable->has_pad());
 }
 
 TEST(DualShock4, RumblesOverBluetoothIn78BytesWithChecksum) {
@@ -308,13 +309,13 @@ void expect_scales(const std::optional<FactoryGyro>& gyro) {
 
 TEST(Sony, TheGyroscopesCalibrationIsReadInItsOrder) {
   const std::array<int, 11> by_axis = {5, -5, 0, 8645, -8635, 8645, -8635, 9000, -9000, 540, 540};
-  const std::array<int, 11> by_way = {5, -5, 0, 8645, 8645, 9000, -8635, -8635, -9000, 540, 540};
+  const std::array<int, 11> by_sign = {5, -5, 0, 8645, 8645, 9000, -8635, -8635, -9000, 540, 540};
   ScriptedPort port;
   port.features[0x02] = gyro_feature(0x02, 37, by_axis);
   auto pad = quirks(kDualShock4, BusType::usb);
   pad->start(port, StartedBy::kernel);
   expect_scales(pad->factory_gyro());
-  port.features[0x05] = sealed(0xa3, gyro_feature(0x05, 41, by_way));
+  port.features[0x05] = sealed(0xa3, gyro_feature(0x05, 41, by_sign));
   pad = quirks(kDualShock4, BusType::bluetooth);
   pad->start(port, StartedBy::kernel);
   expect_scales(pad->factory_gyro());

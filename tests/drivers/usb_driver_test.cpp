@@ -12,9 +12,9 @@
 #include <fstream>
 
 #include "drivers/driver_rows.h"
-#include "drivers/posix.h"
 #include "drivers/usb_interfaces.h"
 #include "drivers/usb_reattach.h"
+#include "system/descriptors.h"
 #include "tests/own_folder.h"
 
 #ifdef GAITPAD_HAS_USB

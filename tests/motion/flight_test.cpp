@@ -194,8 +194,8 @@ TEST(Flight, SharedWalksGiveBothFeetByTheRobustRuleAndSevenByThePapers) {
   EXPECT_EQ(literal, 7);
 }
 
-// Speed of the captured ankle over 50 ms, and its crossings of a fifth of the peak; a loop is read
-// twice.
+// Speed of the captured ankle over 50 ms, and its crossings of a fifth of a swing's peak. The
+// motion is appended to itself, so that a swing across a loop's end is whole.
 class Speed {
  public:
   Speed(const Motion& m, Side side) : frame_s_(m.frame_time_s) {

@@ -339,7 +339,7 @@ TEST(ChangesSince, EachChangeHasBothNumbersAndWhatItMeans) {
               f.calibration.left.frame = {RawDirection::plus_y, RawDirection::plus_x};
               f.calibration.left.x.centre = 0.5;
             },
-            "left stick: its axes lie otherwise"},
+            "left stick: its axes differ from the file"},
        }) {
     CalibrationFile now = measured_file();
     row.change(now);

@@ -237,7 +237,7 @@ TEST(Mannequin, TheProceduralOneHasAPersonsProportions) {
   for (const Measure& m : measures) {
     EXPECT_NEAR(m.drawn, m.people, 0.07 * m.people) << m.name;
   }
-  // The number of bones did not grow.
+  // Bounds the cost of drawing, which grows with the number of bones.
   EXPECT_LE(mannequin.bones.size(), 39u);
 }
 

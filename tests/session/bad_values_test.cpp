@@ -27,6 +27,7 @@
 #include "gaitpad/pad_stream.h"
 #include "gaitpad/replay.h"
 #include "gaitpad/walk_output.h"
+#include "tests/finite_pose.h"
 #include "tests/made_pad.h"
 #include "tests/own_folder.h"
 #include "tests/session/made_session.h"
@@ -94,15 +95,6 @@ void feed(const std::vector<BadCall>& calls) {
       last + 1.0, 200.0                                                                          \
     }                                                                                            \
   }
-
-bool is_finite(const vec3& root_m, std::span<const quat> local) {
-  double sum = root_m.x + root_m.y + root_m.z;
-  for (const quat& q : local) sum += q.w + q.x + q.y + q.z;
-  return std::isfinite(sum);
-}
-bool is_finite(const Pose& pose) {
-  return is_finite(pose.root_m, std::span(pose.local).first(pose.joint_count));
-}
 
 const GaitCycle& good_cycle() {
   static const GaitCycle cycle = clean_cycle(procedural_gait());

@@ -10,7 +10,7 @@
 #include <optional>
 #include <thread>
 
-#include "drivers/posix.h"
+#include "system/clock.h"
 #include "tests/comes_true.h"
 #include "tests/pads/fake_drivers.h"
 #include "tests/session/heap_use.h"

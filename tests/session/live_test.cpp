@@ -11,9 +11,9 @@
 #include <cmath>
 #include <fstream>
 
-#include "drivers/posix.h"
 #include "gaitpad/decode.h"
 #include "gaitpad/pad_configuration.h"
+#include "system/clock.h"
 #include "tests/session/live_fixture.h"
 
 namespace gaitpad {

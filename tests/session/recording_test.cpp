@@ -8,8 +8,8 @@
 #include <filesystem>
 #include <fstream>
 
-#include "drivers/posix.h"
 #include "session/live_loop.h"
+#include "system/clock.h"
 #include "tests/comes_true.h"
 #include "tests/own_folder.h"
 #include "tests/session/made_session.h"
@@ -370,7 +370,7 @@ TEST_F(RecordingFile, AFullDiskIsReportedAndKeepsTheOldFileAndAReadablePart) {
 
 TEST_F(RecordingFile, ErrorsNameUnusablePaths) {
   EXPECT_EQ(Recording::start({folder_.string(), 240, {}}, made_devices).error().message,
-            folder_.string() + ": this is no file, a recording cannot take its place");
+            folder_.string() + ": not a regular file; choose another name");
   const std::string nowhere = (folder_ / "none" / "x.hid").string();
   EXPECT_EQ(Recording::start({nowhere, 240, {}}, made_devices).error().message,
             nowhere + ".part: cannot be written: No such file or directory");

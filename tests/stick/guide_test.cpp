@@ -239,12 +239,12 @@ TEST(FrameOfPushes, IsUnknownIfThePushesDoNotDetermineIt) {
   const std::vector<vec2> asked = {vec2(0, 1), vec2(1, 0), vec2(0, -1), vec2(-1, 0)};
   const auto frame = [&asked](std::vector<vec2> pushes) { return frame_of_pushes(pushes, asked); };
   EXPECT_FALSE(frame({}));
-  EXPECT_FALSE(frame({vec2(0, 1)}));                          // only one axis
-  EXPECT_FALSE(frame({vec2(0, 1), vec2(0, 1)}));              // two to the same side
-  EXPECT_FALSE(frame({vec2(0, 1), vec2(1, 0), vec2(0, 1)}));  // back goes forward
-  // A push left that went right.
+  EXPECT_FALSE(frame({vec2(0, 1)}));                          // pushes along one axis alone
+  EXPECT_FALSE(frame({vec2(0, 1), vec2(0, 1)}));              // both pushes go to the same side
+  EXPECT_FALSE(frame({vec2(0, 1), vec2(1, 0), vec2(0, 1)}));  // the push back went forward
+  // The push left went right.
   EXPECT_FALSE(frame({vec2(0, 1), vec2(1, 0), vec2(0, -1), vec2(1, 0)}));
-  EXPECT_FALSE(frame({vec2(0.7, 0.7), vec2(1, 0)}));  // between two axes
+  EXPECT_FALSE(frame({vec2(0.7, 0.7), vec2(1, 0)}));  // the first push lies between two axes
   EXPECT_FALSE(frame({vec2(NAN, 1), vec2(1, NAN)}));
   EXPECT_FALSE(frame({vec2(0, 0), vec2(0, 0)}));
 }

@@ -63,13 +63,13 @@ struct MadeStick {
   int spike_reports = 3;
   // Faults. Their times are drawn from the seed.
   double roam = 0.0, roam_s = 1.0;  // moves without a touch: standard deviation and time constant
-  double displaced = 0.0;           // distance from its usual rest ...
-  int displaced_times = 0;          // ... after this number of the first 12 releases
+  double displaced = 0.0;           // distance from the usual rest after `displaced_times` releases
+  int displaced_times = 0;          // number of such releases among the first 12
   int drop_outs = 0;                // number of lost contacts: an axis shows its end
   double drop_out_s = 0.04;         // time of a drop-out, times 0.5 to 1.5
   int freezes = 0;                  // number of times that one axis or both stand still
   double freeze_s = 0.2;
-  int frozen_axes = 1;  // bits: 1 x, 2 y
+  int frozen_axes = 1;  // axes that stand still, as bits: 1 x, 2 y
   // Middle, width and reach of a sector that reaches less far.
   double weak_rad = 0.0, weak_width_rad = 0.0, weak_reach = 0;
   StickFrame frame;  // raw axes swapped and inverted: in_frame(frame, raw) is the truth

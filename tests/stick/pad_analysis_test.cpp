@@ -182,11 +182,11 @@ constexpr Fault kFaults[] = {
      [](StickStatistics& s) { s.centre = vec2(-0.1, 0.1), s.rests.resize(7); }},
     {"not pressed to its rim to the front left", Verdict::unknown,
      [](StickStatistics& s) { s.unpressed = 72; }},
-    {"stuck once", Verdict::good, [](StickStatistics& s) { s.stuck = 1; }},
+    {"stuck once", Verdict::good, [](StickStatistics& s) { s.stuck_count = 1; }},
     {"or a thumb lay on it: once more, hands off", Verdict::replace,
      [](StickStatistics& s) { s.wander = 0.05; }},
     {"front", Verdict::worn, [](StickStatistics& s) { s.max_y = 0.7; }},
-    {"jumped", Verdict::worn, [](StickStatistics& s) { s.jumps = 5; }},
+    {"jumped", Verdict::worn, [](StickStatistics& s) { s.jump_count = 5; }},
     {"drifts", Verdict::worn, [](StickStatistics& s) { s.drift_per_s = 0.002; }},
     {"wanders", Verdict::worn, [](StickStatistics& s) { s.wander = 0.015; }},
     {"no dead zone cures", Verdict::replace,
@@ -203,15 +203,15 @@ constexpr Fault kFaults[] = {
     {"dead zone of 36 %", Verdict::replace, [](StickStatistics& s) { s.hysteresis = 0.354; }},
     {"noise", Verdict::replace, [](StickStatistics& s) { s.sigma = vec2(0.0, 0.06); }},
     {"back", Verdict::replace, [](StickStatistics& s) { s.min_y = -0.4; }},
-    {"stuck", Verdict::replace, [](StickStatistics& s) { s.stuck = 4; }},
+    {"stuck", Verdict::replace, [](StickStatistics& s) { s.stuck_count = 4; }},
     {"are filtered; calibration makes up for it", Verdict::worn,
-     [](StickStatistics& s) { s.jumps = 5; }},
+     [](StickStatistics& s) { s.jump_count = 5; }},
     {"in 4.0 % of its reports, too often to filter", Verdict::replace,
-     [](StickStatistics& s) { s.jumps = 200; }},
+     [](StickStatistics& s) { s.jump_count = 200; }},
     {"no filter takes out", Verdict::replace,
-     [](StickStatistics& s) { s.jumps = s.long_jumps = 5; }},
+     [](StickStatistics& s) { s.jump_count = s.long_jump_count = 5; }},
     {"lost contact 3 times, for 90 ms", Verdict::replace,
-     [](StickStatistics& s) { s.drop_outs = 3, s.drop_out_s = 0.09; }},
+     [](StickStatistics& s) { s.drop_out_count = 3, s.drop_out_s = 0.09; }},
     {"fter 3 releases it stayed up to 0.15 off", Verdict::worn,
      [](StickStatistics& s) { s.displaced = 3, s.displaced_by = 0.15; }},
     {"after 1 release it stayed about 0.15 off", Verdict::good,
@@ -223,7 +223,7 @@ constexpr Fault kFaults[] = {
     {"in only 42 of 48 directions", Verdict::unknown,
      [](StickStatistics& s) { std::fill_n(s.outline.radius.begin() + 10, 26, 0.0); }},
     {"reports only 15 times a second", Verdict::unknown,
-     [](StickStatistics& s) { s.rate_hz = 15.0, s.wander = 0.5, s.stuck = 9; }},
+     [](StickStatistics& s) { s.rate_hz = 15.0, s.wander = 0.5, s.stuck_count = 9; }},
 };
 
 TEST(StickAdvice, EachFaultHasItsVerdictAndIsNamed) {
@@ -382,9 +382,9 @@ TEST_F(RecordedSticks, ATurnedStickReachesTheRimAllRoundAndTheOtherRests) {
 TEST(StickAdvice, TheFilterIsOnOnlyForJumpsOfSingleReports) {
   StickStatistics s = measured();
   EXPECT_FALSE(advice_for(s).calibration.filters_jumps);
-  s.jumps = s.long_jumps = 5;
+  s.jump_count = s.long_jump_count = 5;
   EXPECT_FALSE(advice_for(s).calibration.filters_jumps);
-  s.jumps = 10;
+  s.jump_count = 10;
   EXPECT_TRUE(advice_for(s).calibration.filters_jumps);
 }
 

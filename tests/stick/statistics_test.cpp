@@ -165,7 +165,7 @@ TEST_F(RealStickStatistics, AnUntouchedStickRestsAtItsMedian) {
       EXPECT_EQ(s.drift_per_s, 0.0) << button << side;
       EXPECT_EQ(s.wander, 0.0) << button << side;
       EXPECT_FALSE(s.hysteresis) << button << side;
-      EXPECT_EQ(s.jumps + s.stuck + s.turns, 0) << button << side;
+      EXPECT_EQ(s.jump_count + s.stuck_count + s.turns, 0) << button << side;
       EXPECT_NEAR(*s.rate_hz, 250.0, 15.0) << button << side;
     }
   }
@@ -195,7 +195,7 @@ TEST_F(RealStickStatistics, APadThatIsSilentAtRestHasCentres) {
     EXPECT_LT(glm::length(*s.centre), 0.1) << side;
     EXPECT_EQ(s.rests.size(), 2u) << side;
     EXPECT_NEAR(*s.rate_hz, 100.0, 3.0) << side;
-    EXPECT_FALSE(s.gaps) << side;
+    EXPECT_FALSE(s.gap_count) << side;
   }
 }
 

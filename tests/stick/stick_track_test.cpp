@@ -139,8 +139,8 @@ TEST(ReportStatistics, RateJitterStepsAndTurnsOfEveryPad) {
       EXPECT_NEAR(s.step_x, step_of(stick), 1e-3 * step_of(stick)) << name_of(stick);
       EXPECT_NEAR(s.step_y, step_of(stick), 1e-3 * step_of(stick)) << name_of(stick);
     }
-    EXPECT_EQ(s.stuck, 0) << name_of(stick);
-    EXPECT_EQ(s.jumps, 0) << name_of(stick);
+    EXPECT_EQ(s.stuck_count, 0) << name_of(stick);
+    EXPECT_EQ(s.jump_count, 0) << name_of(stick);
   }
 }
 
@@ -160,13 +160,14 @@ TEST(ReportStatistics, LostReportsAreCountedOnAPadThatRepeatsItself) {
   MadeStick stick;
   stick.bits = 8;
   stick.jitter_ms = 0.8;
-  EXPECT_LE(statistics_of(stick).gaps.value_or(99), 3);
+  EXPECT_LE(statistics_of(stick).gap_count.value_or(99), 3);
   stick.drop_chance = 0.02;
   const StickTrack track = made_track(stick);
   const double lost = 0.02 * static_cast<double>(track.size());
-  EXPECT_NEAR(static_cast<double>(statistics_of(stick, track).gaps.value_or(0)), lost, 0.3 * lost);
+  EXPECT_NEAR(static_cast<double>(statistics_of(stick, track).gap_count.value_or(0)), lost,
+              0.3 * lost);
   stick.reports_changes_only = true;
-  EXPECT_FALSE(statistics_of(stick).gaps);
+  EXPECT_FALSE(statistics_of(stick).gap_count);
 }
 
 TEST(ReportStatistics, SpikesAreCountedAndChangeNothingElse) {
@@ -180,7 +181,7 @@ TEST(ReportStatistics, SpikesAreCountedAndChangeNothingElse) {
     const StickStatistics s = statistics_of(stick, track);
     // A spike lasts two reports on average.
     const double spikes = 0.004 * static_cast<double>(track.size());
-    EXPECT_NEAR(static_cast<double>(s.jumps), spikes, 0.2 * spikes + 3.0 * std::sqrt(spikes))
+    EXPECT_NEAR(static_cast<double>(s.jump_count), spikes, 0.2 * spikes + 3.0 * std::sqrt(spikes))
         << name_of(stick);
     expect_centre(stick, s, stick.centre);
     EXPECT_EQ(s.drift_per_s, 0.0) << name_of(stick);
@@ -200,13 +201,13 @@ TEST(ReportStatistics, DropOutsAreCountedInTimeAtEveryRate) {
   for (const double rate_hz : {125.0, 250.0, 1000.0}) {
     for (std::uint32_t seed = 1; seed <= 3; ++seed) {
       MadeStick stick = faulty_stick(seed, rate_hz);
-      EXPECT_EQ(statistics_of(stick, made_session(stick)).drop_outs, 0) << name_of(stick);
+      EXPECT_EQ(statistics_of(stick, made_session(stick)).drop_out_count, 0) << name_of(stick);
       stick.drop_outs = 6;
       stick.drop_out_s = 0.04;
       const StickStatistics s = statistics_of(stick, made_session(stick));
-      EXPECT_NEAR(static_cast<double>(s.drop_outs), 6.0, 2.0) << name_of(stick);
-      EXPECT_NEAR(s.drop_out_s / static_cast<double>(std::max<std::int64_t>(s.drop_outs, 1)), 0.04,
-                  0.015)
+      EXPECT_NEAR(static_cast<double>(s.drop_out_count), 6.0, 2.0) << name_of(stick);
+      EXPECT_NEAR(s.drop_out_s / static_cast<double>(std::max<std::int64_t>(s.drop_out_count, 1)),
+                  0.04, 0.015)
           << name_of(stick);
     }
   }
@@ -216,11 +217,11 @@ TEST(ReportStatistics, FreezesOfOneAxisOrBothAreCounted) {
   for (const int axes : {1, 2, 3}) {
     for (std::uint32_t seed = 1; seed <= 3; ++seed) {
       MadeStick stick = faulty_stick(seed, 250.0);
-      EXPECT_EQ(statistics_of(stick, made_session(stick)).stuck, 0) << name_of(stick);
+      EXPECT_EQ(statistics_of(stick, made_session(stick)).stuck_count, 0) << name_of(stick);
       stick.freezes = 4;
       stick.freeze_s = 0.15;
       stick.frozen_axes = axes;
-      EXPECT_GE(statistics_of(stick, made_session(stick)).stuck, 2) << name_of(stick);
+      EXPECT_GE(statistics_of(stick, made_session(stick)).stuck_count, 2) << name_of(stick);
     }
   }
 }
@@ -233,8 +234,8 @@ TEST(ReportStatistics, JumpsOfSingleReportsAreToldFromLongerOnes) {
       stick.spike_reports = reports;
       const StickStatistics s = statistics_of(stick, made_session(stick));
       // Longer jumps that stay at one place also count as drop-outs.
-      const std::int64_t longer = s.long_jumps + s.drop_outs;
-      EXPECT_GT(s.jumps, 8) << name_of(stick);
+      const std::int64_t longer = s.long_jump_count + s.drop_out_count;
+      EXPECT_GT(s.jump_count, 8) << name_of(stick);
       EXPECT_TRUE(reports == 1 ? longer <= 2 : longer >= 5) << longer << " " << name_of(stick);
     }
   }

@@ -307,7 +307,7 @@ TEST(StrideFamily, NamesWhatIsNoWalk) {
   EXPECT_EQ(cause([](GaitCycle& c) { std::swap(c.toe_off[0], c.toe_off[1]); }),
             "odd.bvh: has events that are not in the order of a walk");
   EXPECT_EQ(cause([](GaitCycle& c) { c.samples[0].pelvis = quat(0.0, 0.0, 0.0, 0.0); }),
-            "odd.bvh: turns its pelvis by what is no rotation");
+            "odd.bvh: holds a rotation of the pelvis that is not a unit quaternion");
   EXPECT_EQ(cause([](GaitCycle& c) { c.samples[0].leg[0].angles[kHipX] = 1e6; }),
             "odd.bvh: turns a leg by more than a full turn");
 }

@@ -18,6 +18,12 @@ TEST(Terminal, ATableKeepsItsColumnWhereALineIsBroken) {
   EXPECT_EQ(fitted("short\n\nlines\n", 16), "short\n\nlines\n");
 }
 
+TEST(Terminal, ATablesColumnsAreAsWideAsTheirWidestText) {
+  EXPECT_EQ(table_text({{"id", "name"}, {"1234", "pad\x1b"}, {"5", ""}}),
+            "id    name\n1234  pad\\x1b\n5\n");
+  EXPECT_EQ(table_text({}), "");
+}
+
 TEST(Terminal, WhatIsNoTerminalHasNoColumns) { EXPECT_EQ(terminal_columns(-1), std::nullopt); }
 
 }  // namespace

@@ -149,7 +149,7 @@ def test_a_stick_that_was_not_seen_keeps_its_calibration(user):
     for left, centre in ((Turning(), 0.1), (Stick(reach=(0, 0)), -0.1)):  # it rests nowhere; it only rests
         trace = user.trace(left, Stick(centre=(0, centre)), serial=SERIAL)
         done = user.run("calibrate", "--trace", trace)
-        assert "the left stick is unknown: its calibration stays as it was" in done.stderr
+        assert "the left stick is unknown: its calibration is kept" in done.stderr
         after = user.table()
         assert after["right"]["y"]["centre"] == pytest.approx(centre, abs=0.001)
         assert after["left"] == before  # `measured` stays as well

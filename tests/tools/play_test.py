@@ -110,6 +110,20 @@ def test_closed_standard_descriptors_get_nothing_into_the_recording(program, rec
     replay()
 
 
+def test_the_times_of_reports_replace_a_link_and_not_the_file_behind_it(run, refuse, tmp_path):
+    other, times = tmp_path / "other.txt", tmp_path / "times.csv"
+    other.write_text("another file")
+    times.symlink_to(other)
+    run("play", ROUND, "--no-window", "--seconds", SECONDS, "--report-times", times)
+    assert other.read_text() == "another file"
+    assert not times.is_symlink()
+    header, *rows = times.read_text().splitlines()
+    assert header == "tick,device,arrival_ns,begin_ns"
+    assert len(rows) > 20
+    assert all(re.fullmatch(r"\d+,\d+,\d+,\d+", row) for row in rows)
+    refuse("play", ROUND, "--no-window", "--report-times", tmp_path / "no/times.csv", says="no/times.csv")
+
+
 def test_what_cannot_be_is_one_sentence(refuse, tmp_path):
     refuse("play", tmp_path / "none.hid", "--no-window", "--seconds", "1", says="none.hid")
     refuse("play", ROUND, "--no-window", "--record", tmp_path / "no/x.hid", says="no/x.hid")

@@ -4,7 +4,7 @@ from support.program import ROUND, refuse
 
 
 def test_a_recording_is_no_pad(program, tmp_path):
-    refuse(program, "selftest", ROUND, "--out", tmp_path / "out", says=["is a recording", "the pad itself"])
+    refuse(program, "selftest", ROUND, "--out", tmp_path / "out", says=["a recording", "the pad itself"])
     assert not (tmp_path / "out").exists()
 
 

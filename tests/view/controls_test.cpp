@@ -53,6 +53,24 @@ TEST(Actions, EachHasAKeyEveryKeyAndButtonANameOfItsOwnAndNoTwoShareThem) {
   }
 }
 
+ActionInfo with_keys(Action action, SDL_Keycode key, SDL_Keycode second_key = SDLK_UNKNOWN) {
+  return {action, key, second_key, -1, "name", "group", "text"};
+}
+
+// The build of the window stops at such a table, for example if a panel gets F9, the key of record.
+TEST(Actions, TwoWithTheSameKeyAreFound) {
+  EXPECT_EQ(shared_key(actions()), SDLK_UNKNOWN);
+  const ActionInfo record = with_keys(Action::record, SDLK_F9);
+  const ActionInfo help = with_keys(Action::help, SDLK_F1, SDLK_h);
+  const ActionInfo undo = with_keys(Action::undo, SDLK_UNKNOWN);
+  using Table = std::vector<ActionInfo>;
+  EXPECT_EQ(shared_key(Table{record, help, undo, undo}), SDLK_UNKNOWN);
+  EXPECT_EQ(shared_key(Table{record, help, with_keys(Action::first_panel, SDLK_F9)}), SDLK_F9);
+  EXPECT_EQ(shared_key(Table{help, with_keys(Action::first_panel, SDLK_h)}), SDLK_h);
+  EXPECT_EQ(shared_key(Table{with_keys(Action::first_panel, SDLK_F2, SDLK_h), help}), SDLK_h);
+  EXPECT_EQ(shared_key(Table{with_keys(Action::first_panel, SDLK_F2, SDLK_F2)}), SDLK_F2);
+}
+
 TEST(Actions, KeysAreNamedAsTheyArePrinted) {
   EXPECT_EQ(key_name(SDLK_SPACE), "Space");
   EXPECT_EQ(key_name(SDLK_F1), "F1");

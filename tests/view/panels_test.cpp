@@ -14,6 +14,7 @@
 #include "session/walk_export.h"
 #include "ui_fixture.h"
 #include "view/history_plots.h"
+#include "view/widgets.h"
 
 namespace gaitpad {
 namespace {

@@ -67,6 +67,7 @@ TEST_F(UiTest, TheViewMenuSwitchesWhatHasNoKeyAndAsksForWhatHas) {
   walk();
   click("view");
   ASSERT_NE(find("grid"), nullptr);
+  EXPECT_GE(find("trails")->min.y, find("view")->max.y) << "the menu is below its button";
   EXPECT_TRUE(click("grid").actions.empty());
   EXPECT_FALSE(state.has_grid);
   EXPECT_EQ(click("trails").actions, Actions{Action::trails});
@@ -189,6 +190,8 @@ TEST_F(UiTest, EveryItemIsExplainedUnderThePointer) {
     EXPECT_EQ(words_of_key(key.name).find('_'), std::string::npos) << key.name;
   }
   EXPECT_EQ(words_of_key("fatigue_model.per_100_m"), "tiring per 100 m");
+  EXPECT_EQ(words_of_key("trunk.over_left_deg"), "trunk over left, deg");
+  EXPECT_EQ(words_of_key("head.x_m"), "head x, m");
 }
 
 TEST_F(UiTest, ATooltipComesWhileThePointerRests) {

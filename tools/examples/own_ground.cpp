@@ -22,8 +22,7 @@ static Motion bones(double leg_m) {  // a skeleton's rest pose: +x left, +y up, 
   body.frames = {{vec3(0.0, leg_m, 0.0), std::vector<quat>(joints.size(), kIdentity), {}}};
   return body;
 }
-// Waves 2.5 pi m long in both directions.
-static Ground ask(const void*, double x_m, double z_m) noexcept {
+static Ground ask(const void*, double x_m, double z_m) noexcept {  // waves 2.5 pi m long
   return {0.2 * sin_cos(0.8 * x_m).sin + 0.15 * sin_cos(0.8 * z_m).sin, kUp, 0};
 }
 int main() {

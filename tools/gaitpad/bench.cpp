@@ -106,16 +106,22 @@ int run(const BenchArguments& arguments) {
 void add_bench(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand(
       "bench",
-      "the times of a tick, of crowds and of loading, beside bare playback and their bounds");
+      "measures a tick, crowds and loading, and compares them with bare playback and with bounds");
   const auto arguments = std::make_shared<BenchArguments>();
-  command->add_option("--crowd", arguments->most_characters, "the largest crowd")
+  command
+      ->add_option("--crowd", arguments->most_characters,
+                   "number of characters in the largest crowd")
       ->check(CLI::Range(1, 1000000))
       ->capture_default_str();
-  command->add_option("--rounds", arguments->rounds, "how often each measurement is repeated")
+  command
+      ->add_option("--rounds", arguments->rounds,
+                   "number of times that each measurement is repeated")
       ->check(CLI::Range(1, 1000))
       ->capture_default_str();
-  command->add_flag("--json", arguments->as_json, "a list of measurements, for machines");
-  command->add_option("--plot", arguments->plot, "draws a crowd's time over its size (.png)")
+  command->add_flag("--json", arguments->as_json, "print the measurements as a JSON list");
+  command
+      ->add_option("--plot", arguments->plot,
+                   "draw the time of a tick over the size of the crowd (.png)")
       ->check(plot_problem);
   command->callback([arguments, &status] { status = run(*arguments); });
 }

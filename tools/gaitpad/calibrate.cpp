@@ -12,16 +12,16 @@
 #include <span>
 #include <utility>
 
-#include "base/files.h"
 #include "base/text.h"
 #include "gaitpad/config_files.h"
 #include "hid/sdl_lines.h"
+#include "pad_report/calibration_report.h"
 #include "pads/calibration_store.h"
 #include "pads/traced_pad.h"
 #include "stick/calibration_import.h"
 #include "stick/guide.h"
 #include "stick/pad_analysis.h"
-#include "stick/statistics.h"
+#include "system/whole_file.h"
 #include "tools/gaitpad/calibrate_guide.h"
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/options.h"
@@ -37,212 +37,6 @@ struct CalibrateArguments {
   std::string out, plot, check, import, map;
   bool as_json = false, exports_sdl = false, is_lenient = false;
 };
-
-// --- the measured values, for people and for machines
-
-constexpr const char* kUnknown = " not known";
-
-// Prints a row: a label, one value or those of x and y, and their source.
-void print_row(const char* what, const std::string& value, const std::string& from) {
-  say("  {:<18}  {:<20}  {}\n", what, value, from);
-}
-
-std::string pair_text(const std::optional<vec2>& p, bool is_signed) {
-  if (!p) return kUnknown;
-  return is_signed ? fmt::format("{:>+9.4f}{:>+9.4f}", p->x, p->y)
-                   : fmt::format("{:>9.4f}{:>9.4f}", p->x, p->y);
-}
-std::string pair_text(const std::optional<double>& x, const std::optional<double>& y) {
-  const auto end = [](const std::optional<double>& v) {
-    return v ? fmt::format("{:>+9.4f}", *v) : "        ?";
-  };
-  return x || y ? end(x) + end(y) : kUnknown;
-}
-
-void print_rest(const StickStatistics& s) {
-  const std::string from = fmt::format("{} reports at rest in {:.1f} s", s.rest_samples, s.rest_s);
-  print_row("centre", pair_text(s.centre, true),
-            fmt::format("{}, {} rest{}", from, s.rests.size(), s.rests.size() == 1 ? "" : "s"));
-  if (!s.centre) return;
-  print_row("noise (sigma)", pair_text(s.sigma, false),
-            s.is_sigma_hidden ? from + ", hidden by the steps" : from);
-  print_row("hysteresis", s.hysteresis ? fmt::format("{:>9.4f}", *s.hysteresis) : kUnknown,
-            s.hysteresis ? fmt::format("between the farthest two of {} rests", s.rests.size())
-                         : "needs two rests with a push between them");
-  const std::string trend = s.drift_per_s ? fmt::format("{:>9.4f} a second", *s.drift_per_s) : "";
-  print_row("drift", trend.empty() ? kUnknown : *s.drift_per_s > 0.0 ? trend : "     none", from);
-  if (s.wander > 0.0)
-    print_row("wander", fmt::format("{:>9.4f} a second", s.wander),
-              fmt::format("{:.1f} s without hands on it", seconds_of(s.hands_off)));
-  if (s.displaced > 0) {
-    print_row("displaced rests", fmt::format("{:>9}", s.displaced),
-              fmt::format("up to {:.3f} off the centre", s.displaced_by));
-  }
-}
-
-double reach_in(const Outline& outline, int direction) {
-  return outline.radius[static_cast<std::size_t>(direction)];
-}
-
-void print_rim(const StickStatistics& s) {
-  const std::string from =
-      fmt::format("{} reports at the rim, {} of {} directions, {} whole turn{}", s.rim_samples,
-                  filled_bins(s.outline), kCircularityBins, s.turns, s.turns == 1 ? "" : "s");
-  print_row("reach right, front", pair_text(s.max_x, s.max_y), from);
-  print_row("reach left, back", pair_text(s.min_x, s.min_y), from);
-  if (const auto worst = worst_direction(s.outline)) {
-    print_row("least reach", fmt::format("{:>9.4f}", reach_in(s.outline, *worst)),
-              fmt::format("{} degrees from the right", degrees_of(*worst)));
-  }
-  print_row("circularity error",
-            s.circularity_error ? fmt::format("{:>9.1f} %", *s.circularity_error) : kUnknown,
-            s.circularity_error ? "0 is a circle of radius 1 about the raw middle"
-                                : "needs whole turns along the rim");
-}
-
-void print_reports(const StickStatistics& s) {
-  const std::string from = fmt::format("{} reports", s.samples);
-  const double finest = std::min(s.step_x, s.step_y);
-  if (finest > 0.0) {
-    print_row("step", fmt::format("{:>9.5f}{:>9.5f}", s.step_x, s.step_y),
-              fmt::format("{:.0f} from end to end", 2.0 / finest));
-  }
-  print_row("rate", s.rate_hz ? fmt::format("{:>9.1f} Hz", *s.rate_hz) : kUnknown,
-            s.jitter_ms ? fmt::format("{}, jitter {:.2f} ms", from, *s.jitter_ms) : from);
-  if (s.moving) {
-    print_row(
-        "new values", fmt::format("{:>9.1f} Hz", s.moving->new_value_hz),
-        fmt::format("while it moved, {:.0f} % of {:.0f} reports a second repeat the one before",
-                    100.0 * s.moving->repeats(), s.moving->report_hz));
-  }
-  const std::string gaps = s.gaps ? fmt::format("{}", *s.gaps) : "not known";
-  print_row("gaps, jumps, stuck", fmt::format("{:>9}, {}, {}", gaps, s.jumps, s.stuck), from);
-  if (s.drop_outs > 0) {
-    print_row("drop-outs", fmt::format("{:>9}", s.drop_outs),
-              fmt::format("{:.0f} ms in all", 1e3 * s.drop_out_s));
-  }
-}
-
-void print_advice(const StickAnalysis& stick) {
-  const StickAdvice& a = stick.advice;
-  const StickCalibration& c = a.calibration;
-  print_row("inner zone", fmt::format("{:>9.3f}", a.inner_zone),
-            fmt::format("{:.3f} of the deflection", c.inner));
-  if (a.has_range) {
-    print_row("outer zone", fmt::format("{:>9.3f}", a.outer_zone),
-              fmt::format("{:.3f} of the deflection, sideways zone {:.3f}", c.outer, c.sideways));
-  } else {
-    print_row("outer zone", kUnknown, "");
-  }
-  if (c.frame == StickFrame{}) return;
-  constexpr const char* kRaw[] = {"x", "-x", "y", "-y"};
-  print_row("axes",
-            fmt::format("right = {}, forward = {}", kRaw[static_cast<int>(c.frame.right)],
-                        kRaw[static_cast<int>(c.frame.forward)]),
-            "");
-}
-
-template <typename T>
-nlohmann::ordered_json value_or_null(const std::optional<T>& value) {
-  return value ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr);
-}
-
-nlohmann::ordered_json stick_json(const StickAnalysis& stick) {
-  const StickStatistics& s = stick.statistics;
-  const auto part = [](const std::optional<vec2>& v, int i) {
-    return v ? nlohmann::ordered_json((*v)[i]) : nlohmann::ordered_json(nullptr);
-  };
-  const bool is_known = s.centre.has_value();
-  const std::optional<int> worst = worst_direction(s.outline);
-  return {{"centre_x", part(s.centre, 0)},
-          {"centre_y", part(s.centre, 1)},
-          {"sigma_x", part(s.sigma, 0)},
-          {"sigma_y", part(s.sigma, 1)},
-          {"hysteresis", value_or_null(s.hysteresis)},
-          {"min_x", value_or_null(s.min_x)},
-          {"max_x", value_or_null(s.max_x)},
-          {"min_y", value_or_null(s.min_y)},
-          {"max_y", value_or_null(s.max_y)},
-          {"circularity_error", value_or_null(s.circularity_error)},
-          {"drift_per_s", value_or_null(s.drift_per_s)},
-          {"rate_hz", value_or_null(s.rate_hz)},
-          {"inner_zone", is_known ? nlohmann::ordered_json(stick.advice.inner_zone) : nullptr},
-          {"outer_zone", is_known && stick.advice.has_range
-                             ? nlohmann::ordered_json(stick.advice.outer_zone)
-                             : nullptr},
-          {"verdict", name_of(stick.advice.verdict)},
-          {"reason", stick.advice.reason},
-          {"samples", s.samples},
-          {"sigma_hidden_by_steps", s.is_sigma_hidden},
-          {"wander", s.wander},
-          {"rest_samples", s.rest_samples},
-          {"rests", s.rests.size()},
-          {"rim_samples", s.rim_samples},
-          {"turns", s.turns},
-          {"step_x", s.step_x},
-          {"step_y", s.step_y},
-          {"jitter_ms", value_or_null(s.jitter_ms)},
-          {"new_values_hz", s.moving ? nlohmann::ordered_json(s.moving->new_value_hz) : nullptr},
-          {"repeats", s.moving ? nlohmann::ordered_json(s.moving->repeats()) : nullptr},
-          {"gaps", value_or_null(s.gaps)},
-          {"jumps", s.jumps},
-          {"stuck", s.stuck},
-          {"drop_outs", s.drop_outs},
-          {"drop_out_s", s.drop_out_s},
-          {"displaced_rests", s.displaced},
-          {"displaced_by", s.displaced_by},
-          {"hands_off_s", seconds_of(s.hands_off)},
-          {"least_reach", worst ? nlohmann::ordered_json(reach_in(s.outline, *worst)) : nullptr},
-          {"least_reach_deg",
-           worst ? nlohmann::ordered_json(360.0 * *worst / kOutlineDirections) : nullptr}};
-}
-
-void print_analysis(const DeviceInfo& device, const PadAnalysis& analysis) {
-  say("{} ({:04x}:{:04x})\n", printable(device.name), device.vendor, device.product);
-  for (std::size_t i = 0; i < 2; ++i) {
-    const auto& stick = analysis.stick[i];
-    if (!stick) continue;
-    say("\n{} stick: {}. {}\n  {:<18}  {:>9}{:>9}\n", kSideNames[i], name_of(stick->advice.verdict),
-        stick->advice.reason, "", "x right", "y front");
-    print_rest(stick->statistics);
-    print_rim(stick->statistics);
-    print_reports(stick->statistics);
-    if (stick->statistics.centre) print_advice(*stick);
-  }
-  if (analysis.trigger[0] || analysis.trigger[1]) say("\n");
-  const auto number = [](const std::optional<double>& value) {
-    return value ? fmt::format("{:.3f}", *value) : "not known";
-  };
-  for (std::size_t i = 0; i < 2; ++i) {
-    const auto& trigger = analysis.trigger[i];
-    if (!trigger) continue;
-    say("{} trigger: released {}, pressed {}, {} reports\n", kSideNames[i],
-        number(trigger->released), number(trigger->pressed), trigger->samples);
-  }
-  say("\nPositions and lengths are raw: fractions of half the axis' range, from its middle.\n");
-}
-
-// The analysis as JSON.
-nlohmann::ordered_json analysis_json(const DeviceInfo& device, const PadAnalysis& analysis) {
-  nlohmann::ordered_json sticks = nlohmann::ordered_json::object();
-  nlohmann::ordered_json triggers = nlohmann::ordered_json::object();
-  for (std::size_t i = 0; i < 2; ++i) {
-    sticks[kSideNames[i]] = analysis.stick[i] ? stick_json(*analysis.stick[i]) : nullptr;
-    if (!analysis.trigger[i]) continue;
-    triggers[kSideNames[i]] = {{"released", value_or_null(analysis.trigger[i]->released)},
-                               {"pressed", value_or_null(analysis.trigger[i]->pressed)},
-                               {"samples", analysis.trigger[i]->samples}};
-  }
-  return {{"device",
-           {{"name", device.name},
-            {"bus", static_cast<int>(device.bus)},
-            {"vendor", device.vendor},
-            {"product", device.product},
-            {"unique_id", device.unique_id},
-            {"driver", device.driver}}},
-          {"sticks", sticks},
-          {"triggers", triggers}};
-}
 
 // --- the files around a calibration
 
@@ -365,12 +159,6 @@ int export_sdl(const CalibrateArguments& arguments, const PadFiles& files) {
 
 // --- the command
 
-struct ComparedFiles {
-  std::array<CalibrationFile, 2> file;
-  std::array<std::string, 2> names;                    // names of the two files, without folders
-  std::array<std::vector<ComparedNumber>, 2> numbers;  // numbers of the left and the right stick
-};
-
 #ifdef GAITPAD_HAS_WINDOW
 std::optional<Error> draw(const CalibrateArguments& arguments, const GuidedPad& pad,
                           const PadAnalysis& analysis) {
@@ -431,15 +219,8 @@ int compare(const CalibrateArguments& arguments) {
   const auto& [a, b] = files.file;
   if (a.unique_id != b.unique_id || a.devices != b.devices)
     print_remarks(kCalibrateCommand, {"the files are of different devices; compared all the same"});
-  for (std::size_t side = 0; side < 2; ++side) {
-    files.numbers[side] = compared_numbers(a, b, side);
-    say("{}{} stick\n  {:<24}{:>16}  {:>16}\n", side == 0 ? "" : "\n", kSideNames[side], "",
-        files.names[0], files.names[1]);
-    for (const ComparedNumber& number : files.numbers[side]) {
-      say("  {:<24}{:>16}  {:>16}{}\n", number.label, number.values[0], number.values[1],
-          number.values[0] == number.values[1] ? "" : "  *");
-    }
-  }
+  for (std::size_t side = 0; side < 2; ++side) files.numbers[side] = compared_numbers(a, b, side);
+  say(stdout, comparison_text(files));
   print_changes(changes_since(a, b), "what was measured for both files has not changed");
   if (arguments.plot.empty()) return 0;
   const auto problem = draw_comparison(arguments.plot, files);
@@ -468,7 +249,7 @@ std::optional<Error> show(const CalibrateArguments& arguments, const GuidedPad& 
     if (changes) json["changes"] = *changes;
     print_json_line(json);
   } else if (arguments.out != "-") {
-    print_analysis(pad.info, analysis);
+    say(stdout, analysis_text(pad.info, analysis));
     if (changes && has_a_centre(analysis))
       print_changes(*changes,
                     "nothing that was seen has changed since " + printable(arguments.check));
@@ -518,11 +299,11 @@ int keep(const CalibrateArguments& arguments, const PadFiles& files, const Guide
     if (analysis.stick[i] && !is_known(analysis, i)) {
       print_remarks(
           kCalibrateCommand,
-          {fmt::format("the {} stick is unknown: its calibration stays as it was", kSideNames[i])});
+          {fmt::format("the {} stick is unknown: its calibration is kept", kSideNames[i])});
     }
   }
   if (asked && *target != "-" &&
-      !confirmed(fmt::format("Enter writes {}, q leaves it as it was.", printable(*target)),
+      !confirmed(fmt::format("Enter writes {}, q leaves it unchanged.", printable(*target)),
                  *asked))
     return fail(kCalibrateCommand, "left before the end; nothing written");
   return print_or_save(*target, file, calibration_comments(analysis));
@@ -573,25 +354,25 @@ std::string png_problem([[maybe_unused]] const std::string& path) {
 // Options of measuring and of the result.
 void add_measuring(CLI::App& command, CalibrateArguments& arguments) {
   add_pad_options(command, arguments.selector);
-  auto* trace = command.add_option("--trace", arguments.traces,
-                                   "a recording instead of a guided session; again for more");
+  auto* trace = command.add_option(
+      "--trace", arguments.traces,
+      "measure this recording instead of a live pad; repeat it for more recordings");
   trace->allow_extra_args(false);
   trace->excludes(command.get_option("PAD"))->excludes(command.get_option("--driver"));
   command.add_option("--out", arguments.out,
-                     "the file to write, - for standard output (default: the device's own)");
-  command.add_option("--plot", arguments.plot, "draws what was measured (.png)")
-      ->check(png_problem);
+                     "file to write, - for standard output (default: the device's own file)");
+  command.add_option("--plot", arguments.plot, "draw what was measured (.png)")->check(png_problem);
   command
-      .add_option("--check", arguments.check, "compares with this calibration file and writes none")
+      .add_option("--check", arguments.check, "compare with this calibration file; write nothing")
       ->excludes(command.get_option("--out"));
   command
       .add_option("--pushes", arguments.pushes,
-                  "what the last pushes of the recordings meant, to learn axes and signs: "
+                  "directions of the last pushes in the recordings, to learn axes and signs: "
                   "forward,right,back,left")
       ->delimiter(',')
       ->check(CLI::IsMember({"forward", "right", "back", "left"}))
       ->needs(trace);
-  command.add_flag("--json", arguments.as_json, "what was measured, for machines");
+  command.add_flag("--json", arguments.as_json, "print what was measured as JSON");
   command.add_option("--map", arguments.map, "pad file that overrides config/pads");
   command.add_flag("--lenient", arguments.is_lenient,
                    "skip a recording's damaged lines and count them");
@@ -599,18 +380,16 @@ void add_measuring(CLI::App& command, CalibrateArguments& arguments) {
 
 // Options that convert instead of measuring.
 void add_conversions(CLI::App& command, CalibrateArguments& arguments) {
-  auto* import =
-      command.add_option("--import", arguments.import,
-                         "takes over the axes of a recording of evemu, libinput or umockdev, "
-                         "or an SDL mapping; "
-                         "without PAD all Linux lines of a gamecontrollerdb.txt; "
-                         "- for standard input");
+  auto* import = command.add_option(
+      "--import", arguments.import,
+      "import the axes from a recording of evemu, libinput or umockdev, or from an SDL mapping; "
+      "without PAD import all Linux lines of a gamecontrollerdb.txt; - for standard input");
   auto* export_sdl = command.add_flag("--export-sdl", arguments.exports_sdl,
-                                      "prints the pad as SDL's mapping line");
+                                      "print the pad as a mapping line of SDL");
   export_sdl->excludes(import)->excludes(command.get_option("--out"));
-  auto* compare = command.add_option("--compare", arguments.compare,
-                                     "compares two calibration files, before and after a repair; "
-                                     "--plot draws them");
+  auto* compare = command.add_option(
+      "--compare", arguments.compare,
+      "compare two calibration files, such as before and after a repair; --plot draws both");
   compare->expected(2)->type_name("A B");
   for (const char* other :
        {"PAD", "--trace", "--out", "--check", "--pushes", "--json", "--import", "--export-sdl"})
@@ -625,7 +404,7 @@ void add_conversions(CLI::App& command, CalibrateArguments& arguments) {
 
 void add_calibrate(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand(
-      "calibrate", "measures a pad's sticks, guided or from recordings, and keeps the calibration");
+      "calibrate", "measures a pad's sticks, guided or from recordings, and saves the calibration");
   const auto arguments = std::make_shared<CalibrateArguments>();
   add_measuring(*command, *arguments);
   add_conversions(*command, *arguments);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <utility>
 
+#include "base/shown_number.h"
 #include "stick/guide.h"
 #include "terminal/terminal.h"
 #include "tools/gaitpad/options.h"
@@ -71,7 +72,8 @@ std::vector<std::string> control_lines(const GuideProgress& control, bool is_sti
     return {fmt::format("{} {:.0f} %: {}", control.control, share * 100.0, control.text)};
   const auto cells = static_cast<std::size_t>(share * kBarCells);
   const std::string bar = std::string(cells, '#') + std::string(kBarCells - cells, '.');
-  const std::string place = is_stick ? fmt::format("{:+.3f} {:+.3f}", control.raw.x, control.raw.y)
+  const std::string place = is_stick ? fmt::format("{} {}", signed_number(control.raw.x, 3),
+                                                   signed_number(control.raw.y, 3))
                                      : fmt::format("{:.3f}", control.raw.x);
   std::string begin = fmt::format("  {:<13} [{}] {}  ", control.control, bar, place);
   std::vector<std::string> lines;

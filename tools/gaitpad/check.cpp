@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "base/files.h"
 #include "check/check_report.h"
 #include "check/trace_check.h"
 #include "session/workers.h"
+#include "system/whole_file.h"
 #include "terminal/run_end.h"
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/options.h"
@@ -133,18 +133,16 @@ int run(const CheckArguments& arguments) {
 }  // namespace
 
 void add_check(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand(
-      "check", "replays recordings that have an expectation beside them, and judges them");
+  CLI::App* command =
+      app.add_subcommand("check", "replays recordings and compares them with their expectations");
   const auto arguments = std::make_shared<CheckArguments>();
   command
       ->add_option("PATH", arguments->paths,
                    "recordings (NAME.hid, with NAME.expect.toml beside it), and folders to search")
       ->required();
   command->add_flag("--update", arguments->updates,
-                    "writes the expectations that are missing or not met, and says what changed");
-  command
-      ->add_flag("--strict", arguments->is_strict,
-                 "a recording without an expectation is a failure, so that no test gets lost")
+                    "write the expectations that are missing or not met, and print what changed");
+  command->add_flag("--strict", arguments->is_strict, "fail if a recording has no expectation")
       ->excludes("--update");
   command
       ->add_option("-j,--jobs", arguments->jobs,
@@ -152,13 +150,14 @@ void add_check(CLI::App& app, int& status) {
       ->check(CLI::Range(1, kMaxJobs));
   command
       ->add_option("--shard", arguments->shard,
-                   "I/N: the I-th of N equal parts, from 1 on (default: $GAITPAD_SHARD_INDEX of "
-                   "$GAITPAD_SHARD_TOTAL, else all)")
+                   "I/N: check only part I of N equal parts, the first is 1 (default: "
+                   "$GAITPAD_SHARD_INDEX of $GAITPAD_SHARD_TOTAL, else all)")
       ->check(shard_problem);
-  command->add_option("--junit", arguments->junit, "also writes the results as JUnit's XML, FILE");
+  command->add_option("--junit", arguments->junit,
+                      "also write the results to this file, as JUnit's XML");
   command
       ->add_option("--plot", arguments->plot,
-                   "folder for a picture of each pose that differs: both courses of the joint")
+                   "folder for a picture of each pose that differs: the joint's angle in both runs")
       ->check(joints_plot_problem);
   add_max_hours_option(*command, arguments->max_hours);
   add_user_styles_option(*command, arguments->user_styles);

@@ -8,15 +8,13 @@
 #include <cstdio>
 #include <filesystem>
 #include <memory>
-#include <nlohmann/json.hpp>
 #include <optional>
-#include <span>
+#include <vector>
 
 #include "drivers/pads/recorded_packets.h"
 #include "gaitpad/pad_stream.h"
 #include "gaitpad/trace.h"
-#include "hid/usage_names.h"
-#include "pads/newest_reports.h"
+#include "pad_report/decode_report.h"
 #include "terminal/run_end.h"
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/options.h"
@@ -27,150 +25,11 @@ namespace {
 
 enum class OutputForm { text, json };
 
-// A device and everything that decoding needs. `state` is the state after its last report.
-struct DecodedDevice {
-  TraceDevice source;
-  PadLayout layout;
-  PadState state;
-};
-
-// --- a descriptor and a report, printed
-
-using nlohmann::ordered_json;
-
-const char* kind_name(FieldKind kind) {
-  switch (kind) {
-    case FieldKind::input:
-      return "input";
-    case FieldKind::output:
-      return "output";
-    case FieldKind::feature:
-      return "feature";
-  }
-  return "";
-}
-
-ordered_json descriptor_json(const DecodedDevice& device) {
-  const DeviceInfo& info = device.source.info;
-  ordered_json fields = ordered_json::array();
-  for (const Field& f : device.layout.descriptor.fields) {
-    fields.push_back({{"report_id", f.report_id},
-                      {"bit_offset", f.bit_offset},
-                      {"bit_size", f.bit_size},
-                      {"usage_page", page_of(f.usage)},
-                      {"usage", id_of(f.usage)},
-                      {"logical_min", f.logical_min},
-                      {"logical_max", f.logical_max},
-                      {"kind", kind_name(f.kind)}});
-  }
-  return {{"device",
-           {{"name", info.name},
-            {"bus", static_cast<unsigned>(info.bus)},
-            {"vendor", info.vendor},
-            {"product", info.product}}},
-          {"pad", device.layout.is_pad},
-          {"fields", std::move(fields)}};
-}
-
-// True if two fields differ only in their position; such neighbours are printed as one row.
-bool continues(const Field& a, const Field& b) {
-  return a.kind == b.kind && a.report_id == b.report_id && a.usage == b.usage &&
-         a.bit_size == b.bit_size && a.logical_min == b.logical_min &&
-         a.logical_max == b.logical_max && a.is_array == b.is_array;
-}
-
-// The values by usage. A repeated usage has the value of its first field; each usage that an array
-// names has 1.
-ordered_json values_json(const ReportDescriptor& descriptor, const Report& report,
-                         std::uint8_t id) {
-  ordered_json values = ordered_json::object();
-  const std::size_t skip = descriptor.numbered ? 1 : 0;
-  if (report.size < skip) return values;
-  const std::span<const std::uint8_t> data(report.bytes.data() + skip, report.size - skip);
-  for (const Field& f : descriptor.fields) {
-    if (f.kind != FieldKind::input || f.report_id != id || f.bit_size > 64) continue;
-    const std::int64_t value = field_value(f, data);
-    const std::uint32_t usage = f.is_array ? array_usage(descriptor, f, value) : f.usage;
-    if (f.is_array && id_of(usage) == 0) continue;
-    const std::string key = usage_text(usage);
-    if (!values.contains(key)) values[key] = f.is_array ? 1 : value;
-  }
-  return values;
-}
-
-std::vector<std::string> pressed_names(const DecodedDevice& device, const Report& report,
-                                       std::uint8_t id) {
-  std::vector<std::string> names = button_names(device.state);
-  const std::size_t skip = device.layout.descriptor.numbered ? 1 : 0;
-  if (report.size < skip) return names;
-  const std::span<const std::uint8_t> data(report.bytes.data() + skip, report.size - skip);
-  for (const UnnamedButton& u : device.layout.unnamed) {
-    if (u.report_id != id || bits_at(data, u.bits.bit_offset, u.bits.bit_size) == 0) continue;
-    names.push_back(fmt::format("button_{}", u.number));
-  }
-  return names;
-}
-
-ordered_json report_json(const DecodedDevice& device, const Report& report, bool is_good) {
-  const std::uint8_t id = report_id_of(device.layout, report);
-  ordered_json line = {
-      {"device", device.source.index},
-      {"time_s", static_cast<double>(report.time_ns) / 1e9},
-      {"report_id", id},
-      {"values",
-       is_good ? values_json(device.layout.descriptor, report, id) : ordered_json::object()},
-      {"axes", device.layout.is_pad ? axes_json(device.state) : ordered_json::object()},
-      {"buttons", is_good ? pressed_names(device, report, id) : std::vector<std::string>{}}};
-  if (!is_good) line["bad"] = true;
-  return line;
-}
-
-void print_descriptor_text(const DecodedDevice& device) {
-  const DeviceInfo& info = device.source.info;
-  say("device {}: {} (bus {:x}, {:04x}:{:04x}), {}, {} bytes of descriptor\n", device.source.index,
-      printable(info.name), static_cast<unsigned>(info.bus), info.vendor, info.product,
-      device.layout.is_pad ? "a pad" : "no pad", info.descriptor.size());
-  if (!device.layout.override_origin.empty()) {
-    say("controls by {}\n", printable(device.layout.override_origin));
-  }
-  std::vector<TableRow> table = {
-      {"kind", "id", "bit", "size", "count", "usage", "name", "min", "max"}};
-  const std::vector<Field>& fields = device.layout.descriptor.fields;
-  for (std::size_t i = 0; i < fields.size();) {
-    const Field& f = fields[i];
-    std::size_t end = i + 1;
-    while (end < fields.size() && continues(f, fields[end])) ++end;
-    table.push_back({std::string(kind_name(f.kind)), fmt::format("{:x}", f.report_id),
-                     fmt::format("{}", f.bit_offset), fmt::format("{}", f.bit_size),
-                     fmt::format("{}", end - i), usage_text(f.usage), usage_name(f.usage),
-                     fmt::format("{}", f.logical_min),
-                     fmt::format("{}{}", f.logical_max, f.is_array ? " array" : "")});
-    i = end;
-  }
-  print_table(table);
-}
-
-void print_report_text(const DecodedDevice& device, const Report& report, bool is_good) {
-  const std::uint8_t id = report_id_of(device.layout, report);
-  std::string line =
-      fmt::format("{:>12.6f} device {} report {:2x}", static_cast<double>(report.time_ns) / 1e9,
-                  device.source.index, id);
-  if (!is_good) return say("{}  {} bytes: too short, or an unknown id\n", line, report.size);
-  if (device.layout.is_pad) {
-    const auto& a = device.state.axis;
-    line += fmt::format("  left {:+.3f} {:+.3f}  right {:+.3f} {:+.3f}  triggers {:.3f} {:.3f} ",
-                        a[kLeftX], a[kLeftY], a[kRightX], a[kRightY], a[kLeftTrigger],
-                        a[kRightTrigger]);
-    for (const std::string& name : pressed_names(device, report, id)) line += " " + name;
-  }
-  say("{}\n", line);
-}
-
 void print_descriptor(const DecodedDevice& device, OutputForm form) {
   if (form == OutputForm::json) {
     print_json_line(descriptor_json(device));
   } else {
-    print_descriptor_text(device);
+    say(stdout, descriptor_text(device));
   }
 }
 
@@ -180,12 +39,10 @@ bool print_report(DecodedDevice& device, const Report& report, OutputForm form) 
   if (form == OutputForm::json) {
     print_json_line(report_json(device, report, is_good));
   } else {
-    print_report_text(device, report, is_good);
+    say(stdout, report_text(device, report, is_good));
   }
   return is_good;
 }
-
-// --- the command
 
 struct DecodeArguments {
   PadSelector selector;
@@ -337,16 +194,15 @@ int run(const DecodeArguments& arguments) {
 void add_decode(CLI::App& app, int& status) {
   auto arguments = std::make_shared<DecodeArguments>();
   CLI::App* command = app.add_subcommand(
-      "decode",
-      "shows report descriptors and each report decoded, of a recording or a live device");
+      "decode", "shows the report descriptors and decoded reports of a recording or a live device");
   command
       ->add_option("TRACE", arguments->selector.pad,
                    "a recording (.hid), a node such as /dev/hidraw0, or a pad as for play")
       ->required();
   add_driver_option(*command, arguments->selector);
   add_seconds_option(*command, arguments->seconds);
-  command->add_flag("--descriptor", arguments->descriptor_only, "only the descriptors");
-  command->add_flag("--json", arguments->as_json, "one JSON object a line");
+  command->add_flag("--descriptor", arguments->descriptor_only, "print only the descriptors");
+  command->add_flag("--json", arguments->as_json, "print one JSON object a line");
   command->add_flag("--lenient", arguments->lenient,
                     "skip a recording's damaged lines and count them");
   command->add_option("--map", arguments->map, "pad file that overrides config/pads");

@@ -86,11 +86,12 @@ int run(const DoctorArguments& arguments) {
 void add_doctor(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("doctor", "finds why a pad does not work");
   const auto arguments = std::make_shared<DoctorArguments>();
-  auto* json = command->add_flag("--json", arguments->as_json, "a list of objects");
-  auto* install = command->add_flag("--install-rules", arguments->installs_rules,
-                                    "let ordinary users use pads (udev rules); asks first");
+  auto* json = command->add_flag("--json", arguments->as_json, "print a JSON list of objects");
+  auto* install =
+      command->add_flag("--install-rules", arguments->installs_rules,
+                        "install udev rules that let ordinary users open pads; asks first");
   install->excludes(json);
-  command->add_flag("--yes", arguments->is_agreed, "answers yes")->needs(install);
+  command->add_flag("--yes", arguments->is_agreed, "do not ask")->needs(install);
   command->callback([arguments, &status] { status = run(*arguments); });
 }
 

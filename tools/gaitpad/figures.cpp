@@ -21,7 +21,7 @@ int run(const FiguresArguments& arguments) {
 
 void add_figures(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand(
-      "figures", "the paper's figures 2, 3, 4, 5a and 5b, and each of its claims as a number");
+      "figures", "draws the paper's figures 2, 3, 4, 5a and 5b, and measures each of its claims");
   command->footer(
       "Writes figure2, figure3, figure4, figure5a, figure5b (robust mode), figure5a_paper and\n"
       "figure5b_paper as PNG and CSV, and claims.json: every claim in the modes that it depends "
@@ -29,7 +29,7 @@ void add_figures(CLI::App& app, int& status) {
       "A claim that fails is a finding about the paper's method, not a failure of the program:\n"
       "the exit status is 0 when the files were written.");
   const auto arguments = std::make_shared<FiguresArguments>();
-  command->add_option("--out", arguments->folder, "folder for the files, made where it is missing")
+  command->add_option("--out", arguments->folder, "folder for the files; made if it is missing")
       ->required();
   command->add_option("--motion", arguments->motion,
                       "BVH file or .toml (default: the procedural walk)");
@@ -45,9 +45,10 @@ void add_figures(CLI::App& app, int& status) {
 namespace gaitpad {
 
 void add_figures(CLI::App& app, int& status) {
-  add_missing_command(app, status, "figures",
-                      "the paper's figures 2, 3, 4, 5a and 5b, and each of its claims as a number",
-                      missing_window());
+  add_missing_command(
+      app, status, "figures",
+      "draws the paper's figures 2, 3, 4, 5a and 5b, and measures each of its claims",
+      missing_window());
 }
 
 }  // namespace gaitpad

@@ -4,7 +4,7 @@
 // signals. A timer runs only while the calibration filters jumps, or while a present pad cannot be
 // grabbed.
 #include <fmt/format.h>
-#include <unistd.h>
+#include <poll.h>
 
 #include <algorithm>
 #include <filesystem>
@@ -14,13 +14,13 @@
 #include <utility>
 #include <vector>
 
-#include "base/files.h"
 #include "base/text.h"
 #include "doctor/user_unit.h"
 #include "drivers/system_nodes.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/pad_stream.h"
 #include "pads/stand_in.h"
+#include "system/whole_file.h"
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/install_rules.h"
 #include "tools/gaitpad/options.h"
@@ -183,25 +183,25 @@ int run(const ForwardArguments& arguments) {
 }  // namespace
 
 void add_forward(CLI::App& app, int& status) {
-  CLI::App* command =
-      app.add_subcommand("forward", "gives other programs the pad calibrated, in place of the pad");
+  CLI::App* command = app.add_subcommand(
+      "forward", "gives other programs a calibrated pad in place of the real one");
   const auto arguments = std::make_shared<ForwardArguments>();
-  command->add_option("PAD", arguments->pad,
-                      "an event node, a vid:pid, a unique id, or a part of one pad's name "
-                      "(default: the first usable)");
+  command->add_option(
+      "PAD", arguments->pad,
+      "event node, vid:pid, unique id, or part of the pad's name (default: the first usable pad)");
   command
       ->add_option("--as", arguments->as,
-                   "what programs see (default: the pad's own name, ids and controls)")
+                   "pad that programs see (default: the pad's own name, ids and controls)")
       ->check(CLI::IsMember({"xbox360"}));
   command->add_option("--calibration", arguments->calibration, "calibration file of the stick");
   command->add_option("--map", arguments->map, "pad file that overrides config/pads");
   auto* unit = command->add_flag("--install", arguments->installs_unit,
-                                 "write a systemd user unit that does this, and end");
+                                 "write a systemd user unit that runs this command, and end");
   auto* rules = command->add_flag("--install-rules", arguments->installs_rules,
-                                  "let ordinary users make virtual pads (a udev rule for "
-                                  "/dev/uinput), and end; asks first");
+                                  "install a udev rule that lets ordinary users make virtual pads "
+                                  "(/dev/uinput), and end; asks first");
   rules->excludes(unit);
-  command->add_flag("--yes", arguments->is_agreed, "answers yes")->needs(rules);
+  command->add_flag("--yes", arguments->is_agreed, "do not ask")->needs(rules);
   command->callback([arguments, &status] { status = run(*arguments); });
 }
 

@@ -150,7 +150,7 @@ void add_ik(CLI::App& app, int& status) {
   };
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command =
-      app.add_subcommand("ik", "solves one chain to a goal, shows the angles of each iteration");
+      app.add_subcommand("ik", "moves a chain to a goal and shows the angles of each iteration");
   command->add_option("chain", arguments->path, "TOML file: goal_m, [[dof]] ...")
       ->type_name("CHAIN.toml")
       ->required();

@@ -1,18 +1,18 @@
 #include "tools/gaitpad/install_rules.h"
 
-#include <errno.h>
 #include <fmt/format.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <cstdlib>
+#include <filesystem>
 #include <iostream>
 #include <optional>
 
-#include "base/files.h"
+#include "drivers/system_users.h"
+#include "system/whole_file.h"
 #include "tools/gaitpad/print.h"
 
 namespace gaitpad {
+namespace fs = std::filesystem;
 namespace {
 
 bool asks_to_install(const RulesTarget& target) {
@@ -24,7 +24,10 @@ bool asks_to_install(const RulesTarget& target) {
 
 std::optional<Error> write_rules(const RulesTarget& target, const std::string& text) {
   if (auto problem = write_file(target.path, text)) return problem;
-  if (::chmod(target.path, 0644) != 0) return write_error(target.path, errno);
+  constexpr fs::perms kReadableByAll{0644};
+  std::error_code error;
+  fs::permissions(target.path, kReadableByAll, error);
+  if (error) return write_error(target.path, error.value());
   if (std::system(target.apply) == 0) return std::nullopt;
   return Error{fmt::format("{}: is written, but udev was not told; do: sudo sh -c '{}'",
                            target.path, target.apply)};
@@ -36,8 +39,7 @@ int install_rules(std::string_view command, const RulesTarget& target, const std
                   bool is_agreed, const std::string& as_root) {
   fmt::print("{}", text);
   std::fflush(stdout);
-  if (::geteuid() != 0)
-    return fail(command, fmt::format("{} needs root: {}", target.path, as_root));
+  if (!is_root()) return fail(command, fmt::format("{} needs root: {}", target.path, as_root));
   if (!is_agreed && !asks_to_install(target)) return fail(command, "nothing was changed");
   if (const auto problem = write_rules(target, text)) return fail(command, problem->message);
   fmt::print(stderr, "gaitpad {}: {} is installed and applied\n", command, target.path);

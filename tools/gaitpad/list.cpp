@@ -76,13 +76,14 @@ void add_list(CLI::App& app, int& status) {
     bool as_json = false;
   };
   const auto arguments = std::make_shared<Arguments>();
-  CLI::App* command =
-      app.add_subcommand("list", "the styles, characters, terrains, motions ... that have names");
+  CLI::App* command = app.add_subcommand(
+      "list",
+      "lists the styles, characters, terrains, motions, pads and recordings that have names");
   std::vector<std::string> kinds;
   for (const Kind& kind : kKinds) kinds.emplace_back(kind.name);
-  command->add_option("KIND", arguments->kind, "only these (default: all)")
+  command->add_option("KIND", arguments->kind, "list only this kind (default: all)")
       ->check(CLI::IsMember(kinds));
-  command->add_flag("--json", arguments->as_json, "names, files and summaries, for machines");
+  command->add_flag("--json", arguments->as_json, "print names, files and summaries as JSON");
   command->callback([arguments, &status] { status = run(arguments->kind, arguments->as_json); });
 }
 

@@ -1,5 +1,4 @@
 // gaitpad: one program with sub-commands. main() parses; the commands do the work.
-#include <fcntl.h>
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
@@ -18,6 +17,7 @@
 #include "base/suggestion.h"
 #include "base/text.h"
 #include "gaitpad/driver_registry.h"
+#include "terminal/terminal.h"
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/options.h"
 #include "tools/gaitpad/print.h"
@@ -25,16 +25,6 @@
 namespace {
 
 constexpr int kFailed = 1, kWrongUsage = 2;
-
-// Opens standard descriptors that the caller has closed. Otherwise a pad or a recording would get
-// such a number, and output for the terminal would be written into it. They are opened in the wrong
-// direction, so that using them fails as on closed ones.
-void hold_standard_descriptors() {
-  for (int fd = 0; fd <= 2; ++fd) {
-    if (::fcntl(fd, F_GETFD) < 0)
-      static_cast<void>(::open("/dev/null", fd == 0 ? O_WRONLY : O_RDONLY));
-  }
-}
 
 struct Example {
   const char* command;
@@ -151,17 +141,8 @@ int tell(const CLI::App& app, const CLI::ParseError& error) {
   return 0;
 }
 
-bool is_flushed() { return std::fflush(stdout) == 0 && std::ferror(stdout) == 0; }
-
-}  // namespace
-
-int main(int argc, char** argv) {
-  CLI::App app("A physical gamepad walks a motion-captured character.", "gaitpad");
-  app.set_version_flag("--version", "gaitpad " GAITPAD_VERSION);
-  hold_standard_descriptors();
-  std::signal(SIGXFSZ, SIG_IGN);  // writing beyond the size limit is an ordinary write error
-  int status = 0;
-  bool is_written = true;
+// Adds the commands with their examples. The chosen command sets `status`.
+void add_commands(CLI::App& app, int& status) {
   gaitpad::add_play(app, status);
   gaitpad::add_replay(app, status);
   gaitpad::add_record(app, status);
@@ -182,13 +163,27 @@ int main(int argc, char** argv) {
   add_examples(app);
   // Set the footer last: commands that are added later would inherit it.
   app.footer(
-      "gaitpad help COMMAND says more. Exit status: 0 done, 1 failed, 2 wrong usage, 128 and the\n"
-      "signal's number for work that Ctrl-C cut off.\n"
+      "gaitpad help COMMAND explains a command. Exit status: 0 done, 1 failed, 2 wrong usage,\n"
+      "128 and the signal's number for work that Ctrl-C cut off.\n"
       "Examples:\n"
       "  gaitpad play                            walk with a pad, or with W A S D\n"
       "  gaitpad replay mine.hid --out out       a recording becomes BVH, CSV and JSON\n"
       "  gaitpad list styles                     the ways to walk\n"
       "  gaitpad doctor                          why a pad does not work");
+}
+
+bool is_flushed() { return std::fflush(stdout) == 0 && std::ferror(stdout) == 0; }
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app("A physical gamepad walks a motion-captured character.", "gaitpad");
+  app.set_version_flag("--version", "gaitpad " GAITPAD_VERSION);
+  gaitpad::hold_standard_descriptors();
+  std::signal(SIGXFSZ, SIG_IGN);  // writing beyond the size limit is an ordinary write error
+  int status = 0;
+  bool is_written = true;
+  add_commands(app, status);
   std::vector<std::string> words = arguments_of(app, argc, argv);
   if (const std::string problem = gaitpad::config_problem(); !problem.empty()) {
     gaitpad::warn(fmt::format("gaitpad: {}\n", problem));

@@ -10,8 +10,8 @@
 #include <utility>
 #include <vector>
 
-#include "base/files.h"
 #include "base/text.h"
+#include "system/whole_file.h"
 #include "tools/gaitpad/commands.h"
 
 namespace gaitpad {

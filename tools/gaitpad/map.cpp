@@ -85,12 +85,12 @@ void add_map(CLI::App& app, int& status) {
   };
   const auto arguments = std::make_shared<Arguments>();
   CLI::App* command = app.add_subcommand(
-      "map", "asks for each stick, trigger and button of a pad whose controls are wrong");
+      "map", "asks for each stick, trigger and button of a pad whose controls are mapped wrongly");
   command->footer(
-      "Keeps the answers for this pad in gamecontrollerdb.txt in the user's folder, which every\n"
+      "Saves the answers for this pad in gamecontrollerdb.txt in the user's folder, which every\n"
       "driver reads first, and prints the line: games that use SDL read it too.");
   add_pad_options(*command, arguments->selector);
-  command->add_option("--out", arguments->out, "another file of SDL's lines to keep it in");
+  command->add_option("--out", arguments->out, "write the line to this file instead");
   command->callback([arguments, &status] { status = run(arguments->selector, arguments->out); });
 }
 

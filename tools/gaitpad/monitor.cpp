@@ -10,8 +10,10 @@
 #include <vector>
 
 #include "base/numeric.h"
+#include "base/shown_number.h"
 #include "gaitpad/calibration.h"
 #include "gaitpad/pad_stream.h"
+#include "pad_report/decode_report.h"
 #include "pads/pad_meter.h"
 #include "terminal/run_end.h"
 #include "terminal/terminal.h"
@@ -130,8 +132,9 @@ std::string gyro_text(const GyroMeter& gyro) {
   const auto& rest = gyro.rest();
   if (!rest) return text;
   const TurnRates bias = in_degrees(rest->bias_rad_s), noise = in_degrees(rest->noise_rad_s);
-  return text + fmt::format(" {:+.2f} {:+.2f} {:+.2f} noise {:.2f} deg/s", bias[0], bias[1],
-                            bias[2], *std::ranges::max_element(noise));
+  return text + fmt::format(" {} {} {} noise {:.2f} deg/s", signed_number(bias[0], 2),
+                            signed_number(bias[1], 2), signed_number(bias[2], 2),
+                            *std::ranges::max_element(noise));
 }
 
 PadLine pad_text(std::uint16_t index, const MonitoredPad& pad, const PadStream& stream) {
@@ -146,9 +149,10 @@ PadLine pad_text(std::uint16_t index, const MonitoredPad& pad, const PadStream& 
   if (pad.battery)
     battery = pad.battery->percent ? fmt::format(", battery {} %", *pad.battery->percent)
                                    : ", battery " + pad.battery->level;
-  return {fmt::format("{:+.2f} {:+.2f}  {:+.2f} {:+.2f}  {:.2f} {:.2f}  {:>5.0f} {:>6.2f} {:>8.1f}",
-                      stick.left.x, stick.left.y, stick.right.x, stick.right.y, triggers.left,
-                      triggers.right, rate_hz(w), jitter(w.interval_us) / 1e3,
+  return {fmt::format("{} {}  {} {}  {:.2f} {:.2f}  {:>5.0f} {:>6.2f} {:>8.1f}",
+                      signed_number(stick.left.x, 2), signed_number(stick.left.y, 2),
+                      signed_number(stick.right.x, 2), signed_number(stick.right.y, 2),
+                      triggers.left, triggers.right, rate_hz(w), jitter(w.interval_us) / 1e3,
                       greatest(w.interval_us) / 1e3),
           fmt::format("{} {:>7.0f} {:>6.0f} {:>5} {:>6} {:>4}", movement_text(pad.new_values),
                       median(w.latency_us), greatest(w.latency_us), frame_text(w, 50),
@@ -269,7 +273,7 @@ void add_monitor(CLI::App& app, int& status) {
   add_seconds_option(*command, arguments->seconds);
   command->add_option("--calibration", arguments->calibration, "calibration file of the stick");
   command->add_option("--map", arguments->map, "pad file that overrides config/pads");
-  command->add_flag("--json", arguments->as_json, "one JSON object a pad and second");
+  command->add_flag("--json", arguments->as_json, "print one JSON object for each pad and second");
   command->callback([arguments, &status] { status = run(*arguments); });
 }
 

@@ -195,15 +195,15 @@ void add_leg_options(CLI::App& command, LegNames& leg, const std::string& side) 
 
 void add_motion(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand("motion",
-                                         "shows what a motion file holds: units, rate, joints, "
-                                         "legs, when each foot flies, its stride");
+                                         "shows a motion file's units, rate, joints, legs and "
+                                         "stride, and when each foot is in flight");
   const auto arguments = std::make_shared<MotionArguments>();
   command
       ->add_option("FILE", arguments->file,
                    "motion (.bvh, .amc with its .asf, .asf, .toml), a NAME of config/motions, or "
                    "`procedural`")
       ->required();
-  command->add_flag("--json", arguments->as_json, "one JSON object");
+  command->add_flag("--json", arguments->as_json, "print one JSON object");
   command
       ->add_option("--metres-per-unit", arguments->load.metres_per_unit,
                    "length of the file's unit (default: found from the legs' length)")

@@ -61,15 +61,14 @@ bool is_choosy(const PadSelector& selector) {
 void add_driver_option(CLI::App& command, PadSelector& selector) {
   command
       .add_option("--driver", selector.driver,
-                  "only this driver's devices (usb takes a pad from the kernel while it is open)")
+                  "use only this driver (usb takes the pad from the kernel while it is open)")
       ->check(CLI::IsMember(driver_names()));
 }
 
 void add_pad_options(CLI::App& command, PadSelector& selector) {
-  command.add_option(
-      "PAD", selector.pad,
-      "a node, a recording (.hid), a vid:pid, a unique id, or a part of one pad's name "
-      "(default: the first usable)");
+  command.add_option("PAD", selector.pad,
+                     "device node, recording (.hid), vid:pid, unique id, or part of the pad's name "
+                     "(default: the first usable pad)");
   add_driver_option(command, selector);
 }
 
@@ -87,8 +86,9 @@ void add_max_hours_option(CLI::App& command, std::optional<double>& hours) {
 }
 
 void add_user_styles_option(CLI::App& command, bool& user_styles) {
-  command.add_flag("--user-styles", user_styles,
-                   "commands may also name styles of your own folder, which another machine lacks");
+  command.add_flag(
+      "--user-styles", user_styles,
+      "let commands also name styles of your own folder, which other machines do not have");
 }
 
 Result<PadFiles> pad_files(const std::string& map, const std::string& calibration) {
@@ -119,8 +119,8 @@ void add_pace_option(CLI::App& command, std::optional<Pace>& pace) {
   command
       .add_option_function<std::string>(
           "--pace", [&pace](const std::string& name) { pace = pace_named(name); },
-          "scales speed and step to the motion's own (at 0.8 forward) or to an adult's "
-          "(default: what the recording or the motion's description says, else own)")
+          "scale speed and step length to the motion (own: reached at 0.8 forward) or to an adult "
+          "(default: as the recording or the motion's description says, else own)")
       ->check(CLI::IsMember(kPaceNames));
 }
 
@@ -128,14 +128,16 @@ void add_session_options(CLI::App& command, SessionSpec& spec, const std::string
   SessionSpec::Walk& walk = spec.walk;
   spec.config_folders = config_folders();
   command.add_option("--motion", walk.motion,
-                     "motion, FILE|NAME (.bvh, .amc, .toml); without it the built-in walk");
+                     "motion, FILE|NAME (.bvh, .amc, .toml; default: the built-in walk)");
   add_pace_option(command, walk.pace);
-  command.add_option("--character", walk.characters, "a build, FILE|NAME; once for each character")
+  command
+      .add_option("--character", walk.characters,
+                  "body of a character, FILE|NAME; repeat it for more characters")
       ->allow_extra_args(false)  // one value for each --character: the word after it may be PAD
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command
       .add_option("--style", walk.styles,
-                  "a way to walk, FILE|NAME; the n-th for the n-th character")
+                  "style of walking, FILE|NAME; the n-th is for the n-th character")
       ->allow_extra_args(false)
       ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll);
   command
@@ -143,8 +145,8 @@ void add_session_options(CLI::App& command, SessionSpec& spec, const std::string
           "--crowd", walk.crowd,
           "number of further characters behind the first, each with its own build and style")
       ->check(CLI::Range(0, kMaxFollowers));
-  command.add_option("--terrain", walk.terrain, "the ground, FILE|NAME; without it flat");
-  command.add_option("--script", walk.script, "commands at given times, FILE");
+  command.add_option("--terrain", walk.terrain, "ground, FILE|NAME (default: flat)");
+  command.add_option("--script", walk.script, "FILE with commands and their times");
   command
       .add_option_function<std::string>(
           "--ik",
@@ -160,7 +162,8 @@ void add_session_options(CLI::App& command, SessionSpec& spec, const std::string
           [&walk](const std::string& means) {
             walk.stick = means == "points" ? StickMeans::points : StickMeans::steers;
           },
-          "what the stick means: steers (sideways turns) or points (the direction to go)")
+          "meaning of the stick: steers (sideways turns the character) or points (walk in the "
+          "stick's direction)")
       ->check(CLI::IsMember({"steers", "points"}))
       ->default_str("steers");
   command.add_option("--calibration", spec.pad.calibration, "calibration file of the stick");

@@ -8,6 +8,8 @@
 #include "gaitpad/driver_registry.h"
 #include "gaitpad/pad_stream.h"
 #include "hid/usage_names.h"
+#include "pad_report/decode_report.h"
+#include "terminal/terminal.h"
 #include "tools/gaitpad/commands.h"
 #include "tools/gaitpad/options.h"
 #include "tools/gaitpad/print.h"
@@ -142,7 +144,7 @@ void print_text(const std::vector<PadRow>& rows, const PadSelector& selector) {
   if (rows.empty()) {
     say("no device is seen by any driver; gaitpad doctor says more\n");
   } else {
-    print_table(table);
+    say(stdout, table_text(table));
   }
   for (const auto& [driver, problem] : missing_drivers(selector))
     say("{}: {}\n", driver, printable(problem));
@@ -176,7 +178,7 @@ void add_pads(CLI::App& app, int& status) {
   const auto arguments = std::make_shared<PadsArguments>();
   add_driver_option(*command, arguments->selector);
   command->add_option("--map", arguments->map, "pad file that overrides config/pads");
-  command->add_flag("--json", arguments->as_json, "a list of objects");
+  command->add_flag("--json", arguments->as_json, "print a JSON list of objects");
   command->callback([arguments, &status] { status = run(*arguments); });
 }
 

@@ -2,14 +2,13 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cstdio>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
-#include "base/files.h"
-#include "drivers/posix.h"
+#include "base/shown_number.h"
 #include "gaitpad/live.h"
 #include "session/walk_export.h"
 #include "tools/gaitpad/commands.h"
@@ -18,6 +17,7 @@
 #include "tools/gaitpad/window_options.h"
 #ifdef GAITPAD_HAS_WINDOW
 #include "session/show.h"
+#include "system/whole_file.h"
 #endif
 
 namespace gaitpad {
@@ -40,33 +40,43 @@ struct PlayArguments {
 std::string status_text(const LiveStatus& status, const TickSample& last, int rate_hz) {
   const PadStreamCounts& pads = status.pads;
   return fmt::format(
-      "{:.1f} s  pads {}  stick {:+.2f} {:+.2f}  reports {}  lost {}  tick {:.0f} us  wait {:.0f} "
+      "{:.1f} s  pads {}  stick {} {}  reports {}  lost {}  tick {:.0f} us  wait {:.0f} "
       "us"
       "  overruns {}",
-      static_cast<double>(status.ticks) / rate_hz, pads.plugged - pads.unplugged, last.stick_x,
-      last.stick_y, pads.reports, pads.lost, status.tick_us_median, status.wait_us_median,
-      status.overruns);
+      static_cast<double>(status.ticks) / rate_hz, pads.plugged - pads.unplugged,
+      signed_number(last.stick_x, 2), signed_number(last.stick_y, 2), pads.reports, pads.lost,
+      status.tick_us_median, status.wait_us_median, status.overruns);
 }
 
-// Writes a row for each input report: its arrival, and the begin of the tick that used it.
+// A file with a row for each input report: its arrival, and the begin of the tick that used it. The
+// file appears when it is complete.
 class ReportTimes {
  public:
-  explicit ReportTimes(const std::string& path)
-      : file_(path.empty() ? nullptr : std::fopen(path.c_str(), "we")) {
-    if (file_) fmt::print(file_.get(), "tick,device,arrival_ns,begin_ns\n");
+  // An empty path: no file.
+  static Result<ReportTimes> open(const std::string& path) {
+    ReportTimes times;
+    if (path.empty()) return times;
+    auto file = NewFile::create(path);
+    if (!file) return file.error();
+    times.file_.emplace(std::move(*file));
+    times.problem_ = times.file_->write("tick,device,arrival_ns,begin_ns\n");
+    return times;
   }
-  bool is_open() const noexcept { return file_ != nullptr; }
   void write(LiveSession& session) {
+    std::string rows;
     for (ReportTime time; file_ && session.take_report_time(time);)
-      fmt::print(file_.get(), "{},{},{},{}\n", time.tick, time.device, time.arrival_ns,
-                 time.begin_ns);
+      rows += fmt::format("{},{},{},{}\n", time.tick, time.device, time.arrival_ns, time.begin_ns);
+    if (!rows.empty() && !problem_) problem_ = file_->write(rows);
+  }
+  // Names the file. Error: it could not be written.
+  std::optional<Error> finish() {
+    if (file_ && !problem_) problem_ = file_->publish();
+    return problem_;
   }
 
  private:
-  struct Close {
-    void operator()(std::FILE* file) const noexcept { std::fclose(file); }
-  };
-  std::unique_ptr<std::FILE, Close> file_;
+  std::optional<NewFile> file_;
+  std::optional<Error> problem_;  // the first failure
 };
 
 // Runs until the recording or the user ends it.
@@ -141,20 +151,20 @@ int status_of(const PlayArguments& arguments, const LiveStatus& status, const Ru
 
 int run_without_window(const PlayArguments& arguments) {
   RunEnd end;
-  ReportTimes times(arguments.report_times);
-  if (!arguments.report_times.empty() && !times.is_open())
-    return fail(kPlayCommand, write_error(arguments.report_times, errno).message);
+  auto times = ReportTimes::open(arguments.report_times);
+  if (!times) return fail(kPlayCommand, times.error().message);
   SessionSpec unseen = arguments.spec;
   unseen.walk.shows_crowd = false;
   unseen.live.frame_ticks = 0;
   auto session = LiveSession::start(unseen);
   if (!session) return fail(kPlayCommand, session.error().message);
   end.end_after(arguments.seconds);
-  walk_without_window(arguments, end, **session, times);
+  walk_without_window(arguments, end, **session, *times);
   const auto run = (*session)->stop();
-  times.write(**session);
+  times->write(**session);
   print_remarks(kPlayCommand, (*session)->take_remarks());
   if (!run) return fail(kPlayCommand, run.error().message);
+  if (const auto problem = times->finish()) return fail(kPlayCommand, problem->message);
   const LiveStatus status = (*session)->status();
   if (arguments.json) {
     std::vector<ordered_json> summaries;
@@ -261,15 +271,16 @@ void add_play(CLI::App& app, int& status) {
   command->add_option("--record", arguments->spec.live.record,
                       "write the session to this file (.hid)");
   add_seconds_option(*command, arguments->seconds);
-  command->add_flag("--no-rumble", arguments->no_rumble, "no beat at each heel strike");
-  command->add_flag("--forward", arguments->spec.live.forward,
-                    "a virtual pad has the calibrated sticks, for other programs (/dev/uinput)");
+  command->add_flag("--no-rumble", arguments->no_rumble, "do not rumble at heel strikes");
+  command->add_flag(
+      "--forward", arguments->spec.live.forward,
+      "make a virtual pad with the calibrated sticks for other programs (/dev/uinput)");
   command->add_flag("--commands", arguments->takes_commands,
-                    "lines of standard input are commands, such as `style limp_left`");
+                    "read commands such as `style limp_left` from standard input, one a line");
   auto* stream = command->add_option(
       "--stream", arguments->spec.live.stream,
-      "send the poses to other programs: osc://HOST:PORT (VMC) or json://HOST:PORT; the n-th "
-      "character to the n-th port from there on (default: 127.0.0.1, 39539 or 39540)");
+      "send the poses to other programs: osc://HOST:PORT (VMC) or json://HOST:PORT; each further "
+      "character uses the next port (default: 127.0.0.1, 39539 or 39540)");
   command
       ->add_option("--stream-fps", arguments->spec.live.stream_fps, "poses a second (default: 60)")
       ->check(CLI::Range(1, 1000))
@@ -277,9 +288,9 @@ void add_play(CLI::App& app, int& status) {
   add_session_options(*command, arguments->spec, std::to_string(kDefaultRateHz));
   command
       ->add_option("--report-times", arguments->report_times,
-                   "write when each report came, and when its tick began, to this file (.csv)")
+                   "write the arrival of each report and the begin of its tick to this file (.csv)")
       ->needs(no_window);
-  command->add_flag("--json", arguments->json, "the summary, for machines");
+  command->add_flag("--json", arguments->json, "print the summary as JSON");
   for (CLI::Option* option : add_window_options(*command, arguments->window))
     option->excludes(no_window);
   command->callback([arguments, &status] {

@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cstdio>
 
 #include "terminal/terminal.h"
@@ -20,29 +19,6 @@ void warn(std::string_view text) {
   const auto columns = terminal_columns(::fileno(stderr));
   const std::string shown = columns ? fitted(text, *columns) : std::string(text);
   std::fputs(shown.c_str(), stderr);
-}
-
-ordered_json battery_json(const std::optional<Battery>& battery) {
-  if (!battery) return nullptr;
-  const auto text = [](const std::string& word) {
-    return word.empty() ? ordered_json() : ordered_json(word);
-  };
-  return {{"percent", battery->percent ? ordered_json(*battery->percent) : ordered_json()},
-          {"level", text(battery->level)},
-          {"status", text(battery->status)}};
-}
-
-void print_table(const std::vector<TableRow>& table) {
-  std::vector<std::size_t> widths(table.front().size(), 0);
-  for (const TableRow& row : table) {
-    for (std::size_t c = 0; c < row.size(); ++c) widths[c] = std::max(widths[c], row[c].size());
-  }
-  for (const TableRow& row : table) {
-    std::string line;
-    for (std::size_t c = 0; c < row.size(); ++c) line += fmt::format("{:<{}}  ", row[c], widths[c]);
-    line.erase(line.find_last_not_of(' ') + 1);
-    say("{}\n", printable(line));
-  }
 }
 
 void print_remarks(std::string_view command, const std::vector<std::string>& remarks,
@@ -67,20 +43,6 @@ void print_json(const ordered_json& value) {
 
 void print_summaries_json(const std::vector<ordered_json>& summaries) {
   print_json(summaries.size() == 1 ? summaries[0] : ordered_json(summaries));
-}
-
-std::vector<std::string> button_names(const PadState& state) {
-  std::vector<std::string> names;
-  for (int b = 0; b < kButtonCount; ++b) {
-    if (pressed(state, static_cast<PadButton>(b))) names.emplace_back(kButtonNames[b]);
-  }
-  return names;
-}
-
-ordered_json axes_json(const PadState& state) {
-  ordered_json axes = ordered_json::object();
-  for (int a = 0; a < kAxisCount; ++a) axes[std::string(kAxisNames[a])] = state.axis[a];
-  return axes;
 }
 
 void print_session(const std::string& source, const RunSummary& run) {

@@ -5,15 +5,12 @@
 #include <cstdint>
 #include <cstdio>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "base/text.h"
-#include "drivers/system_nodes.h"
-#include "gaitpad/decode.h"
 #include "gaitpad/summary.h"
 #include "terminal/run_end.h"
 
@@ -26,10 +23,6 @@ template <class... T>
 void say(fmt::format_string<T...> format, T&&... values) {
   say(stdout, fmt::format(format, std::forward<T>(values)...));
 }
-
-// Columns as wide as their widest text, two blanks apart; all rows have the same number of columns.
-using TableRow = std::vector<std::string>;
-void print_table(const std::vector<TableRow>& table);
 
 // Prints a text on standard error; ignores write errors.
 void warn(std::string_view text);
@@ -47,16 +40,10 @@ void print_json(const nlohmann::ordered_json& value);
 // Prints one object for one character, else a list.
 void print_summaries_json(const std::vector<nlohmann::ordered_json>& summaries);
 
-std::vector<std::string> button_names(const PadState& state);
-nlohmann::ordered_json axes_json(const PadState& state);
-
 // Prints the session in one line: `SOURCE: 120 reports, 480 ticks ...`.
 void print_session(const std::string& source, const RunSummary& run);
 // Prints the results of one character. The style in which it walked is printed only for replays.
 enum class Way { shown, left_out };
 void print_character(const RunSummary& run, std::size_t walker, Way way);
-
-// The battery as JSON; null if the pad does not report it.
-nlohmann::ordered_json battery_json(const std::optional<Battery>& battery);
 
 }  // namespace gaitpad

@@ -127,9 +127,9 @@ void add_record(CLI::App& app, int& status) {
   command->add_option("--out", arguments->out, "the file to write (.hid)")->required();
   add_seconds_option(*command, arguments->seconds);
   command->add_option("--calibration", arguments->calibration,
-                      "calibration file of the stick, which the recording then holds");
+                      "calibration file of the stick; the recording contains it");
   command->add_option("--map", arguments->map, "pad file that overrides config/pads");
-  command->add_flag("--json", arguments->as_json, "what was recorded, for machines");
+  command->add_flag("--json", arguments->as_json, "print what was recorded as JSON");
   command->callback([arguments, &status] { status = run(*arguments); });
 }
 

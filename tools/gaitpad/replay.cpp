@@ -98,7 +98,7 @@ int run(ReplayArguments& arguments) {
 }  // namespace
 
 void add_replay(CLI::App& app, int& status) {
-  CLI::App* command = app.add_subcommand("replay", "walks characters along a recorded stick");
+  CLI::App* command = app.add_subcommand("replay", "walks characters by a recorded stick");
   const auto arguments = std::make_shared<ReplayArguments>();
   SessionSpec::Replay& wanted = arguments->spec.replay;
   command->add_option("trace", wanted.trace, "the recording (.hid)")->required();
@@ -106,7 +106,7 @@ void add_replay(CLI::App& app, int& status) {
       command->add_option("--out", wanted.out, "folder for pose.bvh, frames.csv and summary.json");
   command
       ->add_flag("--gltf", wanted.gltf,
-                 "pose.glb too: binary glTF 2.0, joints, one animation and a plain body")
+                 "also write pose.glb: binary glTF 2.0 with joints, one animation and a plain body")
       ->needs(out);
   add_session_options(*command, arguments->spec, "the trace's, else 240");
   command
@@ -122,19 +122,21 @@ void add_replay(CLI::App& app, int& status) {
   command->add_flag("--lenient", arguments->is_lenient, "skip damaged lines and count them");
   add_max_hours_option(*command, wanted.max_hours);
   add_user_styles_option(*command, wanted.user_styles);
-  auto* in_window = command->add_flag("--view", arguments->view,
-                                      "open the window: a time line to scrub, any speed");
+  auto* in_window =
+      command->add_flag("--view", arguments->view, "show the walk in a window with a time line");
   for (CLI::Option* option : add_window_options(*command, arguments->window))
     option->needs(in_window);
-  auto* json = command->add_flag("--json", arguments->json, "the summary, for machines");
-  auto* to = command
-                 ->add_option("--to", arguments->to.target,
-                              "for other programs instead: in real time a calibrated pad (uinput) "
-                              "or the recorded devices (uhid), or a file of evemu (FILE.evemu)")
-                 ->check(target_problem)
-                 ->excludes(out)
-                 ->excludes(in_window)
-                 ->excludes(json);
+  auto* json = command->add_flag("--json", arguments->json, "print the summary as JSON");
+  auto* to =
+      command
+          ->add_option(
+              "--to", arguments->to.target,
+              "play the recording to other programs in real time, as a calibrated pad (uinput) or "
+              "as the recorded devices (uhid), or write it for evemu (FILE.evemu)")
+          ->check(target_problem)
+          ->excludes(out)
+          ->excludes(in_window)
+          ->excludes(json);
   command
       ->add_option("--delay", arguments->to.delay_s,
                    "seconds before the first report and after the last (default: 1)")

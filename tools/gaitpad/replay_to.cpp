@@ -2,21 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <chrono>
-#include <memory>
-#include <optional>
 #include <thread>
 #include <utility>
 #include <vector>
 
-#include "base/files.h"
 #include "drivers/uhid_device.h"
 #include "drivers/virtual_pad.h"
-#include "gaitpad/pad_configuration.h"
 #include "gaitpad/trace.h"
 #include "hid/evemu.h"
-#include "session/pad_forward.h"
+#include "session/timed_replay.h"
+#include "system/whole_file.h"
 #include "terminal/run_end.h"
 #include "tools/gaitpad/print.h"
 
@@ -27,49 +23,6 @@ namespace {
 constexpr std::int64_t kBinding_ns = 5'000'000'000;
 // During the last 2 ms before an event the program only sleeps, so that it wakes on time.
 constexpr std::int64_t kNear_ns = 2'000'000;
-
-// Virtual devices with the recorded descriptors and ids.
-class UhidDevices {
- public:
-  explicit UhidDevices(const std::vector<TraceDevice>& recorded)
-      : recorded_(recorded), devices_(recorded.size()) {}
-
-  std::optional<Error> plug(std::size_t device) {
-    if (devices_[device]) return std::nullopt;
-    auto made = UhidDevice::create(recorded_[device].info);
-    if (!made) return made.error();
-    devices_[device].emplace(std::move(*made));
-    return std::nullopt;
-  }
-  std::vector<pollfd> fds() const {
-    std::vector<pollfd> fds;
-    for (const auto& device : devices_) {
-      if (device) fds.push_back(device->fd());
-    }
-    return fds;
-  }
-  void answer() {
-    for (auto& device : devices_) {
-      if (device) device->answer();
-    }
-  }
-  bool are_bound() const {
-    return std::ranges::all_of(devices_, [](const auto& d) { return !d || d->is_bound(); });
-  }
-  std::optional<Error> take(const Report& report) {
-    if (report.kind == ReportKind::added) return plug(report.device);
-    auto& device = devices_[report.device];
-    if (report.kind == ReportKind::removed) device.reset();
-    if (report.kind != ReportKind::input || !device) return std::nullopt;
-    if (device->send({report.bytes.data(), report.size})) return std::nullopt;
-    return Error{printable(recorded_[report.device].info.name) +
-                 ": the kernel refuses its reports"};
-  }
-
- private:
-  const std::vector<TraceDevice>& recorded_;
-  std::vector<std::optional<UhidDevice>> devices_;
-};
 
 // Waits until that time. False: the user ended it earlier.
 bool wait_until(std::int64_t time_ns, RunEnd& end, UhidDevices* devices = nullptr) {
@@ -94,67 +47,33 @@ std::int64_t nanoseconds(double seconds) { return static_cast<std::int64_t>(seco
 // device see the last reports before it is removed.
 Result<std::int64_t> play_to_uhid(const Trace& trace, double delay_s, RunEnd& end) {
   UhidDevices devices(trace.devices);
-  for (std::size_t i = 0; i < trace.devices.size(); ++i) {
-    if (auto problem = devices.plug(i)) return *problem;
-  }
+  if (auto problem = devices.plug_all()) return *problem;
+  const auto wait = [&](std::int64_t time_ns) { return wait_until(time_ns, end, &devices); };
   for (const std::int64_t patience_ns = now_ns() + kBinding_ns;
        !devices.are_bound() && now_ns() < patience_ns;) {
-    if (!wait_until(now_ns() + kNear_ns, end, &devices)) break;
+    if (!wait(now_ns() + kNear_ns)) break;
   }
-  const std::int64_t start_ns = now_ns() + nanoseconds(delay_s);
-  std::int64_t reports = 0;
-  Report report;
-  for (const TraceEvent& event : trace.events) {
-    if (event.device == kNoDevice) continue;  // the event is a command to gaitpad, not a report
-    const std::int64_t time_ns = (event.time_us - trace.events.front().time_us) * 1000;
-    if (!wait_until(start_ns + time_ns, end, &devices)) break;
-    copy_report(trace, event, report);
-    if (auto problem = devices.take(report)) return *problem;
-    if (report.kind == ReportKind::input) ++reports;
-  }
-  wait_until(now_ns() + nanoseconds(delay_s), end, &devices);
+  const auto reports =
+      play_reports(trace, now_ns() + nanoseconds(delay_s), wait,
+                   [&devices](const Report& report) { return devices.take(report); });
+  if (reports) wait(now_ns() + nanoseconds(delay_s));
   return reports;
 }
 
 // Plays to uinput, tick by tick as `play --forward` does.
 Result<std::int64_t> play_to_uinput(const SessionSpec& spec, Trace trace, double delay_s,
                                     RunEnd& end) {
-  const int rate_hz = replay_rate_hz(trace, spec.rate_hz);
-  const auto files = load_pad_files(spec);
-  if (!files) return files.error();
-  auto configs = pad_configs(*files, trace.devices, trace.path);
-  if (!configs) return configs.error();
-  if (std::ranges::none_of(*configs, &PadConfig::is_usable))
-    return Error{trace.path + ": none of its devices is a pad"};
-  const auto ticks = assign_ticks(trace, rate_hz);
-  if (!ticks) return ticks.error();
+  auto replay = ticked_replay(spec, std::move(trace));
+  if (!replay) return replay.error();
   auto pad = XboxPad::create();
   if (!pad) return pad.error();
   print_remarks(kReplayCommand, {"it plays to " + pad->node()});
-  Pads pads(std::move(*configs), rate_hz);
-  const std::int64_t start_ns = now_ns() + nanoseconds(delay_s);
-  std::int64_t reports = 0;
-  ForwardedTick sent;
-  Report report;
-  auto event = trace.events.begin();
-  for (std::int64_t tick = 0; tick < *ticks; ++tick) {
-    if (!wait_until(start_ns + tick * 1'000'000'000 / rate_hz, end)) break;
-    for (; event != trace.events.end() && event->tick <= tick; ++event) {
-      if (event->device == kNoDevice) continue;
-      copy_report(trace, *event, report);
-      if (report.kind == ReportKind::added) pads.add_pad(report.device);
-      if (report.kind == ReportKind::removed) pads.remove_pad(report.device);
-      if (report.kind != ReportKind::input) continue;
-      pads.take_report(report);
-      ++reports;
-    }
-    const ForwardedTick now = forwarded_tick(pads, pads.finish_tick());
-    if (!pad->set(between(sent, now)) || !pad->set(now.state))
-      return Error{pad->node() + ": the kernel refuses its events"};
-    sent = now;
-  }
-  wait_until(now_ns() + nanoseconds(delay_s), end);
-  return reports;
+  const auto wait = [&end](std::int64_t time_ns) { return wait_until(time_ns, end); };
+  const auto reports = play_ticks(*replay, now_ns() + nanoseconds(delay_s), wait,
+                                  [&pad](const VirtualPadState& state) { return pad->set(state); });
+  if (!reports) return Error{pad->node() + ": the kernel refuses its events"};
+  wait(now_ns() + nanoseconds(delay_s));
+  return *reports;
 }
 
 }  // namespace

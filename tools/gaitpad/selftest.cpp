@@ -119,7 +119,8 @@ int run(SelfTestArguments& arguments) {
 
 void add_selftest(CLI::App& app, int& status) {
   CLI::App* command = app.add_subcommand(
-      "selftest", "tests a real pad with you: each control, driver, unplugging, rumble, a walk");
+      "selftest",
+      "tests a real pad with you: each control and driver, unplugging, rumble and a walk");
   const auto arguments = std::make_shared<SelfTestArguments>();
   arguments->options.program = "gaitpad " GAITPAD_VERSION;
   add_pad_options(*command, arguments->options.selector);

@@ -51,27 +51,28 @@ std::vector<CLI::Option*> add_window_options(CLI::App& command, WindowArguments&
           ->check(CLI::Range(1, kMaxFrames)),
       command
           .add_option("--screenshot", arguments.screenshot,
-                      "write the last frame; a frame is then 1/60 s of the session")
+                      "write the last frame; each frame is then 1/60 s of the session")
           ->check(ends_with(".png")),
       command
           .add_option("--video", arguments.video,
                       "write all frames, 60 for each second of the session (needs ffmpeg)")
           ->check(ends_with(".mp4")),
-      command.add_option("--theme", arguments.theme, "dark or light (default: as it was left)")
+      command.add_option("--theme", arguments.theme, "dark or light (default: the last one used)")
           ->check(CLI::IsMember({"dark", "light"})),
       command
           .add_option("--scale", arguments.scale, "size of text and lines (default: the display's)")
           ->check(CLI::Range(0.5, 4.0)),
       command
-          .add_option("--panels", arguments.panels,
-                      fmt::format("open these alone: {}; or none", fmt::join(kPanelNames, ",")))
+          .add_option(
+              "--panels", arguments.panels,
+              fmt::format("open only these panels: {}; or none", fmt::join(kPanelNames, ",")))
           ->delimiter(',')
           ->allow_extra_args(false)
           ->check(known_panel),
       command
           .add_option(
               "--hide", arguments.hidden,
-              fmt::format("leave these out of the scene: {}", fmt::join(scene_part_names(), ",")))
+              fmt::format("hide these in the scene: {}", fmt::join(scene_part_names(), ",")))
           ->delimiter(',')
           ->allow_extra_args(false)
           ->check(CLI::IsMember(scene_part_names())),
@@ -83,7 +84,7 @@ std::vector<CLI::Option*> add_window_options(CLI::App& command, WindowArguments&
           ->expected(2)
           ->check(CLI::Range(-kMostTurn_deg, kMostTurn_deg)),
       command.add_flag("--clean", arguments.is_clean,
-                       "the scene alone, without tool bar, time line, panels and status line"),
+                       "show only the scene, without tool bar, time line, panels and status line"),
   };
 }
 

@@ -7,8 +7,7 @@
 #include "pad_kinds.h"
 #include "pad_trace.h"
 
-// Guards everything here and `pad`. Functions marked "with pad_mutex" have to be called with it
-// locked.
+// Guards everything here and `pad`.
 extern pthread_mutex_t pad_mutex;
 
 // Starts the thread. `pad` is set up; nothing is sent before `sender_enable`. `trace` is what
@@ -16,12 +15,12 @@ extern pthread_mutex_t pad_mutex;
 void start_sender(struct pad* pad, int in_endpoint, struct trace* trace);
 // Tells the thread that the host has configured the device (on), or that it is gone (off).
 void sender_enable(bool on);
-// Queues a reply. With pad_mutex.
+// Queues a reply. The caller has locked pad_mutex.
 void enqueue(const struct packet* packet);
-// Wakes the thread after a change of its inputs. With pad_mutex.
+// Wakes the thread after a change of its inputs. The caller has locked pad_mutex.
 void wake_sender(void);
 
-// A command that changes what is sent; false: refused. With pad_mutex.
+// A command that changes what is sent; false: refused. The caller has locked pad_mutex.
 //   set NAME=VALUE...   fields of the state, in the device's own units
 //   report HEX          the whole state          raw HEX     one packet as it is, of any length
 //   stream HZ           0: at changes only       silence 0|1 nothing leaves, not even replies

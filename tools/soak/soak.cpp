@@ -90,7 +90,8 @@ double stolen_s() {
   std::ifstream file("/proc/stat");
   std::string word;
   double ticks = 0.0;
-  for (int i = 0; i <= 8; ++i) file >> word;  // cpu user nice system idle iowait irq softirq steal
+  // The first line begins: cpu user nice system idle iowait irq softirq steal.
+  for (int i = 0; i <= 8; ++i) file >> word;
   ticks = std::atof(word.c_str());
   return ticks / static_cast<double>(::sysconf(_SC_CLK_TCK));
 }

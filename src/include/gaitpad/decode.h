@@ -32,13 +32,13 @@ struct FieldBits {
   std::int64_t min = 0, max = 0;
 };
 struct AxisOp {
-  FieldBits bits;  // the bits; min, max: the part of the range that counts
+  FieldBits bits;  // the field; `min` and `max` bound the part of its range that counts
   PadAxis axis = kLeftX;
   bool reversed = false;  // the axis falls while the field grows
   std::int8_t side = 0;   // part of a stick's axis: 0 the whole, else from 0 to this end (-1, 1)
 };
 struct ButtonOp {
-  FieldBits bits;  // the bits; min, max: the part of the range that counts
+  FieldBits bits;  // the field; `min` and `max` bound the part of its range that counts
   // Pressed if one of these bits of the value is set; 0: pressed by the range.
   std::uint32_t mask = 0;
   std::uint32_t button = 0;  // bit of PadState::buttons that the field presses

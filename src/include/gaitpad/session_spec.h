@@ -73,8 +73,8 @@ struct SessionSpec {
     // Poses that are written in a second, 1 .. the tick rate; none: one pose a tick.
     std::optional<int> fps;
     bool gltf = false;  // writes pose.glb beside pose.bvh
-    int crowd_files =
-        32;  // number of the crowd's members that get files as well, 0 .. kMaxFollowers
+    // Number of the crowd's members that get files as well, 0 .. kMaxFollowers.
+    int crowd_files = 32;
   };
 
   Walk walk;

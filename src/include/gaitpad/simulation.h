@@ -43,7 +43,7 @@ struct SimulationConfig {
   PadRules pad_rules = PadRules::version_2;
   // Styles that commands may name, at least one; of equal names the first one counts.
   std::vector<Style> styles;
-  GaitCycle cycle;        // the motion; its own pace is the one that is used
+  GaitCycle cycle;        // the motion; a walk uses cycle.pace, not the next member
   Pace pace = Pace::own;  // the pace that was chosen; it has no effect on the built-in motion
   // 1 .. kMaxWalkers characters; they stand side by side, the first at the origin.
   std::vector<WalkerConfig> walkers;

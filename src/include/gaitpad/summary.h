@@ -40,7 +40,7 @@ struct RunSummary {
   double terrain_scale = 1.0;
   std::int64_t ticks = 0;
   std::int64_t reports = 0;        // number of input reports, sound or not
-  std::int64_t bad_reports = 0;    // number of reports that their device cannot send
+  std::int64_t bad_reports = 0;    // number of reports that do not fit their descriptor
   std::int64_t bad_commands = 0;   // number of commands that could not be carried out
   std::int64_t damaged_lines = 0;  // number of lines of the trace that were skipped
   // Number of reports that are missing in the session's recording, which is then inexact.

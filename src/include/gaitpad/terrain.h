@@ -103,8 +103,8 @@ struct TerrainZone {
   double from_m = 0.0, to_m = 0.0;  // along z: from_m <= z <= to_m
   double left_m = std::numeric_limits<double>::infinity();
   double right_m = -std::numeric_limits<double>::infinity();  // along x: right_m <= x <= left_m
-  std::string style;  // place of its definition, "course.toml:12", for error sentences
-  std::string where;  // "course.toml:12", for error sentences
+  std::string style;
+  std::string where;  // line that names the style, "course.toml:12"; errors begin with it
 };
 
 struct GroundPlace {

@@ -33,7 +33,7 @@ class UntouchedWatch {
   std::array<Part, kParts> parts_{};
   // Numbers of the first and of the present part; -1: none yet.
   std::int64_t first_part_ = -1, part_ = -1;
-  // Begin and last time of the output that is being judged.
+  // Times of the first and of the last report of the output that is being judged.
   std::int64_t began_ns_ = 0, last_ns_ = 0;
   std::int64_t pushed_ns_ = 0;  // time for which it has been far out
   // The last raw position, and the one before the output that is judged.

@@ -16,6 +16,7 @@
 #pragma once
 #include <array>
 #include <cstdint>
+#include <optional>
 
 #include "gaitpad/gait_params.h"
 #include "gaitpad/placement.h"
@@ -111,6 +112,26 @@ struct CapsuleMotion {
 // walk is some centimetres off the capsule. It turns to where the capsule goes.
 GaitParams following(const CapsuleMotion& capsule, const WalkState& state, const StyleValues& style,
                      const GaitLimits& limits) noexcept;
+
+// --- What a program asks of the running step beside its stick ------------------------------------
+
+// The landing place and heading nearest to `heel` that the heel of the running step's foot can
+// still reach, in the world; its height is ignored. Nothing if no step can be changed: the
+// character stands or comes to rest, or the foot has flown more than half of its flight or, over
+// uneven ground, flies at all.
+std::optional<Placement> nearest_step(const WalkModel& model, const Placement& heel,
+                                      const WalkState& state) noexcept;
+// Asks the foot that flies, or that flies next, to land with its heel at that place, and to point
+// to that heading: a stepping stone. The hips and the tables follow, and the next step is the
+// stick's again. Returns false and changes nothing if nearest_step() is not that place within 1 mm
+// and 0.1 degrees. On a terrain of sections the foot keeps off edges as always.
+bool step_to(const WalkModel& model, const Placement& heel, WalkState& state) noexcept;
+// Pushes the hips: adds this velocity to theirs, and moves the landing of the running step to where
+// that foot catches the fall, as far as it can reach. If the step cannot be changed any more, the
+// next one answers. Returns false and changes nothing if the character stands or comes to rest, or
+// if a number is not finite or beyond kMostPush_m_s.
+inline constexpr double kMostPush_m_s = 3.0;
+bool push_walk(const vec3& velocity_m_s, WalkState& state) noexcept;
 
 // Advances the walk by one tick of `dt_s` seconds, a constant of the run, and writes the pose. The
 // walk is the same at every rate; a tick longer than 1/60 s is computed in equal parts. Never

@@ -8,6 +8,7 @@
 
 #include "gaitpad/config_files.h"
 #include "paper/claims.h"
+#include "terminal/terminal.h"
 #include "tools/gaitpad/options.h"
 #include "tools/gaitpad/print.h"
 #include "tools/gaitpad/window/drawings.h"
@@ -40,7 +41,7 @@ void print_claims(std::span<const Claim> claims) {
                      verdict(one, IkMode::robust)});
     begin = end;
   }
-  print_table(table);
+  say(stdout, table_text(table));
   say("\n");
   for (const Claim& c : claims) {
     if (!c.pass || *c.pass) continue;

@@ -1,11 +1,15 @@
-// File descriptors, things to wait for in poll(), and time.
+// File descriptors, and two of them to wait for in poll(): a bell and a timer.
 #pragma once
 #include <sys/eventfd.h>
 #include <sys/timerfd.h>
 #include <time.h>
 #include <unistd.h>
 
+#include <cstddef>
 #include <cstdint>
+#include <optional>
+#include <span>
+#include <string_view>
 #include <utility>
 
 namespace gaitpad {
@@ -28,18 +32,17 @@ class OwnedFd {
   int fd_;
 };
 
-// The time of CLOCK_MONOTONIC, as in Report::time_ns.
-inline std::int64_t now_ns() noexcept {
-  timespec now{};
-  ::clock_gettime(CLOCK_MONOTONIC, &now);
-  return std::int64_t{now.tv_sec} * 1'000'000'000 + now.tv_nsec;
-}
+// Writes all bytes. Returns 0, or the errno of the write that failed.
+int write_all(int fd, std::string_view bytes) noexcept;
 
-// Sleeps until that time; returns at once if it is over. A signal may end the sleep early.
-inline void sleep_until(std::int64_t time_ns) noexcept {
-  const timespec until = {static_cast<time_t>(time_ns / 1'000'000'000),
-                          static_cast<long>(time_ns % 1'000'000'000)};
-  ::clock_nanosleep(CLOCK_MONOTONIC, TIMER_ABSTIME, &until, nullptr);
+// Reads what can be read without waiting. Returns the number of bytes, 0 at the end of the input
+// or on an error; nothing if there is no input at present.
+std::optional<std::size_t> read_ready(int fd, std::span<char> bytes) noexcept;
+
+// Makes an eventfd unreadable.
+inline void clear_event(int fd) noexcept {
+  std::uint64_t count = 0;
+  static_cast<void>(!::read(fd, &count, sizeof count));
 }
 
 // One thread rings it, another waits for it.
@@ -53,10 +56,7 @@ class Bell {
     const std::uint64_t one = 1;
     static_cast<void>(!::write(fd(), &one, sizeof one));
   }
-  void clear() noexcept {
-    std::uint64_t count = 0;
-    static_cast<void>(!::read(fd(), &count, sizeof count));
-  }
+  void clear() noexcept { clear_event(fd()); }
 
  private:
   OwnedFd fd_;

@@ -17,8 +17,8 @@
 #include "gaitpad/session_spec.h"
 #include "gaitpad/trace.h"
 #include "session/workers.h"
-#include "walk/leg_solve.h"
 #include "system/threads.h"
+#include "walk/leg_solve.h"
 
 namespace gaitpad {
 namespace {

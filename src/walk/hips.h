@@ -406,8 +406,10 @@ void begin_lead(const Tables& tables, const Mask<V>& strikes, const V& phase, co
   change.closing = closes ? all<V>(1.0f) : strikes ? V{} : change.closing;
   auto changes = size(V(asked_m - smoothed_m)) > kOtherPace * own_m;
   if (tables.terrain == nullptr) {  // elsewhere the ground makes steps shorter and slower
-    const V flight_ticks =
-        stages_of(tables, change, state, no(right)).flight_s * (1.0f / tables.tick_s);
+    // A led step gives of its roll to its flight: that alone leads no further step.
+    const Stages<V> own = stages_of(tables, change, state, no(right));
+    const V rolls = change.led != V{} ? V(own.roll_s - state.roll_ticks * tables.tick_s) : V{},
+            flight_ticks = (own.flight_s + rolls) * (1.0f / tables.tick_s);
     changes = either(changes, either(size(V(landed_m - change.stepped_m)) > kOtherPace * own_m,
                                      size(V(state.flight_ticks - flight_ticks)) >
                                          kOtherTime * state.flight_ticks));

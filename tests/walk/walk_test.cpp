@@ -38,6 +38,20 @@ INSTANTIATE_TEST_SUITE_P(Straight, Pace,
 INSTANTIATE_TEST_SUITE_P(Backward, Pace, testing::Values(vec2(0.0, -0.5), vec2(0.0, -1.0)));
 INSTANTIATE_TEST_SUITE_P(Turning, Pace, testing::Values(vec2(-0.3, 0.8), vec2(0.7, 0.7)));
 
+// Slow steps, and those on the spot, too: a change of pace must not lead them without end.
+TEST(SteadyWalk, RollsForTheShareThatItsStepsAskFor) {
+  for (const vec2& stick : {vec2(0.0, 0.2), vec2(0.0, 0.8), vec2(0.0, -0.5), vec2(0.9, 0.0)}) {
+    const GaitParams params = params_of(stick.x, stick.y);
+    Alone walk;
+    walk.walk(params, 8 * kRate);
+    const StrideParams& stride = params.stride[kLeftSide];
+    const double ratio = stride.length_m / walk.tables.leg[kLeftSide].own_step_m,
+                 share = roll_time_share(walk.tables.stage_share[0], ratio);
+    EXPECT_NEAR(walk.block.state.roll_ticks, 2.0 * stride.time_s * share * kRate, 1.0) << stick.x;
+    EXPECT_EQ(walk.block.change.led, 0.0f) << stick.x << " " << stick.y;
+  }
+}
+
 // From the one stick to the other, at ten moments of a step: hips are no lower than in the steady
 // walks.
 class ChangeOfPace : public testing::TestWithParam<std::array<double, 2>> {};

@@ -34,8 +34,7 @@ std::string processor_name();
 
 // A row with its spread, peer and bounds, as `gaitpad bench --json` prints it.
 nlohmann::ordered_json json_of(const BenchRow& row, const std::vector<BenchRow>& rows);
-// All rows, and two with names of their own: a leg's share of the tick's inverse kinematics, and
-// the loading of a clip.
+// All rows, and the loading of a clip by a name of its own, too.
 nlohmann::ordered_json list_of(const std::vector<BenchRow>& rows, const std::string& processor);
 
 }  // namespace gaitpad

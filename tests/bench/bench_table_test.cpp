@@ -19,7 +19,7 @@ Measured crowd_of(double ns) {
   m.crowd.label = "10 characters";
   m.crowd.over = "playback";
   m.crowd.most_ns = 500.0;
-  m.rows = {{nullptr, -1, {100.0}}, {nullptr, -1, {ns}}};
+  m.rows = {{nullptr, {100.0}}, {nullptr, {ns}}};
   return m;
 }
 
@@ -48,7 +48,7 @@ TEST(BenchTable, AMissedBoundIsSaid) {
   EXPECT_NE(lines_of(slow)[4].find("500 ns MISSED"), std::string::npos);
 }
 
-// AVX-512 holds 8 doubles, AVX2 four.
+// AVX-512 holds 16 floats, AVX2 eight.
 TEST(BenchTable, LanesAreNamedByTheirInstructions) {
   EXPECT_EQ(lanes_text(16), "16 lanes (AVX-512)");
   EXPECT_EQ(lanes_text(8), "8 lanes (AVX2)");

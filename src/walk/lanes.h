@@ -111,6 +111,13 @@ inline V floored(const V& x) noexcept {
   return near > x ? near - 1.0f : near;
 }
 
+// To the nearest multiple of a power of 2, for |x| below 2^22 of it.
+template <class V>
+inline V rounded_to(float unit, const V& x) noexcept {
+  const float round = 12582912.0f * unit;
+  return (x + round) - round;
+}
+
 // --- Curves --------------------------------------------------------------------------------------
 
 // 0 at x <= 0, 1 at x >= 1; with zero slope at both ends, and with zero curvature, too.

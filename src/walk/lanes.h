@@ -227,6 +227,7 @@ inline Vec<V> cross(const Vec<V>& a, const Vec<V>& b) noexcept {
 }
 template <class V>
 inline Vec<V> chosen(const Mask<V>& mask, const Vec<V>& a, const Vec<V>& b) noexcept {
+  if constexpr (kLanes<V> == 1) return mask ? a : b;
   return {mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
 }
 template <class V>
@@ -251,6 +252,7 @@ inline Turn<V> unit(const Turn<V>& q) noexcept {
 }
 template <class V>
 inline Turn<V> chosen(const Mask<V>& mask, const Turn<V>& a, const Turn<V>& b) noexcept {
+  if constexpr (kLanes<V> == 1) return mask ? a : b;
   return {mask ? a.w : b.w, mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
 }
 // About a unit axis, by less than a quarter turn.

@@ -413,13 +413,15 @@ void write_upper_body(const Tables& tables, const BodyTick<Floats<kWidth>>& of,
                       const Floats<kWidth>& swing, const Mask<Floats<kWidth>>& eases,
                       Block<kWidth>& block, const Poses& poses) noexcept {
   using V = Floats<kWidth>;
-  constexpr float kSoftElbow = 0.1f;
+  constexpr float kSoftElbow = 0.1f, kWholly = 0.99999f;
   State<V>& state = block.state;
   Styled<V>& styled = block.styled;
   Poise<V>& poise = block.poise;
   BodyTick<V> tick = of;
   const Knots<V> knots = knots_at(data_phase(tables, tick.time, tick.phase));
-  const V shown = tick.shown * within(state.posture.x, 0.0f, 1.0f);
+  // Its filter comes near to 1 and no nearer; a joint that is shown wholly is made a unit once.
+  const V posture = within(state.posture.x, 0.0f, 1.0f),
+          shown = tick.shown * (posture > all<V>(kWholly) ? all<V>(1.0f) : posture);
   tick.shown = shown;
   const auto idles = styled.idle_share != V{},
              is_styled = either(either(styled.asked != V{}, styled.acts != V{}), idles);

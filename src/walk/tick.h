@@ -63,8 +63,9 @@ void begin_walks(const Tables& tables, Block<kWidth>& block) noexcept {
   const auto begins = both(asked, is_meant(tables, state, change));
   if (!any(begins)) return;
   change.asked_ticks = begins ? V{} : change.asked_ticks;
-  const auto right = state.right_swings != V{},
-             other = both(begins, right != (state.asked.turn_rad_s < V{}));
+  // Who has not stood yet begins with the other foot than the one that is still landing.
+  const auto right = state.right_swings != V{}, stood = block.told.settle_ticks == V{},
+             other = both(both(begins, stood), right != (state.asked.turn_rad_s < V{}));
   if (any(other)) {
     Landing<V> beside{state.print_x_m, state.print_z_m, state.print_rad, way_of(state.print_rad)};
     Feet<V> feet;

@@ -42,13 +42,13 @@ TEST(Placement, AMovedWalkHasTheBitsOfOneThatIsNot) {
         << tick;
     ASSERT_EQ(moved_pose.root_m, to_world(moving.placed, pose.root_m)) << tick;
     for (const int side : {0, 1}) {
-      // Through another root's rotation: equal but for rounding.
+      // Through another root's rotation: equal but for the rounding of floats.
       ASSERT_LT(glm::distance(moving.frame.heel_m[side],
                               to_world(moving.placed, state.frame.heel_m[side])),
-                1e-9);
+                2e-7);
       ASSERT_LT(
           glm::distance(moving.frame.toe_m[side], to_world(moving.placed, state.frame.toe_m[side])),
-          1e-9);
+          2e-7);
     }
     ASSERT_EQ(moving.frame.root_moved_m, state.frame.root_moved_m);
   }
@@ -112,7 +112,8 @@ TEST(Placement, RootMotionAddsUpToTheWay) {
       capsule.heading_rad += state.frame.root_turned_rad;
     }
     EXPECT_GT(glm::distance(capsule.place_m, vec3(2.0, 0.0, 1.0)), 3.0);
-    EXPECT_LT(glm::distance(capsule.place_m, state.frame.root_m), 1e-9) << rate_hz;
+    // A stand's hips are where floats have them: some 1e-8 m from where it was put.
+    EXPECT_LT(glm::distance(capsule.place_m, state.frame.root_m), 1e-7) << rate_hz;
     EXPECT_NEAR(capsule.heading_rad, state.frame.heading_rad, 1e-9) << rate_hz;
   }
 }

@@ -88,6 +88,29 @@ V flying_yaw(const Time<V>& time, const Landing<V>& landing, const Change<V>& ch
          state.lift_turn_rad * slope_left(time.u) + change.gap_rad * edge_left(time.u, change);
 }
 
+// How far a foot that flies keeps away from the one that stands where both point elsewhere: to the
+// outside of its path, while it is beside that one.
+template <class V>
+V keeps_apart_m(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
+                const Vec<V>& heel_m, const V& u, const Change<V>& change,
+                const State<V>& state) noexcept {
+  constexpr float kTurned_rad = 0.1f;             // both footprints' turns: wholly from here on
+  constexpr float kApart = 0.65f, kSoft = 0.12f;  // of the tracks' distance
+  constexpr float kBeside_m = 0.15f, kPast_m = 0.4f, kEnds = 0.25f;  // of the flight
+  const V turned = size(state.print_rad) + size(landing.rad);
+  if (!any(turned != V{})) return V{};
+  const LegBones &l = tables.leg[0], &r = tables.leg[1];
+  const float tracks_m = std::abs(l.track_m) + std::abs(r.track_m);
+  const V outwards = chosen<V>(time.right, -1.0f, 1.0f),
+          foot_m = chosen<V>(time.right, r.foot_m, l.foot_m), heel = outwards * heel_m.x,
+          toe = heel + outwards * foot_m * way_of(flying_yaw(time, landing, change, state)).sine,
+          soft_m = all<V>(kSoft * tracks_m), near_m = soft_least(heel, toe, soft_m),
+          beside = 1.0f - smooth(kBeside_m * tables.size, kPast_m * tables.size, size(heel_m.z)),
+          flies = smoother(V(u * (1.0f / kEnds))) * smoother(V((1.0f - u) * (1.0f / kEnds)));
+  return outwards * smooth(0.0f, kTurned_rad, turned) * beside * flies *
+         soft_positive(V(kApart * tracks_m - near_m), soft_m);
+}
+
 // The tables' place of the swinging heel, from its footprint to the landing; `base_m`: the height
 // of the ground line below it.
 template <class V, class F>
@@ -149,6 +172,7 @@ Vec<V> flight_heel(const Tables& tables, const Time<V>& time, const Landing<V>& 
     p.x = p.x - middle.cosine * out;
     p.z = p.z + middle.sine * out;
   }
+  p.x = p.x + keeps_apart_m(tables, time, landing, p, u, change, state);
   // A greater factor acts while the foot is high, a smaller one from the lift-off on.
   const V factor = lift_of(time, state), low = least(factor, all<V>(1.0f));
   V more = 1.0f + (most(factor, all<V>(1.0f)) - 1.0f) * (1.0f - smooth(kLiftFalls, kLiftEnds, u));

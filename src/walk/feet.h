@@ -346,7 +346,10 @@ void pitch_in_flight(const Time<V>& time, const Sole<V>& sole, const Flight<V>& 
   const V edge_m =
       sole.half_width_m * size(across) * smooth(0.0f, 0.25f, u) * (1.0f - smooth(0.9f, 1.0f, u));
   const V deep = (sole.toe_rest_m + edge_m - kMostSink_m - height_m) / sole.foot_m;
-  const V limit = sole.elevation_rad - arc_sine(within(deep, -0.95f, 0.95f)) + arc_sine(steeper);
+  // A heel that is as high as the foot is long leaves it free.
+  constexpr float kSteep = 0.95f, kSteeper = 3.2025631f;  // the arc's slope there
+  const V arc = arc_sine(within(deep, -kSteep, kSteep)) + kSteeper * least(V(deep + kSteep), V{});
+  const V limit = sole.elevation_rad - arc + arc_sine(steeper);
   const V soft = kSoftPitch_rad + kWiderPitch * loose_pitch(u, off, change) + edge_m / sole.foot_m;
   const V pitch = time.flies ? soft_least(planned, limit, soft) : most(planned, V{});
   foot.heel_m = flight.heel_m;

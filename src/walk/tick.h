@@ -103,7 +103,7 @@ void begin_walks(const Tables& tables, Block<kWidth>& block) noexcept {
   set(V{}, state.ratio_behind), set(V{}, state.stand_pitch_rad);
   for (V* number : {&block.told.stride_m[0], &block.told.stride_m[1], &block.told.step_ticks[0],
                     &block.told.step_ticks[1]})
-    set(V{}, *number);
+    *number = both(begins, stood) ? V{} : *number;
   for (Smoothed<V>& length_m : state.length_m) set(V{}, length_m.x), set(V{}, length_m.v);
   go_on_from_here(tables, begins, state, change);
 }

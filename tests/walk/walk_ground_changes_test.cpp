@@ -204,9 +204,7 @@ TEST_P(ChangesOverGround, CarriesEveryStyle) {
       return gait_params(stick, *style, gait_limits(adult()));
     };
     Watched walk(model, 0.3);
-    const auto steer = [&](double y, double seconds) {
-      walk.walk(params(y), seconds);
-    };
+    const auto steer = [&](double y, double seconds) { walk.walk(params(y), seconds); };
     steer(0.8, 5.0), steer(0.0, 2.0);
     EXPECT_TRUE(walk.stands()) << name;
     steer(-0.5, 3.0), steer(0.0, 2.5);

@@ -15,8 +15,8 @@ namespace gaitpad {
 namespace {
 
 // A quintic to rest brakes with about kNeed v^2 / way. Times are in seconds at the reference leg.
-inline constexpr float kNeed = 0.72f, kBrake_m_s2 = 3.0f, kCloseBrake_m_s2 = 3.3f,
-                       kMostBrake_m_s2 = 3.9f;
+inline constexpr float kNeed = 0.72f, kBrake_m_s2 = 3.0f, kCloseBrake_m_s2 = 3.0f,
+                       kHastyBrake_m_s2 = 3.3f, kMostBrake_m_s2 = 3.9f;
 inline constexpr float kLeastStep = 0.25f, kFurtherStep = 0.3f;  // of the foot's own step
 inline constexpr float kToClose_s = 0.40f, kWayWhileClosing = 0.44f, kNextStep_s = 0.35f;
 inline constexpr float kStays = 0.45f;     // from this flight on its landing stays
@@ -160,7 +160,8 @@ void change_step(const Tables& tables, bool moves, Block<1>& block, F& footing,
   const float ratio_was = ratio(), shown = change.shown,
               pitch = planned_pitch(time, change, state) + change.off_pitch.x,
               edge = change.led != 0.0f ? planned_edge(time, change) + change.off_edge.x : 1.0f,
-              over = planned_over(time, change) + change.off_over.x;
+              over = planned_over(time, change) + change.off_over.x,
+              flown_share = flight_share(time.u, change);
   if (change.led == 0.0f) {
     go_on_from_here(tables, true, state, change);
     change.phase = state.phase, change.phase_rate = state.phase_rate;
@@ -188,8 +189,9 @@ void change_step(const Tables& tables, bool moves, Block<1>& block, F& footing,
   change.off_pitch = {pitch - planned_pitch(now, change, state), 0.0f, 0.0f};
   change.off_edge = {flies ? edge - planned_edge(now, change) : 0.0f, 0.0f, 0.0f};
   if (!moves) return;
+  change.limp = 0.0f;  // its step is as long as hips need it
   if constexpr (kIsUneven<F>) footing.is_new = 1.0f;
-  change.gap_begin = now.u;
+  change.gap_begin = now.u, change.gap_share = flown_share;
   plan_landing_anew(tables, now, block, footing);
   change.off_ratio = {};
   change.off_ratio.x = ratio_was - ratio();
@@ -336,7 +338,9 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
     change.rest_ticks = ticks_of(time_s, tick_s);
     change.stops = 1.0f;
   };
-  const bool may_close = (from >= need / kCloseBrake_m_s2 && foot_m < -kBehind_m) || on_spot;
+  // One who is to go the other way is in a hurry.
+  const float close_m_s2 = state.asked.walks != 0.0f ? kHastyBrake_m_s2 : kCloseBrake_m_s2;
+  const bool may_close = (from >= need / close_m_s2 && foot_m < -kBehind_m) || on_spot;
   const bool moves = !flies || (may_move && time.u < kStays);
   if (may_close && change.starting == 0.0f && moves) {
     change_step(tables, true, block, footing, [&] {

@@ -391,7 +391,7 @@ void go_on_from_here(const Tables& tables, const Mask<V>& begins, const State<V>
 // from where the pelvis is, in the new step frame. `phase`: what was shown at the strike.
 template <class V>
 void begin_lead(const Tables& tables, const Mask<V>& strikes, const V& phase, const V& rate,
-                const State<V>& state, Change<V>& change) noexcept {
+                const Mask<V>& is_level, const State<V>& state, Change<V>& change) noexcept {
   const auto right = state.right_swings == V{};  // it swings in the step that begins
   const V own_m = own_step_m<V>(tables, right, state.backward != V{}),
           asked_m = by_side<V>(right, state.asked.length_m),
@@ -405,12 +405,13 @@ void begin_lead(const Tables& tables, const Mask<V>& strikes, const V& phase, co
   change.further = strikes ? V{} : change.further;
   change.closing = closes ? all<V>(1.0f) : strikes ? V{} : change.closing;
   auto changes = size(V(asked_m - smoothed_m)) > kOtherPace * own_m;
-  if (tables.terrain == nullptr) {  // elsewhere the ground makes steps shorter and slower
+  if (any(is_level)) {  // elsewhere the ground makes steps shorter and slower
     const V flight_ticks =
         stages_of(tables, change, state, no(right)).flight_s * (1.0f / tables.tick_s);
-    changes = either(changes, either(size(V(landed_m - change.stepped_m)) > kOtherPace * own_m,
-                                     size(V(state.flight_ticks - flight_ticks)) >
-                                         kOtherTime * state.flight_ticks));
+    const auto paces = either(size(V(landed_m - change.stepped_m)) > kOtherPace * own_m,
+                              size(V(state.flight_ticks - flight_ticks)) >
+                                  kOtherTime * state.flight_ticks);
+    changes = either(changes, both(is_level, paces));
   }
   const auto leads = both(no(rests), either(either(stops, changes), change.catch_ticks != V{}));
   change.length_m[0] = both(strikes, no(stops)) ? state.asked.length_m[0] : change.length_m[0];

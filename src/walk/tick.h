@@ -199,7 +199,7 @@ template <int kWidth>
 void choose_footholds(const Tables& tables, const Time<Floats<kWidth>>& time,
                       const AskedStep<Floats<kWidth>>& asked, Block<kWidth>& block) noexcept {
   using V = Floats<kWidth>;
-  constexpr float kMoved = 2e-5f;        // metres, radians
+  constexpr float kMoved = 3e-6f;        // metres, radians
   constexpr float kPieceSettles = 0.6f;  // of the roll: until then a step may still go elsewhere
   const State<V>& state = block.state;
   Footing<V>& footing = block.footing;
@@ -419,7 +419,8 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
   const auto is_new = both(no(follows), change.is_new != V{}),
              is_short = either(either(change.starting != V{}, change.stops != V{}),
                                change.catch_ticks != V{});
-  if constexpr (kUneven) lean_into_slope(tables, state, change, footing);
+  if constexpr (kUneven && !kPaper) lean_into_slope(tables, state, change, footing);
+  if constexpr (kUneven && kPaper) footing.lean_rad = {};
   V left = all<V>(1.0f);
   if constexpr (kUneven) left = footing.left.x;
   smooth_asked(tables, change, left, state);
@@ -476,12 +477,14 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
     V overhangs{};
     if constexpr (kUneven) overhangs = footing.overhangs;
     count_step(time, landing, asked.to, strikes, state, overhangs, block.told);
+    auto is_level = change.slowness == all<V>(1.0f);
     move_frame<kWidth>(landing, strikes, block);
     if constexpr (kUneven) {
       move_rails(strikes, footing.landing_y_m, block.styled);
       change_footing(landing, strikes, feet.flat_toe_m.y, footing);
       const V slow = slowness_of(tables, no(time.right), state, footing);
       change.slowness = strikes ? slow : change.slowness;
+      is_level = both(is_level, slow == all<V>(1.0f));
     }
     // A step whose plan changed late has not come over to its own stride yet.
     landing.ratio = change.off_over.x != V{}
@@ -493,7 +496,7 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
     end_aims(landing, strikes, change);
     const auto keeps = either(change.led != V{}, change.off_phase.x != V{});
     const V rate = keeps ? change.phase_rate : state.phase_rate;
-    begin_lead(tables, strikes, phase, rate, state, change);
+    begin_lead(tables, strikes, phase, rate, is_level, state, change);
     begin_step(tables, time, strikes, change, state);
     one_by_one<kWidth>(both(strikes, change.closing != V{}), block, [&](Block<1>& one, int) {
       if constexpr (kUneven) time_rest(tables, one.state, one.change);

@@ -399,9 +399,9 @@ void change_footing(const Landing<V>& landing, const Mask<V>& strikes, const V& 
   set(V(-y_m), footing.print_y_m), set(V(flat_toe_y_m - y_m), footing.toe_y_m);
   set(V(footing.hips_m.x - y_m), footing.hips_m.x), set(V{}, footing.landing_y_m);
   set(V{}, footing.level_x_m), set(V{}, footing.level_z_m);
-  set(V{}, footing.gap_plane.x), set(V{}, footing.gap_plane.z), set(V{}, footing.gap_line_m),
-      set(V{}, footing.gap_room_m);
-  set(V{}, footing.gap_under_m), set(V{}, footing.gap_rise_m);
+  set(V{}, footing.gap_plane.x), set(V{}, footing.gap_plane.z), set(V{}, footing.gap_rise_m);
+  for (Gap<V>* gap : {&footing.gap_line_m, &footing.gap_room_m}) set(V{}, gap->x), set(V{}, gap->v);
+  set(V{}, footing.gap_under_m);
 }
 
 }  // namespace

@@ -75,7 +75,7 @@ inline float best_rest_s(const Off<float>& goes, const Off<float>& aside, bool o
 struct Flown {
   Vec<float> heel_m[2];
   float pitch_rad[2], over_m[2];  // over the ground line
-  float line_m = 0.0f, room_m = 0.0f, loose_rad = 0.0f;
+  float line_m[2]{}, room_m[2]{}, loose_rad = 0.0f;
   float yaw_rad, twist_rad, roll_rad;
 };
 template <class F>
@@ -102,9 +102,8 @@ Flown flown(const Tables& tables, const Change<float>& change, const State<float
       if (k == 1) follow_room(tables, footing);
       const Vec<float> room_m = room_at(time.u, at, footing);
       flown.heel_m[k] = flown.heel_m[k] + room_m;
-      const float left = edge_left(time.u, change);
-      if (k == 0) flown.line_m = base_m + left * footing.gap_line_m;
-      if (k == 0) flown.room_m = room_m.y + left * footing.gap_room_m;
+      flown.line_m[k] = base_m + gap_left(time.u, footing.gap_line_m, change);
+      flown.room_m[k] = room_m.y + gap_left(time.u, footing.gap_room_m, change);
     }
     if (k == 0) {
       flown.yaw_rad = flying_yaw(time, landing, change, at);
@@ -207,7 +206,7 @@ void change_step(const Tables& tables, bool moves, Block<1>& block, F& footing,
     state.gap_slope_m = ((was.heel_m[1] - is.heel_m[1]) - state.gap_m) * ticks;
   };
   if constexpr (kIsUneven<F>) {
-    footing.gap_under_m = footing.gap_line_m = footing.gap_room_m = 0.0f;
+    footing.gap_under_m = 0.0f, footing.gap_line_m = footing.gap_room_m = {};
     const float goes = 1.0f - value_left(now.u), goes_was = 1.0f - value_left(time.u);
     const auto left = [&](float was_x, float from, float to) {
       return from + (was_x - from) * (goes_was / most(goes, 1e-3f)) - to;
@@ -225,8 +224,12 @@ void change_step(const Tables& tables, bool moves, Block<1>& block, F& footing,
   fit_gap(is);
   change.gap_high_m = most(is.over_m[0], kLow_m * tables.size);
   if constexpr (kIsUneven<F>) {
-    footing.gap_line_m = was.line_m - is.line_m;
-    footing.gap_room_m = was.room_m - is.room_m;
+    const auto gap = [&](const float(&from)[2], const float(&to)[2]) {
+      const float gap_m = from[0] - to[0];
+      return Gap<float>{gap_m, (from[1] - to[1] - gap_m) * ticks};
+    };
+    footing.gap_line_m = gap(was.line_m, is.line_m);
+    footing.gap_room_m = gap(was.room_m, is.room_m);
     footing.gap_under_m = most(-state.gap_m.y - change.gap_high_m, 0.0f);
     state.gap_m.y += footing.gap_under_m;
   }

@@ -194,6 +194,14 @@ Mask<V> is_unforeseen(const Tables& tables, const State<V>& state,
               both(state.flies != V{}, part == floored(part)));
 }
 
+// From time to time: slow steps on stairs last longer than what is known ahead.
+template <class V>
+Mask<V> is_half_seen(const Tables& tables, const State<V>& state) noexcept {
+  const V part =
+      state.tick / static_cast<float>((kSinkKnots - 3) / 2 * sink_knot_ticks(tables));
+  return both(state.tick != V{}, part == floored(part));
+}
+
 // Where the landing on level ground has moved, the ground is asked for another one.
 template <int kWidth>
 void choose_footholds(const Tables& tables, const Time<Floats<kWidth>>& time,
@@ -513,7 +521,9 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
   if (!looks_ahead) return;
   // Over uneven ground any change of pace asks for more than the tables know.
   const auto changes = kUneven ? either(is_short, change.led != V{}) : is_short,
-             looks = either(either(is_new, both(either(lifts, strikes), changes)),
+             again = kUneven ? either(either(lifts, strikes), is_half_seen(tables, state))
+                             : either(lifts, strikes),
+             looks = either(either(is_new, both(again, changes)),
                             both(is_to_walk(state), is_unforeseen(tables, state, change)));
   one_by_one<kWidth>(looks, block,
                      [&](Block<1>& one, int) { look_ahead<kPaper, kUneven>(tables, one); });

@@ -261,7 +261,7 @@ void begin_flight(const Tables& tables, const Time<V>& time, const Mask<V>& lift
 // After the flight, where `strikes`: the other foot's step begins. It makes up for what the steps
 // before were too short or long by rounding. Where it is slower than the last one (`led`), hips
 // that still are as fast would have to sink for the foot behind: it leaves the floor sooner. Nor
-// does it take so long that they would have to go back.
+// does it take so long that they would have to go back, but on stairs.
 template <class V>
 void begin_step(const Tables& tables, const Time<V>& time, const Mask<V>& strikes,
                 const Change<V>& change, State<V>& state) noexcept {
@@ -277,7 +277,8 @@ void begin_step(const Tables& tables, const Time<V>& time, const Mask<V>& strike
           x = change.pelvis_x_m.v, z = change.pelvis_z_m.v,
           speed_m = most(root(V(x * x + z * z)), all<V>(kLeastSpeed_m)),
           own_s = next.roll_s + next.flight_s,
-          longest_s = most(V(tick_s * way_m / (kLeastWay * speed_m)), V(kLeastTime * own_s));
+          least_time = change.slowness > all<V>(1.0f) ? all<V>(1.0f) : all<V>(kLeastTime),
+          longest_s = most(V(tick_s * way_m / (kLeastWay * speed_m)), V(least_time * own_s));
   const V late_s = within(short_s, -tick_s, tick_s),
           step_s = both(both(led, change.stops == V{}), state.ratio_behind > all<V>(kWalked))
                        ? least(own_s, longest_s)

@@ -268,7 +268,7 @@ inline void time_closing_step(const Tables& tables, State<float>& state,
                               Change<float>& change) noexcept {
   const float scale = tables.time_scale / tables.tick_s;
   const auto ticks_of_time = [&](float time_s) { return floored(time_s * scale + 0.5f); };
-  const float shortest = ticks_of_time(kLeastClosing_s),
+  const float shortest = ticks_of_time(kLeastClosing_s * change.slowness),
               longest = most(shortest, floored(kMostClosing * state.flight_ticks)),
               least_roll =
                   most(least(ticks_of_time(kLeastClosingRoll_s), state.roll_ticks) - state.tick,

@@ -25,6 +25,7 @@ inline constexpr float kLandsAhead =
     0.42f;  // of a step: so far are hips behind the foot that lands
 inline constexpr float kTurnsOnSpot = 0.1f;  // steps below this ratio
 inline constexpr float kTurnsBack = 0.45f;   // of a closing flight: until then the walk goes on
+inline constexpr float kFlightLeft = 0.45f;  // of a steady flight, which a slow one had been
 inline constexpr float kMostCatch_s = 0.8f;  // until hips that have braked are in their place
 inline constexpr float kNearStrike_s = 0.15f, kLow_m = 0.001f;
 inline constexpr float kLeastRest_s = 0.25f, kAfterLanding_s = 0.15f;
@@ -140,6 +141,28 @@ void plan_landing_anew(const Tables& tables, const Time<float>& time, Block<1>& 
   }
 }
 
+// A foot in flight that is to land on another tread than it was takes its time to come there.
+inline void take_time_for_rise(const Tables& tables, Block<1>& block) noexcept {
+  constexpr float kFlight_s = 0.5f, kRise = 0.2f;  // of so many legs
+  State<float>& state = block.state;
+  Change<float>& change = block.change;
+  Block<1> there = block;
+  const Time<float> time = time_of(tables, state);
+  there.change.gap_begin = time.u;
+  plan_landing_anew(tables, time, there, there.footing);
+  const float rise = size(there.footing.landing_y_m - block.footing.landing_y_m) / tables.leg_m,
+              least_ticks =
+                  state.tick + ticks_of(rise * (kFlight_s * tables.time_scale / kRise), tables.tick_s),
+              more = most(least_ticks - state.flight_ticks, 0.0f);
+  state.flight_ticks += more;
+  if (change.stops == 0.0f) return;
+  if (change.closing != 0.0f) {
+    change.closing_ticks += more;
+  } else {
+    change.rest_ticks += more;
+  }
+}
+
 // Gives the running step another end. A foot in flight whose landing `moves` goes over to its new
 // path until it lands.
 template <class F, class Work>
@@ -179,6 +202,8 @@ void change_step(const Tables& tables, bool moves, Block<1>& block, F& footing,
   Slope<float> lands{};
   if constexpr (kIsUneven<F>) lands = plane_in_flight(time, change, footing);
   work();
+  if constexpr (kIsUneven<F>)
+    if (moves && flies) take_time_for_rise(tables, block);
   change.led = change.is_new = 1.0f;
   change.off_ticks = floored(2.0f * kCarry_s * tables.time_scale / tables.tick_s + 0.5f);
   const Time<float> now = time_of(tables, state);
@@ -471,7 +496,8 @@ void walk_on(const Tables& tables, bool may_move, Block<1>& block, F& footing) n
       if (!flies)
         state.roll_ticks = least(most(state.tick + least_left, ticks_of(own.roll_s, tick_s)),
                                  state.roll_ticks + least_left);
-      state.flight_ticks = most(state.tick + 1.0f, ticks_of(own.flight_s, tick_s));
+      const float flight = ticks_of(own.flight_s, tick_s);
+      state.flight_ticks = most(state.tick + floored(kFlightLeft * flight), flight);
     }
     const float left_s = time_of(tables, state).to_strike * tick_s,
                 goes = 0.5f * left_s / (own.roll_s + own.flight_s),

@@ -142,6 +142,21 @@ V slowness_of(const Tables& tables, const Mask<V>& right, const State<V>& state,
   return rise == V{} ? all<V>(1.0f) : V(slow_s / own_s);
 }
 
+// A flight to another tread, `rise_m` higher or lower, takes as long as one of steady stairs.
+template <class V>
+V flight_to_tread_s(const Tables& tables, const V& rise_m) noexcept {
+  constexpr float kFlight_s = 0.5f, kRise = 0.2f;  // of so many legs
+  return size(rise_m) * (kFlight_s * tables.time_scale / (kRise * tables.leg_m));
+}
+// The same of a first one, which begins from a stand; never 0.
+template <class V>
+V first_flight_s(const Tables& tables, const Footing<V>& footing) noexcept {
+  constexpr float kLeast_m = 1e-6f;
+  const V step_m = size(footing.landing_y_m),
+          foot_m = size(V(footing.landing_y_m - footing.print_y_m));
+  return flight_to_tread_s(tables, most(most(step_m, V(foot_m - step_m)), all<V>(kLeast_m)));
+}
+
 // --- The ground that the hips go over ------------------------------------------------------------
 
 // Up, the knee that lands bent straightens until late single support; down, the standing knee

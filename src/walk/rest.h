@@ -143,16 +143,15 @@ void plan_landing_anew(const Tables& tables, const Time<float>& time, Block<1>& 
 
 // A foot in flight that is to land on another tread than it was takes its time to come there.
 inline void take_time_for_rise(const Tables& tables, Block<1>& block) noexcept {
-  constexpr float kFlight_s = 0.5f, kRise = 0.2f;  // of so many legs
   State<float>& state = block.state;
   Change<float>& change = block.change;
   Block<1> there = block;
   const Time<float> time = time_of(tables, state);
   there.change.gap_begin = time.u;
   plan_landing_anew(tables, time, there, there.footing);
-  const float rise = size(there.footing.landing_y_m - block.footing.landing_y_m) / tables.leg_m,
+  const float rise_m = there.footing.landing_y_m - block.footing.landing_y_m,
               least_ticks =
-                  state.tick + ticks_of(rise * (kFlight_s * tables.time_scale / kRise), tables.tick_s),
+                  state.tick + ticks_of(flight_to_tread_s(tables, rise_m), tables.tick_s),
               more = most(least_ticks - state.flight_ticks, 0.0f);
   state.flight_ticks += more;
   if (change.stops == 0.0f) return;

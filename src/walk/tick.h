@@ -433,7 +433,9 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
   if constexpr (kUneven) left = footing.left.x;
   smooth_asked(tables, change, left, state);
   if constexpr (kPaper) state.lean_rad = state.chest_ahead_rad = state.head_ahead_rad = {};
-  const Time<V> time = advance_clock(tables, change, state);
+  V first_s{};
+  if constexpr (kUneven) first_s = first_flight_s(tables, footing);
+  const Time<V> time = advance_clock(tables, first_s, change, state);
   const AskedStep<V> asked = plan_landing(tables, time, change, state, footing);
   if constexpr (kUneven) {
     if (looks_ahead) {

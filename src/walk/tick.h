@@ -522,7 +522,8 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
   }
   if (!looks_ahead) return;
   // Over uneven ground any change of pace asks for more than the tables know.
-  const auto changes = kUneven ? either(is_short, change.led != V{}) : is_short,
+  const auto sinks = either(change.led != V{}, change.sink_ticks != V{}),
+             changes = kUneven ? either(is_short, sinks) : is_short,
              again = kUneven ? either(either(lifts, strikes), is_half_seen(tables, state))
                              : either(lifts, strikes),
              looks = either(either(is_new, both(again, changes)),

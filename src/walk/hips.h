@@ -509,7 +509,7 @@ inline constexpr float kLowReach =
     0.985f;  // of the leg: a foot whose heel stays low reaches so far
 
 // The spline's knots stand so far apart, in seconds at the reference leg.
-inline constexpr float kSinkKnot_s = 0.06f, kSoftSink_m = 0.002f;
+inline constexpr float kSinkKnot_s = 0.06f, kSoftSink_m = 0.012f;
 inline int sink_knot_ticks(const Tables& tables) noexcept {
   return std::max(1, static_cast<int>(kSinkKnot_s * tables.time_scale / tables.tick_s + 0.5f));
 }

@@ -408,9 +408,9 @@ void begin_lead(const Tables& tables, const Mask<V>& strikes, const V& phase, co
   if (any(is_level)) {  // elsewhere the ground makes steps shorter and slower
     const V flight_ticks =
         stages_of(tables, change, state, no(right)).flight_s * (1.0f / tables.tick_s);
-    const auto paces = either(size(V(landed_m - change.stepped_m)) > kOtherPace * own_m,
-                              size(V(state.flight_ticks - flight_ticks)) >
-                                  kOtherTime * state.flight_ticks);
+    const auto paces =
+        either(size(V(landed_m - change.stepped_m)) > kOtherPace * own_m,
+               size(V(state.flight_ticks - flight_ticks)) > kOtherTime * state.flight_ticks);
     changes = either(changes, both(is_level, paces));
   }
   const auto leads = both(no(rests), either(either(stops, changes), change.catch_ticks != V{}));

@@ -150,8 +150,7 @@ inline void take_time_for_rise(const Tables& tables, Block<1>& block) noexcept {
   there.change.gap_begin = time.u;
   plan_landing_anew(tables, time, there, there.footing);
   const float rise_m = there.footing.landing_y_m - block.footing.landing_y_m,
-              least_ticks =
-                  state.tick + ticks_of(flight_to_tread_s(tables, rise_m), tables.tick_s),
+              least_ticks = state.tick + ticks_of(flight_to_tread_s(tables, rise_m), tables.tick_s),
               more = most(least_ticks - state.flight_ticks, 0.0f);
   state.flight_ticks += more;
   if (change.stops == 0.0f) return;

@@ -197,8 +197,7 @@ Mask<V> is_unforeseen(const Tables& tables, const State<V>& state,
 // From time to time: slow steps on stairs last longer than what is known ahead.
 template <class V>
 Mask<V> is_half_seen(const Tables& tables, const State<V>& state) noexcept {
-  const V part =
-      state.tick / static_cast<float>((kSinkKnots - 3) / 2 * sink_knot_ticks(tables));
+  const V part = state.tick / static_cast<float>((kSinkKnots - 3) / 2 * sink_knot_ticks(tables));
   return both(state.tick != V{}, part == floored(part));
 }
 

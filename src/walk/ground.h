@@ -345,7 +345,7 @@ inline constexpr float kClimbsInPlace_m = 0.1f;
 inline constexpr float kLiftUp = 0.5f, kHighUp = 0.2f, kHighestUp = 0.345f;
 inline constexpr float kLiftGround =
     0.5f;  // of the flight: until then the plane left bounds the toe
-inline constexpr float kReplan_m = 0.005f;  // a landing moved by more is planned for anew
+inline constexpr float kReplan_m = 0.002f;  // a landing moved by more is planned for anew
 
 // The plane that it flies to, or what a change of plan has left of the one before.
 template <class V>

@@ -157,6 +157,19 @@ V first_flight_s(const Tables& tables, const Footing<V>& footing) noexcept {
   return flight_to_tread_s(tables, most(most(step_m, V(foot_m - step_m)), all<V>(kLeast_m)));
 }
 
+// A step that turns out to lead to another tread takes as long, from its roll on.
+template <class V>
+void take_time_to_tread(const Tables& tables, const Time<V>& time, const Change<V>& change,
+                        const Footing<V>& footing, State<V>& state) noexcept {
+  constexpr float kMostChange = 2.0f;  // ticks a tick
+  const auto walks = both(both(change.stands == V{}, change.starting == V{}),
+                          both(change.closing == V{}, change.stops == V{})),
+             may = both(no(time.flies), walks);
+  const V least_ticks = floored(V(first_flight_s(tables, footing) * (1.0f / tables.tick_s))),
+          more = within(V(least_ticks - state.flight_ticks), 0.0f, kMostChange);
+  state.flight_ticks = state.flight_ticks + (may ? more : V{});
+}
+
 // --- The ground that the hips go over ------------------------------------------------------------
 
 // Up, the knee that lands bent straightens until late single support; down, the standing knee

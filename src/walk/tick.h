@@ -445,6 +445,7 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
   }
   Landing<V> landing = planned_landing(tables, time, asked.to, change, state);
   if constexpr (kUneven) {
+    take_time_to_tread(tables, time, change, footing, state);
     follow_ground(tables, time, asked, change, state, footing, landing);
     move_hips_ground(tables, time, landing, change, state, footing);
     if (looks_ahead) plan_rooms<kWidth>(tables, Mask<V>{}, block);

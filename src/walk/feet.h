@@ -245,6 +245,13 @@ V pitch_off(const Time<V>& time, const V& tick, const Change<V>& change,
                                             : V{};
 }
 
+// What is left of a height that a changed plan was off, and of its slope per flight.
+template <class V>
+V gap_left(const V& u, const Gap<V>& gap, const Change<V>& change) noexcept {
+  const V s = within(V((u - change.gap_begin) / change.gap_lasts), 0.0f, 1.0f);
+  return gap.x * (1.0f - smoother(s)) + gap.v * change.gap_lasts * slope_left(s);
+}
+
 // How far its pitch may be off what the floor bounds it to: as far as it is off the tables, when
 // the toe has left the floor.
 template <class V>
@@ -318,7 +325,7 @@ Flight<V> fly(const Tables& tables, const Time<V>& time, const Landing<V>& landi
     const Vec<V>& p = flight.heel_m;
     flight.lifted_m = footing.print_y_m +
                       rise_of(footing.print, V(p.x - state.print_x_m), V(p.z - state.print_z_m)) -
-                      flight.base_m - edge_left(u, change) * footing.gap_line_m;
+                      flight.base_m - gap_left(u, footing.gap_line_m, change);
     const V goes = time.flies ? V(1.0f - value_left(u)) : V{};
     flight.tilt = unit(Turn<V>{mix(from.w, to.w, goes), mix(from.x, to.x, goes),
                                mix(from.y, to.y, goes), mix(from.z, to.z, goes)});
@@ -431,7 +438,8 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
     footing.rise_m = first_roll ? V{} : most(V(rise_m + left * footing.gap_rise_m), V{});
     const Vec<V> risen_m{room_m.x, V(room_m.y + footing.rise_m), room_m.z};
     flight.heel_m = flight.heel_m + risen_m;
-    flight.base_m = base_m + left * (footing.gap_line_m + footing.gap_room_m);
+    flight.base_m = base_m + gap_left(time.u, footing.gap_line_m, change) +
+                    gap_left(time.u, footing.gap_room_m, change);
     flight.heel_m.y = change.gap_begin != V{} ? flight.heel_m.y : most(flight.heel_m.y, base_m);
     planned = time.flies ? planned
                          : pitch_to_rise<V>(tables, time.right, footing.rise_m, most(planned, V{}));

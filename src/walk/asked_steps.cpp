@@ -1,76 +1,124 @@
-// What a game asks of a walk beside its stick: a place for the next footprint, and a push.
-#include <algorithm>
+// What a program asks of a walk beside its stick: a place for the next footprint, and a push.
+#include "walk/asked_steps.h"
 
+#include <algorithm>
+#include <cmath>
+
+#include "gaitpad/walk.h"
 #include "walk/footholds.h"
-#include "walk/walk.h"
 
 namespace gaitpad {
 namespace {
 
-// From the world's axes to the step frame's.
-vec3 seen_in_step(const Block<1>& block, const vec3& way) noexcept {
-  return from_world({vec3(0.0), block.placed[0].heading_rad + block.origin[0].heading_rad}, way);
+bool rests(const Change<float>& change) noexcept {
+  return change.stands != 0.0f || change.stops != 0.0f || change.closing != 0.0f;
 }
 
-float share_of_flight(const State<float>& state) noexcept {
-  return state.flies != 0.0f ? state.tick / state.flight_ticks : 0.0f;
+// True if a program may still change where the running step ends.
+bool is_open_step(const Tables& tables, const Block<1>& block) noexcept {
+  const State<float>& state = block.state;
+  if (rests(block.change)) return false;
+  return state.flies == 0.0f ||
+         (tables.terrain == nullptr && state.tick <= kLatestAim * state.flight_ticks);
+}
+
+// The landing nearest to `heel` that the running step's foot can reach, both in the step frame.
+Placement reachable_step(const Tables& tables, const Block<1>& block,
+                         const Placement& heel) noexcept {
+  // From heel to heel, in legs, so that feet neither touch nor do a split; and the turn of a foot.
+  constexpr double kAhead = 0.95, kBack = 0.45, kLeastAside = 0.07, kMostAside = 0.45,
+                   kMostTurn_rad = 0.7;
+  const bool right = block.state.right_swings != 0.0f, backward = block.state.backward != 0.0f;
+  const double leg_m = tables.leg_m, outwards = right ? -1.0 : 1.0, way = backward ? -1.0 : 1.0,
+               most_m = (backward ? tables.most_back_ratio : tables.most_ratio) *
+                        own_step_m<float>(tables, right, backward),
+               ahead_m = std::min(kAhead * leg_m, most_m);
+  const vec3& asked = heel.place_m;
+  return {vec3(outwards * std::clamp(outwards * asked.x, kLeastAside * leg_m, kMostAside * leg_m),
+               0.0, way * std::clamp(way * asked.z, -kBack * leg_m, ahead_m)),
+          std::clamp(wrapped(heel.heading_rad), -kMostTurn_rad, kMostTurn_rad)};
+}
+
+void aim(const Placement& heel, Change<float>& change) noexcept {
+  change.is_aimed = 1.0f;
+  change.aim_x_m = static_cast<float>(heel.place_m.x);
+  change.aim_z_m = static_cast<float>(heel.place_m.z);
+  change.aim_rad = static_cast<float>(heel.heading_rad);
+}
+
+// The step frame in the world.
+Placement step_frame(const WalkState& state) noexcept {
+  const Origin& origin = state.walk.origin[0];
+  return moved(state.placed, {vec3(origin.x_m, origin.y_m, origin.z_m), origin.heading_rad});
+}
+Placement seen_in_step(const WalkState& state, const Placement& heel) noexcept {
+  const Placement frame = step_frame(state);
+  return {from_world(frame, heel.place_m), heel.heading_rad - frame.heading_rad};
+}
+
+bool is_finite(const Placement& place) noexcept {
+  return std::isfinite(place.place_m.x + place.place_m.z + place.heading_rad);
 }
 
 }  // namespace
 
-Aim step_to(const Tables& tables, const Placement& place, bool nearest, Block<1>& block) noexcept {
-  // From heel to heel, in legs: feet neither touch nor do a split. And how far a foot turns.
-  constexpr double kAhead = 0.95, kBack = 0.45, kLeastAside = 0.07, kMostAside = 0.45,
-                   kMostTurn_rad = 0.7, kSame = 1e-9;
-  const State<float>& state = block.state;
-  Change<float>& change = block.change;
-  if (change.stands != 0.0f || change.closing != 0.0f || share_of_flight(state) > kSettles)
-    return Aim::refused;
-  const Origin& origin = block.origin[0];
-  const vec3 own = from_world(block.placed[0], place.place_m) - vec3(origin.x_m, 0.0, origin.z_m),
-             asked = from_world({vec3(0.0), origin.heading_rad}, own);
-  const double rad = wrapped(place.heading_rad - block.placed[0].heading_rad - origin.heading_rad);
-  const bool right = state.right_swings != 0.0f;
-  const bool backward = state.backward != 0.0f;
-  const float most_m = (backward ? tables.most_back_ratio : tables.most_ratio) *
-                       own_step_m<float>(tables, right, backward);
-  const double leg_m = tables.leg_m, outwards = right ? -1.0 : 1.0, way = backward ? -1.0 : 1.0,
-               ahead_m = std::min(kAhead * leg_m, static_cast<double>(most_m)),
-               z_m = way * std::clamp(way * asked.z, -kBack * leg_m, ahead_m),
-               x_m = outwards *
-                     std::clamp(outwards * asked.x, kLeastAside * leg_m, kMostAside * leg_m),
-               turn_rad = std::clamp(rad, -kMostTurn_rad, kMostTurn_rad);
-  const bool is_there = std::abs(z_m - asked.z) <= kSame && std::abs(x_m - asked.x) <= kSame &&
-                        std::abs(turn_rad - rad) <= kSame;
-  if (!is_there && !nearest) return Aim::refused;
-  change.is_aimed = 1.0f;
-  change.aim_x_m = static_cast<float>(x_m), change.aim_z_m = static_cast<float>(z_m);
-  change.aim_rad = static_cast<float>(turn_rad);
-  return is_there ? Aim::taken : Aim::nearest;
+std::optional<Placement> nearest_step(const WalkModel& model, const Placement& heel,
+                                      const WalkState& state) noexcept {
+  const Tables tables = tables_of(model, state.tick_s);
+  // In the tick in which a foot strikes, the frame still shows its flight.
+  if (!is_finite(heel) || state.walk.told.struck != 0.0f || !is_open_step(tables, state.walk))
+    return std::nullopt;
+  return moved(step_frame(state), reachable_step(tables, state.walk, seen_in_step(state, heel)));
 }
 
-bool push(const Tables& tables, const vec3& velocity_m_s, Block<1>& block) noexcept {
-  // A pendulum as long as the leg falls v sqrt(l / g) far: there a foot catches it (Hof 2008).
-  constexpr double kGravity_m_s2 = 9.81, kMostAside = 0.35, kNearStrike_s = 0.2;
+bool step_to(const WalkModel& model, const Placement& heel, WalkState& state) noexcept {
+  constexpr double kSame_m = 0.001, kSame_rad = 0.1 * kDegree;
+  const auto near = nearest_step(model, heel, state);
+  if (!near || horizontal_length(near->place_m - heel.place_m) > kSame_m ||
+      std::abs(wrapped(near->heading_rad - heel.heading_rad)) > kSame_rad)
+    return false;
+  aim(seen_in_step(state, *near), state.walk.change);
+  return true;
+}
+
+bool push_walk(const vec3& velocity_m_s, WalkState& state) noexcept {
+  Change<float>& change = state.walk.change;
+  if (!(horizontal_length(velocity_m_s) <= kMostPush_m_s) || rests(change)) return false;
+  const vec3 v = from_world({vec3(0.0), step_frame(state).heading_rad}, velocity_m_s);
+  change.push_x_m_s += static_cast<float>(v.x);
+  change.push_z_m_s += static_cast<float>(v.z);
+  return true;
+}
+
+void take_push(const Tables& tables, Block<1>& block) noexcept {
+  constexpr float kGravity_m_s2 = 9.81f;
+  // The time constant in which the hips take it, so that a straight knee does not snap; the least
+  // that is left of it.
+  constexpr float kPush_s = 0.05f, kLeastPush_m_s = 0.01f;
   State<float>& state = block.state;
   Change<float>& change = block.change;
-  const float left =
-      (state.flies != 0.0f ? 0.0f : state.roll_ticks) + state.flight_ticks - state.tick;
-  if (change.stands != 0.0f || left * tables.tick_s < kNearStrike_s) return false;
-  const vec3 v = seen_in_step(block, velocity_m_s);
-  const auto add = [](double more, float& to) { to += static_cast<float>(more); };
-  const double tick_s = tables.tick_s;
-  if (change.led != 0.0f) {
-    add(v.x * tick_s, change.pelvis_x_m.v), add(v.z * tick_s, change.pelvis_z_m.v);
-  } else {
-    add(v.x * tick_s, state.hips_x_m.v), add(v.z * tick_s, state.hips_z_m.v);
+  float &x_m_s = change.push_x_m_s, &z_m_s = change.push_z_m_s;
+  const auto ends = [&] { x_m_s = z_m_s = 0.0f; };
+  if (rests(change)) return ends();
+  if (change.is_aimed == 0.0f) {
+    // The landing of a step that has just begun is planned in its first tick.
+    const bool begins = state.flies == 0.0f && state.tick == 0.0f;
+    if (begins || !is_open_step(tables, block)) return;
+    // A pendulum as long as the leg falls v sqrt(l / g) far: there a foot catches it (Hof 2008).
+    const float falls_s = std::sqrt(tables.leg_m / kGravity_m_s2);
+    const vec3 caught_m(state.landing_x_m + falls_s * x_m_s, 0.0,
+                        state.landing_z_m + falls_s * z_m_s);
+    aim(reachable_step(tables, block, {caught_m, state.landing_rad}), change);
   }
-  const double falls_s = std::sqrt(tables.leg_m / kGravity_m_s2),
-               far_m = falls_s * horizontal_length(v), most_m = kMostAside * tables.leg_m,
-               share = far_m > most_m ? most_m / far_m : 1.0;
-  add(share * falls_s * v.x, change.push_x_m), add(share * falls_s * v.z, change.push_z_m);
-  change.push_waits = share_of_flight(state) > kSettles ? 1.0f : 0.0f;
-  return true;
+  const float share = least(tables.tick_s / (kPush_s * tables.time_scale), 1.0f);
+  const bool led = change.led != 0.0f;
+  const auto take = [&](float& push_m_s, Off<float>& hips_m) {
+    hips_m.v += share * push_m_s * tables.tick_s;
+    push_m_s -= share * push_m_s;
+  };
+  take(x_m_s, led ? change.pelvis_x_m : state.hips_x_m);
+  take(z_m_s, led ? change.pelvis_z_m : state.hips_z_m);
+  if (x_m_s * x_m_s + z_m_s * z_m_s < kLeastPush_m_s * kLeastPush_m_s) ends();
 }
 
 }  // namespace gaitpad

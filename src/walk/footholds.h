@@ -49,6 +49,9 @@ inline constexpr float kWayTurns = 0.82f, kInPlace_m = 0.2f, kFootAhead = 0.45f,
 // A landing follows what is asked at once until kSettles of the flight, then more and more slowly,
 // and from kFreeze on no more. To stop it at once would be a jerk of the foot that flies.
 inline constexpr float kSettles = 0.25f, kFreeze = 0.6f, kSettling_s = 0.1f;
+// Of a flight: a landing may be asked for until kLatestAim, and is where it was asked to be from
+// kAimSettles on.
+inline constexpr float kLatestAim = 0.5f, kAimSettles = 0.75f;
 
 // As it is planned. The step's stride counts along the heading `to`, which may still turn after the
 // place is settled; a step that closes keeps what is left of the last one.
@@ -113,22 +116,21 @@ AskedStep<V> plan_landing(const Tables& tables, const Time<V>& time, Change<V>& 
   V x_m = along.sine * length_m + to.cosine * asides_m - stood_m - to.sine * lead_m,
     z_m = along.cosine * length_m - to.sine * asides_m + (1.0f - to.cosine) * lead_m,
     rad = heading + (closes ? V{} : V(in_place * ahead_rad));
-  const auto aimed = change.is_aimed != V{},
-             answers = both(either(change.push_x_m != V{}, change.push_z_m != V{}),
-                            change.push_waits == V{}),
-             moves = either(aimed, answers);
-  if (any(moves)) {
+  const auto aimed = change.is_aimed != V{};
+  if (any(aimed)) {
     // It comes there evenly until it is settled.
     const auto begins = both(no(time.flies), state.tick == all<V>(1.0f));
-    const V settled = (time.flies ? V{} : state.roll_ticks) + kSettles * state.flight_ticks,
+    const V settled = (time.flies ? V{} : state.roll_ticks) +
+                      chosen<V>(time.flies, kAimSettles, kSettles) * state.flight_ticks,
             left = most(V(settled - state.tick + 1.0f), all<V>(1.0f));
-    const auto aim = [&](const V& at, const V& push_m, const V& kept, V& now) {
-      const V from = begins ? now : kept, goal = aimed ? at : V(now + push_m);
-      now = moves ? V(from + (goal - from) / left) : now;
+    const auto aim = [&](const V& at, V& kept, V& now) {
+      const V from = begins ? now : kept;
+      now = aimed ? V(from + (at - from) / left) : now;
+      kept = aimed ? now : kept;
     };
-    aim(change.aim_x_m, change.push_x_m, *kept_x_m, x_m);
-    aim(change.aim_z_m, change.push_z_m, *kept_z_m, z_m);
-    aim(change.aim_rad, V{}, state.landing_rad, rad);
+    aim(change.aim_x_m, *kept_x_m, x_m);
+    aim(change.aim_z_m, *kept_z_m, z_m);
+    aim(change.aim_rad, state.landing_rad, rad);
   }
   keep(x_m, *kept_x_m);
   keep(z_m, *kept_z_m);

@@ -345,7 +345,6 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
               flies ? left_s + (most_closing - 1.0f) * state.flight_ticks * tick_s : longest_s,
               none);
       change.closing = 1.0f;
-      change.is_aimed = 0.0f;  // it lands beside the other foot, not where a game wants it
       if (flies) {
         state.flight_ticks = most(state.flight_ticks, state.tick + change.rest_ticks);
         change.closing_ticks = state.flight_ticks - state.tick;

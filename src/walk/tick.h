@@ -1,6 +1,7 @@
 // One tick of the walks of a block, in the order of its data.
 #pragma once
 #include "walk/ankle.h"
+#include "walk/asked_steps.h"
 #include "walk/ground_plan.h"
 #include "walk/paper.h"
 #include "walk/pose.h"
@@ -177,7 +178,9 @@ void change_ends(const Tables& tables, Block<kWidth>& block) noexcept {
       plan(true, one, level);
     }
   };
-  one_by_one<kWidth>(both(moves, both(no(walks), no(stops))), block,
+  // A landing that was asked for keeps its place; the step after it may end.
+  const auto is_open = both(no(stops), block.change.is_aimed == V{});
+  one_by_one<kWidth>(both(moves, both(no(walks), is_open)), block,
                      [&](Block<1>& one, int) { change(one, ends); });
   one_by_one<kWidth>(both(moves, both(walks, stops)), block,
                      [&](Block<1>& one, int) { change(one, comes_back); });
@@ -265,15 +268,14 @@ void plan_rooms(const Tables& tables, const Mask<Floats<kWidth>>& lifts,
       plans, block, [&](Block<1>& one, int w) { plan_room(tables, lane(begins, w) != 0.0f, one); });
 }
 
-// What was asked of a landing is over; a push that came too late for it goes on.
+// What was asked of a landing is over; a push goes on in the next step's frame.
 template <class V>
 void end_aims(const Landing<V>& landing, const Mask<V>& strikes, Change<V>& change) noexcept {
   const Way<V>& way = landing.way;
-  const V x_m = change.push_x_m * change.push_waits, z_m = change.push_z_m * change.push_waits;
+  const V x = change.push_x_m_s, z = change.push_z_m_s;
   change.is_aimed = strikes ? V{} : change.is_aimed;
-  change.push_x_m = strikes ? V(way.cosine * x_m - way.sine * z_m) : change.push_x_m;
-  change.push_z_m = strikes ? V(way.cosine * z_m + way.sine * x_m) : change.push_z_m;
-  change.push_waits = strikes ? V{} : change.push_waits;
+  change.push_x_m_s = strikes ? V(way.cosine * x - way.sine * z) : x;
+  change.push_z_m_s = strikes ? V(way.cosine * z + way.sine * x) : z;
 }
 
 // `footing`: the block's, or none. kPaper: with the paper's own solver, of one walk; the body leans
@@ -416,6 +418,8 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
   const auto follows = change.is_new != V{};  // for a step has begun
   begin_walks(tables, block);
   if (!kUneven || looks_ahead) change_ends<kWidth, kUneven>(tables, block);
+  one_by_one<kWidth>(either(change.push_x_m_s != V{}, change.push_z_m_s != V{}), block,
+                     [&](Block<1>& one, int) { take_push(tables, one); });
   const auto is_new = both(no(follows), change.is_new != V{}),
              is_short = either(either(change.starting != V{}, change.stops != V{}),
                                change.catch_ticks != V{});

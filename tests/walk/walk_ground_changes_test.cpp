@@ -48,10 +48,28 @@ class Watched {
     for (int tick = 0; tick < seconds * kRate; ++tick) step(params);
   }
   bool stands() const { return hiker.block.change.stands != 0.0f; }
+  // Asks for the landing nearest to that heel.
+  bool step_near(const Placement& heel) {
+    return ask([&](WalkState& state) {
+      const auto near = nearest_step(model_, heel, state);
+      return near && step_to(model_, *near, state);
+    });
+  }
+  bool push(const vec3& velocity_m_s) {
+    return ask([&](WalkState& state) { return push_walk(velocity_m_s, state); });
+  }
   Alone hiker;
   Seen seen;
 
  private:
+  template <class Work>
+  bool ask(const Work& work) {
+    WalkState state;
+    state.walk = hiker.block;
+    const bool is_taken = work(state);
+    hiker.block = state.walk;
+    return is_taken;
+  }
   const WalkModel& model_;
   std::array<Pose, 3> pose_;
   int ticks_ = 0;
@@ -164,18 +182,16 @@ TEST_P(ChangesOverGround, MeetsAimsAndPushesOverGround) {
       walk.walk(params_of(0.0, y), 0.4);
       const Origin& origin = walk.hiker.block.origin[0];
       const double outwards = walk.hiker.block.state.right_swings != 0.0f ? -1.0 : 1.0;
-      const Placement goal{
-          vec3(origin.x_m + 0.2 * outwards, 0.0, origin.z_m + (y > 0.0 ? 0.35 : -0.3)), 0.0};
-      taken += step_to(walk.hiker.tables, goal, true, walk.hiker.block) != Aim::refused;
+      taken += walk.step_near(
+          {vec3(origin.x_m + 0.2 * outwards, 0.0, origin.z_m + (y > 0.0 ? 0.35 : -0.3)), 0.0});
       walk.walk(params_of(0.0, y), 0.6);
       const double side = n % 2 == 0 ? 0.3 : -0.3;
-      pushed += push(walk.hiker.tables, vec3(side, 0.0, 0.1), walk.hiker.block);
+      pushed += walk.push(vec3(side, 0.0, 0.1));
     }
     // Aimed in a step that is to end.
     walk.walk(params_of(0.0, y), 0.2);
     const Origin& origin = walk.hiker.block.origin[0];
-    step_to(walk.hiker.tables, {vec3(origin.x_m, 0.0, origin.z_m + (y > 0.0 ? 0.3 : -0.3)), 0.0},
-            true, walk.hiker.block);
+    walk.step_near({vec3(origin.x_m, 0.0, origin.z_m + (y > 0.0 ? 0.3 : -0.3)), 0.0});
     walk.walk(GaitParams{}, 3.0);
     EXPECT_TRUE(walk.stands());
     most.deep_m = std::max(most.deep_m, walk.seen.deep_m);
@@ -204,9 +220,7 @@ TEST_P(ChangesOverGround, CarriesEveryStyle) {
       return gait_params(stick, *style, gait_limits(adult()));
     };
     Watched walk(model, 0.3);
-    const auto steer = [&](double y, double seconds) {
-      walk.walk(params(y), seconds);
-    };
+    const auto steer = [&](double y, double seconds) { walk.walk(params(y), seconds); };
     steer(0.8, 5.0), steer(0.0, 2.0);
     EXPECT_TRUE(walk.stands()) << name;
     steer(-0.5, 3.0), steer(0.0, 2.5);

@@ -140,9 +140,9 @@ struct Change {
   V stepped_m{};            // the length that was asked for when the running step's landing settled
   V slowness = V{} + 1.0f;  // factor on the step's times: on stairs steps take longer
   V by_paper{};             // 1: State::leg_rad are whole angles, as IkMode::paper solves them
-  // What is asked of the coming landing. 1: it is to be here; else a push moves it by so much, and
-  // 1: the landing after it.
-  V is_aimed{}, aim_x_m{}, aim_z_m{}, aim_rad{}, push_x_m{}, push_z_m{}, push_waits{};
+  // What is asked of the coming landing, 1: it is to be here; and a push that the hips have not
+  // taken yet.
+  V is_aimed{}, aim_x_m{}, aim_z_m{}, aim_rad{}, push_x_m_s{}, push_z_m_s{};
 };
 
 // Legs whose weights differ (weights.h); read where any walk of a block has such.

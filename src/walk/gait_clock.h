@@ -88,6 +88,10 @@ Mask<V> is_to_walk(const State<V>& state) noexcept {
 
 inline constexpr float kLeastCycle_s = 0.2f;
 
+// A tick turns by multiples of this, 2^-24, and a strike turns the step frame by multiples of
+// 2^-21.
+inline constexpr float kTurned_rad = 5.9604645e-8f, kFrameTurned_rad = 8.0f * kTurned_rad;
+
 // `left`: the share of the lengths asked for that uneven ground leaves.
 template <class V>
 void smooth_asked(const Tables& tables, const Change<V>& change, const V& left,
@@ -129,7 +133,10 @@ void smooth_asked(const Tables& tables, const Change<V>& change, const V& left,
   // A lean of v w / g puts the weight on the standing foot's edge, as on a bicycle.
   const V speed_m_s = both_m / most(cycle_s, all<V>(kLeastCycle_s));
   follow(V(speed_m_s * state.turn_rad_s.x * (1.0f / kGravity_m_s2)), tables.lean, state.lean_rad);
-  state.heading_rad = state.heading_rad + state.turn_rad_s.x * tables.tick_s;
+  // Sums of such multiples have no rounding, so a walk to the left has exactly the headings of one
+  // to the right, although they strike at other ticks.
+  state.heading_rad =
+      state.heading_rad + rounded_to(kTurned_rad, V(state.turn_rad_s.x * tables.tick_s));
 }
 
 // Double support takes a longer share of shorter steps (roll_time_share() of stride_family.h).

@@ -281,7 +281,7 @@ template <class V>
 V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
             const Stride<V>& by_clock, State<V>& state, Change<V>& change, Hips<V>& hips,
             Stride<V>& stride) noexcept {
-  const auto led = change.led != V{}, stands = change.stands != V{}, closes = change.closing != V{},
+  const auto led = change.led != V{}, stands = change.stands != V{},
              runs = either(either(either(led, change.was_led != V{}), change.off_ticks != V{}),
                            stands);
   stride = by_clock;

@@ -111,6 +111,13 @@ inline V floored(const V& x) noexcept {
   return near > x ? near - 1.0f : near;
 }
 
+// To the nearest multiple of a power of 2, for |x| below 2^22 of it.
+template <class V>
+inline V rounded_to(float unit, const V& x) noexcept {
+  const float round = 12582912.0f * unit;
+  return (x + round) - round;
+}
+
 // --- Curves --------------------------------------------------------------------------------------
 
 // 0 at x <= 0, 1 at x >= 1; with zero slope at both ends, and with zero curvature, too.
@@ -220,6 +227,7 @@ inline Vec<V> cross(const Vec<V>& a, const Vec<V>& b) noexcept {
 }
 template <class V>
 inline Vec<V> chosen(const Mask<V>& mask, const Vec<V>& a, const Vec<V>& b) noexcept {
+  if constexpr (kLanes<V> == 1) return mask ? a : b;
   return {mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
 }
 template <class V>
@@ -244,6 +252,7 @@ inline Turn<V> unit(const Turn<V>& q) noexcept {
 }
 template <class V>
 inline Turn<V> chosen(const Mask<V>& mask, const Turn<V>& a, const Turn<V>& b) noexcept {
+  if constexpr (kLanes<V> == 1) return mask ? a : b;
   return {mask ? a.w : b.w, mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
 }
 // About a unit axis, by less than a quarter turn.

@@ -131,6 +131,38 @@ void set_table_angles(const Tables& tables, const Mask<V>& right, const Stride<V
   table_rad[3] = most(table_rad[3], all<V>(kLeastKnee_rad));
 }
 
+// Where a leg is to be: all of these are numbers of legs side by side.
+template <class V>
+struct LegGoal {
+  V thigh_m, shank_m;
+  Vec<V> ankle_m;
+  Turn<V> foot;
+  V table_rad[kLegAngles], off_rad[kLegAngles];
+};
+template <class V>
+Leg<V> solve_leg(LegGoal<V>& goal) noexcept {
+  return solve_leg<V>(goal.thigh_m, goal.shank_m, goal.ankle_m, goal.foot, goal.table_rad,
+                      goal.off_rad);
+}
+// Both legs of one walk in one register, twice: what is in its other half is not used.
+inline void solve_both(LegGoal<float> (&goals)[2], Leg<float> (&legs)[2]) noexcept {
+  constexpr int kNumbers = sizeof(LegGoal<float>) / sizeof(float);
+  LegGoal<Four> both;
+  const float *const a = &goals[0].thigh_m, *const b = &goals[1].thigh_m;
+  for (int n = 0; n < kNumbers; ++n)
+    reinterpret_cast<Four*>(&both)[n] = Four{a[n], b[n], a[n], b[n]};
+  const Leg<Four> solved = solve_leg(both);
+  for (int k : {0, 1}) {
+    const auto turn = [&](const Turn<Four>& q) {
+      return Turn<float>{q.w[k], q.x[k], q.y[k], q.z[k]};
+    };
+    legs[k].hip = turn(solved.hip), legs[k].ankle = turn(solved.ankle);
+    legs[k].knee = {solved.knee.w[k], solved.knee.x[k], 0.0f, 0.0f};
+    legs[k].short_m = solved.short_m[k];
+    for (int j = 0; j < kLegAngles; ++j) goals[k].off_rad[j] = both.off_rad[j][k];
+  }
+}
+
 // Swing and stand. `begun_rad`: what was added to the tables' angles where they started; null where
 // nobody asks.
 template <class V>
@@ -142,22 +174,30 @@ void solve_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stri
   const float keep = 1.0f - std::min(1.0f, kLeak_per_s * tables.tick_s),
               square_root = 1.0f - std::sqrt(1.0f - keep), ahead = square_root * square_root;
   const Turn<V> to_pelvis = back(pelvis.turn);
+  LegGoal<V> goals[2];
   for (int k : {0, 1}) {
     const auto right = k == 0 ? time.right : no(time.right);
     const LegBones &l = tables.leg[0], &r = tables.leg[1];
-    V table_rad[kLegAngles];
-    set_table_angles(tables, right, stride, k, table_rad);
+    LegGoal<V>& goal = goals[k];
+    set_table_angles(tables, right, stride, k, goal.table_rad);
     for (int j = 0; j < kLegAngles; ++j) {
       const V off = state.leg_rad[k][j];
       state.leg_rad[k][j] = keep * off + ahead * (off - state.last_leg_rad[k][j]);
       state.last_leg_rad[k][j] = off;
     }
-    const Vec<V> ankle_m = to_pelvis * (feet.ankle_m[k] - pelvis.place_m - pelvis.hip_m[k]);
     if (begun_rad != nullptr) std::copy_n(state.leg_rad[k], kLegAngles, begun_rad[k]);
-    legs[k] =
-        solve_leg<V>(chosen<V>(right, r.thigh_m, l.thigh_m), chosen<V>(right, r.shank_m, l.shank_m),
-                     ankle_m, to_pelvis * feet.foot[k].turn, table_rad, state.leg_rad[k]);
+    std::copy_n(state.leg_rad[k], kLegAngles, goal.off_rad);
+    goal.thigh_m = chosen<V>(right, r.thigh_m, l.thigh_m);
+    goal.shank_m = chosen<V>(right, r.shank_m, l.shank_m);
+    goal.ankle_m = to_pelvis * (feet.ankle_m[k] - pelvis.place_m - pelvis.hip_m[k]);
+    goal.foot = to_pelvis * feet.foot[k].turn;
   }
+  if constexpr (kLanes<V> == 1) {
+    solve_both(goals, legs);
+  } else {
+    for (int k : {0, 1}) legs[k] = solve_leg(goals[k]);
+  }
+  for (int k : {0, 1}) std::copy_n(goals[k].off_rad, kLegAngles, state.leg_rad[k]);
 }
 
 }  // namespace

@@ -153,6 +153,10 @@ int swing_of(const WalkModel& model, int joint) {
 // Chest and head turn ahead: the spine's joints share the chest's turn, and neck and head what the
 // head is ahead of the chest, the neck by its share.
 constexpr double kNeckShare = 0.45;  // of what the head turns beside the chest
+// A root is where its pose says.
+std::array<float, 3> offset_of(const std::vector<Joint>& joints, int joint) {
+  return joint == 0 ? std::array<float, 3>{} : floats(joints[joint].offset_m);
+}
 void fill_path(const WalkModel& model, BuildTables& tables) {
   const UpperBodyModel& body = model.body;
   const std::vector<Joint>& all = model.cycle.skeleton.joints;
@@ -161,12 +165,16 @@ void fill_path(const WalkModel& model, BuildTables& tables) {
         &path = tables.has_head ? body.head_path : body.spine_path;
   const int joints = static_cast<int>(path.size()),
             neck_at = tables.has_head ? body.neck_at : joints, necks = joints - 1 - neck_at;
+  tables.on_pelvis = false;
   for (int i = 0; i < joints; ++i) {
-    if (path[i] == model.cycle.pelvis) tables.path.clear();
-    if (path[i] == model.cycle.pelvis) continue;
+    if (path[i] == model.cycle.pelvis) {
+      tables.path.clear();
+      tables.on_pelvis = true;
+      continue;
+    }
     const bool bends = std::find(spine.begin(), spine.end(), path[i]) != spine.end();
     const float share = bends ? 1.0f / static_cast<float>(spine.size()) : 0.0f;
-    PathJoint to{path[i], -1, share, 0.0f, share, 0.0f, floats(all[path[i]].offset_m)};
+    PathJoint to{path[i], -1, share, 0.0f, share, 0.0f, offset_of(all, path[i])};
     if (i >= neck_at) {
       to.of_head = static_cast<float>(i < joints - 1 ? kNeckShare / necks
                                       : necks > 0    ? 1.0 - kNeckShare
@@ -203,7 +211,7 @@ void fill_arms(const WalkModel& model, BuildTables& tables) {
       if (joint == model.cycle.pelvis) continue;
       if (joint == from.joints.shoulder) arm.shoulder = static_cast<int>(arm.path.size());
       if (joint == from.joints.elbow) arm.elbow = static_cast<int>(arm.path.size());
-      arm.path.push_back({joint, floats(all[joint].offset_m)});
+      arm.path.push_back({joint, offset_of(all, joint)});
     }
     arm.on_trunk = 0;
     while (arm.on_trunk < static_cast<int>(std::min(arm.path.size(), tables.path.size())) &&
@@ -304,9 +312,11 @@ void fill_hardness(const WalkModel& model, BuildTables& tables) {
     const double phase = double(k) / kKnots;
     const StrideCell cell = stride_of(model, false, phase, 1.0).cell;
     const Stencil at = stencil_at(phase);
-    quat above = rotation_y(cell.pelvis_yaw_rad) *
-                 from_rotation_vector(cell.pelvis_tilt + vec3(0.0, 0.0, model.stand_roll_rad)) *
-                 cycle.pelvis_standing;
+    quat above = kIdentity;
+    if (tables.on_pelvis)
+      above = rotation_y(cell.pelvis_yaw_rad) *
+              from_rotation_vector(cell.pelvis_tilt + vec3(0.0, 0.0, model.stand_roll_rad)) *
+              cycle.pelvis_standing;
     turn[0][k] = turn[1][k] = above;
     for (int i = 0; i < static_cast<int>(tables.path.size()); ++i) {
       above = above *

@@ -64,7 +64,8 @@ struct UpperJoint {
 };
 
 // A joint on the way from the pelvis to the head, or to the chest of a skeleton without one, and
-// its share of what chest and head are ahead.
+// its share of what chest and head are ahead. Of a trunk that does not hang from the pelvis: from
+// the root, which has no offset.
 struct PathJoint {
   int joint, upper;  // its place among those that the legs do not set
   float of_chest, of_head;
@@ -102,6 +103,7 @@ struct BuildNumbers {
   float leg_m;          // thigh and shank
   bool legs_are_plain;  // no joint of a leg has a turn before or after its own
   bool has_head;        // it ends the path
+  bool on_pelvis;       // the path begins at the pelvis; else at the root, beside it
   int joints, pelvis;
   float arm_m, shoulder_height_m;  // UpperBodyModel
   // How hard chest and head may turn while a walk changes, radians/s^2.
@@ -123,7 +125,7 @@ struct BuildTables : BuildNumbers {
 
   std::vector<UpperJoint> upper;
   std::vector<float> upper_rows;  // (kKnots + 3) x upper.size() x 4: x, y, z, w
-  std::vector<PathJoint> path;    // from the pelvis on
+  std::vector<PathJoint> path;    // from below the pelvis on, or from the root
   std::vector<SpineBone> spine;   // none: it does not bend by weights
   std::array<ArmBones, 2> arm;
   std::array<float, 4> chest_standing, head_standing, spine_base;  // w, x, y, z

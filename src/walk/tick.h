@@ -479,6 +479,7 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
   if (any(strikes)) {
     V overhangs{};
     if constexpr (kUneven) overhangs = footing.overhangs;
+    landing.rad = rounded_to(kFrameTurned_rad, landing.rad);
     count_step(time, landing, asked.to, strikes, state, overhangs, block.told);
     move_frame<kWidth>(landing, strikes, block);
     if constexpr (kUneven) {

@@ -53,11 +53,11 @@ void stand(const Tables& tables, const Origin& place, Block<1>& block) noexcept 
   State<float>& state = block.state;
   const LegBones &left = tables.leg[0], &right = tables.leg[1];
   // The step frame is the right foot's.
-  const float half_rad = static_cast<float>(0.5 * wrapped(place.heading_rad));
-  const Way<float> way = way_of(2.0f * half_rad);
-  const Vec<float> from = way * Vec<float>{right.stance_m, 0.0f, -tables.rest_lead_m};
-  block.origin[0] = {place.x_m + from.x, place.z_m + from.z, place.heading_rad};
-  sin_cos(half_rad, state.frame_sine, state.frame_cosine);
+  const vec3 heel_m = to_world({vec3(place.x_m, 0.0, place.z_m), place.heading_rad},
+                               vec3(right.stance_m, 0.0, -tables.rest_lead_m));
+  block.origin[0] = {heel_m.x, heel_m.z, place.heading_rad};
+  sin_cos(static_cast<float>(0.5 * wrapped(place.heading_rad)), state.frame_sine,
+          state.frame_cosine);
   state.print_x_m = left.stance_m - right.stance_m;
   const Vec<float> line = sole_of<float>(tables, false).line_m;
   state.toe_x_m = state.print_x_m + line.x, state.toe_z_m = line.z;

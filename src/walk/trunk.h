@@ -133,11 +133,15 @@ void place_trunk(const Tables& tables, int from, Trunk<V>& trunk) noexcept {
 template <class V, class TurnOf>
 void bend(const Tables& tables, const TurnOf& turn, const Mask<V>& where,
           Trunk<V>& trunk) noexcept {
-  Turn<V> above = trunk.base;
+  Turn<V> above = trunk.base, by;
+  float share = 0.0f;  // that `by` is of: joints mostly have the same
+  const bool bends = any(where);
   for (int i = 0; i < joints_of_path(tables); ++i) {
     const PathJoint& joint = tables.path[i];
-    if (joint.bends > 0.0f) {
-      const Turn<V> bent = unit(back(above) * turn(all<V>(joint.bends)) * above * trunk.own[i]);
+    if (bends && joint.bends > 0.0f) {
+      if (joint.bends != share) by = turn(all<V>(joint.bends));
+      share = joint.bends;
+      const Turn<V> bent = unit(back(above) * by * above * trunk.own[i]);
       trunk.own[i] = chosen(where, bent, trunk.own[i]);
     }
     above = trunk.turned[i] = above * trunk.own[i];
@@ -163,6 +167,11 @@ struct Bearing {
 };
 
 template <class V>
+Mask<V> leans(const Bearing<V>& bearing) noexcept {
+  return either(either(bearing.forward_rad != V{}, bearing.left_rad != V{}),
+                bearing.ahead_rad != V{});
+}
+template <class V>
 void lean_trunk(const Tables& tables, const Turn<V>& heading, const Bearing<V>& bearing,
                 Trunk<V>& trunk) noexcept {
   const Turn<V> from_heading = back(heading);
@@ -172,7 +181,7 @@ void lean_trunk(const Tables& tables, const Turn<V>& heading, const Bearing<V>& 
             turn_x(V(share * bearing.forward_rad))) *
            from_heading;
   };
-  bend(tables, turn, no(Mask<V>{}), trunk);
+  bend(tables, turn, leans(bearing), trunk);
 }
 template <class V>
 void nod(const Tables& tables, const Turn<V>& heading, const Bearing<V>& bearing,
@@ -491,10 +500,12 @@ Vec<Floats<kWidth>> look_place(const Block<kWidth>& block, const Floats<kWidth>&
   return {V(cosine * p.x - sine * p.z), p.y, V(sine * p.x + cosine * p.z)};
 }
 
-// Where a style has the head look: to where the walk leads, in a direction, at a place.
+// Where a style has the head look: to where the walk leads, in a direction, at a place. Returns the
+// walks that have such a style.
 template <int kWidth>
-void look(const Tables& tables, const Block<kWidth>& block, const Mask<Floats<kWidth>>& is_styled,
-          Trunk<Floats<kWidth>>& trunk) noexcept {
+Mask<Floats<kWidth>> look(const Tables& tables, const Block<kWidth>& block,
+                          const Mask<Floats<kWidth>>& is_styled,
+                          Trunk<Floats<kWidth>>& trunk) noexcept {
   using V = Floats<kWidth>;
   constexpr float kLead_s = 0.6f;    // how far ahead of the walk a leading head looks
   constexpr float kNear_m = 0.001f;  // a place within the head is not looked at
@@ -511,7 +522,8 @@ void look(const Tables& tables, const Block<kWidth>& block, const Mask<Floats<kW
     sin_cos(V(kRadians * of(kLookPitch_deg)), ps, pc);
     look_along(tables, Vec<V>{pc * ys, ps, pc * yc}, of(kLook), trunk.turned[head], looks, trunk);
   }
-  if (!any(looks_at)) return;
+  const auto some = either(either(leads, looks), looks_at);
+  if (!any(looks_at)) return some;
   const Vec<V> place_m = look_place<kWidth>(block, chosen<V>(looks_at, 1.0f, 0.0f));
   const Turn<V> own = trunk.turned[head];
   // The head moves when it turns, so a near place is aimed at twice.
@@ -522,6 +534,7 @@ void look(const Tables& tables, const Block<kWidth>& block, const Mask<Floats<kW
     look_along(tables, way_m * (1.0f / most(far_m, all<V>(kNear_m))), of(kLookAt), own,
                both(looks_at, far_m > all<V>(kNear_m)), trunk);
   }
+  return some;
 }
 
 }  // namespace

@@ -18,27 +18,6 @@ V arm_swing(const Tables& tables, const State<V>& state) noexcept {
   return 1.0f + (extra > V{} ? V(extra / (1.0f + extra * (1.0f / kMostExtra))) : extra);
 }
 
-// Turns the joints from the pelvis to the head about the vertical, where chest and head are ahead:
-// each about its parent's upward axis, which that turn does not change.
-template <class V>
-void turn_ahead(const Tables& tables, const Pelvis<V>& pelvis, const State<V>& state,
-                const Mask<V>& is_posed, const Poses& poses) noexcept {
-  const V chest_rad = state.chest_ahead_rad.x, head_rad = state.head_ahead_rad.x;
-  const auto leads = both(no(is_posed), either(chest_rad != V{}, head_rad != V{}));
-  if (!any(leads)) return;
-  const V is = chosen<V>(leads, 1.0f, 0.0f);
-  const auto& s = tables.pelvis_standing;
-  const Turn<V> standing{all<V>(s[0]), all<V>(s[1]), all<V>(s[2]), all<V>(s[3])};
-  Vec<V> up = back(pelvis.turn * standing) * Vec<V>{V{}, all<V>(1.0f), V{}};
-  for (const PathJoint& joint : tables.path) {
-    const Turn<V> q = read_joint<V>(joint.joint, is, poses);
-    const Turn<V> turned =
-        turn_about(up, V(joint.of_chest * chest_rad + joint.of_head * head_rad)) * q;
-    write_where(turned, joint.joint, is, poses);
-    up = back(q) * up;
-  }
-}
-
 // --- What a style asks of the upper body ---------------------------------------------------------
 
 // Brings its numbers nearer to those asked for; those of no style are the data's.
@@ -164,10 +143,16 @@ Turn<V> data_turn(const Tables& tables, const PathJoint& joint, const Knots<V>& 
   return turn;
 }
 
-// Where the pelvis' joint is: over the root, as the data turn the joints between.
+// How what the trunk hangs from is turned: the pelvis, or else the way.
 template <class V>
-Vec<V> pelvis_place(const Tables& tables, const Turn<V>& heading, const Vec<V>& root_m, const V& is,
-                    const Poses& poses) noexcept {
+Turn<V> base_turn(const Tables& tables, const Turn<V>& heading, const Turn<V>& pelvis) noexcept {
+  return tables.on_pelvis ? pelvis * every<V>(tables.pelvis_standing) : heading;
+}
+// Where it is: the pelvis' joint over the root, as the data turn the joints between; or the root.
+template <class V>
+Vec<V> base_place(const Tables& tables, const Turn<V>& heading, const Vec<V>& root_m, const V& is,
+                  const Poses& poses) noexcept {
+  if (!tables.on_pelvis) return root_m;
   Vec<V> place_m = root_m;
   Turn<V> turn = heading;
   for (std::size_t i = 0; i < tables.above_pelvis.size(); ++i) {
@@ -175,6 +160,25 @@ Vec<V> pelvis_place(const Tables& tables, const Turn<V>& heading, const Vec<V>& 
     turn = turn * read_joint<V>(tables.above_pelvis[i].joint, is, poses);
   }
   return tables.above_pelvis.empty() ? place_m : place_m + turn * every<V>(tables.pelvis_offset_m);
+}
+
+// Turns the joints from the pelvis to the head about the vertical, where chest and head are ahead:
+// each about its parent's upward axis, which that turn does not change.
+template <class V>
+void turn_ahead(const Tables& tables, const Turn<V>& heading, const Turn<V>& pelvis,
+                const State<V>& state, const Mask<V>& is_posed, const Poses& poses) noexcept {
+  const V chest_rad = state.chest_ahead_rad.x, head_rad = state.head_ahead_rad.x;
+  const auto leads = both(no(is_posed), either(chest_rad != V{}, head_rad != V{}));
+  if (!any(leads)) return;
+  const V is = chosen<V>(leads, 1.0f, 0.0f);
+  Vec<V> up = back(base_turn(tables, heading, pelvis)) * Vec<V>{V{}, all<V>(1.0f), V{}};
+  for (const PathJoint& joint : tables.path) {
+    const Turn<V> q = read_joint<V>(joint.joint, is, poses);
+    const Turn<V> turned =
+        turn_about(up, V(joint.of_chest * chest_rad + joint.of_head * head_rad)) * q;
+    write_where(turned, joint.joint, is, poses);
+    up = back(q) * up;
+  }
 }
 
 // What a tick knows when it poses the upper body.
@@ -213,7 +217,7 @@ template <class V>
         read_stride(tables, tick.time, phase, state.ratio_behind, tick.landing.ratio, over);
     show(change.shown, stride);
     Trunk<V> trunk;
-    trunk.base = upright * tilted(tables, stride, state) * every<V>(tables.pelvis_standing);
+    trunk.base = base_turn(tables, heading, upright * tilted(tables, stride, state));
     const Knots<V> knots = knots_at(data_phase(tables, tick.time, phase));
     for (int i = 0; i < joints_of_path(tables); ++i)
       trunk.own[i] = data_turn(tables, tables.path[i], knots, tick.shown, is);
@@ -279,8 +283,8 @@ template <int kWidth, bool kPaper>
                                   state.head_ahead_rad.x, poise.push_rad.x, styled);
   if constexpr (kPaper) bearing.forward_rad = bearing.left_rad = V{};
   Trunk<V> trunk;
-  trunk.base = tick.pelvis.turn * every<V>(tables.pelvis_standing);
-  trunk.base_m = pelvis_place(tables, heading, tick.pelvis.place_m, is, poses);
+  trunk.base = base_turn(tables, heading, tick.pelvis.turn);
+  trunk.base_m = base_place(tables, heading, tick.pelvis.place_m, is, poses);
   const int joints = joints_of_path(tables);
   for (int i = 0; i < joints; ++i) trunk.own[i] = read_joint<V>(tables.path[i].joint, is, poses);
   lean_trunk(tables, heading, bearing, trunk);
@@ -295,13 +299,15 @@ template <int kWidth, bool kPaper>
     shoulder[side] =
         chosen(where, unit(back(above) * turn * above * shoulder[side]), shoulder[side]);
   };
-  const auto leans = either(bearing.forward_rad != V{}, bearing.left_rad != V{});
+  const auto tilts = either(bearing.forward_rad != V{}, bearing.left_rad != V{});
+  // Walks whose trunk is not as in the data: the others' keeps its bits.
+  auto moves = either(leans(bearing), either(bearing.turns_rad != V{}, bearing.nods_rad != V{}));
   const bool has[2] = {!tables.arm[0].path.empty(), !tables.arm[1].path.empty()};
   for (int side : {0, 1}) {
     if (!has[side]) continue;
     const ArmBones& bones = tables.arm[side];
     shoulder[side] = read_joint<V>(bones.path[bones.shoulder].joint, is, poses);
-    turn_shoulder(side, seen(turn_x(V(-bearing.forward_rad)) * turn_z(bearing.left_rad)), leans);
+    turn_shoulder(side, seen(turn_x(V(-bearing.forward_rad)) * turn_z(bearing.left_rad)), tilts);
   }
   // What is not steady does not jump.
   const float dt = tables.tick_s;
@@ -332,6 +338,7 @@ template <int kWidth, bool kPaper>
                  to = eased(tables, goal, V(of_chest * (dt * dt)), turns_rad, acts, eases,
                             poise.chest);
     const auto off = both(acts, poise.chest.ticks > V{});
+    moves = either(moves, off);
     if (any(off)) {
       const Turn<V> turn = chosen(off, seen(turn_of(to) * back(turn_of(goal))), none);
       bend(
@@ -339,7 +346,7 @@ template <int kWidth, bool kPaper>
     }
   }
   poise.acts = chosen<V>(acts, 1.0f, 0.0f);
-  auto hangs = leans;
+  auto hangs = tilts;
   for (int side : {0, 1}) {
     const V out_rad = (side == 0 ? kRadians : -kRadians) * styled.body[kArmOut_deg + side].x;
     const auto spreads = both(is_styled, out_rad != V{});
@@ -364,6 +371,7 @@ template <int kWidth, bool kPaper>
   }
   if (shares) {
     share_spine(tables, styled, uneven, trunk);
+    moves = either(moves, uneven);
     if (any(poses_arms)) place_trunk(tables, 0, trunk);
   }
   if (any(hangs)) {
@@ -385,14 +393,18 @@ template <int kWidth, bool kPaper>
                    to = eased(tables, goal, V(of_head * (dt * dt)), turns_rad, acts, eases,
                               poise.head);
       const auto off = both(acts, poise.head.ticks > V{});
+      moves = either(moves, off);
       if (any(off))
         turn_head(tables, chosen(off, seen(turn_of(to) * back(turn_of(goal))), none), trunk);
     }
-    if (any(is_styled)) look<kWidth>(tables, block, is_styled, trunk);
+    if (any(is_styled)) moves = either(moves, look<kWidth>(tables, block, is_styled, trunk));
   }
+  if (!any(moves)) return;
+  const V writes = chosen<V>(both(is_posed, moves), 1.0f, 0.0f);
   for (int i = 0; i < joints; ++i)
     if (tables.path[i].bends > 0.0f || tables.path[i].of_look > 0.0f)
-      write_where(unit(back(below(trunk, i)) * trunk.turned[i]), tables.path[i].joint, is, poses);
+      write_where(unit(back(below(trunk, i)) * trunk.turned[i]), tables.path[i].joint, writes,
+                  poses);
 }
 
 // `swing`: the factor on the arms' swing. `eases`: as advance_poise() says.
@@ -401,13 +413,15 @@ void write_upper_body(const Tables& tables, const BodyTick<Floats<kWidth>>& of,
                       const Floats<kWidth>& swing, const Mask<Floats<kWidth>>& eases,
                       Block<kWidth>& block, const Poses& poses) noexcept {
   using V = Floats<kWidth>;
-  constexpr float kSoftElbow = 0.1f;
+  constexpr float kSoftElbow = 0.1f, kWholly = 0.99999f;
   State<V>& state = block.state;
   Styled<V>& styled = block.styled;
   Poise<V>& poise = block.poise;
   BodyTick<V> tick = of;
   const Knots<V> knots = knots_at(data_phase(tables, tick.time, tick.phase));
-  const V shown = tick.shown * within(state.posture.x, 0.0f, 1.0f);
+  // Its filter comes near to 1 and no nearer; a joint that is shown wholly is made a unit once.
+  const V posture = within(state.posture.x, 0.0f, 1.0f),
+          shown = tick.shown * (posture > all<V>(kWholly) ? all<V>(1.0f) : posture);
   tick.shown = shown;
   const auto idles = styled.idle_share != V{},
              is_styled = either(either(styled.asked != V{}, styled.acts != V{}), idles);
@@ -452,7 +466,7 @@ void write_upper_body(const Tables& tables, const BodyTick<Floats<kWidth>>& of,
   const auto is_posed =
       either(either(is_styled, eases),
              either(poise.acts != V{}, either(poise.chest.ticks > V{}, poise.head.ticks > V{})));
-  turn_ahead(tables, tick.pelvis, state, is_posed, poses);
+  turn_ahead(tables, tick.hips.heading.turn(), tick.pelvis.turn, state, is_posed, poses);
   if (any(is_posed))
     pose_body<kWidth, kPaper>(tables, tick, is_posed, is_styled, eases, block, poses);
 }

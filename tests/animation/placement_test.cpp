@@ -42,13 +42,13 @@ TEST(Placement, AMovedWalkHasTheBitsOfOneThatIsNot) {
         << tick;
     ASSERT_EQ(moved_pose.root_m, to_world(moving.placed, pose.root_m)) << tick;
     for (const int side : {0, 1}) {
-      // Through another root's rotation: equal but for rounding.
+      // Through another root's rotation, and one of floats is a unit to 1e-7 alone.
       ASSERT_LT(glm::distance(moving.frame.heel_m[side],
                               to_world(moving.placed, state.frame.heel_m[side])),
-                1e-9);
+                5e-7);
       ASSERT_LT(
           glm::distance(moving.frame.toe_m[side], to_world(moving.placed, state.frame.toe_m[side])),
-          1e-9);
+          5e-7);
     }
     ASSERT_EQ(moving.frame.root_moved_m, state.frame.root_moved_m);
   }

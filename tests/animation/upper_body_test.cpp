@@ -430,7 +430,7 @@ TEST(WalkBody, InPaperModeItIsTheDatas) {
     for (const int j : {arm.joints.shoulder, arm.joints.elbow, arm.joints.wrist}) {
       EXPECT_LT(
           glm::length(rotation_vector(glm::conjugate(data.local[j]) * walker.pose().local[j])),
-          1e-6 * kDegree);
+          1e-4 * kDegree);  // floats: 4e-5
     }
   }
 }

@@ -284,6 +284,20 @@ double rms_deg(const RateRun& a, const RateRun& b) {
   return std::sqrt(squares / count);
 }
 
+// One begins with the foot that limps, so they strike at other ticks.
+TEST(Walk, MirroredSticksHaveExactlyMirroredHeadings) {
+  MadeWalker right, left;
+  bool other_ticks = false;
+  for (int tick = 0; tick < 20 * kRate; ++tick) {
+    const double x = tick < 15 * kRate ? 0.5 : 0.1;
+    right.walk(x, 0.7, 1, limp());
+    left.walk(-x, 0.7, 1, limp());
+    ASSERT_EQ(right.state().root.heading_rad, -left.state().root.heading_rad) << tick;
+    other_ticks = other_ticks || right.last().stage != left.last().stage;
+  }
+  EXPECT_TRUE(other_ticks);
+}
+
 TEST(Walk, GoesEquallyFarAndLooksAlikeAtAnyRate) {
   for (const vec2 stick : {vec2(0.0, 0.3), vec2(0.4, 0.6), vec2(0.0, 0.8), vec2(0.0, 1.0)}) {
     const RateRun usual = run_at(240, stick);

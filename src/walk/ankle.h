@@ -40,8 +40,8 @@ void ease_ankle(const Tables& tables, const Time<V>& time, const Stride<V>& stri
   const LegBones &l = tables.leg[0], &r = tables.leg[1];
   const auto flies = k == 0 ? time.flies : Mask<V>{}, stands = k == 0 ? no(time.flies) : time.flies;
   // An ankle that stairs bend while standing would jump where a walk starts.
-  const V begun = both(starts, no(time.flies)) ? smooth(V(state.tick / state.roll_ticks))
-                                               : all<V>(1.0f),
+  const V first = time.flies ? V(time.u * (1.0f / kFirstRise)) : V(state.tick / state.roll_ticks),
+          begun = starts ? smooth(first) : all<V>(1.0f),
           may = begun * heel_rise(tables, time, right, phase, no(Mask<V>{}), change);
   const V soft = chosen<V>(flies, kSoftFlying_rad, kSoftBent_rad),
           excess = soft_positive(bent, soft) * (flies    ? all<V>(1.0f)

@@ -107,11 +107,11 @@ Vec<V> flight_heel(const Tables& tables, const Time<V>& time, const Landing<V>& 
   const auto closes = change.closing != V{}, is_short = either(change.starting != V{}, closes);
   if (any(is_short)) {
     // As far as strides of its own length have it; before it lands it is one of the walk.
-    constexpr float kInPlaceStride_m = 0.02f, kLikeAStep = 0.4f, kWalksFrom = 0.3f;
+    constexpr float kInPlace_m = 0.02f, kGoes_m = 0.06f, kLikeAStep = 0.4f, kWalksFrom = 0.3f;
     const Vec<V> ahead = seen(hips.own, stride.heel_behind_m, turns, all<V>(kPastClosely));
-    const auto in_place = size(hips.own.stride_m) < all<V>(kInPlaceStride_m);
-    const V far = in_place ? smoother(u)
-                           : V(1.0f + ahead.z / (in_place ? all<V>(1.0f) : hips.own.stride_m)),
+    const V own_m = hips.own.stride_m, by_table = smooth(kInPlace_m, kGoes_m, size(own_m)),
+            far = mix(smoother(u), V(1.0f + ahead.z / (by_table != V{} ? own_m : all<V>(1.0f))),
+                      by_table),
             goes = kLikeAStep * smoother(V((u - kWalksFrom) * (1.0f / (1.0f - kWalksFrom)))),
             walks = closes ? V{} : goes;
     // Sideways, to or from hip width, it goes evenly.
@@ -210,6 +210,13 @@ V pitch_off(const Time<V>& time, const V& tick, const Change<V>& change,
                                             : V{};
 }
 
+// What is left of a height that a changed plan was off, and of its slope per flight.
+template <class V>
+V gap_left(const V& u, const Gap<V>& gap, const Change<V>& change) noexcept {
+  const V s = within(V((u - change.gap_begin) / change.gap_lasts), 0.0f, 1.0f);
+  return gap.x * (1.0f - smoother(s)) + gap.v * change.gap_lasts * slope_left(s);
+}
+
 // How far its pitch may be off what the floor bounds it to: as far as it is off the tables, when
 // the toe has left the floor.
 template <class V>
@@ -289,7 +296,7 @@ Flight<V> fly(const Tables& tables, const Time<V>& time, const Landing<V>& landi
     const Vec<V>& p = flight.heel_m;
     flight.lifted_m = footing.print_y_m +
                       rise_of(footing.print, V(p.x - state.print_x_m), V(p.z - state.print_z_m)) -
-                      flight.base_m - edge_left(u, change) * footing.gap_line_m;
+                      flight.base_m - gap_left(u, footing.gap_line_m, change);
     const V goes = time.flies ? V(1.0f - value_left(u)) : V{};
     flight.tilt = unit(Turn<V>{mix(from.w, to.w, goes), mix(from.x, to.x, goes),
                                mix(from.y, to.y, goes), mix(from.z, to.z, goes)});
@@ -395,7 +402,8 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
     footing.rise_m = first_roll ? V{} : most(V(rise_m + left * footing.gap_rise_m), V{});
     const Vec<V> risen_m{room_m.x, V(room_m.y + footing.rise_m), room_m.z};
     flight.heel_m = flight.heel_m + risen_m;
-    flight.base_m = base_m + left * (footing.gap_line_m + footing.gap_room_m);
+    flight.base_m = base_m + gap_left(time.u, footing.gap_line_m, change) +
+                    gap_left(time.u, footing.gap_room_m, change);
     flight.heel_m.y = change.gap_begin != V{} ? flight.heel_m.y : most(flight.heel_m.y, base_m);
     planned = time.flies ? planned
                          : pitch_to_rise<V>(tables, time.right, footing.rise_m, most(planned, V{}));

@@ -187,17 +187,23 @@ inline constexpr float kFirstRoll_s = 0.25f, kLeastFirstFlight_s = 0.38f,
                        kMostFirstFlight_s = 0.62f, kFirstFlight = 0.9f;
 
 // The first flight follows the stick until the foot lifts off: a thumb takes some time.
+// Over uneven ground it takes `least_s`, to which it comes by a few ticks a tick.
 template <class V>
-void time_first_flight(const Tables& tables, const Mask<V>& where, const Change<V>& change,
-                       State<V>& state) noexcept {
+void time_first_flight(const Tables& tables, const Mask<V>& where, const V& least_s,
+                       const Change<V>& change, State<V>& state) noexcept {
+  constexpr float kMostChange = 2.0f;  // ticks
   const float tick_s = tables.tick_s, scale = tables.time_scale;
   const Stages<V> here = stages_of(tables, change, state, state.right_swings != V{});
   const V roll_s = whole_beats(all<V>(kFirstRoll_s * scale), 1.0f), roll = ticks_of(roll_s, tick_s),
           flight_s = whole_beats(within(V(kFirstFlight * here.flight_s),
                                         kLeastFirstFlight_s * scale, kMostFirstFlight_s * scale),
                                  1.0f),
-          step_s = roll_s + flight_s, flight = ticks_of(V(step_s - roll * tick_s), tick_s);
-  state.step_s = where ? step_s : state.step_s;
+          step_s = roll_s + flight_s, level = ticks_of(V(step_s - roll * tick_s), tick_s),
+          was = state.tick == V{} ? level : state.flight_ticks,
+          slow = least(most(floored(V(least_s * (1.0f / tick_s))), V(was - kMostChange)),
+                       V(was + kMostChange)),
+          flight = least_s == V{} ? level : most(level, slow);
+  state.step_s = where ? most(step_s, V((roll + flight - 0.5f) * tick_s)) : state.step_s;
   state.roll_ticks = where ? roll : state.roll_ticks;
   state.flight_ticks = where ? flight : state.flight_ticks;
   state.end_rate = where ? V(0.5f * (here.roll / roll + here.flight / flight)) : state.end_rate;
@@ -236,12 +242,14 @@ Time<V> time_of(const Tables& tables, const State<V>& state) noexcept {
   return time;
 }
 
-// Moves the clock on by one tick. The phase follows a cubic to the end of the stage.
+// Moves the clock on by one tick. The phase follows a cubic to the end of the stage. `least_s`: of
+// a first flight over uneven ground.
 template <class V>
-Time<V> advance_clock(const Tables& tables, const Change<V>& change, State<V>& state) noexcept {
+Time<V> advance_clock(const Tables& tables, const V& least_s, const Change<V>& change,
+                      State<V>& state) noexcept {
   const auto follows = both(change.starting != V{}, state.flies == V{}),
              runs = change.stands == V{};
-  if (any(follows)) time_first_flight(tables, follows, change, state);
+  if (any(follows)) time_first_flight(tables, follows, least_s, change, state);
   const V stage_end = stage_end_of(tables, state), left = ticks_of_stage(state) - state.tick,
           s = 1.0f / left, way = stage_end - state.phase, v0 = state.phase_rate * left,
           v1 = state.end_rate * left, c2 = 3.0f * way - 2.0f * v0 - v1, c3 = v0 + v1 - 2.0f * way;
@@ -268,7 +276,7 @@ void begin_flight(const Tables& tables, const Time<V>& time, const Mask<V>& lift
 // After the flight, where `strikes`: the other foot's step begins. It makes up for what the steps
 // before were too short or long by rounding. Where it is slower than the last one (`led`), hips
 // that still are as fast would have to sink for the foot behind: it leaves the floor sooner. Nor
-// does it take so long that they would have to go back.
+// does it take so long that they would have to go back, but on stairs.
 template <class V>
 void begin_step(const Tables& tables, const Time<V>& time, const Mask<V>& strikes,
                 const Change<V>& change, State<V>& state) noexcept {
@@ -284,7 +292,8 @@ void begin_step(const Tables& tables, const Time<V>& time, const Mask<V>& strike
           x = change.pelvis_x_m.v, z = change.pelvis_z_m.v,
           speed_m = most(root(V(x * x + z * z)), all<V>(kLeastSpeed_m)),
           own_s = next.roll_s + next.flight_s,
-          longest_s = most(V(tick_s * way_m / (kLeastWay * speed_m)), V(kLeastTime * own_s));
+          least_time = change.slowness > all<V>(1.0f) ? all<V>(1.0f) : all<V>(kLeastTime),
+          longest_s = most(V(tick_s * way_m / (kLeastWay * speed_m)), V(least_time * own_s));
   const V late_s = within(short_s, -tick_s, tick_s),
           step_s = both(both(led, change.stops == V{}), state.ratio_behind > all<V>(kWalked))
                        ? least(own_s, longest_s)

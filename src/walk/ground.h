@@ -142,6 +142,34 @@ V slowness_of(const Tables& tables, const Mask<V>& right, const State<V>& state,
   return rise == V{} ? all<V>(1.0f) : V(slow_s / own_s);
 }
 
+// A flight to another tread, `rise_m` higher or lower, takes as long as one of steady stairs.
+template <class V>
+V flight_to_tread_s(const Tables& tables, const V& rise_m) noexcept {
+  constexpr float kFlight_s = 0.5f, kRise = 0.2f;  // of so many legs
+  return size(rise_m) * (kFlight_s * tables.time_scale / (kRise * tables.leg_m));
+}
+// The same of a first one, which begins from a stand; never 0.
+template <class V>
+V first_flight_s(const Tables& tables, const Footing<V>& footing) noexcept {
+  constexpr float kLeast_m = 1e-6f;
+  const V step_m = size(footing.landing_y_m),
+          foot_m = size(V(footing.landing_y_m - footing.print_y_m));
+  return flight_to_tread_s(tables, most(most(step_m, V(foot_m - step_m)), all<V>(kLeast_m)));
+}
+
+// A step that turns out to lead to another tread takes as long, from its roll on.
+template <class V>
+void take_time_to_tread(const Tables& tables, const Time<V>& time, const Change<V>& change,
+                        const Footing<V>& footing, State<V>& state) noexcept {
+  constexpr float kMostChange = 2.0f;  // ticks a tick
+  const auto walks = both(both(change.stands == V{}, change.starting == V{}),
+                          both(change.closing == V{}, change.stops == V{})),
+             may = both(no(time.flies), walks);
+  const V least_ticks = floored(V(first_flight_s(tables, footing) * (1.0f / tables.tick_s))),
+          more = within(V(least_ticks - state.flight_ticks), 0.0f, kMostChange);
+  state.flight_ticks = state.flight_ticks + (may ? more : V{});
+}
+
 // --- The ground that the hips go over ------------------------------------------------------------
 
 // Up, the knee that lands bent straightens until late single support; down, the standing knee
@@ -330,7 +358,7 @@ inline constexpr float kClimbsInPlace_m = 0.1f;
 inline constexpr float kLiftUp = 0.5f, kHighUp = 0.2f, kHighestUp = 0.345f;
 inline constexpr float kLiftGround =
     0.5f;  // of the flight: until then the plane left bounds the toe
-inline constexpr float kReplan_m = 0.005f;  // a landing moved by more is planned for anew
+inline constexpr float kReplan_m = 0.002f;  // a landing moved by more is planned for anew
 
 // The plane that it flies to, or what a change of plan has left of the one before.
 template <class V>
@@ -399,9 +427,9 @@ void change_footing(const Landing<V>& landing, const Mask<V>& strikes, const V& 
   set(V(-y_m), footing.print_y_m), set(V(flat_toe_y_m - y_m), footing.toe_y_m);
   set(V(footing.hips_m.x - y_m), footing.hips_m.x), set(V{}, footing.landing_y_m);
   set(V{}, footing.level_x_m), set(V{}, footing.level_z_m);
-  set(V{}, footing.gap_plane.x), set(V{}, footing.gap_plane.z), set(V{}, footing.gap_line_m),
-      set(V{}, footing.gap_room_m);
-  set(V{}, footing.gap_under_m), set(V{}, footing.gap_rise_m);
+  set(V{}, footing.gap_plane.x), set(V{}, footing.gap_plane.z), set(V{}, footing.gap_rise_m);
+  for (Gap<V>* gap : {&footing.gap_line_m, &footing.gap_room_m}) set(V{}, gap->x), set(V{}, gap->v);
+  set(V{}, footing.gap_under_m);
 }
 
 }  // namespace

@@ -509,16 +509,19 @@ Time<float> time_in_flight(const Tables& tables, const State<float>& state) noex
 PlannedFlight planned_flight(const Tables& tables, const Floor& floor, const Frame& frame,
                              const Block<1>& block) noexcept {
   const State<float>& state = block.state;
-  const Change<float>& change = block.change;
+  Change<float> change = block.change;
   const Footing<float>& footing = block.footing;
   Time<float> time = time_in_flight(tables, state);
   const Way<float> to = way_of(state.landing_rad);
-  Landing<float> landing = planned_landing(tables, time, to, change, state);
-  landing.ratio = ratio_on_ground(change, state, footing);
+  Landing<float> landing;
   Hips<float> hips;
   hips.behind = footprints_of(tables, time, state.ratio_behind);
-  hips.ahead = footprints_of(tables, time, landing.ratio);
-  hips.own = footprints_of(tables, time, short_ratio(tables, landing, state));
+  const auto read_ratio = [&] {
+    landing = landing_over(tables, time, to, change, state, footing);
+    hips.ahead = footprints_of(tables, time, landing.ratio);
+    hips.own = footprints_of(tables, time, short_ratio(tables, landing, state));
+  };
+  read_ratio();
   const float left = state.flight_ticks - state.tick, way = time.stage_end - state.phase,
               v0 = state.phase_rate * left, v1 = state.end_rate * left,
               c2 = 3.0f * way - 2.0f * v0 - v1, c3 = v0 + v1 - 2.0f * way;
@@ -526,11 +529,19 @@ PlannedFlight planned_flight(const Tables& tables, const Floor& floor, const Fra
              print = frame.out(vec3(state.print_x_m, footing.print_y_m, state.print_z_m));
   const LegBones& leg = tables.leg[time.right ? 1 : 0];
   PlannedFlight flight;
+  float seen_tick = state.tick;
   for (int i = 0; i <= kProbes; ++i) {
     // What is over when a plan changes does not count.
     time.u = std::max(static_cast<float>(i) / kProbes, change.gap_begin);
+    // What a change of plan has left of the ratio fades on the way.
     const float tick = time.u * state.flight_ticks, s = (tick - state.tick) / left,
-                phase = state.phase + (v0 + (c2 + c3 * s) * s) * s;
+                off_ratio = change.off_ratio.x;
+    for (; seen_tick < tick && change.off_ratio.x != 0.0f; seen_tick += 1.0f) {
+      fade(least(change.off_ticks, state.flight_ticks - seen_tick), change.off_ratio);
+      change.off_ticks -= 1.0f;
+    }
+    if (change.off_ratio.x != off_ratio) read_ratio();
+    const float phase = state.phase + (v0 + (c2 + c3 * s) * s) * s;
     time.share = (state.roll_ticks + tick) / (state.roll_ticks + state.flight_ticks);
     const Stride<float> stride =
         read_by_clock(tables, time, landing, phase, time.share, time.u, change, state);

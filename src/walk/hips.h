@@ -391,7 +391,7 @@ void go_on_from_here(const Tables& tables, const Mask<V>& begins, const State<V>
 // from where the pelvis is, in the new step frame. `phase`: what was shown at the strike.
 template <class V>
 void begin_lead(const Tables& tables, const Mask<V>& strikes, const V& phase, const V& rate,
-                const State<V>& state, Change<V>& change) noexcept {
+                const Mask<V>& is_level, const State<V>& state, Change<V>& change) noexcept {
   const auto right = state.right_swings == V{};  // it swings in the step that begins
   const V own_m = own_step_m<V>(tables, right, state.backward != V{}),
           asked_m = by_side<V>(right, state.asked.length_m),
@@ -405,14 +405,15 @@ void begin_lead(const Tables& tables, const Mask<V>& strikes, const V& phase, co
   change.further = strikes ? V{} : change.further;
   change.closing = closes ? all<V>(1.0f) : strikes ? V{} : change.closing;
   auto changes = size(V(asked_m - smoothed_m)) > kOtherPace * own_m;
-  if (tables.terrain == nullptr) {  // elsewhere the ground makes steps shorter and slower
+  if (any(is_level)) {  // elsewhere the ground makes steps shorter and slower
     // A led step gives of its roll to its flight: that alone leads no further step.
     const Stages<V> own = stages_of(tables, change, state, no(right));
     const V rolls = change.led != V{} ? V(own.roll_s - state.roll_ticks * tables.tick_s) : V{},
             flight_ticks = (own.flight_s + rolls) * (1.0f / tables.tick_s);
-    changes = either(changes, either(size(V(landed_m - change.stepped_m)) > kOtherPace * own_m,
-                                     size(V(state.flight_ticks - flight_ticks)) >
-                                         kOtherTime * state.flight_ticks));
+    const auto paces = either(size(V(landed_m - change.stepped_m)) > kOtherPace * own_m,
+                              size(V(state.flight_ticks - flight_ticks)) >
+                                  kOtherTime * state.flight_ticks);
+    changes = either(changes, both(is_level, paces));
   }
   const auto leads = both(no(rests), either(either(stops, changes), change.catch_ticks != V{}));
   change.length_m[0] = both(strikes, no(stops)) ? state.asked.length_m[0] : change.length_m[0];
@@ -510,7 +511,7 @@ inline constexpr float kLowReach =
     0.985f;  // of the leg: a foot whose heel stays low reaches so far
 
 // The spline's knots stand so far apart, in seconds at the reference leg.
-inline constexpr float kSinkKnot_s = 0.06f, kSoftSink_m = 0.002f;
+inline constexpr float kSinkKnot_s = 0.06f, kSoftSink_m = 0.012f;
 inline int sink_knot_ticks(const Tables& tables) noexcept {
   return std::max(1, static_cast<int>(kSinkKnot_s * tables.time_scale / tables.tick_s + 0.5f));
 }

@@ -24,9 +24,9 @@ V heel_rise(const Tables& tables, const Time<V>& time, const Mask<V>& right, con
   const V p = phase - chosen<V>(right, 0.0f, share[0] + share[1]), own = p - floored(p),
           begin = most(chosen<V>(right, share[0], share[2]), all<V>(kRiseBegin)),
           rises = smooth(V((own - begin) * (1.0f / kHeelRiseLasts)));
-  const auto rests = both(is_stand, change.closing != V{});
-  const V shown = rests ? V(rises * closing_left(time, change)) : rises;
-  return change.stands != V{} ? V{} : shown;
+  // In a last step it stays down, and comes back with the tables where the walk goes on.
+  const auto shows = both(is_stand, change.starting == V{});
+  return change.stands != V{} ? V{} : shows ? V(rises * change.shown) : rises;
 }
 
 // The angle with this sine and cosine, to 1e-6 below a right angle.

@@ -25,6 +25,7 @@ inline constexpr float kLandsAhead =
     0.42f;  // of a step: so far are hips behind the foot that lands
 inline constexpr float kTurnsOnSpot = 0.1f;  // steps below this ratio
 inline constexpr float kTurnsBack = 0.45f;   // of a closing flight: until then the walk goes on
+inline constexpr float kFlightLeft = 0.45f;  // of a steady flight, which a slow one had been
 inline constexpr float kMostCatch_s = 0.8f;  // until hips that have braked are in their place
 inline constexpr float kNearStrike_s = 0.15f, kLow_m = 0.001f;
 inline constexpr float kLeastRest_s = 0.25f, kAfterLanding_s = 0.15f;
@@ -75,7 +76,7 @@ inline float best_rest_s(const Off<float>& goes, const Off<float>& aside, bool o
 struct Flown {
   Vec<float> heel_m[2];
   float pitch_rad[2], over_m[2];  // over the ground line
-  float line_m = 0.0f, room_m = 0.0f, loose_rad = 0.0f;
+  float line_m[2]{}, room_m[2]{}, loose_rad = 0.0f;
   float yaw_rad, twist_rad, roll_rad;
 };
 template <class F>
@@ -102,9 +103,8 @@ Flown flown(const Tables& tables, const Change<float>& change, const State<float
       if (k == 1) follow_room(tables, footing);
       const Vec<float> room_m = room_at(time.u, at, footing);
       flown.heel_m[k] = flown.heel_m[k] + room_m;
-      const float left = edge_left(time.u, change);
-      if (k == 0) flown.line_m = base_m + left * footing.gap_line_m;
-      if (k == 0) flown.room_m = room_m.y + left * footing.gap_room_m;
+      flown.line_m[k] = base_m + gap_left(time.u, footing.gap_line_m, change);
+      flown.room_m[k] = room_m.y + gap_left(time.u, footing.gap_room_m, change);
     }
     if (k == 0) {
       flown.yaw_rad = flying_yaw(time, landing, change, at);
@@ -138,6 +138,26 @@ void plan_landing_anew(const Tables& tables, const Time<float>& time, Block<1>& 
     footing.step_m = state.landing_x_m * asked.to.sine + state.landing_z_m * asked.to.cosine;
     footing.step_ratio = size(footing.step_m) / own_step_m<float>(tables, time.right, time.back);
     footing.off_ratio = {};
+  }
+}
+
+// A foot in flight that is to land on another tread than it was takes its time to come there.
+inline void take_time_for_rise(const Tables& tables, Block<1>& block) noexcept {
+  State<float>& state = block.state;
+  Change<float>& change = block.change;
+  Block<1> there = block;
+  const Time<float> time = time_of(tables, state);
+  there.change.gap_begin = time.u;
+  plan_landing_anew(tables, time, there, there.footing);
+  const float rise_m = there.footing.landing_y_m - block.footing.landing_y_m,
+              least_ticks = state.tick + ticks_of(flight_to_tread_s(tables, rise_m), tables.tick_s),
+              more = most(least_ticks - state.flight_ticks, 0.0f);
+  state.flight_ticks += more;
+  if (change.stops == 0.0f) return;
+  if (change.closing != 0.0f) {
+    change.closing_ticks += more;
+  } else {
+    change.rest_ticks += more;
   }
 }
 
@@ -180,6 +200,8 @@ void change_step(const Tables& tables, bool moves, Block<1>& block, F& footing,
   Slope<float> lands{};
   if constexpr (kIsUneven<F>) lands = plane_in_flight(time, change, footing);
   work();
+  if constexpr (kIsUneven<F>)
+    if (moves && flies) take_time_for_rise(tables, block);
   change.led = change.is_new = 1.0f;
   change.off_ticks = floored(2.0f * kCarry_s * tables.time_scale / tables.tick_s + 0.5f);
   const Time<float> now = time_of(tables, state);
@@ -207,7 +229,7 @@ void change_step(const Tables& tables, bool moves, Block<1>& block, F& footing,
     state.gap_slope_m = ((was.heel_m[1] - is.heel_m[1]) - state.gap_m) * ticks;
   };
   if constexpr (kIsUneven<F>) {
-    footing.gap_under_m = footing.gap_line_m = footing.gap_room_m = 0.0f;
+    footing.gap_under_m = 0.0f, footing.gap_line_m = footing.gap_room_m = {};
     const float goes = 1.0f - value_left(now.u), goes_was = 1.0f - value_left(time.u);
     const auto left = [&](float was_x, float from, float to) {
       return from + (was_x - from) * (goes_was / most(goes, 1e-3f)) - to;
@@ -225,8 +247,12 @@ void change_step(const Tables& tables, bool moves, Block<1>& block, F& footing,
   fit_gap(is);
   change.gap_high_m = most(is.over_m[0], kLow_m * tables.size);
   if constexpr (kIsUneven<F>) {
-    footing.gap_line_m = was.line_m - is.line_m;
-    footing.gap_room_m = was.room_m - is.room_m;
+    const auto gap = [&](const float(&from)[2], const float(&to)[2]) {
+      const float gap_m = from[0] - to[0];
+      return Gap<float>{gap_m, (from[1] - to[1] - gap_m) * ticks};
+    };
+    footing.gap_line_m = gap(was.line_m, is.line_m);
+    footing.gap_room_m = gap(was.room_m, is.room_m);
     footing.gap_under_m = most(-state.gap_m.y - change.gap_high_m, 0.0f);
     state.gap_m.y += footing.gap_under_m;
   }
@@ -265,7 +291,7 @@ inline void time_closing_step(const Tables& tables, State<float>& state,
                               Change<float>& change) noexcept {
   const float scale = tables.time_scale / tables.tick_s;
   const auto ticks_of_time = [&](float time_s) { return floored(time_s * scale + 0.5f); };
-  const float shortest = ticks_of_time(kLeastClosing_s),
+  const float shortest = ticks_of_time(kLeastClosing_s * change.slowness),
               longest = most(shortest, floored(kMostClosing * state.flight_ticks)),
               least_roll =
                   most(least(ticks_of_time(kLeastClosingRoll_s), state.roll_ticks) - state.tick,
@@ -467,7 +493,8 @@ void walk_on(const Tables& tables, bool may_move, Block<1>& block, F& footing) n
       if (!flies)
         state.roll_ticks = least(most(state.tick + least_left, ticks_of(own.roll_s, tick_s)),
                                  state.roll_ticks + least_left);
-      state.flight_ticks = most(state.tick + 1.0f, ticks_of(own.flight_s, tick_s));
+      const float flight = ticks_of(own.flight_s, tick_s);
+      state.flight_ticks = most(state.tick + floored(kFlightLeft * flight), flight);
     }
     const float left_s = time_of(tables, state).to_strike * tick_s,
                 goes = 0.5f * left_s / (own.roll_s + own.flight_s),

@@ -124,14 +124,17 @@ V last_ratio(const Mask<V>& back) noexcept {
 }
 
 // Of strides whose half is the way of the foot that flies.
-// What that is off fades; one that flies goes at least as far as it is to.
+// What that is off fades; one that flies soon goes at least as far as it is to.
 template <class V>
 V short_ratio(const Tables& tables, const Landing<V>& landing, const State<V>& state) noexcept {
+  constexpr float kComesUp = 0.3f;  // of the flight
   const V x = landing.x_m - state.print_x_m, z = landing.z_m - state.print_z_m;
   const V own = root(V(x * x + z * z)) *
                 (1.0f / (tables.leg[0].own_step_m + tables.leg[1].own_step_m)),
-          least_own = state.flies != V{} ? own : V{};
-  return most(V(own + 0.5f * landing.off_ratio), least_own);
+          off = 0.5f * landing.off_ratio,
+          flown = state.flies != V{} ? V(state.tick / state.flight_ticks) : V{},
+          low = off * (1.0f - smoother(V(flown * (1.0f / kComesUp))));
+  return most(V(own + (off < V{} ? low : off)), V{});
 }
 
 // `change`: from the stride behind, at 0, to the one ahead, at 1.

@@ -197,12 +197,19 @@ Mask<V> is_unforeseen(const Tables& tables, const State<V>& state,
               both(state.flies != V{}, part == floored(part)));
 }
 
+// From time to time: slow steps on stairs last longer than what is known ahead.
+template <class V>
+Mask<V> is_half_seen(const Tables& tables, const State<V>& state) noexcept {
+  const V part = state.tick / static_cast<float>((kSinkKnots - 3) / 2 * sink_knot_ticks(tables));
+  return both(state.tick != V{}, part == floored(part));
+}
+
 // Where the landing on level ground has moved, the ground is asked for another one.
 template <int kWidth>
 void choose_footholds(const Tables& tables, const Time<Floats<kWidth>>& time,
                       const AskedStep<Floats<kWidth>>& asked, Block<kWidth>& block) noexcept {
   using V = Floats<kWidth>;
-  constexpr float kMoved = 2e-5f;        // metres, radians
+  constexpr float kMoved = 3e-6f;        // metres, radians
   constexpr float kPieceSettles = 0.6f;  // of the roll: until then a step may still go elsewhere
   const State<V>& state = block.state;
   Footing<V>& footing = block.footing;
@@ -423,12 +430,15 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
   const auto is_new = both(no(follows), change.is_new != V{}),
              is_short = either(either(change.starting != V{}, change.stops != V{}),
                                change.catch_ticks != V{});
-  if constexpr (kUneven) lean_into_slope(tables, state, change, footing);
+  if constexpr (kUneven && !kPaper) lean_into_slope(tables, state, change, footing);
+  if constexpr (kUneven && kPaper) footing.lean_rad = {};
   V left = all<V>(1.0f);
   if constexpr (kUneven) left = footing.left.x;
   smooth_asked(tables, change, left, state);
   if constexpr (kPaper) state.lean_rad = state.chest_ahead_rad = state.head_ahead_rad = {};
-  const Time<V> time = advance_clock(tables, change, state);
+  V first_s{};
+  if constexpr (kUneven) first_s = first_flight_s(tables, footing);
+  const Time<V> time = advance_clock(tables, first_s, change, state);
   const AskedStep<V> asked = plan_landing(tables, time, change, state, footing);
   if constexpr (kUneven) {
     if (looks_ahead) {
@@ -439,6 +449,7 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
   }
   Landing<V> landing = planned_landing(tables, time, asked.to, change, state);
   if constexpr (kUneven) {
+    take_time_to_tread(tables, time, change, footing, state);
     follow_ground(tables, time, asked, change, state, footing, landing);
     move_hips_ground(tables, time, landing, change, state, footing);
     if (looks_ahead) plan_rooms<kWidth>(tables, Mask<V>{}, block);
@@ -481,12 +492,14 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
     if constexpr (kUneven) overhangs = footing.overhangs;
     landing.rad = rounded_to(kFrameTurned_rad, landing.rad);
     count_step(time, landing, asked.to, strikes, state, overhangs, block.told);
+    auto is_level = change.slowness == all<V>(1.0f);
     move_frame<kWidth>(landing, strikes, block);
     if constexpr (kUneven) {
       move_rails(strikes, footing.landing_y_m, block.styled);
       change_footing(landing, strikes, feet.flat_toe_m.y, footing);
       const V slow = slowness_of(tables, no(time.right), state, footing);
       change.slowness = strikes ? slow : change.slowness;
+      is_level = both(is_level, slow == all<V>(1.0f));
     }
     // A step whose plan changed late has not come over to its own stride yet.
     landing.ratio = change.off_over.x != V{}
@@ -498,7 +511,7 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
     end_aims(landing, strikes, change);
     const auto keeps = either(change.led != V{}, change.off_phase.x != V{});
     const V rate = keeps ? change.phase_rate : state.phase_rate;
-    begin_lead(tables, strikes, phase, rate, state, change);
+    begin_lead(tables, strikes, phase, rate, is_level, state, change);
     begin_step(tables, time, strikes, change, state);
     one_by_one<kWidth>(both(strikes, change.closing != V{}), block, [&](Block<1>& one, int) {
       if constexpr (kUneven) time_rest(tables, one.state, one.change);
@@ -514,8 +527,11 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
   }
   if (!looks_ahead) return;
   // Over uneven ground any change of pace asks for more than the tables know.
-  const auto changes = kUneven ? either(is_short, change.led != V{}) : is_short,
-             looks = either(either(is_new, both(either(lifts, strikes), changes)),
+  const auto sinks = either(change.led != V{}, change.sink_ticks != V{}),
+             changes = kUneven ? either(is_short, sinks) : is_short,
+             again = kUneven ? either(either(lifts, strikes), is_half_seen(tables, state))
+                             : either(lifts, strikes),
+             looks = either(either(is_new, both(again, changes)),
                             both(is_to_walk(state), is_unforeseen(tables, state, change)));
   one_by_one<kWidth>(looks, block,
                      [&](Block<1>& one, int) { look_ahead<kPaper, kUneven>(tables, one); });

@@ -211,6 +211,11 @@ struct Poise {
   Eased<V> chest, head;
 };
 
+// What a flight's height differs by from its plan, and the difference's slope per flight.
+template <class V>
+struct Gap {
+  V x{}, v{};
+};
 // How a plane rises along x and along z.
 template <class V>
 struct Slope {
@@ -241,7 +246,8 @@ struct Footing {
   // rise with the hips were off the new ones, and how far the heel was below the line.
   V is_new{}, sink_from{};
   Slope<V> gap_plane;
-  V gap_line_m{}, gap_room_m{}, gap_rise_m{}, gap_under_m{};
+  Gap<V> gap_line_m, gap_room_m;
+  V gap_rise_m{}, gap_under_m{};
   // The step along the heading, its ratio, and what the tables' ratio is off it; the share of the
   // wanted lengths that the ground leaves; the trunk's lean into the slope, forwards.
   V step_m{}, step_ratio{};

@@ -75,10 +75,41 @@ inline constexpr float kShortPitchFade = 0.6f, kFirstLift_m = 0.03f,
 // Of the first roll: until then the heel stays down; of the tables' pitch when it lifts off.
 inline constexpr float kHeelStays = 0.25f, kFirstPitch = 0.8f;
 inline constexpr float kHeelRises = 0.5f;  // of the first flight: of the other foot
-inline constexpr float kRollEnd = 0.9f;    // of the roll: the toe is down
+inline constexpr float kSoftRoll_rad = 0.0174532925f;
+inline constexpr float kRollEnd = 0.9f;  // of the roll: the toe is down
 // A flying toe may be that far below where it stands: the tables' own, which only just leave the
 // floor, are let through.
 inline constexpr float kMostSink_m = 0.0015f, kSoftPitch_rad = 0.0069813f, kWiderPitch = 0.25f;
+
+template <class V>
+V flying_yaw(const Time<V>& time, const Landing<V>& landing, const Change<V>& change,
+             const State<V>& state) noexcept {
+  return state.print_rad + (landing.rad - state.print_rad) * (1.0f - value_left(time.u)) +
+         state.lift_turn_rad * slope_left(time.u) + change.gap_rad * edge_left(time.u, change);
+}
+
+// How far a foot that flies keeps away from the one that stands where both point elsewhere: to the
+// outside of its path, while it is beside that one.
+template <class V>
+V keeps_apart_m(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
+                const Vec<V>& heel_m, const V& u, const Change<V>& change,
+                const State<V>& state) noexcept {
+  constexpr float kTurned_rad = 0.1f;             // both footprints' turns: wholly from here on
+  constexpr float kApart = 0.65f, kSoft = 0.12f;  // of the tracks' distance
+  constexpr float kBeside_m = 0.15f, kPast_m = 0.4f, kEnds = 0.25f;  // of the flight
+  const V turned = size(state.print_rad) + size(landing.rad);
+  if (!any(turned != V{})) return V{};
+  const LegBones &l = tables.leg[0], &r = tables.leg[1];
+  const float tracks_m = std::abs(l.track_m) + std::abs(r.track_m);
+  const V outwards = chosen<V>(time.right, -1.0f, 1.0f),
+          foot_m = chosen<V>(time.right, r.foot_m, l.foot_m), heel = outwards * heel_m.x,
+          toe = heel + outwards * foot_m * way_of(flying_yaw(time, landing, change, state)).sine,
+          soft_m = all<V>(kSoft * tracks_m), near_m = soft_least(heel, toe, soft_m),
+          beside = 1.0f - smooth(kBeside_m * tables.size, kPast_m * tables.size, size(heel_m.z)),
+          flies = smoother(V(u * (1.0f / kEnds))) * smoother(V((1.0f - u) * (1.0f / kEnds)));
+  return outwards * smooth(0.0f, kTurned_rad, turned) * beside * flies *
+         soft_positive(V(kApart * tracks_m - near_m), soft_m);
+}
 
 // The tables' place of the swinging heel, from its footprint to the landing; `base_m`: the height
 // of the ground line below it.
@@ -107,11 +138,14 @@ Vec<V> flight_heel(const Tables& tables, const Time<V>& time, const Landing<V>& 
   const auto closes = change.closing != V{}, is_short = either(change.starting != V{}, closes);
   if (any(is_short)) {
     // As far as strides of its own length have it; before it lands it is one of the walk.
-    constexpr float kInPlace_m = 0.02f, kGoes_m = 0.06f, kLikeAStep = 0.4f, kWalksFrom = 0.3f;
+    constexpr float kInPlaceStride_m = 0.02f, kGoingStride_m = 0.12f, kLikeAStep = 0.4f,
+                    kWalksFrom = 0.3f;
     const Vec<V> ahead = seen(hips.own, stride.heel_behind_m, turns, all<V>(kPastClosely));
-    const V own_m = hips.own.stride_m, by_table = smooth(kInPlace_m, kGoes_m, size(own_m)),
-            far = mix(smoother(u), V(1.0f + ahead.z / (by_table != V{} ? own_m : all<V>(1.0f))),
-                      by_table),
+    const V stride_m = size(hips.own.stride_m),
+            over_stride =
+                1.0f / (stride_m > all<V>(kInPlaceStride_m) ? hips.own.stride_m : all<V>(1.0f)),
+            far = mix(smoother(u), V(1.0f + ahead.z * over_stride),
+                      smooth(kInPlaceStride_m, kGoingStride_m, stride_m)),
             goes = kLikeAStep * smoother(V((u - kWalksFrom) * (1.0f / (1.0f - kWalksFrom)))),
             walks = closes ? V{} : goes;
     // Sideways, to or from hip width, it goes evenly.
@@ -138,6 +172,7 @@ Vec<V> flight_heel(const Tables& tables, const Time<V>& time, const Landing<V>& 
     p.x = p.x - middle.cosine * out;
     p.z = p.z + middle.sine * out;
   }
+  p.x = p.x + keeps_apart_m(tables, time, landing, p, u, change, state);
   // A greater factor acts while the foot is high, a smaller one from the lift-off on.
   const V factor = lift_of(time, state), low = least(factor, all<V>(1.0f));
   V more = 1.0f + (most(factor, all<V>(1.0f)) - 1.0f) * (1.0f - smooth(kLiftFalls, kLiftEnds, u));
@@ -225,13 +260,6 @@ V loose_pitch(const V& u, const V& off, const Change<V>& change) noexcept {
          edge_left(u, change) * change.gap_loose_rad;
 }
 
-template <class V>
-V flying_yaw(const Time<V>& time, const Landing<V>& landing, const Change<V>& change,
-             const State<V>& state) noexcept {
-  return state.print_rad + (landing.rad - state.print_rad) * (1.0f - value_left(time.u)) +
-         state.lift_turn_rad * slope_left(time.u) + change.gap_rad * edge_left(time.u, change);
-}
-
 // How long a roll takes until the toe is down, and how much of that is over.
 template <class V>
 V roll_lasts(const Change<V>& change, const State<V>& state) noexcept {
@@ -283,8 +311,9 @@ Flight<V> fly(const Tables& tables, const Time<V>& time, const Landing<V>& landi
   flight.heel_m =
       with_gap(tables, time, flight.table_heel_m, flight.base_m, change, state, footing);
   // A low foot that hardly leaves the floor does not roll onto an edge.
+  const V over = flight_share(u, change);
   const V low = mix(one, low_lift<V>(time.right, state),
-                    V(smoother(V(u * 2.0f)) * (1.0f - smoother(V((u - 0.6f) * 2.5f)))));
+                    V(smoother(V(over * 2.0f)) * (1.0f - smoother(V((over - 0.6f) * 2.5f)))));
   const FootInStride<V>& table = stride.foot[0];
   flight.edge = edge_of(sole, V(low * table.twist_rad), V(low * table.roll_rad));
   const Way<V> left = way_of(state.print_rad),
@@ -324,7 +353,10 @@ void pitch_in_flight(const Time<V>& time, const Sole<V>& sole, const Flight<V>& 
   const V edge_m =
       sole.half_width_m * size(across) * smooth(0.0f, 0.25f, u) * (1.0f - smooth(0.9f, 1.0f, u));
   const V deep = (sole.toe_rest_m + edge_m - kMostSink_m - height_m) / sole.foot_m;
-  const V limit = sole.elevation_rad - arc_sine(within(deep, -0.95f, 0.95f)) + arc_sine(steeper);
+  // A heel that is as high as the foot is long leaves it free.
+  constexpr float kSteep = 0.95f, kSteeper = 3.2025631f;  // the arc's slope there
+  const V arc = arc_sine(within(deep, -kSteep, kSteep)) + kSteeper * least(V(deep + kSteep), V{});
+  const V limit = sole.elevation_rad - arc + arc_sine(steeper);
   const V soft = kSoftPitch_rad + kWiderPitch * loose_pitch(u, off, change) + edge_m / sole.foot_m;
   const V pitch = time.flies ? soft_least(planned, limit, soft) : most(planned, V{});
   foot.heel_m = flight.heel_m;
@@ -386,6 +418,10 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
   const V low = low_pitch(low_lift<V>(time.right, state), time.u);
   V planned = first_roll ? V(low * (kFirstPitch * by_clock.foot[0].pitch_rad * lifts))
                          : V(low * stride.foot[0].pitch_rad + off);
+  // The phase of hips that lead may be beyond the lift-off, where the tables' pitch falls.
+  const auto stays = both(no(time.flies), both(change.led != V{}, no(first_roll)));
+  const V soft = kSoftRoll_rad * smoother(V(state.tick / state.roll_ticks));
+  planned = both(stays, soft > V{}) ? soft_positive(planned, most(soft, all<V>(1e-6f))) : planned;
   foot.toe_m = {state.toe_x_m, sole.toe_rest_m, state.toe_z_m};
   if constexpr (kIsUneven<F>) {
     foot.toe_m.y = footing.toe_y_m;

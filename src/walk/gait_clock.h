@@ -276,7 +276,8 @@ void begin_flight(const Tables& tables, const Time<V>& time, const Mask<V>& lift
 // After the flight, where `strikes`: the other foot's step begins. It makes up for what the steps
 // before were too short or long by rounding. Where it is slower than the last one (`led`), hips
 // that still are as fast would have to sink for the foot behind: it leaves the floor sooner. Nor
-// does it take so long that they would have to go back, but on stairs.
+// does it take so long that they would have to go back, but on stairs; its roll is shorter as its
+// flight is.
 template <class V>
 void begin_step(const Tables& tables, const Time<V>& time, const Mask<V>& strikes,
                 const Change<V>& change, State<V>& state) noexcept {
@@ -301,7 +302,8 @@ void begin_step(const Tables& tables, const Time<V>& time, const Mask<V>& strike
           own_roll = ticks_of(V(next.roll_s + late_s), tick_s),
           last_roll = next.roll / most(state.phase_rate, all<V>(1e-4f)),
           led_roll = most(floored(root(V(own_roll * last_roll))), all<V>(2.0f)),
-          roll = led ? least(own_roll, led_roll) : own_roll,
+          shorter_roll = most(floored(V(own_roll * (step_s / own_s))), all<V>(2.0f)),
+          roll = led ? least(shorter_roll, led_roll) : own_roll,
           flight = ticks_of(V(step_s + late_s - roll * tick_s), tick_s);
   state.late_s = strikes ? late_s : state.late_s;
   state.step_s = strikes ? step_s : state.step_s;

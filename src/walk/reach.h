@@ -102,8 +102,9 @@ void keep_heels_low(const Tables& tables, const Time<V>& time, const V& phase,
     styled.low[k].x = acts ? (over ? V{} : next.x) : V{};
     styled.low[k].v = acts ? (over ? V{} : next.v) : V{};
     low[k] = styled.low[k].x;
-    const V down_m =
-        (kLowHips_m * tables.size) * low[k] * smooth(0.0f, kLowRisen_rad, stride.foot[k].pitch_rad);
+    // By the phase of the hips: a foot that flies by the clock may have another pitch.
+    const V risen_rad = k == 0 ? stride.stood_pitch_rad : stride.foot[1].pitch_rad;
+    const V down_m = (kLowHips_m * tables.size) * low[k] * smooth(0.0f, kLowRisen_rad, risen_rad);
     pelvis.place_m.y = acts ? V(pelvis.place_m.y - down_m) : pelvis.place_m.y;
   }
   for (int k : {0, 1}) {

@@ -15,7 +15,7 @@ namespace gaitpad {
 namespace {
 
 // A quintic to rest brakes with about kNeed v^2 / way. Times are in seconds at the reference leg.
-inline constexpr float kNeed = 0.72f, kBrake_m_s2 = 3.0f, kCloseBrake_m_s2 = 3.3f,
+inline constexpr float kNeed = 0.72f, kBrake_m_s2 = 3.0f, kCloseBrake_m_s2 = 3.0f,
                        kMostBrake_m_s2 = 3.9f;
 inline constexpr float kLeastStep = 0.25f, kFurtherStep = 0.3f;  // of the foot's own step
 inline constexpr float kToClose_s = 0.40f, kWayWhileClosing = 0.44f, kNextStep_s = 0.35f;
@@ -180,7 +180,8 @@ void change_step(const Tables& tables, bool moves, Block<1>& block, F& footing,
   const float ratio_was = ratio(), shown = change.shown,
               pitch = planned_pitch(time, change, state) + change.off_pitch.x,
               edge = change.led != 0.0f ? planned_edge(time, change) + change.off_edge.x : 1.0f,
-              over = planned_over(time, change) + change.off_over.x;
+              over = planned_over(time, change) + change.off_over.x,
+              flown_share = flight_share(time.u, change);
   if (change.led == 0.0f) {
     go_on_from_here(tables, true, state, change);
     change.phase = state.phase, change.phase_rate = state.phase_rate;
@@ -210,8 +211,9 @@ void change_step(const Tables& tables, bool moves, Block<1>& block, F& footing,
   change.off_pitch = {pitch - planned_pitch(now, change, state), 0.0f, 0.0f};
   change.off_edge = {flies ? edge - planned_edge(now, change) : 0.0f, 0.0f, 0.0f};
   if (!moves) return;
+  change.limp = 0.0f;  // its step is as long as hips need it
   if constexpr (kIsUneven<F>) footing.is_new = 1.0f;
-  change.gap_begin = now.u;
+  change.gap_begin = now.u, change.gap_share = flown_share;
   plan_landing_anew(tables, now, block, footing);
   change.off_ratio = {};
   change.off_ratio.x = ratio_was - ratio();

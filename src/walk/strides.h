@@ -127,14 +127,13 @@ V last_ratio(const Mask<V>& back) noexcept {
 // What that is off fades; one that flies soon goes at least as far as it is to.
 template <class V>
 V short_ratio(const Tables& tables, const Landing<V>& landing, const State<V>& state) noexcept {
-  constexpr float kComesUp = 0.3f;  // of the flight
+  constexpr float kGoesFrom = 0.3f;  // of the flight
   const V x = landing.x_m - state.print_x_m, z = landing.z_m - state.print_z_m;
   const V own = root(V(x * x + z * z)) *
                 (1.0f / (tables.leg[0].own_step_m + tables.leg[1].own_step_m)),
-          off = 0.5f * landing.off_ratio,
-          flown = state.flies != V{} ? V(state.tick / state.flight_ticks) : V{},
-          low = off * (1.0f - smoother(V(flown * (1.0f / kComesUp))));
-  return most(V(own + (off < V{} ? low : off)), V{});
+          u = state.flies != V{} ? V(state.tick / state.flight_ticks) : V{},
+          less = least(landing.off_ratio, V{}), more = landing.off_ratio - less;
+  return most(V(own + 0.5f * (more + less * (1.0f - smoother(V(u * (1.0f / kGoesFrom)))))), V{});
 }
 
 // `change`: from the stride behind, at 0, to the one ahead, at 1.
@@ -248,11 +247,11 @@ void read_four(const Tables& tables, const Time<V>& time, int at, const V& phase
 
 // Where one foot's steps are shorter than the other's, the tables of short strides would keep both
 // feet low: then a heel flies as high as in strides in which both go as far as the longer one, and
-// comes down as the tables have it.
+// comes down as the tables have it. A flight limps as was asked when its foot lifted off: a style
+// that changes on its way would else let the heel jump.
 template <class V>
-void raise_limping_heel(const Tables& tables, const Time<V>& time, const V& phase, const V& ratio,
-                        const V& u, const Change<V>& change, const State<V>& state,
-                        Stride<V>& stride) noexcept {
+void plan_limp(const Tables& tables, const Time<V>& time, const Mask<V>& lifts,
+               const State<V>& state, Change<V>& change) noexcept {
   // A walk limps from the one difference of both feet's strides on, wholly from the other.
   constexpr float kEvenSteps = 0.03f, kUnevenSteps = 0.2f, kLeastAsked = 0.1f;
   // Even styles ask for equal steps, or for the data's own, which may differ.
@@ -264,9 +263,9 @@ void raise_limping_heel(const Tables& tables, const Time<V>& time, const V& phas
           shorter = least(left, right);
   // The last steps of a stop, and one that goes on after all, are as long as hips need them.
   const auto walks = both(both(change.stops == V{}, change.closing == V{}), change.resumes == V{}),
-             limps = both(both(time.flies, walks),
-                          longer - shorter > kEvenSteps * (longer + kLeastAsked));
-  if (!any(limps)) return;
+             limps = both(walks, longer - shorter > kEvenSteps * (longer + kLeastAsked));
+  change.limp = lifts ? V{} : change.limp;
+  if (!any(both(lifts, limps))) return;
   const auto evenness = [](const V& a, const V& b) {
     return V((least(a, b) + kLeastAsked) / (most(a, b) + kLeastAsked));
   };
@@ -277,11 +276,18 @@ void raise_limping_heel(const Tables& tables, const Time<V>& time, const V& phas
   const V even =
               most(most(evenness(left, right), evenness(left_m, right_m)),
                    most(evenness(asked_left, asked_right), evenness(asked_left_m, asked_right_m))),
-          uneven = 1.0f - even,
-          shows = smooth(kEvenSteps, kUnevenSteps, uneven) * smoother(V(u * 5.0f)) *
-                  (1.0f - smoother(V((u - 0.5f) * 2.5f))),
-          own = time.right ? right : left;
-  const V as_far = ratio * longer / most(own, all<V>(kLeastAsked));
+          uneven = 1.0f - even, own = time.right ? right : left;
+  const auto begins = both(lifts, limps);
+  change.limp = begins ? smooth(kEvenSteps, kUnevenSteps, uneven) : change.limp;
+  change.limp_far = begins ? V(longer / most(own, all<V>(kLeastAsked))) : change.limp_far;
+}
+template <class V>
+void raise_limping_heel(const Tables& tables, const Time<V>& time, const V& phase, const V& ratio,
+                        const V& u, const Change<V>& change, Stride<V>& stride) noexcept {
+  const auto limps = both(time.flies, change.limp != V{});
+  if (!any(limps)) return;
+  const V shows = change.limp * smoother(V(u * 5.0f)) * (1.0f - smoother(V((u - 0.5f) * 2.5f))),
+          as_far = ratio * change.limp_far;
   V heel_m[4];  // the left one's height, .., the right one's
   read_four(tables, time, 1, phase, as_far, as_far, V{}, heel_m);
   const V high_m = most(stride.heel_high_m, time.right ? heel_m[3] : heel_m[0]);
@@ -299,7 +305,7 @@ Stride<V> read_by_clock(const Tables& tables, const Time<V>& time, const Landing
   if (!any(starts)) {
     Stride<V> stride =
         read_stride(tables, time, phase, state.ratio_behind, landing.ratio, smoother(share));
-    raise_limping_heel(tables, time, phase, landing.ratio, u, change, state, stride);
+    raise_limping_heel(tables, time, phase, landing.ratio, u, change, stride);
     return stride;
   }
   Stride<V> stride =
@@ -310,7 +316,7 @@ Stride<V> read_by_clock(const Tables& tables, const Time<V>& time, const Landing
   FootInStride<V>& flies = stride.foot[0];
   flies.pitch_rad = flat * flies.pitch_rad;
   flies.twist_rad = flat * flies.twist_rad, flies.roll_rad = flat * flies.roll_rad;
-  raise_limping_heel(tables, time, phase, landing.ratio, u, change, state, stride);
+  raise_limping_heel(tables, time, phase, landing.ratio, u, change, stride);
   stride.heel_high_m = starts ? stride.heel_behind_m.y : stride.heel_high_m;
   return stride;
 }
@@ -319,6 +325,15 @@ Stride<V> read_by_clock(const Tables& tables, const Time<V>& time, const Landing
 template <class V>
 V edge_left(const V& u, const Change<V>& change) noexcept {
   return 1.0f - smoother(V((u - change.gap_begin) / change.gap_lasts));
+}
+
+// The share of a flight that is over, without the step that it makes where a changed plan gives the
+// flight another time.
+template <class V>
+V flight_share(const V& u, const Change<V>& change) noexcept {
+  const V share =
+      change.gap_share + (u - change.gap_begin) * ((1.0f - change.gap_share) / change.gap_lasts);
+  return change.gap_begin != V{} ? share : u;
 }
 
 // The pelvis alone, at any phase.

@@ -64,8 +64,9 @@ void begin_walks(const Tables& tables, Block<kWidth>& block) noexcept {
   const auto begins = both(asked, is_meant(tables, state, change));
   if (!any(begins)) return;
   change.asked_ticks = begins ? V{} : change.asked_ticks;
-  const auto right = state.right_swings != V{},
-             other = both(begins, right != (state.asked.turn_rad_s < V{}));
+  // Who has not stood yet begins with the other foot than the one that is still landing.
+  const auto right = state.right_swings != V{}, stood = block.told.settle_ticks == V{},
+             other = both(both(begins, stood), right != (state.asked.turn_rad_s < V{}));
   if (any(other)) {
     Landing<V> beside{state.print_x_m, state.print_z_m, state.print_rad, way_of(state.print_rad)};
     Feet<V> feet;
@@ -103,7 +104,7 @@ void begin_walks(const Tables& tables, Block<kWidth>& block) noexcept {
   set(V{}, state.ratio_behind), set(V{}, state.stand_pitch_rad);
   for (V* number : {&block.told.stride_m[0], &block.told.stride_m[1], &block.told.step_ticks[0],
                     &block.told.step_ticks[1]})
-    set(V{}, *number);
+    *number = both(begins, stood) ? V{} : *number;
   for (Smoothed<V>& length_m : state.length_m) set(V{}, length_m.x), set(V{}, length_m.v);
   go_on_from_here(tables, begins, state, change);
 }
@@ -522,6 +523,7 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
   }
   count_last_roll(tables, strikes, change, block.told);
   if (any(lifts)) {
+    plan_limp(tables, time, lifts, state, change);
     begin_flight(tables, time, lifts, change, state);
     if (kUneven && looks_ahead) plan_rooms<kWidth>(tables, lifts, block);
   }

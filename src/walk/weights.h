@@ -394,8 +394,8 @@ void weigh_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stri
     Smoothed<V> loose{begins ? turns : weighted.loose[k].x, begins ? zero : weighted.loose[k].v};
     follow(turns, tables.loosens, loose);
     keep(loose.x, weighted.loose[k].x), keep(loose.v, weighted.loose[k].v);
-    const V u = flies ? time.u : zero, rolled = state.tick / state.roll_ticks, lifts = loose.x,
-            rise = lifts * risen;
+    const V u = flies ? flight_share(time.u, change) : zero, rolled = state.tick / state.roll_ticks,
+            lifts = loose.x, rise = lifts * risen;
     const auto by_mode = [&](const V& flying, const V& rolling, const V& standing) {
       const V planted = rolls ? rolling : standing;
       return V(flies ? flying : planted);

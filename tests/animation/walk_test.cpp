@@ -48,6 +48,24 @@ TEST(Walk, AStopEndsStandingStillWithTheFeetTogether) {
   }
 }
 
+// The roll of the foot that has just landed goes on: to either side it would else be another
+// foot's.
+TEST(Walk, AWalkThatBeginsInTheLastRollOfAStopKeepsTheFootThatHasLanded) {
+  for (const double x : {-0.9, 0.9}) {
+    for (int ticks = 300; ticks < 420; ticks += 13) {
+      MadeWalker walker;
+      walker.walk(0, 0.8, ticks);
+      do walker.walk(0, 0, 1);
+      while (walker.state().walk.change.stands == 0.0f || walker.last().stage != Stage::roll);
+      const Side landed = walker.last().swing;
+      for (; walker.last().stage == Stage::roll; walker.walk(x, 0, 1))
+        ASSERT_EQ(walker.last().swing, landed);
+      EXPECT_EQ(walker.last().stage, Stage::flight);
+      EXPECT_NE(walker.last().swing, landed);
+    }
+  }
+}
+
 // A thumb slips over the stick for a moment, and then pushes it.
 TEST(Walk, ATouchOfTheStickDoesNotDelayTheWalkThatFollows) {
   const auto first_lift = [](double touched_y) {

@@ -461,7 +461,7 @@ def mirror_checks(w, twin):
     checks = [Check("ticks differ", abs(w.ticks - twin.ticks), 0, "=="),
               Check("mirrored stick_x, stick_y", worst(np.abs(w.col["stick_x"][:n] + twin.col["stick_x"][:n])) +
                     worst(np.abs(w.col["stick_y"][:n] - twin.col["stick_y"][:n])), 0, "=="),
-              Check("mirrored heading", heading, 0, "==", unit="rad")]
+              Check("mirrored heading", heading, 1e-6, unit="rad")]  # floats add up to other last bits
     if w.captured():
         return checks
     swap = {"left": "right", "right": "left", "none": "none"}

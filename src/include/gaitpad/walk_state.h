@@ -135,7 +135,11 @@ struct Change {
   // from and over which its pitch's does, if its plan has changed.
   V gap_begin{}, gap_lasts = V{} + 0.5f, gap_rad{}, gap_twist_rad{}, gap_roll_rad{};
   V gap_high_m = V{} + 1.0f, gap_loose_rad{};
+  V gap_share{};  // how much of the flight was over by the plan before it changed
   V pitch_begin{}, pitch_lasts{};
+  // Of a flight with a limp, from its lift-off on: how much of it shows, and the longer one of both
+  // feet's steps over the flying one's.
+  V limp{}, limp_far{};
   V asked_ticks{};          // how long one that stands has been asked to walk
   V stepped_m{};            // the length that was asked for when the running step's landing settled
   V slowness = V{} + 1.0f;  // factor on the step's times: on stairs steps take longer

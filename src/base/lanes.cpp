@@ -17,11 +17,7 @@ int widest_lanes() noexcept {
     return 16;
   if (__builtin_cpu_supports("avx2")) return 8;
 #endif
-#ifdef GAITPAD_NO_VECTORS
-  return 1;
-#else
-  return 4;
-#endif
+  return kLeastLanes;
 }
 
 int lanes_in_use() noexcept {
@@ -33,7 +29,9 @@ int lanes_in_use() noexcept {
 
 void use_lanes(int lanes) noexcept {
   const int most = std::min(lanes, widest_lanes());
-  g_lanes.store(most >= 16 ? 16 : most >= 8 ? 8 : most >= 4 ? 4 : 1, std::memory_order_relaxed);
+  g_lanes.store(*std::find_if(kLaneCounts.begin(), kLaneCounts.end() - 1,
+                              [most](int count) { return count <= most; }),
+                std::memory_order_relaxed);
 }
 
 }  // namespace gaitpad

@@ -77,7 +77,7 @@ struct ArmChain {
 // Both arms of the block's walks, close together in registers.
 template <class V>
 void solve_arms(ArmChain<V> (&arms)[2]) noexcept {
-  constexpr int kWidth = kLanes<V>, kTogether = kWidth < 4 ? 4 : kWidth,
+  constexpr int kWidth = kLanes<V>, kTogether = std::max(kWidth, kLeastLanes),
                 kNumbers = sizeof(ArmChain<float>) / sizeof(float);
   float* places[2 * kWidth];
   int count = 0;

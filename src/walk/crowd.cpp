@@ -117,23 +117,17 @@ class BlockOf final : public WalkBlock {
   int walks_;
 };
 
-constexpr std::array<int, 4> kWidths = {16, 8, 4, 1};
+template <int kCount = 0>
 std::unique_ptr<WalkBlock> make_block(int width, int walks) {
-  switch (width) {
-    case 16:
-      return std::make_unique<BlockOf<16>>(walks);
-    case 8:
-      return std::make_unique<BlockOf<8>>(walks);
-    case 4:
-      return std::make_unique<BlockOf<4>>(walks);
-    default:
-      return std::make_unique<BlockOf<1>>(walks);
-  }
+  constexpr int kWidth = kLaneCounts[kCount];
+  if constexpr (kWidth > 1)
+    if (width < kWidth) return make_block<kCount + 1>(width, walks);
+  return std::make_unique<BlockOf<kWidth>>(walks);
 }
 // The narrowest block for so many walks, no wider than the widest one.
 int width_for(int walks, int widest) noexcept {
   int width = widest;
-  for (const int narrower : kWidths)
+  for (const int narrower : kLaneCounts)
     if (narrower < width && narrower >= walks) width = narrower;
   return width;
 }
@@ -295,8 +289,8 @@ void Crowd::advance_block(int number, double dt_s) noexcept {
     dt_s = block.tick_s;
   }
   block.tick_s = dt_s;
-  std::array<quat*, kWidths[0]> locals;
-  std::array<vec3*, kWidths[0]> roots_m;
+  std::array<quat*, kLaneCounts[0]> locals;
+  std::array<vec3*, kLaneCounts[0]> roots_m;
   for (std::size_t i = 0; i < members.size(); ++i) {
     const int member = members[i], lane = static_cast<int>(i);
     if (!is_sound(params_[member])) {

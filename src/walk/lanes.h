@@ -5,15 +5,32 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <utility>
 
+#include "base/lanes.h"
 #include "gaitpad/walk_state.h"
 
 namespace gaitpad {
 
+#ifdef GAITPAD_NO_VECTORS
+// In place of a register: floats one after the other. Rows of tables are read by four of them; the
+// numbers of a walk are plain floats (FloatsOf<1>).
+template <int kWidth>
+struct Numbers {
+  float number[kWidth];
+  float& operator[](int i) noexcept { return number[i]; }
+  float operator[](int i) const noexcept { return number[i]; }
+};
+template <int kWidth>
+struct FloatsOf {
+  using Type = Numbers<kWidth>;
+};
+#else
 template <int kWidth>
 struct FloatsOf {
   using Type __attribute__((vector_size(4 * kWidth))) = float;
 };
+#endif
 template <class V>
 inline constexpr int kLanes = sizeof(V) / sizeof(float);
 template <class V>
@@ -117,6 +134,59 @@ inline V rounded_to(float unit, const V& x) noexcept {
   const float round = 12582912.0f * unit;
   return (x + round) - round;
 }
+
+// --- Four numbers of a row, or of a rotation (x, y, z, w) ----------------------------------------
+
+using Four = Floats<4>;
+#ifdef GAITPAD_NO_VECTORS
+template <class Work>
+inline Four each(const Work& work) noexcept {
+  return {{work(0), work(1), work(2), work(3)}};
+}
+inline Four operator+(const Four& a, const Four& b) noexcept {
+  return each([&](int i) { return a[i] + b[i]; });
+}
+inline Four operator-(const Four& a, const Four& b) noexcept {
+  return each([&](int i) { return a[i] - b[i]; });
+}
+inline Four operator*(const Four& a, float k) noexcept {
+  return each([&](int i) { return a[i] * k; });
+}
+inline Four& operator+=(Four& a, const Four& b) noexcept { return a = a + b; }
+inline Four unit(const Four& q) noexcept {
+  const float length = std::sqrt((q[0] * q[0] + q[1] * q[1]) + (q[2] * q[2] + q[3] * q[3]));
+  return each([&](int i) { return q[i] / length; });
+}
+inline void store(const Four& q, quat& to) noexcept {
+  to.x = q[0], to.y = q[1], to.z = q[2], to.w = q[3];
+}
+// Rows to columns.
+inline void transpose(Four (&row)[4]) noexcept {
+  for (int i = 0; i < 4; ++i)
+    for (int j = 0; j < i; ++j) std::swap(row[i][j], row[j][i]);
+}
+#else
+inline Four unit(const Four& q) noexcept {
+  const Four square = q * q, pairs = square + __builtin_shufflevector(square, square, 1, 0, 3, 2),
+             sum = pairs + __builtin_shufflevector(pairs, pairs, 2, 3, 0, 1);
+  return q / root(sum);
+}
+inline void store(const Four& q, quat& to) noexcept {
+  using Doubles __attribute__((vector_size(32))) = double;
+  const Doubles wide = __builtin_convertvector(q, Doubles);
+  std::memcpy(&to, &wide, sizeof wide);
+}
+inline void transpose(Four (&row)[4]) noexcept {
+  const Four ab = __builtin_shufflevector(row[0], row[1], 0, 4, 1, 5),
+             ab2 = __builtin_shufflevector(row[0], row[1], 2, 6, 3, 7),
+             cd = __builtin_shufflevector(row[2], row[3], 0, 4, 1, 5),
+             cd2 = __builtin_shufflevector(row[2], row[3], 2, 6, 3, 7);
+  row[0] = __builtin_shufflevector(ab, cd, 0, 1, 4, 5);
+  row[1] = __builtin_shufflevector(ab, cd, 2, 3, 6, 7);
+  row[2] = __builtin_shufflevector(ab2, cd2, 0, 1, 4, 5);
+  row[3] = __builtin_shufflevector(ab2, cd2, 2, 3, 6, 7);
+}
+#endif
 
 // --- Curves --------------------------------------------------------------------------------------
 

@@ -14,9 +14,8 @@ namespace {
 #if defined(__AVX2__)
 using RowPart = Floats<8>;
 #else
-using RowPart = Floats<4>;
+using RowPart = Four;
 #endif
-using Four = Floats<4>;
 
 template <class R>
 inline R part(const float* from) noexcept {
@@ -35,18 +34,11 @@ inline void to_lanes(const float* rows, int numbers, V* to) noexcept {
     for (int n = 0; n < numbers; n += 4) {
       for (int w = 0; w < kWidth; w += 4) {
         const float* from = rows + w * numbers + n;
-        const Four a = part<Four>(from), b = part<Four>(from + numbers),
-                   c = part<Four>(from + 2 * numbers), d = part<Four>(from + 3 * numbers);
-        const Four ab = __builtin_shufflevector(a, b, 0, 4, 1, 5),
-                   ab2 = __builtin_shufflevector(a, b, 2, 6, 3, 7),
-                   cd = __builtin_shufflevector(c, d, 0, 4, 1, 5),
-                   cd2 = __builtin_shufflevector(c, d, 2, 6, 3, 7);
-        const Four column[4] = {__builtin_shufflevector(ab, cd, 0, 1, 4, 5),
-                                __builtin_shufflevector(ab, cd, 2, 3, 6, 7),
-                                __builtin_shufflevector(ab2, cd2, 0, 1, 4, 5),
-                                __builtin_shufflevector(ab2, cd2, 2, 3, 6, 7)};
+        Four row[4] = {part<Four>(from), part<Four>(from + numbers), part<Four>(from + 2 * numbers),
+                       part<Four>(from + 3 * numbers)};
+        transpose(row);
         for (int i = 0; i < 4; ++i)
-          std::memcpy(reinterpret_cast<float*>(&to[n + i]) + w, &column[i], sizeof(Four));
+          std::memcpy(reinterpret_cast<float*>(&to[n + i]) + w, &row[i], sizeof(Four));
       }
     }
   }

@@ -1,6 +1,7 @@
 #include "walk/tick.h"
 #include "walk/walk.h"
 
+#ifndef GAITPAD_NO_VECTORS
 namespace gaitpad {
 
 void advance(const Tables& tables, Block<16>& block, const Poses& poses) noexcept {
@@ -8,3 +9,4 @@ void advance(const Tables& tables, Block<16>& block, const Poses& poses) noexcep
 }
 
 }  // namespace gaitpad
+#endif

@@ -6,9 +6,11 @@ namespace gaitpad {
 void advance(const Tables& tables, Block<1>& block, const Poses& poses) noexcept {
   advance_block<1>(tables, block, poses);
 }
+#ifndef GAITPAD_NO_VECTORS
 void advance(const Tables& tables, Block<4>& block, const Poses& poses) noexcept {
   advance_block<4>(tables, block, poses);
 }
+#endif
 
 void advance_by_paper(const Tables& tables, Block<1>& block, const Poses& poses) noexcept {
   advance_block<1, true>(tables, block, poses);

@@ -17,17 +17,6 @@ inline constexpr float kRadians = 0.017453293f;  // a degree
 
 // --- Joints of a pose ----------------------------------------------------------------------------
 
-inline Four unit(const Four& q) noexcept {
-  const Four square = q * q, pairs = square + __builtin_shufflevector(square, square, 1, 0, 3, 2),
-             sum = pairs + __builtin_shufflevector(pairs, pairs, 2, 3, 0, 1);
-  return q / root(sum);
-}
-inline void store(const Four& q, quat& to) noexcept {
-  using Doubles __attribute__((vector_size(32))) = double;
-  const Doubles wide = __builtin_convertvector(q, Doubles);
-  std::memcpy(&to, &wide, sizeof wide);
-}
-
 template <class V>
 void write_joint(const Turn<V>& q, int joint, int w, const Poses& poses) noexcept {
   store(Four{lane(q.x, w), lane(q.y, w), lane(q.z, w), lane(q.w, w)}, poses.local[w][joint]);

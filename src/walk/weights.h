@@ -254,7 +254,7 @@ void share_leg(float lever_m, LegToShare<V>& leg) noexcept {
 // Only those legs of a block that are uneven, close together in registers.
 template <class V>
 void share_legs(float lever_m, const Mask<V> (&uneven)[2], LegToShare<V> (&legs)[2]) noexcept {
-  constexpr int kWidth = kLanes<V>, kTogether = kWidth < 4 ? 4 : kWidth;
+  constexpr int kWidth = kLanes<V>, kTogether = std::max(kWidth, kLeastLanes);
   const V is[2] = {chosen<V>(uneven[0], 1.0f, 0.0f), chosen<V>(uneven[1], 1.0f, 0.0f)};
   float* places[2 * kWidth];
   int count = 0;

@@ -16,8 +16,8 @@ inline constexpr int kMostSolves = 40, kPatience = 6;
 inline constexpr float kLeastGain = 0.001f;
 
 // (J W J^T + damping) y = b, by L D L^T; b becomes y.
-template <class V, std::size_t kDofs>
-void solve_three(int dofs, const V (&column)[kDofs][3], const V (&weight)[kDofs], const V& damping,
+template <class V>
+void solve_three(int dofs, const V (*column)[3], const V* weight, const V& damping,
                  V (&b)[3]) noexcept {
   V m[3][3];
   for (int r = 0; r < 3; ++r)

@@ -23,7 +23,8 @@ V arm_swing(const Tables& tables, const State<V>& state) noexcept {
 // Brings its numbers nearer to those asked for; those of no style are the data's.
 template <class V>
 void smooth_body(const Tables& tables, const Mask<V>& is_styled, Styled<V>& styled) noexcept {
-  constexpr float kSettled = 1e-5f;
+  // Of a number or of 1: a float of 10 comes to rest, by its rounding, 2e-5 off its goal.
+  constexpr float kSettled = 1e-5f, kStill_per_s = 1e-4f;
   const auto asked = styled.asked != V{}, acted = styled.acts != V{};
   // Mostly all of them have been there for long.
   auto moves = both(is_styled, acted != asked);
@@ -38,8 +39,9 @@ void smooth_body(const Tables& tables, const Mask<V>& is_styled, Styled<V>& styl
     const V none = all<V>(tables.plain_body[n]), goal = asked ? styled.goal[n] : none;
     Smoothed<V> number{acted ? styled.body[n].x : none, acted ? styled.body[n].v : V{}};
     follow(goal, tables.body, number);
+    const V unit = most(size(goal), all<V>(1.0f));
     const auto there =
-        both(size(V(number.x - goal)) < all<V>(kSettled), size(number.v) < all<V>(kSettled));
+        both(size(V(number.x - goal)) < kSettled * unit, size(number.v) < kStill_per_s * unit);
     const V value = there ? goal : number.x, rate = there ? V{} : number.v;
     styled.body[n].x = moves ? value : styled.body[n].x;
     styled.body[n].v = moves ? rate : styled.body[n].v;
@@ -301,7 +303,8 @@ template <int kWidth, bool kPaper>
   };
   const auto tilts = either(bearing.forward_rad != V{}, bearing.left_rad != V{});
   // Walks whose trunk is not as in the data: the others' keeps its bits.
-  auto moves = either(leans(bearing), either(bearing.turns_rad != V{}, bearing.nods_rad != V{}));
+  const auto nods = either(bearing.turns_rad != V{}, bearing.nods_rad != V{});
+  auto moves = either(leans(bearing), nods);
   const bool has[2] = {!tables.arm[0].path.empty(), !tables.arm[1].path.empty()};
   for (int side : {0, 1}) {
     if (!has[side]) continue;
@@ -387,7 +390,7 @@ template <int kWidth, bool kPaper>
     pose_arms(tables, tick.hips, hips_m, trunk, arms, own_m, shoulder, styled, poses);
   }
   if (tables.has_head) {
-    nod(tables, heading, bearing, trunk);
+    if (any(nods)) nod(tables, heading, bearing, trunk);
     if (may_ease) {
       const Vec<V> goal = head_turn(tables, heading, trunk),
                    to = eased(tables, goal, V(of_head * (dt * dt)), turns_rad, acts, eases,

@@ -511,7 +511,8 @@ inline constexpr float kLowReach =
     0.985f;  // of the leg: a foot whose heel stays low reaches so far
 
 // The spline's knots stand so far apart, in seconds at the reference leg.
-inline constexpr float kSinkKnot_s = 0.06f, kSoftSink_m = 0.012f;
+inline constexpr float kSinkKnot_s = 0.06f, kSoftSink_m = 0.007f,
+                       kSoftSinkOnGround_m = 0.012f;  // over uneven ground
 inline int sink_knot_ticks(const Tables& tables) noexcept {
   return std::max(1, static_cast<int>(kSinkKnot_s * tables.time_scale / tables.tick_s + 0.5f));
 }
@@ -568,8 +569,9 @@ void sink(const Tables& tables, const Time<V>& time, const Stride<V>& stride,
   const auto ahead = change.sink_ticks != V{};
   if (any(ahead)) {
     // What it was known to want, or more.
+    const float soft_m = tables.terrain != nullptr ? kSoftSinkOnGround_m : kSoftSink_m;
     const V known_m = known_sink(tables, change),
-            width_m = most(least(known_m, all<V>(kSoftSink_m * grown)), all<V>(1e-6f)),
+            width_m = most(least(known_m, all<V>(soft_m * grown)), all<V>(1e-6f)),
             more_m = known_m + soft_positive(V(sunk_m - known_m), width_m);
     sunk_m = both(ahead, known_m > all<V>(1e-6f)) ? more_m : sunk_m;
     change.sink_ticks = ahead ? V(change.sink_ticks - 1.0f) : V{};

@@ -210,7 +210,7 @@ template <int kWidth>
 void choose_footholds(const Tables& tables, const Time<Floats<kWidth>>& time,
                       const AskedStep<Floats<kWidth>>& asked, Block<kWidth>& block) noexcept {
   using V = Floats<kWidth>;
-  constexpr float kMoved = 3e-6f;        // metres, radians
+  constexpr float kMoved = 7e-6f;        // metres, radians
   constexpr float kPieceSettles = 0.6f;  // of the roll: until then a step may still go elsewhere
   const State<V>& state = block.state;
   Footing<V>& footing = block.footing;

@@ -60,8 +60,8 @@ struct Roughness {
   int stands = 0;
 };
 
-// Bounds as measured of all runs. Stairs down are missed: a turn in a flight leads a heel over an
-// edge, three times in an hour.
+// Bounds as measured of all runs; asked are 1.2 degrees and soles that are never 4 mm deep. A turn in
+// a flight down stairs leads a heel over an edge: twice in an hour (27 and 40 mm).
 struct Country {
   const char* name;
   std::vector<SectionShape> sections;
@@ -142,12 +142,12 @@ const std::vector<SectionShape> kTerraces = {FlatSection{1.0}, StairsSection{0.1
 INSTANTIATE_TEST_SUITE_P(
     OverEveryGround, Rough,
     testing::Values(
-        Country{"level", {}, 0.0, 0.004, 6.5},
-        Country{"slope_up", {SlopeSection{90.0, 0.15, 0.5}}, 0.0, 0.004, 4.0},
-        Country{"slope_down", {SlopeSection{90.0, -0.15, 0.5}}, 0.0, 0.004, 4.0},
-        Country{"stairs_up", {FlatSection{0.5}, StairsSection{0.17, 0.28, 60}}, 0.0, 0.004, 8.5},
-        Country{"stairs_down", {FlatSection{0.5}, StairsSection{-0.17, 0.28, 60}}, 0.0, 0.14, 8.5},
-        Country{"terraces", kTerraces, 0.0, 0.04, 8.5}, Country{"waves", {}, 0.12, 0.004, 6.0}),
+        Country{"level", {}, 0.0, 0.004, 2.5},
+        Country{"slope_up", {SlopeSection{90.0, 0.15, 0.5}}, 0.0, 0.004, 2.2},
+        Country{"slope_down", {SlopeSection{90.0, -0.15, 0.5}}, 0.0, 0.004, 2.2},
+        Country{"stairs_up", {FlatSection{0.5}, StairsSection{0.17, 0.28, 60}}, 0.0, 0.03, 4.5},
+        Country{"stairs_down", {FlatSection{0.5}, StairsSection{-0.17, 0.28, 60}}, 0.0, 0.045, 3.8},
+        Country{"terraces", kTerraces, 0.0, 0.03, 3.5}, Country{"waves", {}, 0.12, 0.004, 3.0}),
     [](const auto& info) { return std::string(info.param.name); });
 
 }  // namespace

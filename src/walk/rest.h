@@ -16,7 +16,7 @@ namespace {
 
 // A quintic to rest brakes with about kNeed v^2 / way. Times are in seconds at the reference leg.
 inline constexpr float kNeed = 0.72f, kBrake_m_s2 = 3.0f, kCloseBrake_m_s2 = 3.0f,
-                       kMostBrake_m_s2 = 3.9f;
+                       kHastyBrake_m_s2 = 3.3f, kMostBrake_m_s2 = 3.9f;
 inline constexpr float kLeastStep = 0.25f, kFurtherStep = 0.3f;  // of the foot's own step
 inline constexpr float kToClose_s = 0.40f, kWayWhileClosing = 0.44f, kNextStep_s = 0.35f;
 inline constexpr float kStays = 0.45f;     // from this flight on its landing stays
@@ -364,7 +364,9 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
     change.rest_ticks = ticks_of(time_s, tick_s);
     change.stops = 1.0f;
   };
-  const bool may_close = (from >= need / kCloseBrake_m_s2 && foot_m < -kBehind_m) || on_spot;
+  // One who is to go the other way is in a hurry.
+  const float close_m_s2 = state.asked.walks != 0.0f ? kHastyBrake_m_s2 : kCloseBrake_m_s2;
+  const bool may_close = (from >= need / close_m_s2 && foot_m < -kBehind_m) || on_spot;
   const bool moves = !flies || (may_move && time.u < kStays);
   if (may_close && change.starting == 0.0f && moves) {
     change_step(tables, true, block, footing, [&] {

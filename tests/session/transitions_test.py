@@ -11,12 +11,16 @@ CLIPS = {"built-in": None, "m21": "mocap/cmu_m21_walk.bvh", "walk01": "mocap/bvh
          "07": "mocap/cmu_07_01.amc"}
 
 
-# Not all bounds are met by captured motions yet: transitions.py prints by how much.
-YET_TO_COME = pytest.mark.xfail(reason="not all bounds are met by captured motions yet", strict=False)
+# Of captured motions: transitions.py prints by how much these bounds are missed.
+NOT_MET = {("a_start_answers_at_once_and_is_a_walk_after_two_steps", "m21"), ("the_hips_neither_dip_nor_go_back", "m21"),
+           ("chest_and_head_do_not_jump", "m21"), ("it_walks_back_soon_after_it_walked_ahead", "m21"),
+           ("a_start_answers_at_once_and_is_a_walk_after_two_steps", "walk01"), ("the_hips_neither_dip_nor_go_back", "walk01"),
+           ("chest_and_head_do_not_jump", "walk01"), ("a_stop_at_full_stick_takes_less_than_a_metre", "walk01"),
+           ("it_walks_back_soon_after_it_walked_ahead", "walk01"), ("the_hips_neither_dip_nor_go_back", "07"),
+           ("legs_stay_apart_in_turns", "07-sharp"), ("it_walks_back_soon_after_it_walked_ahead", "07")}
 
 
-@pytest.fixture(scope="module", name="player",
-                params=[pytest.param(name, marks=[YET_TO_COME] if clip else []) for name, clip in CLIPS.items()])
+@pytest.fixture(scope="module", name="player", params=list(CLIPS))
 def player_of(request, program, tmp_path_factory):
     clip = CLIPS[request.param]
     if clip and not (DATA / clip).is_file():
@@ -24,6 +28,13 @@ def player_of(request, program, tmp_path_factory):
     player = transitions.Player(program, tmp_path_factory.mktemp(request.param), clip and DATA / clip)
     player.is_built_in = clip is None
     return player
+
+
+@pytest.fixture(autouse=True)
+def expect_what_is_not_met(request):
+    case = request.node.name.removeprefix("test_").removesuffix("]")
+    if tuple(case.split("[")) in NOT_MET:
+        request.applymarker(pytest.mark.xfail(reason="not met by this captured motion yet", strict=False))
 
 
 @pytest.fixture(scope="module", name="rows")

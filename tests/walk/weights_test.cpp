@@ -1,5 +1,5 @@
-// Weights of legs show and leave nothing behind; planted points stay with every shipped style; walks
-// of several styles side by side have the bits of one alone.
+// Weights of legs show and leave nothing behind; planted points stay with every shipped style;
+// walks of several styles side by side have the bits of one alone.
 #include <gtest/gtest.h>
 
 #include <string>

@@ -410,9 +410,9 @@ void begin_lead(const Tables& tables, const Mask<V>& strikes, const V& phase, co
     const Stages<V> own = stages_of(tables, change, state, no(right));
     const V rolls = change.led != V{} ? V(own.roll_s - state.roll_ticks * tables.tick_s) : V{},
             flight_ticks = (own.flight_s + rolls) * (1.0f / tables.tick_s);
-    const auto paces = either(size(V(landed_m - change.stepped_m)) > kOtherPace * own_m,
-                              size(V(state.flight_ticks - flight_ticks)) >
-                                  kOtherTime * state.flight_ticks);
+    const auto paces =
+        either(size(V(landed_m - change.stepped_m)) > kOtherPace * own_m,
+               size(V(state.flight_ticks - flight_ticks)) > kOtherTime * state.flight_ticks);
     changes = either(changes, both(is_level, paces));
   }
   const auto leads = both(no(rests), either(either(stops, changes), change.catch_ticks != V{}));

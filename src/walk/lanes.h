@@ -128,13 +128,6 @@ inline V floored(const V& x) noexcept {
   return near > x ? near - 1.0f : near;
 }
 
-// To the nearest multiple of a power of 2, for |x| below 2^22 of it.
-template <class V>
-inline V rounded_to(float unit, const V& x) noexcept {
-  const float round = 12582912.0f * unit;
-  return (x + round) - round;
-}
-
 // --- Four numbers of a row, or of a rotation (x, y, z, w) ----------------------------------------
 
 using Four = Floats<4>;
@@ -187,6 +180,13 @@ inline void transpose(Four (&row)[4]) noexcept {
   row[3] = __builtin_shufflevector(ab2, cd2, 2, 3, 6, 7);
 }
 #endif
+
+// To the nearest multiple of a power of 2, for |x| below 2^22 of it.
+template <class V>
+inline V rounded_to(float unit, const V& x) noexcept {
+  const float round = 12582912.0f * unit;
+  return (x + round) - round;
+}
 
 // --- Curves --------------------------------------------------------------------------------------
 

@@ -119,13 +119,14 @@ V last_ratio(const Mask<V>& back) noexcept {
 // What that is off fades; one that flies soon goes at least as far as it is to.
 template <class V>
 V short_ratio(const Tables& tables, const Landing<V>& landing, const State<V>& state) noexcept {
-  constexpr float kGoesFrom = 0.3f;  // of the flight
+  constexpr float kComesUp = 0.3f;  // of the flight
   const V x = landing.x_m - state.print_x_m, z = landing.z_m - state.print_z_m;
   const V own = root(V(x * x + z * z)) *
                 (1.0f / (tables.leg[0].own_step_m + tables.leg[1].own_step_m)),
-          u = state.flies != V{} ? V(state.tick / state.flight_ticks) : V{},
-          less = least(landing.off_ratio, V{}), more = landing.off_ratio - less;
-  return most(V(own + 0.5f * (more + less * (1.0f - smoother(V(u * (1.0f / kGoesFrom)))))), V{});
+          off = 0.5f * landing.off_ratio,
+          flown = state.flies != V{} ? V(state.tick / state.flight_ticks) : V{},
+          low = off * (1.0f - smoother(V(flown * (1.0f / kComesUp))));
+  return most(V(own + (off < V{} ? low : off)), V{});
 }
 
 // `change`: from the stride behind, at 0, to the one ahead, at 1.

@@ -142,7 +142,7 @@ const std::vector<SectionShape> kTerraces = {FlatSection{1.0}, StairsSection{0.1
 INSTANTIATE_TEST_SUITE_P(
     OverEveryGround, Rough,
     testing::Values(
-        Country{"level", {}, 0.0, 0.004, 2.5},
+        Country{"level", {}, 0.0, 0.004, 3.0},
         Country{"slope_up", {SlopeSection{90.0, 0.15, 0.5}}, 0.0, 0.004, 2.2},
         Country{"slope_down", {SlopeSection{90.0, -0.15, 0.5}}, 0.0, 0.004, 2.2},
         Country{"stairs_up", {FlatSection{0.5}, StairsSection{0.17, 0.28, 60}}, 0.0, 0.03, 4.5},

@@ -55,7 +55,7 @@ objects=()
 {
   printf 'builddir = %s\n' "$folder" # for the log of ninja
   printf 'rule compile\n  command = %s -MD -MF $out.d -c $in -o $out\n  depfile = $out.d\n' "${compile[*]}"
-  for source in src/{base,motion,strides,control,animation,walk}/*.cpp "${files[@]}" tests/animation/core_hash_main.cpp; do
+  for source in src/{base,motion,strides,control,animation,walk}/*.cpp "${files[@]}" tests/walk/core_hash_main.cpp; do
     object=${source//\//_}.o
     [[ " ${objects[*]} " != *" $object "* ]] || continue
     objects+=("$object")

@@ -457,7 +457,7 @@ TEST(GaitOverrides, AnyCombinationIsSane) {
   }
 }
 
-// The walk then ignores such a value (animation/sound_input_test).
+// The walk then ignores such a value (walk/sound_input_test).
 TEST(GaitOverrides, AStickThatIsNoNumberGivesNoneWhereNothingReplacesIt) {
   for (const double odd : {kNan, kInf, -kInf}) {
     for (const Stick& stick : {pushed(odd, 0.6), pushed(0.2, odd)}) {

@@ -15,8 +15,8 @@
 #include "gaitpad/hash.h"
 #include "gaitpad/motion_file.h"
 #include "strides/solver_input.h"
-#include "tests/animation/made_crowd.h"
 #include "tests/session/made_session.h"
+#include "tests/walk/made_crowd.h"
 
 using namespace gaitpad;
 

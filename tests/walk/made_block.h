@@ -5,8 +5,8 @@
 #include <string>
 
 #include "gaitpad/config_files.h"
-#include "tests/animation/made_walker.h"
 #include "tests/folders.h"
+#include "tests/walk/made_walker.h"
 #include "walk/block.h"
 #include "walk/steer.h"
 #include "walk/walk.h"

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "tests/animation/made_walker.h"
+#include "tests/walk/made_walker.h"
 #include "walk/steer.h"
 #include "walk/walk.h"
 

@@ -60,8 +60,8 @@ struct Roughness {
   int stands = 0;
 };
 
-// Bounds as measured of all runs; asked are 1.2 degrees and soles that are never 4 mm deep. A turn in
-// a flight down stairs leads a heel over an edge: twice in an hour (27 and 40 mm).
+// Bounds as measured of all runs; asked are 1.2 degrees and soles that are never 4 mm deep. A turn
+// in a flight down stairs leads a heel over an edge: twice in an hour (27 and 40 mm).
 struct Country {
   const char* name;
   std::vector<SectionShape> sections;

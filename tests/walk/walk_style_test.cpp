@@ -1,133 +1,154 @@
-// What styles make of the walk: weights show and leave nothing behind, planted points stay, a stand
-// breathes, and walks of several styles side by side have the bits of one alone.
+// The effects of styles on a walk: joints that flex less, hips that bounce, a trunk that leans.
 #include <gtest/gtest.h>
 
-#include <string>
-#include <vector>
+#include <filesystem>
 
-#include "tests/walk/made_block.h"
+#include "gaitpad/config_files.h"
+#include "tests/folders.h"
+#include "tests/walk/made_walker.h"
 
 namespace gaitpad {
 namespace {
 
+constexpr double kStick = 0.8;
+constexpr int kSteady = 5 * kRate, kEnd = 9 * kRate;  // ticks of the measurement, at a steady walk
 constexpr double kPlanted_m = 1e-5;
+constexpr double kSharpest = 1.0;  // largest second difference of a leg angle, degrees per tick^2
 
-// How far a planted end of a sole moves in a tick, at most, in so many ticks.
-double most_slid_m(Alone& walk, const GaitParams& params, int ticks) {
-  double slid_m = 0.0;
-  Planted was_planted;
-  vec3 was;
-  for (int tick = 0; tick < ticks; ++tick) {
-    const Planted planted = planted_of(walk.block);
-    walk.step(params);
-    const vec3 place = end_of(walk.pose, planted.side, planted.toe);
-    if (tick > 0 && planted == was_planted) slid_m = std::max(slid_m, glm::distance(place, was));
-    was = place, was_planted = planted;
-  }
-  return slid_m;
+StyleValues shipped(const std::string& name) {
+  return value_of(load_style(kSourceFolder + "/config/styles/" + name + ".toml"));
 }
 
-class Weights : public testing::TestWithParam<std::pair<const char*, double>> {};
-
-TEST_P(Weights, ShowInTheLegsAndNotInTheFootprints) {
-  const auto [key, weight] = GetParam();
-  for (const double stick : {0.3, 0.8, 1.0}) {
-    StyleValues style;
-    ASSERT_TRUE(set_value(style, key, weight));
-    Alone walk, even;
-    const GaitParams params = params_of(0.0, stick, style);
-    EXPECT_LE(most_slid_m(walk, params, 6 * kRate), kPlanted_m);
-    even.walk(params_of(0.0, stick), 6 * kRate);
-    EXPECT_LE(std::abs(walk.block.origin[0].z_m - even.block.origin[0].z_m), 1e-4);
-    double shows_deg = 0.0;
-    for (int tick = 0; tick < kRate; ++tick) {
-      walk.step(params);
-      for (const Side side : {kLeftSide, kRightSide})
-        for (int j = 0; j < kLegAngles; ++j)
-          shows_deg = std::max(
-              shows_deg,
-              std::abs(static_cast<double>(walk.block.weighted.shift_rad[side][j])) / kDegree);
+struct Steady {
+  MadeWalker walker;
+  explicit Steady(const StyleValues& style, IkMode mode = IkMode::robust) : walker(adult(), mode) {
+    walker.walk(0.0, kStick, kEnd, style);
+  }
+  double range(int side, int joint) const {
+    double low = 1e9, high = -1e9;
+    for (int k = kSteady; k < kEnd; ++k) {
+      const double angle = walker.angles_rad()[k][side][joint];
+      low = std::min(low, angle), high = std::max(high, angle);
     }
-    EXPECT_GT(shows_deg, 2.0) << "the weights do nothing";
+    return high - low;
   }
-}
-INSTANTIATE_TEST_SUITE_P(OfJoints, Weights,
-                         testing::Values(std::pair{"legs.weight.hip", 0.2},
-                                         std::pair{"legs.weight.knee", 0.2},
-                                         std::pair{"legs.weight.ankle", 0.2},
-                                         std::pair{"left_leg.weight.hip", 0.1},
-                                         std::pair{"legs.weight.hip_y", 0.2}));
-
-TEST(WeightsOfAStyle, BeginAndEndWithoutAJump) {
-  StyleValues stiff;
-  ASSERT_TRUE(set_value(stiff, "legs.weight.hip", 0.2));
-  for (const double stick : {0.3, 0.8}) {
-    Alone walk;
-    walk.walk(params_of(0.0, stick), 4 * kRate + 70);
-    Jerks jerks;
-    for (int tick = 0; tick < 6 * kRate; ++tick) {
-      walk.step(params_of(0.0, stick, tick < 3 * kRate ? stiff : StyleValues{}));
-      jerks.add(walk.pose);
+  double travel_m() const {
+    double low = 1e9, high = -1e9;
+    for (int k = kSteady; k < kEnd; ++k) {
+      const double y = walker.frames()[k].pelvis_m.y;
+      low = std::min(low, y), high = std::max(high, y);
     }
-    EXPECT_LE(jerks.most_deg, 1.0);
-    EXPECT_EQ(walk.block.weighted.acts, 0.0f) << "nothing is left of them";
+    return high - low;
+  }
+  int failures() const {
+    int count = 0;
+    for (const WalkFrame& frame : walker.frames()) count += frame.ik_failed[0] + frame.ik_failed[1];
+    return count;
+  }
+};
+
+// The lean of the line from pelvis to shoulders in degrees, ahead and to the left.
+struct Lean {
+  double ahead_deg = 0.0, left_deg = 0.0;
+};
+Lean lean_of(const MadeWalker& walker) {
+  static JointFrames world;
+  const WalkModel& model = walker.model();
+  forward_kinematics(model.cycle.skeleton, walker.pose(), world);
+  const auto shoulder = [&](int side) {
+    return world.position_m[model.body.arm[side].joints.shoulder];
+  };
+  const vec3 up = 0.5 * (shoulder(0) + shoulder(1)) - world.position_m[model.cycle.pelvis];
+  return {gaitpad::atan2(up.z, up.y) / kDegree, gaitpad::atan2(up.x, up.y) / kDegree};
+}
+
+TEST(WalkStyle, AStiffHipFlexesLessAndKneeAndAnkleMakeUpForIt) {
+  const Steady even({}), stiff(shipped("stiff_hip"));
+  for (int side : {0, 1}) {
+    EXPECT_LE(stiff.range(side, kHipX) / even.range(side, kHipX), 0.90);
+    EXPECT_GE((stiff.range(side, kKneeX) + stiff.range(side, kAnkleX)) /
+                  (even.range(side, kKneeX) + even.range(side, kAnkleX)),
+              0.99);
   }
 }
 
-class Shipped : public testing::TestWithParam<const char*> {};
-
-TEST_P(Shipped, StyleKeepsPlantedFeetInTheirPlaces) {
-  for (const double stick : {0.3, 0.8, 1.0}) {
-    Alone walk;
-    EXPECT_LE(most_slid_m(walk, params_of(0.0, stick, shipped(GetParam())), 6 * kRate), kPlanted_m);
-  }
-}
-INSTANTIATE_TEST_SUITE_P(Of, Shipped,
-                         testing::Values("carry", "even", "heavy_slack", "limp_left",
-                                         "limp_left_hip", "limp_left_knee", "look_down", "muscular",
-                                         "rail_left", "stiff_arms", "stiff_hip", "stiff_knee",
-                                         "tired", "tiring"),
-                         [](const auto& info) { return std::string(info.param); });
-
-TEST(Stand, BreathesSwaysAndLooksRound) {
-  Alone walk;
-  double sways_m = 0.0, turns_deg = 0.0;
-  const int head = adult().body.head_path.back();
-  for (int tick = 0; tick < 30 * kRate; ++tick) {
-    walk.step(GaitParams{});
-    sways_m = std::max(sways_m, std::abs(walk.pose.root_m.x));
-    turns_deg =
-        std::max(turns_deg, turned_deg(adult().cycle.standing_local[head], walk.pose.local[head]));
-  }
-  EXPECT_GT(sways_m, 0.003);
-  EXPECT_GT(turns_deg, 4.0);
+TEST(WalkStyle, TwiceTheBounceIsTwiceTheTravel) {
+  std::array<StyleValues, 2> style;
+  style[1].hip_bounce = 2.0;
+  const Steady once(style[0]), twice(style[1]);
+  EXPECT_NEAR(twice.travel_m() / once.travel_m(), 2.0, 0.1);
+  EXPECT_EQ(twice.failures(), 0);
+  EXPECT_LT(twice.walker.drift_m(), 1e-4);
 }
 
-// Walks of several styles and phases; one gets weights, then all have none.
-TEST(Styles, WalksSideBySideHaveTheBitsOfOneAlone) {
-  const std::array<StyleValues, 4> styles = {StyleValues{}, shipped("limp_left_hip"),
-                                             shipped("heavy_slack"), shipped("tired")};
-  for_each_width([&](auto width) {
-    std::vector<std::unique_ptr<Alone>> walks;
-    for (const StyleValues& style : styles) {
-      walks.push_back(std::make_unique<Alone>());
-      walks.back()->walk(params_of(0.0, 0.8, style), 4 * kRate);
-    }
-    std::vector<Block<1>> alone;
-    for (int w = 0; w < width; ++w) {
-      Alone& of_style = *walks[w % 4];
-      for (int tick = 0; tick < 31 * w + 3; ++tick) of_style.step();
-      alone.push_back(of_style.block);
-      if (w % 4 == 0) alone.back().state.asked.length_m[1] *= 0.6f;
-    }
-    expect_bits_of_one<width>(walks[0]->tables, alone, 600, [&](int tick, int w, Block<1>& block) {
-      if (tick != 300 && tick != 450) return false;
-      ask(params_of(0.0, 0.8,
-                    tick == 450 ? StyleValues{} : shipped(w == 0 ? "stiff_hip" : "stiff_knee")),
-          block);
-      return true;
-    });
-  });
+TEST(WalkStyle, EveryShippedStyleWalksSmoothlyOnPlantedFeet) {
+  for (const auto& file : std::filesystem::directory_iterator(kSourceFolder + "/config/styles")) {
+    const std::string name = file.path().stem().string();
+    const Steady walk(shipped(name));
+    EXPECT_LE(walk.walker.sharpest_turn_rad(), kSharpest * kDegree) << name;
+    EXPECT_LT(walk.walker.drift_m(), kPlanted_m) << name;
+    EXPECT_EQ(walk.failures(), 0) << name;
+  }
+}
+
+TEST(WalkStyle, AChangeOfWeightsActsWithinATenthOfASecondAndWithoutAHitch) {
+  MadeWalker even, changed;
+  even.walk(0.0, kStick, kSteady + kRate);
+  changed.walk(0.0, kStick, kSteady);
+  changed.walk(0.0, kStick, kRate, shipped("stiff_hip"));
+  double after_rad = 0.0;
+  // A leg whose foot stands flat cannot change; only the other one is free then.
+  for (int k = kSteady; k < kSteady + kRate / 10; ++k)
+    for (int side : {0, 1})
+      after_rad = std::max(after_rad, std::abs(even.angles_rad()[k][side][kHipX] -
+                                               changed.angles_rad()[k][side][kHipX]));
+  EXPECT_GT(after_rad, 0.1 * kDegree);
+  EXPECT_LE(changed.sharpest_turn_rad(), kSharpest * kDegree);
+}
+
+TEST(WalkStyle, PaperModeDoesNotChangeTheStrideByItsWeights) {
+  const Steady even({}, IkMode::paper), stiff(shipped("stiff_hip"), IkMode::paper);
+  for (int k = 0; k < kEnd; ++k)
+    EXPECT_EQ(even.walker.frames()[k].pelvis_m, stiff.walker.frames()[k].pelvis_m) << k;
+}
+
+TEST(WalkStyle, TheTiredSlump) {
+  const Steady even({}), tired(shipped("tired"));
+  EXPECT_GE(lean_of(tired.walker).ahead_deg - lean_of(even.walker).ahead_deg, 8.0);
+  const Steady paper(shipped("tired"), IkMode::paper), plain({}, IkMode::paper);
+  EXPECT_LT(lean_of(paper.walker).ahead_deg - lean_of(plain.walker).ahead_deg, 2.0);
+}
+
+TEST(WalkStyle, AMuscularWalkersArmsAreSpread) {
+  const auto width = [](const MadeWalker& walker) {
+    static JointFrames world;
+    forward_kinematics(walker.model().cycle.skeleton, walker.pose(), world);
+    const auto& arm = walker.model().body.arm;
+    return world.position_m[arm[0].joints.elbow].x - world.position_m[arm[1].joints.elbow].x;
+  };
+  EXPECT_GT(width(Steady(shipped("muscular")).walker), width(Steady({}).walker) + 0.08);
+}
+
+TEST(WalkStyle, ALimpLeansOverTheSoreLegWhileItStands) {
+  MadeWalker walker;
+  walker.walk(0.0, kStick, kSteady, shipped("limp_left"));
+  double over_left = -1e9, over_right = 1e9, knee_rad = 0.0;
+  Steady limping(shipped("limp_left"));
+  for (int k = 0; k < 2 * kRate; ++k) {
+    walker.walk(0.0, kStick, 1, shipped("limp_left"));
+    const WalkState& s = walker.state();
+    if (s.frame.stage != Stage::flight) continue;
+    const double left = lean_of(walker).left_deg;
+    if (s.frame.swing == kRightSide) over_left = std::max(over_left, left);
+    if (s.frame.swing != kRightSide) over_right = std::min(over_right, left);
+    // The knee of the uninjured leg straightens in mid-stance.
+    const bool is_middle = 2.0f * s.walk.state.tick == s.walk.state.flight_ticks;
+    if (s.frame.swing == kLeftSide && is_middle)
+      knee_rad = std::max(knee_rad, leg_angles(walker.model(), walker.pose())[kRightSide][kKneeX]);
+  }
+  EXPECT_GT(over_left, 5.0);
+  EXPECT_LE(knee_rad, 12.0 * kDegree);
+  EXPECT_LE(limping.travel_m(), 0.060);
 }
 
 }  // namespace

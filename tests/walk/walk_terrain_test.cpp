@@ -4,8 +4,8 @@
 
 #include <random>
 
-#include "animation/made_walker.h"
-#include "animation/terrain_judge.h"
+#include "tests/walk/made_walker.h"
+#include "tests/walk/terrain_judge.h"
 
 namespace gaitpad {
 namespace {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/animation/made_walker.h"
+#include "tests/walk/made_walker.h"
 
 namespace gaitpad::test {
 namespace {

@@ -4,7 +4,7 @@
 
 #include <numeric>
 
-#include "animation/made_walker.h"
+#include "tests/walk/made_walker.h"
 
 namespace gaitpad {
 namespace {

@@ -8,7 +8,7 @@
 #include <utility>
 #include <vector>
 
-#include "animation/made_walker.h"
+#include "tests/walk/made_walker.h"
 
 namespace gaitpad {
 namespace {

@@ -8,7 +8,7 @@
 #include <memory>
 
 #include "gaitpad/crowd.h"
-#include "tests/animation/made_walker.h"
+#include "tests/walk/made_walker.h"
 
 namespace gaitpad::test {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "base/lanes.h"
 #include "gaitpad/hash.h"
-#include "tests/animation/made_crowd.h"
 #include "tests/clean_cycle.h"
+#include "tests/walk/made_crowd.h"
 
 namespace gaitpad::test {
 namespace {

@@ -16,7 +16,7 @@
 #include "gaitpad/control.h"
 #include "gaitpad/hash.h"
 #include "strides/solver_input.h"
-#include "tests/animation/made_crowd.h"
+#include "tests/walk/made_crowd.h"
 
 using namespace gaitpad;
 

@@ -1,8 +1,5 @@
-// The upper body: what it does where a walk changes, what hands hold,
-// where the head looks, and which joints are written. Thumbs take 60 ms.
+// Chest, head and arms where a walk changes, and which joints a tick writes. Thumbs take 60 ms.
 #include <gtest/gtest.h>
-
-#include <vector>
 
 #include "tests/walk/made_block.h"
 
@@ -46,11 +43,6 @@ class Walker {
     stand(tables_, Origin{}, block);
     pose.joint_count = static_cast<int>(model.cycle.skeleton.joints.size());
   }
-  void ask_for(const StyleValues& style) { style_ = style; }
-  void push(const vec2& to, const StyleValues& style) {
-    ask_for(style);
-    push(to);
-  }
   // The thumb moves there.
   void push(const vec2& to) {
     const vec2 from = stick_;
@@ -89,11 +81,6 @@ class Walker {
     const ArmBuild& arm = model_.body.arm[side];
     return at(arm.joints.wrist) + frames_.rotation[arm.joints.wrist] * arm.grip_m;
   }
-  vec3 gaze() const { return head() * glm::conjugate(model_.body.head_standing) * kForward; }
-  double heading_rad() const {
-    return block.origin[0].heading_rad + static_cast<double>(block.state.heading_rad);
-  }
-  bool stands() const { return block.change.stands != 0.0f; }
   Pose pose;
   Block<1> block;
   Turning of_chest, of_head, of_pelvis;
@@ -278,205 +265,6 @@ TEST(UpperBody, SwingsArmsAgainstTheLegsFromTheFirstStepOn) {
     }
     EXPECT_LT(product, 0.0) << y;
   }
-}
-
-// --- Hands ---------------------------------------------------------------------------------------
-
-constexpr double kSolved_m = 1e-5;
-
-TEST(Hands, CarryAtTheirPlacesBeforeTheChest) {
-  const StyleValues carry = style_of(
-      {{"hands.carry", 1.0}, {"hands.x_m", 0.1}, {"hands.y_m", -0.25}, {"hands.z_m", 0.4}});
-  Walker walker(carry);
-  walker.push(vec2(0.0, 0.7));
-  walker.hold(5 * kRate);
-  const double scale = adult().body.arm_m / kReferenceArm_m;
-  double off_m = 0.0;
-  for (int tick = 0; tick < 2 * kRate; ++tick) {
-    walker.step();
-    vec3 across = walker.shoulder(kLeftSide) - walker.shoulder(kRightSide);
-    across = glm::normalize(vec3(across.x, 0.0, across.z));
-    const vec3 ahead = glm::cross(across, kUp),
-               middle = 0.5 * (walker.shoulder(kLeftSide) + walker.shoulder(kRightSide));
-    for (const Side side : {kLeftSide, kRightSide}) {
-      const vec3 place =
-          middle + scale * ((side == kLeftSide ? 0.1 : -0.1) * across - 0.25 * kUp + 0.4 * ahead);
-      off_m = std::max(off_m, glm::distance(walker.hand(side), place));
-    }
-  }
-  std::printf("off their places by %.5f mm\n", off_m * 1e3);
-  EXPECT_LE(off_m, kSolved_m);
-  for (const Side side : {kLeftSide, kRightSide}) {  // elbows point downwards and outwards
-    const vec3 elbow = walker.at(adult().body.arm[side].joints.elbow);
-    EXPECT_LT(elbow.y, walker.shoulder(side).y - 0.2);
-    EXPECT_GT((elbow.x - walker.pose.root_m.x) * (side == kLeftSide ? 1.0 : -1.0), 0.15);
-  }
-}
-
-TEST(Hands, SlideAlongARailOfConstantHeight) {
-  const StyleValues rail = style_of(
-      {{"left_hand.rail", 1.0}, {"left_hand.rail_height_m", 0.95}, {"left_hand.rail_side_m", 0.4}});
-  Walker walker(rail);
-  walker.push(vec2(0.0, 0.7));
-  walker.hold(5 * kRate);
-  const double scale = adult().body.shoulder_height_m / kReferenceShoulder_m;
-  for (int tick = 0; tick < 2 * kRate; ++tick) {
-    walker.step();
-    EXPECT_NEAR(walker.hand(kLeftSide).y, 0.95 * scale, kSolved_m);
-    EXPECT_NEAR(walker.hand(kLeftSide).x, 0.4 * scale, 1e-4);
-  }
-}
-
-TEST(Hands, FollowARailThatRisesEvenlyOverStairs) {
-  Terrain stairs;
-  ASSERT_FALSE(add_section(stairs, FlatSection{3.0}));
-  ASSERT_FALSE(add_section(stairs, StairsSection{0.17, 0.28, 12}));
-  WalkModel model = adult();
-  model.terrain = std::make_shared<const Terrain>(stairs);
-  Walker walker(style_of({{"right_hand.rail", 1.0}}), model);
-  const double scale = model.body.shoulder_height_m / kReferenceShoulder_m;
-  std::vector<double> height_m;
-  walker.push(vec2(0.0, 0.5));
-  for (int tick = 0; tick < 20 * kRate; ++tick) {
-    walker.step();
-    const double z_m = walker.pose.root_m.z;
-    if (z_m < 4.0 || z_m > 5.5) continue;
-    const double line_m = 0.17 / 0.28 * (z_m - 3.0) + 0.085;  // the mean height of the treads
-    EXPECT_NEAR(walker.hand(kRightSide).y, line_m + 0.9 * scale, 0.03);
-    height_m.push_back(walker.hand(kRightSide).y);
-  }
-  ASSERT_GT(height_m.size(), 200u);
-  for (std::size_t i = 2; i < height_m.size(); ++i)
-    EXPECT_LT(std::abs(height_m[i] - 2.0 * height_m[i - 1] + height_m[i - 2]), 0.0005);
-}
-
-TEST(Hands, ReachForWhatIsOutOfReach) {
-  Walker walker(
-      style_of({{"hands.carry", 1.0}, {"hands.x_m", 1.0}, {"hands.y_m", 1.0}, {"hands.z_m", 1.0}}));
-  walker.push(vec2(0.0, 0.7));
-  walker.hold(5 * kRate);
-  for (const Side side : {kLeftSide, kRightSide}) {
-    const ArmChain& arm = adult().body.arm[side].joints;
-    const vec3 way = walker.hand(side) - walker.shoulder(side),
-               upper = glm::normalize(walker.at(arm.elbow) - walker.at(arm.shoulder)),
-               fore = glm::normalize(walker.at(arm.wrist) - walker.at(arm.elbow));
-    EXPECT_GT(way.y, 0.2);
-    EXPECT_GT(way.z, 0.2);
-    EXPECT_GT(glm::dot(upper, fore), std::cos(45.0 * kDegree));
-  }
-}
-
-std::vector<StyleValues> busy_styles() {
-  return {style_of({{"hands.carry", 1.0}}),
-          style_of({{"left_hand.rail", 1.0}}),
-          style_of({{"hands.carry", 1.0}, {"hands.y_m", 0.3}, {"right_hand.rail", 1.0}}),
-          style_of({{"head.look", 1.0}, {"head.yaw_deg", -90.0}, {"head.pitch_deg", 60.0}}),
-          style_of({{"head.look_at", 1.0}, {"head.x_m", 1.0}, {"head.z_m", 6.0}}),
-          style_of({{"arms.weight.shoulder", 0.1}, {"spine.weight.upper", 0.2}}),
-          style_of({{"arms.swing", 3.0}, {"head.lead", 1.0}})};
-}
-
-TEST(BusyStyles, BeginAndEndWithoutAJump) {
-  constexpr double kMost_deg = 1.0;  // a tick^2
-  double worst = 0.0;
-  for (const StyleValues& busy : busy_styles()) {
-    for (const int moment : {0, 91, 203}) {
-      Walker walker;
-      walker.push(vec2(0.0, 0.8));
-      walker.hold(3 * kRate + moment);
-      const int joints = walker.pose.joint_count;
-      std::vector<vec3> rate(joints, vec3(0.0));
-      Pose before = walker.pose;
-      for (int tick = 0; tick < 1000; ++tick) {
-        walker.ask_for(tick < 450 ? busy : StyleValues{});
-        walker.step();
-        for (int j = 0; j < joints; ++j) {
-          const vec3 now = rotation_vector(glm::conjugate(before.local[j]) * walker.pose.local[j]);
-          if (tick > 0) worst = std::max(worst, glm::length(now - rate[j]) / kDegree);
-          rate[j] = now;
-        }
-        before = walker.pose;
-      }
-    }
-  }
-  std::printf("%.3f degrees a tick^2\n", worst);
-  EXPECT_LT(worst, kMost_deg);
-}
-
-TEST(BusyStyles, LeaveLegsAndPelvisTheirBits) {
-  const Skeleton& skeleton = adult().cycle.skeleton;
-  for (const StyleValues& busy : busy_styles()) {
-    Walker plain, other(busy);
-    for (Walker* walker : {&plain, &other}) walker->push(vec2(0.0, 0.7));
-    for (int tick = 0; tick < 900; ++tick) {
-      if (tick == 500)
-        for (Walker* walker : {&plain, &other}) walker->push(vec2(0.4, 0.7));
-      plain.step(), other.step();
-      ASSERT_EQ(plain.pose.root_m, other.pose.root_m);
-      for (int j = 0; j < plain.pose.joint_count; ++j) {
-        if (j != adult().cycle.pelvis &&
-            !is_ancestor(skeleton, adult().cycle.leg[0].joints.hip, j) &&
-            !is_ancestor(skeleton, adult().cycle.leg[1].joints.hip, j))
-          continue;
-        ASSERT_EQ(plain.pose.local[j], other.pose.local[j]) << skeleton.joints[j].name;
-      }
-    }
-  }
-}
-
-// --- Head ----------------------------------------------------------------------------------------
-
-TEST(Head, LooksWhereItIsTold) {
-  for (const auto& [yaw, pitch] : {std::pair{40.0, 0.0}, {-50.0, 20.0}, {10.0, -30.0}}) {
-    Walker walker(style_of({{"head.look", 1.0}, {"head.yaw_deg", yaw}, {"head.pitch_deg", pitch}}));
-    walker.push(vec2(0.0, 0.7));
-    walker.hold(5 * kRate);
-    for (int tick = 0; tick < kRate; ++tick) {
-      walker.step();
-      const vec3 gaze = walker.gaze();
-      EXPECT_NEAR(heading_of(gaze) / kDegree, yaw, 1.0);
-      EXPECT_NEAR(gaitpad::atan2(gaze.y, horizontal_length(gaze)) / kDegree, pitch, 1.0);
-    }
-  }
-}
-
-TEST(Head, FollowsAPlaceThatItPassesInAnyWorld) {
-  const vec3 place(4.0, 1.2, 8.0);
-  const StyleValues look =
-      style_of({{"head.look_at", 1.0}, {"head.x_m", 4.0}, {"head.y_m", 1.2}, {"head.z_m", 8.0}});
-  for (const Placement& placed : {Placement{}, Placement{vec3(0.5, 0.4, -1.0), 0.2}}) {
-    Walker walker(look);
-    move_walk(placed, 0, walker.block);
-    walker.push(vec2(0.0, 0.8));
-    int seen = 0;
-    for (int tick = 0; tick < 3000; ++tick) {
-      walker.step();
-      const vec3 way = place - walker.at(adult().body.head_path.back());
-      const double aside = wrapped(heading_of(way) - walker.heading_rad() - placed.heading_rad);
-      if (tick < 600 || std::abs(aside) > 55.0 * kDegree) continue;
-      ++seen;
-      EXPECT_LT(gaitpad::acos(glm::dot(walker.gaze(), glm::normalize(way))) / kDegree, 1.0);
-    }
-    EXPECT_GT(seen, 100);
-    // The goal is far behind, so the head does not follow it.
-    EXPECT_LT(
-        std::abs(wrapped(heading_of(walker.gaze()) - walker.heading_rad() - placed.heading_rad)) /
-            kDegree,
-        10.0);
-  }
-}
-
-// A near place, to which the head turns far.
-TEST(Head, ThatLooksAlmostWhollyDoesNotJump) {
-  const auto pose_at = [](double look_at) {
-    Walker walker(style_of(
-        {{"head.look_at", look_at}, {"head.x_m", 0.6}, {"head.y_m", 1.0}, {"head.z_m", 0.8}}));
-    walker.hold(3 * kRate);
-    return walker.pose;
-  };
-  const Pose almost = pose_at(0.999999), wholly = pose_at(1.0);
-  for (int j = 0; j < wholly.joint_count; ++j)
-    EXPECT_LT(glm::length(turned_by(almost.local[j], wholly.local[j])), 0.01 * kDegree) << j;
 }
 
 // --- Joints that the walk alone writes -----------------------------------------------------------

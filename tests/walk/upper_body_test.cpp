@@ -7,12 +7,12 @@
 #include <memory>
 #include <utility>
 
-#include "animation/made_walker.h"
 #include "gaitpad/anatomy.h"
 #include "gaitpad/motion_file.h"
 #include "gaitpad/style.h"
 #include "gaitpad/walk.h"
 #include "tests/shared_data.h"
+#include "tests/walk/made_walker.h"
 
 namespace gaitpad {
 namespace {

@@ -5,7 +5,7 @@
 #include <limits>
 #include <memory>
 
-#include "tests/animation/made_walker.h"
+#include "tests/walk/made_walker.h"
 
 namespace gaitpad::test {
 namespace {

@@ -7,8 +7,8 @@
 #include <random>
 #include <vector>
 
-#include "animation/made_walker.h"
 #include "gaitpad/calibration.h"
+#include "tests/walk/made_walker.h"
 
 namespace gaitpad {
 namespace {

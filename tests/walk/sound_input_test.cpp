@@ -10,8 +10,8 @@
 
 #include "control/params_range.h"
 #include "gaitpad/crowd.h"
-#include "tests/animation/made_walker.h"
 #include "tests/finite_pose.h"
+#include "tests/walk/made_walker.h"
 
 namespace gaitpad::test {
 namespace {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-#include "animation/made_walker.h"
+#include "tests/walk/made_walker.h"
 
 namespace gaitpad {
 namespace {

@@ -10,11 +10,11 @@
 #include <filesystem>
 #include <string>
 
-#include "animation/terrain_judge.h"
 #include "gaitpad/config_files.h"
 #include "gaitpad/motion_file.h"
 #include "tests/clean_cycle.h"
 #include "tests/folders.h"
+#include "tests/walk/terrain_judge.h"
 
 using namespace gaitpad;
 

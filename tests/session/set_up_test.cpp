@@ -72,10 +72,9 @@ TEST_F(SetUpTest, AnotherSessionReadsItsFilesAgain) {
 TEST_F(SetUpTest, PadFilesAreReadAgainForAnotherMap) {
   SessionSpec asked = of("a.hid");
   const std::uint64_t unmapped = hash_of(replayer_.replay(asked));
-  asked.pad.map =
-      own_.write("map.toml",
-                 "[[pad]]\nvendor = 0x1209\n[pad.axes]\nleft_y = \"0001:0031\"\n"
-                 "left_x = \"-0001:0031\"\n");
+  asked.pad.map = own_.write("map.toml",
+                             "[[pad]]\nvendor = 0x1209\n[pad.axes]\nleft_y = \"0001:0031\"\n"
+                             "left_x = \"-0001:0031\"\n");
   const std::uint64_t mapped = hash_of(replay(asked));
   ASSERT_NE(mapped, unmapped);
   EXPECT_EQ(hash_of(replayer_.replay(asked)), mapped);

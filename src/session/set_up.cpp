@@ -79,9 +79,8 @@ Result<const WalkSetUp*> SetUps::walk(const SessionSpec& asked, const SessionSpe
     auto config = simulation_config(spec, rate_hz);
     if (!config) return config.error();
     auto start = Simulation::create(*config);
-    walk_ = std::make_unique<Walk>(Walk{std::move(key),
-                                        spec.recording,
-                                        {std::move(*config), std::move(start), inputs.read()}});
+    walk_ = std::make_unique<Walk>(Walk{
+        std::move(key), spec.recording, {std::move(*config), std::move(start), inputs.read()}});
   }
   return &walk_->set_up;
 }

@@ -1,7 +1,6 @@
 #include "session/walk_export.h"
 
 #include <fmt/format.h>
-#include <unistd.h>
 
 #include <cerrno>
 #include <filesystem>
@@ -26,7 +25,8 @@ Result<OutputFolder> OutputFolder::open(const std::string& folder) {
 }
 
 OutputFolder::~OutputFolder() {
-  for (const std::string& path : made_) ::rmdir(path.c_str());  // fails if it is not empty
+  std::error_code is_not_empty;
+  for (const std::string& path : made_) fs::remove(path, is_not_empty);
 }
 
 std::string OutputFolder::path_of(const std::string& name) const {

@@ -136,7 +136,7 @@ int run_through(const ReplayArguments& arguments) {
     ++replayed;
     all_ticks += result->summary.ticks;
     for (std::string& remark : result->remarks) {
-      if (count > 1 && !remark.starts_with(trace)) remark = trace + ": " + remark;
+      if (count > 1 && !remark.starts_with(trace)) remark.insert(0, trace + ": ");
     }
     print_remarks(kReplayCommand, result->remarks);
     json.add(trace, result->summary);

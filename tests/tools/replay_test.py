@@ -395,11 +395,10 @@ def files_below(folder):
     return {str(p.relative_to(folder)): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
 
 
-@pytest.fixture
-def walks(tmp_path, run):
+@pytest.fixture(scope="module")
+def walks(tmp_path_factory, run):
     """Recordings that share something with the one before, or nothing: by order, rate, style, files that they hold."""
-    folder = tmp_path / "walks"
-    folder.mkdir()
+    folder = tmp_path_factory.mktemp("walks")
     stick = [(0.2, *raw_stick(0.0, 0.8)), (1.5, *raw_stick(0.3, 0.6))]
     write_trace(folder / "a.hid", stick, end_s=2)
     write_trace(folder / "b.hid", stick[:1], [(0.5, "style limp_left")], end_s=2)

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """check_speed.py [COUNT...] [--program build/gaitpad] [--jobs 2]: measures the elapsed and processor time of `gaitpad
-check` for COUNT recordings of 20 s (default: 250, 500 and 1000), and that it grows linearly."""
+check` for COUNT recordings of 20 s (default: 250, 500 and 1000), and that it grows linearly; then that of `gaitpad
+replay` for the smallest COUNT, in one process and in a process each, with and without files."""
 import argparse
 import pathlib
 import resource
@@ -35,6 +36,17 @@ def timed(command):
     return time.monotonic() - start, after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime
 
 
+def measure_replays(program, recordings, out):
+    """The same replays in one process and in a process each. The files go to one folder, so that the last ones remain."""
+    count = len(recordings)
+    for files, name in (([], "replay"), (["--out", out], "replay --out")):
+        wall, cpu = timed([program, "replay", *recordings, *files])
+        print(f"{count:>10} {wall:8.1f} {cpu:8.1f} {1000 * cpu / count:12.1f}   {name}, one process")
+        each = [timed([program, "replay", recording, *files]) for recording in recordings]
+        wall, cpu = map(sum, zip(*each))
+        print(f"{count:>10} {wall:8.1f} {cpu:8.1f} {1000 * cpu / count:12.1f}   {name}, {count} processes")
+
+
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("counts", nargs="*", type=int, default=[250, 500, 1000])
@@ -54,6 +66,7 @@ def main():
         for count in arguments.counts:
             wall, cpu = timed([arguments.program, "check", "-j", str(arguments.jobs), *recordings[:count]])
             print(f"{count:>10} {wall:8.1f} {cpu:8.1f} {1000 * cpu / count:12.1f}")
+        measure_replays(arguments.program, recordings[:min(arguments.counts)], folder / "out")
 
 
 if __name__ == "__main__":

@@ -299,7 +299,7 @@ std::optional<Error> update(const CheckedTrace& trace, const Expectation& before
   return std::nullopt;
 }
 
-std::optional<Error> check(const CheckedTrace& trace, const CheckOptions& options,
+std::optional<Error> check(const CheckedTrace& trace, const CheckOptions& options, SetUps& set_ups,
                            CheckResult& result) {
   std::error_code ignored;
   Expectation expectation;
@@ -319,7 +319,7 @@ std::optional<Error> check(const CheckedTrace& trace, const CheckOptions& option
   session.config_folders = options.config_folders;
   session.replay.max_hours = options.max_hours;
   session.replay.user_styles = options.user_styles;
-  auto prepared = prepared_trace(session);
+  auto prepared = prepared_trace(session, set_ups);
   if (!prepared) return prepared.error();
   const auto files = files_of(trace, *prepared, options.config_folders);
   if (!files) return files.error();
@@ -341,19 +341,19 @@ std::optional<Error> check(const CheckedTrace& trace, const CheckOptions& option
   return std::nullopt;
 }
 
-}  // namespace
-
-CheckResult checked(const CheckedTrace& trace, const CheckOptions& options) {
+CheckResult checked(const CheckedTrace& trace, const CheckOptions& options, SetUps& set_ups) {
   using Clock = std::chrono::steady_clock;
   const Clock::time_point start = Clock::now();
   CheckResult result;
-  if (auto problem = check(trace, options, result)) {
+  if (auto problem = check(trace, options, set_ups, result)) {
     result = {};
     result.verdict = problem->message;
   }
   result.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   return result;
 }
+
+}  // namespace
 
 void check_all(const std::vector<CheckedTrace>& traces, const CheckOptions& options, int threads,
                const std::function<void(std::size_t, CheckResult&&)>& take) {
@@ -363,8 +363,9 @@ void check_all(const std::vector<CheckedTrace>& traces, const CheckOptions& opti
   std::size_t taken = 0;
   std::exception_ptr thrown;  // an exception of `take` (a full disk), which the caller gets
   const auto work = [&] {
+    SetUps set_ups;
     for (std::size_t i; (i = next.fetch_add(1)) < traces.size();) {
-      CheckResult result = checked(traces[i], options);
+      CheckResult result = checked(traces[i], options, set_ups);
       const std::lock_guard lock(mutex);
       waiting[i] = std::move(result);
       try {

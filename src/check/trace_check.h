@@ -65,10 +65,10 @@ struct CheckResult {
   double seconds = 0.0;
   std::optional<JointCurves> curves;
 };
-CheckResult checked(const CheckedTrace& trace, const CheckOptions& options);
 
-// Checks all of them on `threads` threads. `take` gets each result in the order of the traces, when
-// the earlier ones are done; it is called by one thread at a time.
+// Checks all of them on `threads` threads; a thread loads what successive recordings share once.
+// `take` gets each result in the order of the traces, when the earlier ones are done; it is called
+// by one thread at a time.
 void check_all(const std::vector<CheckedTrace>& traces, const CheckOptions& options, int threads,
                const std::function<void(std::size_t, CheckResult&&)>& take);
 

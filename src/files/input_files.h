@@ -10,6 +10,7 @@ namespace gaitpad {
 
 struct InputFile {
   std::string path, bytes;
+  bool operator==(const InputFile&) const = default;
 };
 // The input files of a session. While an object lives, it keeps the text of every file that
 // input_text() reads on this thread. Paths inside `folder` are read from `held` instead of the

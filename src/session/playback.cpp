@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <span>
 #include <string_view>
 #include <utility>
 
@@ -37,9 +38,21 @@ std::optional<Error> length_problem(const Trace& trace, std::int64_t ticks, int 
                            trace.path, hours, max_hours)};
 }
 
+// Adds the files that the list does not name yet.
+void add_files(std::span<const InputFile> files, std::vector<const InputFile*>& list) {
+  for (const InputFile& file : files) {
+    if (std::ranges::count(list, file.path, &InputFile::path) == 0) list.push_back(&file);
+  }
+}
+
 }  // namespace
 
-Result<PreparedTrace> prepared_trace(const SessionSpec& asked) {
+Result<PreparedTrace> prepared_trace(const SessionSpec& spec) {
+  SetUps own;
+  return prepared_trace(spec, own);
+}
+
+Result<PreparedTrace> prepared_trace(const SessionSpec& asked, SetUps& set_ups) {
   if (auto problem = check(asked)) return *problem;
   auto trace = read_trace(asked.replay.trace, asked.replay.damage);
   if (!trace) return trace.error();
@@ -52,30 +65,43 @@ Result<PreparedTrace> prepared_trace(const SessionSpec& asked) {
   auto ticks = assign_ticks(*trace, rate);
   if (!ticks) return ticks.error();
   if (auto problem = length_problem(*trace, *ticks, rate, spec.replay.max_hours)) return *problem;
-  auto files = load_pad_files(spec);
-  if (!files) return files.error();
-  auto pads = pad_configs(*files, trace->devices, trace->path);
+  const auto pad_set_up = set_ups.pads(spec);
+  if (!pad_set_up) return pad_set_up.error();
+  const PadFiles& pad_files = (*pad_set_up)->files;
+  auto pads = pad_configs(pad_files, trace->devices, trace->path);
   if (!pads) return pads.error();
+  const std::size_t pad_reads = inputs.read().size();
   spec.walk.pace = replay_pace(*trace, spec.walk.pace);
-  auto config = simulation_config(spec, rate);
-  if (!config) return config.error();
-  config->pads = std::move(*pads);
-  config->pad_rules = trace->version < 2 ? PadRules::version_1 : PadRules::version_2;
-  if (auto problem = settle_pads(*trace, config->pads)) return *problem;
-  const std::vector<std::string> left_out = left_out_styles(spec, *trace, *config);
-  config->remarks.insert(config->remarks.end(), left_out.begin(), left_out.end());
-  auto start = Simulation::create(*config);
-  if (!start) {  // a zone's style may be missing
+  const auto walk_set_up = set_ups.walk(asked, spec, *trace, rate);
+  if (!walk_set_up) return walk_set_up.error();
+  const WalkSetUp& walk = **walk_set_up;
+  SimulationConfig config = walk.config;
+  config.pads = std::move(*pads);
+  config.pad_rules = trace->version < 2 ? PadRules::version_1 : PadRules::version_2;
+  if (auto problem = settle_pads(*trace, config.pads)) return *problem;
+  const std::vector<std::string> left_out = left_out_styles(spec, *trace, config);
+  config.remarks.insert(config.remarks.end(), left_out.begin(), left_out.end());
+  if (!walk.start) {  // a zone's style may be missing
     const std::string cause = left_out.empty() ? "" : "; " + left_out.front();
-    return Error{start.error().message + cause};
+    return Error{walk.start.error().message + cause};
   }
-  auto changes = style_changes(*trace, start->styles());
+  if (auto problem = check(config)) return *problem;
+  Simulation start = *walk.start;
+  start.set_pads(Pads(config.pads, rate, config.pad_rules));
+  auto changes = style_changes(*trace, start.styles());
   if (!changes) return changes.error();
-  auto script = script_for(*start, spec.walk.script);
+  auto script = script_for(start, spec.walk.script);
   if (!script) return script.error();
   add_script(*script, rate, *trace);
-  auto used = used_files(inputs.read(), *trace, *config, files->overrides);
-  return PreparedTrace{std::move(*trace),   *ticks,         std::move(*config), std::move(*start),
+  // The same order with and without a shared set-up: an expectation stores it.
+  const std::span<const InputFile> reads = inputs.read();
+  std::vector<const InputFile*> read;
+  add_files((*pad_set_up)->read, read);
+  add_files(reads.first(pad_reads), read);
+  add_files(walk.read, read);
+  add_files(reads, read);
+  auto used = used_files(read, *trace, config, pad_files.overrides);
+  return PreparedTrace{std::move(*trace),   *ticks,         std::move(config), std::move(start),
                        std::move(*changes), std::move(used)};
 }
 

@@ -14,6 +14,7 @@
 #include "gaitpad/summary.h"
 #include "gaitpad/trace.h"
 #include "session/recorded_session.h"
+#include "session/set_up.h"
 
 namespace gaitpad {
 
@@ -28,11 +29,17 @@ struct PreparedTrace {
 // Reads `spec.replay.trace` and every file of the session, and adds the script's events. Also an
 // error: `spec.rate_hz` differs from the trace's rate or none of the trace's devices is a pad.
 Result<PreparedTrace> prepared_trace(const SessionSpec& spec);
+// The same, for one of several recordings: takes what it shares with the one before from `set_ups`.
+Result<PreparedTrace> prepared_trace(const SessionSpec& spec, SetUps& set_ups);
 
 // State of a run after some ticks. A copy continues independently.
 class TraceRun {
  public:
   static TraceRun begin(const PreparedTrace& prepared) { return TraceRun(prepared.start); }
+  // The only run of `prepared`: takes its start, so that a large crowd is not copied.
+  static TraceRun begin_only(PreparedTrace& prepared) {
+    return TraceRun(std::move(prepared.start));
+  }
 
   // Runs one tick with its reports. `prepared` must be the one given to begin().
   void step(const PreparedTrace& prepared) noexcept;

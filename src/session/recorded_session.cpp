@@ -152,18 +152,18 @@ std::set<std::string, std::less<>> named_styles(const Trace& trace,
 
 }  // namespace
 
-std::vector<UsedFile> used_files(const std::vector<InputFile>& read, const Trace& trace,
+std::vector<UsedFile> used_files(const std::vector<const InputFile*>& read, const Trace& trace,
                                  const SimulationConfig& config, const PadOverrides& overrides) {
   const auto styles = named_styles(trace, config);
   std::set<std::string, std::less<>> pads;
   for (const TraceDevice& device : trace.devices) pads.insert(pad_file_of(overrides, device.info));
   std::vector<UsedFile> used;
-  for (const InputFile& file : read) {
-    const fs::path folder = fs::path(file.path).parent_path().filename();
+  for (const InputFile* file : read) {
+    const fs::path folder = fs::path(file->path).parent_path().filename();
     const bool is_spare = (folder == kStylesFolder && config.crowd == 0 &&
-                           !styles.contains(config_name(file.path))) ||
-                          (folder == "pads" && !pads.contains(file.path));
-    if (!is_spare) used.push_back({file.path, bytes_hash(file.bytes)});
+                           !styles.contains(config_name(file->path))) ||
+                          (folder == "pads" && !pads.contains(file->path));
+    if (!is_spare) used.push_back({file->path, bytes_hash(file->bytes)});
   }
   return used;
 }

@@ -39,7 +39,7 @@ struct UsedFile {
 std::uint64_t bytes_hash(std::string_view bytes);
 // The files, of those that were read, on which the replay depends: without styles that it does not
 // name and without entries for other pads.
-std::vector<UsedFile> used_files(const std::vector<InputFile>& read, const Trace& trace,
+std::vector<UsedFile> used_files(const std::vector<const InputFile*>& read, const Trace& trace,
                                  const SimulationConfig& config, const PadOverrides& overrides);
 
 // Names the user's styles that commands or zones of the recording name and that the replay did not

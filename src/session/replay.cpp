@@ -106,14 +106,21 @@ std::vector<std::string> remarks_on(const PreparedTrace& prepared, const Simulat
 }  // namespace
 
 Result<ReplayResult> replay(const SessionSpec& spec, const ReplayProgress& progress) {
+  return Replayer().replay(spec, progress);
+}
+
+Replayer::Replayer() : set_ups_(std::make_unique<SetUps>()) {}
+Replayer::~Replayer() = default;
+
+Result<ReplayResult> Replayer::replay(const SessionSpec& spec, const ReplayProgress& progress) {
   SessionSpec unseen = spec;
   unseen.walk.shows_crowd = false;
-  auto prepared = prepared_trace(unseen);
+  auto prepared = prepared_trace(unseen, *set_ups_);
   if (!prepared) return prepared.error();
   const int rate_hz = prepared->config.rate_hz;
   auto fps = written_fps(spec, rate_hz);
   if (!fps) return fps.error();
-  TraceRun run = TraceRun::begin(*prepared);
+  TraceRun run = TraceRun::begin_only(*prepared);
   const Simulation& simulation = run.simulation();
   std::optional<OutputFiles> files;
   if (!spec.replay.out.empty()) {

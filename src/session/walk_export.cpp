@@ -13,16 +13,30 @@
 namespace gaitpad {
 namespace fs = std::filesystem;
 
-Result<OutputFiles> OutputFiles::open(const std::string& folder) {
+Result<OutputFolder> OutputFolder::open(const std::string& folder) {
+  OutputFolder opened(folder);
   std::error_code error;
+  for (fs::path path = folder; !path.empty() && !fs::exists(path, error); path = path.parent_path())
+    opened.made_.push_back(path.string());
   fs::create_directories(folder, error);
   if (error) return Error{fmt::format("{}: cannot be made: {}", folder, error.message())};
   if (!fs::is_directory(folder, error)) return write_error(folder, ENOTDIR);
-  return OutputFiles(folder);
+  return opened;
 }
 
-std::string OutputFiles::path_of(const std::string& name) const {
+OutputFolder::~OutputFolder() {
+  std::error_code is_not_empty;
+  for (const std::string& path : made_) fs::remove(path, is_not_empty);
+}
+
+std::string OutputFolder::path_of(const std::string& name) const {
   return (fs::path(folder_) / name).string();
+}
+
+Result<OutputFiles> OutputFiles::open(const std::string& folder) {
+  auto opened = OutputFolder::open(folder);
+  if (!opened) return opened.error();
+  return OutputFiles(std::move(*opened));
 }
 
 Result<std::ostream*> OutputFiles::add(const std::string& name) {
@@ -36,7 +50,7 @@ Result<std::ostream*> OutputFiles::add(const std::string& name) {
 }
 
 Result<std::fstream> OutputFiles::scratch() const {
-  auto file = NewFile::create((fs::path(folder_) / "scratch").string());
+  auto file = NewFile::create(path_of("scratch"));
   if (!file) return file.error();
   errno = 0;
   std::fstream stream(file->name_for_streams(),

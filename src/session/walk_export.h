@@ -20,16 +20,32 @@
 
 namespace gaitpad {
 
+// A folder, made with its parents if they are missing. At the end those that it made and that are
+// empty are removed.
+class OutputFolder {
+ public:
+  static Result<OutputFolder> open(const std::string& folder);
+  OutputFolder(OutputFolder&&) noexcept = default;
+  OutputFolder& operator=(OutputFolder&&) = delete;
+  ~OutputFolder();
+  std::string path_of(const std::string& name) const;
+
+ private:
+  explicit OutputFolder(std::string folder) : folder_(std::move(folder)) {}
+  std::string folder_;
+  std::vector<std::string> made_;  // the innermost first
+};
+
 // Files of one run. publish() names them; without it the files of an earlier run stay.
 class OutputFiles {
  public:
-  // Makes the folder if it is missing.
+  // Makes the folder if it is missing. Without publish() it is removed again.
   static Result<OutputFiles> open(const std::string& folder);
   // Adds a new, empty file. The stream lives as long as this object. publish() reports its write
   // errors.
   Result<std::ostream*> add(const std::string& name);
   std::optional<Error> publish();
-  std::string path_of(const std::string& name) const;
+  std::string path_of(const std::string& name) const { return folder_.path_of(name); }
   // A nameless temporary file in the same folder. It vanishes with its stream, even if the program
   // is killed.
   Result<std::fstream> scratch() const;
@@ -39,9 +55,9 @@ class OutputFiles {
     NewFile file;
     std::unique_ptr<std::ofstream> stream;
   };
-  explicit OutputFiles(std::string folder) : folder_(std::move(folder)) {}
+  explicit OutputFiles(OutputFolder folder) : folder_(std::move(folder)) {}
 
-  std::string folder_;
+  OutputFolder folder_;  // before the files: they leave it first
   std::vector<File> files_;
 };
 

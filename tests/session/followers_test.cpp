@@ -27,7 +27,7 @@ Simulation walked_varied(const SimulationConfig& config, int ticks) {
   return simulation;
 }
 
-const vec3& hips_m(const Simulation& simulation, int member) {
+vec3 hips_m(const Simulation& simulation, int member) {
   return simulation.followers().crowd().state(member).root.place_m;
 }
 

@@ -344,6 +344,21 @@ def test_update_says_what_changed_and_keeps_the_rest(one, run):
     assert before == {p.name: p.stat().st_mtime_ns for p in one.parent.iterdir()}
 
 
+def test_expectations_written_together_are_those_written_apart(run, tmp_path):
+    """A thread loads the files that successive recordings share once; each expectation still lists all of its files."""
+    def written(*groups):
+        for expected in tmp_path.glob("*.expect.*"):
+            expected.unlink()
+        for group in groups:
+            run("check", "--update", "-j", 1, *group)
+        return {p.name: p.read_bytes() for p in tmp_path.glob("*.expect.*")}
+    traces = [walk(tmp_path / f"{name}.hid", 0.4 + 0.1 * i, seconds=2, end_s=3) for i, name in enumerate("abc")]
+    run("play", traces[0], "--no-window", "--style", "tired", "--seconds", 1, "--record", tmp_path / "d.hid")
+    traces.append(tmp_path / "d.hid")
+    together = written(traces)
+    assert len(together) == 8 and together == written(*([trace] for trace in traces))
+
+
 def test_without_kept_poses_the_tick_is_not_known(one, run):
     poses = one.with_suffix(".expect.poses")
     assert poses.exists()

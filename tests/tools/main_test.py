@@ -38,7 +38,7 @@ def test_help_of_a_command_has_examples_that_begin_with_it(run, command):
     (["dance"], ['unknown command "dance"', "known: play, replay"]),
     (["replay", ROUND, "--styel", "even"], ['gaitpad replay: unknown option "--styel"', 'did you mean "--style"?']),
     (["replay", ROUND, "--quite-unlike-any"], ['unknown option "--quite-unlike-any"']),
-    (["replay", ROUND, "again"], ['unexpected argument "again"']),
+    (["ik", "chain.toml", "again"], ['unexpected argument "again"']),
     (["help", "repaly"], ['did you mean "replay"?']),
     (["play", "--seconds", "-1"], ["--seconds", "0.001", "1000000"]),
     (["replay", ROUND, "--rate", "0"], ["--rate", "10", "10000"])], ids=lambda value: str(value[0])[:20])

@@ -141,8 +141,9 @@ def test_bash_completes_sets_of_words(complete):
 def test_bash_completes_files_and_folders(complete):
     assert "mine.hid" in complete("replay", "m")
     assert set(complete("check", "--plot", "")) == {"folder"}
-    assert complete("replay", "mine.hid", "m") == [], "one recording is all that replay takes"
-    assert complete("check", "mine.hid", "m") == ["mine.hid"], "check takes many"
+    assert complete("decode", "mine.hid", "m") == [], "one recording is all that decode takes"
+    for command in ("replay", "check"):
+        assert complete(command, "mine.hid", "m") == ["mine.hid"], "it takes many"
 
 
 def test_pads_that_are_plugged_are_offered(complete, run):

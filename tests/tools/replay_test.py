@@ -262,7 +262,17 @@ def test_an_unwritable_folder(made):
 def test_too_large_a_file_is_a_failed_write(made):
     limited = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
     assert "cannot be written" in made.run(WALK, status=1, preexec_fn=limited).stderr
-    assert list(made.out.iterdir()) == []
+    assert not made.out.exists()
+
+
+def test_a_failed_write_leaves_no_new_folder_and_every_older_one(made):
+    limited = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
+    (made.folder / "older").mkdir()
+    for out in ("older", "older/new", "new/newer/newest"):
+        made.out = made.folder / out
+        made.run(WALK, status=1, preexec_fn=limited)
+    assert sorted(p.name for p in made.folder.iterdir()) == ["made.hid", "older"]
+    assert list((made.folder / "older").iterdir()) == []
 
 
 def test_a_failure_leaves_the_files_of_an_earlier_run(made):
@@ -354,7 +364,7 @@ def test_control_c_ends_it_at_once_and_leaves_nothing(started, tmp_path):
     with started("replay", trace, "--out", out) as process:
         wait_until(lambda: has_begun(process, out))
         _, errors = end_by(process, signal.SIGINT, status=130)
-    assert "nothing was written" in errors and list(out.iterdir()) == []
+    assert "nothing was written" in errors and not out.exists()
 
 
 def test_a_killed_replay_leaves_nothing_and_what_earlier_ones_left_is_removed(started, run, tmp_path):
@@ -378,6 +388,114 @@ def test_long_gaps_take_the_time_of_their_ticks_and_show_progress(program, made)
         terminal.wait_for(r"replay: \d+ %, (\d+ min )?\d+ s left", 60)
         assert terminal.wait_end(300) == 0
     assert f"{10 * gap_s * RATE_HZ} ticks at {RATE_HZ} Hz" in terminal.text
+
+
+# ---- several recordings in one process -------------------------------------------------------
+def files_below(folder):
+    return {str(p.relative_to(folder)): p.read_bytes() for p in folder.rglob("*") if p.is_file()}
+
+
+@pytest.fixture(scope="module")
+def walks(tmp_path_factory, run):
+    """Recordings that share something with the one before, or nothing: by order, rate, style, files that they hold."""
+    folder = tmp_path_factory.mktemp("walks")
+    stick = [(0.2, *raw_stick(0.0, 0.8)), (1.5, *raw_stick(0.3, 0.6))]
+    write_trace(folder / "a.hid", stick, end_s=2)
+    write_trace(folder / "b.hid", stick[:1], [(0.5, "style limp_left")], end_s=2)
+    write_trace(folder / "c.hid", stick, end_s=2, rate_hz=120)
+    write_trace(folder / "d.hid", stick[1:], [(0.5, "style tiring"), (0.6, "dance")], end_s=2)
+    for name, options in (("e", []), ("f", []), ("g", ["--style", "tired", "--character", "child"])):
+        run("play", folder / "a.hid", "--no-window", *options, "--terrain", "stairs", "--seconds", 1,
+            "--record", folder / f"{name}.hid")
+    return sorted(folder.glob("*.hid"))
+
+
+@pytest.mark.parametrize("options", [[], ["--style", "stiff_hip", "--style", "tired", "--crowd", "2", "--gltf", "--fps", "30"],
+                                     ["--terrain", "zones", "--stick", "points", "--ik", "paper"]], ids=" ".join)
+def test_each_of_several_recordings_gives_the_bytes_of_its_own_process(run, walks, tmp_path, options):
+    together, apart = tmp_path / "together", tmp_path / "apart"
+    done = run("replay", *walks, *options, "--out", together)
+    for walk in walks:
+        alone = run("replay", walk, *options, "--out", apart / walk.stem)
+        assert alone.stdout.replace(str(apart), str(together)) in done.stdout
+        for line in alone.stderr.splitlines():
+            assert line.split(": ", 1)[1] in done.stderr, "remarks"
+    assert files_below(together) == files_below(apart)
+    assert {p.name for p in together.iterdir()} == {walk.stem for walk in walks}
+
+
+def test_remarks_on_several_recordings_name_theirs(run, walks):
+    assert f"gaitpad replay: {walks[3]}: 1 of 2 commands could not be obeyed\n" in run("replay", *walks[2:4]).stderr
+
+
+def test_a_bad_recording_is_told_and_the_others_are_replayed(run, walks, tmp_path):
+    bad, out = tmp_path / "bad.hid", tmp_path / "out"
+    bad.write_text(walks[0].read_text().replace("E: 000000.200000", "E: 000000.2000x0"))
+    line = bad.read_text().splitlines().index(next(l for l in bad.read_text().splitlines() if "x0" in l)) + 1
+    done = run("replay", walks[0], bad, walks[1], "--out", out, status=1)
+    said = done.stderr.splitlines()
+    assert len(said) == 2 and f"{bad}:{line}: " in said[0]
+    assert said[1] == "gaitpad replay: 1 of 3 recordings were not replayed"
+    assert sorted(p.name for p in out.iterdir()) == ["a", "b"]
+    run("replay", walks[0], walks[1], "--out", tmp_path / "good")
+    assert files_below(out) == files_below(tmp_path / "good")
+
+
+def test_where_every_recording_fails_nothing_is_left(run, walks, tmp_path):
+    limited = lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (100_000, 100_000))
+    done = run("replay", *walks[:2], "--out", tmp_path / "out/deep", status=1, preexec_fn=limited)
+    assert "2 of 2 recordings were not replayed" in done.stderr and not (tmp_path / "out").exists()
+
+
+def test_a_wrong_option_is_told_once(run, walks):
+    said = run("replay", *walks[:3], "--style", "nowhere", status=1).stderr.splitlines()
+    assert len(said) == 2 and "nowhere" in said[0] and said[1].endswith("3 of 3 recordings were not replayed")
+
+
+def test_two_recordings_of_one_name_are_refused_before_anything_is_written(refuse, run, walks, tmp_path):
+    out = tmp_path / "out"
+    for other in (tmp_path / "a.hid", tmp_path / "a.rec"):
+        other.write_bytes(walks[0].read_bytes())
+        done = refuse("replay", walks[1], walks[0], other, "--out", out, status=2)
+        assert done.stderr == (f"gaitpad replay: {walks[0]} and {other} would both be written to {out}/a; "
+                               "rename one, or replay them apart\n")
+    assert not out.exists()
+    assert run("replay", walks[0], tmp_path / "a.hid").stdout.count("pose hash") == 2
+
+
+def test_names_of_dots_stay_below_the_folder(run, walks, tmp_path):
+    odd = tmp_path / "..hid"
+    odd.write_bytes(walks[0].read_bytes())
+    (tmp_path / "...").write_bytes(walks[0].read_bytes())
+    run("replay", odd, tmp_path / "...", "--out", tmp_path / "out")
+    assert sorted(p.name for p in (tmp_path / "out").iterdir()) == ["...", "..hid"]
+
+
+@pytest.mark.parametrize("options", [["--view"], ["--view", "--frames", "3"], ["--to", "uinput"], ["--to", "x.evemu"]], ids=" ".join)
+def test_what_takes_one_recording_is_refused_for_several(refuse, walks, tmp_path, options):
+    done = refuse("replay", *walks[:3], *options, status=2, cwd=tmp_path)
+    assert done.stderr == f"gaitpad replay: {options[0]} takes one recording, and 3 are given\n"
+    assert not (tmp_path / "x.evemu").exists()
+
+
+def test_json_of_several_lists_summaries_and_failures(run, walks):
+    done = run("replay", walks[0], "missing.hid", walks[1], "--json", "--style", "even", "--style", "tired", status=1)
+    first, missing, last = json.loads(done.stdout)
+    assert missing == {"trace": "missing.hid", "error": missing["error"]} and "missing.hid: " in missing["error"]
+    for walk, listed in ((walks[0], first), (walks[1], last)):
+        alone = json.loads(run("replay", walk, "--json", "--style", "even", "--style", "tired").stdout)
+        assert listed == {"trace": str(walk), "summary": alone}
+
+
+def test_control_c_leaves_the_recordings_before_it(started, walks, tmp_path):
+    trace = write_trace(tmp_path / "long.hid", [(0.0, 0.0, 0.0), (0.5, *raw_stick(0.0, 0.8))], end_s=500)
+    out = tmp_path / "out"
+    with started("replay", walks[0], trace, walks[1], "--out", out) as process:
+        wait_until(lambda: has_begun(process, out / "long"))
+        _, errors = end_by(process, signal.SIGINT, status=130)
+    assert errors.splitlines()[0].endswith("long.hid: ended before its last tick; nothing was written")
+    assert errors.splitlines()[1] == "gaitpad replay: 2 of 3 recordings were not replayed"
+    assert [p.name for p in out.iterdir()] == ["a"]
 
 
 # ---- a replay depends on its recording alone -------------------------------------------------

@@ -45,7 +45,7 @@ TEST(Placement, AMovedWalkHasTheBitsOfOneThatIsNot) {
       // Through another root's rotation: equal but for the rounding of floats.
       ASSERT_LT(glm::distance(moving.frame.heel_m[side],
                               to_world(moving.placed, state.frame.heel_m[side])),
-                5e-7);
+                1e-6);
       ASSERT_LT(
           glm::distance(moving.frame.toe_m[side], to_world(moving.placed, state.frame.toe_m[side])),
           5e-7);

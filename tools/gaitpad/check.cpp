@@ -24,7 +24,6 @@ namespace gaitpad {
 namespace {
 
 constexpr const char* kCheckCommand = "check";
-constexpr int kWrongUsage = 2;  // exit status for a wrong --shard
 constexpr int kMaxJobs = 1024;
 
 struct CheckArguments {

@@ -24,7 +24,7 @@
 
 namespace {
 
-constexpr int kFailed = 1, kWrongUsage = 2;
+constexpr int kFailed = 1;
 
 struct Example {
   const char* command;
@@ -38,7 +38,8 @@ constexpr Example kExamples[] = {
     {"replay",
      "gaitpad replay mine.hid --out out\n"
      "gaitpad replay mine.hid --style tired --terrain stairs --out out --gltf\n"
-     "gaitpad replay mine.hid --view\n"},
+     "gaitpad replay mine.hid --view\n"
+     "gaitpad replay walks/*.hid --out out\n"},
     {"record", "gaitpad record --out mine.hid --seconds 20\n"},
     {"pads", "gaitpad pads\n"},
     {"doctor", "gaitpad doctor\nsudo gaitpad doctor --install-rules\n"},
@@ -131,13 +132,13 @@ std::optional<int> answer_shell(const CLI::App& app, int argc, char** argv) {
 int tell(const CLI::App& app, const CLI::ParseError& error) {
   if (dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr) {
     gaitpad::warn(unexpected(app) + "\nRun with --help for more information.\n");
-    return kWrongUsage;
+    return gaitpad::kWrongUsage;
   }
   std::ostringstream help, usage;
   const bool is_done = app.exit(error, help, usage) == 0;
   gaitpad::say(stdout, gaitpad::printable_lines(help.str()));
   gaitpad::warn(gaitpad::printable_lines(usage.str()));
-  if (!is_done) return kWrongUsage;
+  if (!is_done) return gaitpad::kWrongUsage;
   return 0;
 }
 

@@ -170,7 +170,7 @@ int run_without_window(const PlayArguments& arguments) {
     std::vector<ordered_json> summaries;
     for (std::size_t i = 0; i < run->walkers.size(); ++i)
       add_status(status, summaries.emplace_back(summary_json(*run, i)));
-    print_summaries_json(summaries);
+    print_json(one_or_list(summaries));
   } else {
     print_text(arguments, status, *run);
   }
@@ -226,7 +226,7 @@ void print_window_json(const WindowResult& result) {
     summary["first_frame_s"] = 1e-9 * static_cast<double>(result.first_frame_ns - kStarted_ns);
     if (result.status) add_status(*result.status, summary);
   }
-  print_summaries_json(summaries);
+  print_json(one_or_list(summaries));
 }
 
 int run_with_window(const PlayArguments& arguments) {

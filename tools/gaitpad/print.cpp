@@ -41,8 +41,8 @@ void print_json(const ordered_json& value) {
   fmt::print("{}\n", value.dump(2, ' ', true, ordered_json::error_handler_t::replace));
 }
 
-void print_summaries_json(const std::vector<ordered_json>& summaries) {
-  print_json(summaries.size() == 1 ? summaries[0] : ordered_json(summaries));
+ordered_json one_or_list(const std::vector<ordered_json>& summaries) {
+  return summaries.size() == 1 ? summaries[0] : ordered_json(summaries);
 }
 
 void print_session(const std::string& source, const RunSummary& run) {

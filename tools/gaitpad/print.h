@@ -26,6 +26,8 @@ void say(fmt::format_string<T...> format, T&&... values) {
 
 // Prints a text on standard error; ignores write errors.
 void warn(std::string_view text);
+// The exit status after arguments that do not fit together.
+inline constexpr int kWrongUsage = 2;
 // Prints `gaitpad COMMAND: SENTENCE` on standard error and returns the exit status 1.
 int fail(std::string_view command, const std::string& sentence);
 // Prints `gaitpad COMMAND: REMARK` for each remark. Each sentence is made printable(), because it
@@ -37,8 +39,8 @@ void print_remarks(std::string_view command, const std::vector<std::string>& rem
 // replaced and non-ASCII is escaped, so that no text can control the terminal.
 void print_json_line(const nlohmann::ordered_json& object);
 void print_json(const nlohmann::ordered_json& value);
-// Prints one object for one character, else a list.
-void print_summaries_json(const std::vector<nlohmann::ordered_json>& summaries);
+// One object for one character, else a list.
+nlohmann::ordered_json one_or_list(const std::vector<nlohmann::ordered_json>& summaries);
 
 // Prints the session in one line: `SOURCE: 120 reports, 480 ticks ...`.
 void print_session(const std::string& source, const RunSummary& run);

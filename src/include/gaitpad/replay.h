@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -25,5 +26,19 @@ using ReplayProgress = std::function<bool(std::int64_t done, std::int64_t ticks)
 // `spec.replay` asks for. They appear in the folder together and complete: an error leaves the
 // folder as it was.
 Result<ReplayResult> replay(const SessionSpec& spec, const ReplayProgress& progress = {});
+
+class SetUps;
+// Replays several recordings, each as replay() does. Pad files, styles, motion, models and strides
+// are kept for the next recording, so that recordings of the same session load them once. Files on
+// the disk that change meanwhile are not read again. One thread uses it at a time.
+class Replayer {
+ public:
+  Replayer();
+  ~Replayer();
+  Result<ReplayResult> replay(const SessionSpec& spec, const ReplayProgress& progress = {});
+
+ private:
+  std::unique_ptr<SetUps> set_ups_;
+};
 
 }  // namespace gaitpad

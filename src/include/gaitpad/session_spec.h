@@ -34,6 +34,7 @@ struct SessionSpec {
     // The gait that the stick scales. None: in a replay the trace's, else what the motion's
     // description says, else the motion's own. The built-in motion always has the adult's.
     std::optional<Pace> pace;
+    bool operator==(const Walk&) const = default;
   };
   // The pad that drives, and the files that interpret its reports.
   struct Pad {

@@ -117,6 +117,8 @@ class Simulation {
   // report. Its entry in SimulationConfig::pads must be one of unknown_pads(). No heap: they are
   // swapped.
   void set_pad(std::uint16_t device, PadConfig&& config) noexcept { pads_.set_pad(device, config); }
+  // Replaces all pads before the first tick.
+  void set_pads(Pads pads) noexcept { pads_ = std::move(pads); }
   // Replaces the list of styles by one in which the present styles keep their places, and hands the
   // old list back. No heap.
   void swap_styles(std::shared_ptr<const std::vector<Style>>& styles) noexcept {

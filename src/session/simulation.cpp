@@ -132,6 +132,8 @@ void restart(std::span<const Style> styles, Walker& w) noexcept {
   w.overrides = {};
   w.state = standing(*w.model, w.start_m, w.pose);
   w.state.frame.steps = steps;
+  for (const Side side : {kLeftSide, kRightSide})
+    w.state.walk.told.steps[side] = static_cast<float>(steps[side]);
 }
 
 int landings(const Walker& walker) noexcept {

@@ -2,6 +2,7 @@
 // Every lane gets the bits that its walk gets alone: + - * / and square roots in one order, masks
 // in place of branches, and no contraction (see the flags of the build).
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -40,6 +41,9 @@ template <class V>
 struct Turn {  // a unit quaternion
   V w{}, x{}, y{}, z{};
 };
+
+inline constexpr float kTurn_rad = 6.2831853f, kRightAngle_rad = 1.5707963f,
+                       kDegree_rad = 0.017453293f;
 
 namespace {
 
@@ -116,11 +120,15 @@ inline V root(const V& x) noexcept {
     return r;
   }
 }
-// To the nearest whole number, for |x| below 2^22.
+// Rounds to the nearest multiple of `unit`, a power of 2, for |x| below 2^22 units.
+template <class V>
+inline V rounded_to(float unit, const V& x) noexcept {
+  const float round = 12582912.0f * unit;  // 1.5 * 2^23: adding it leaves no room for fractions
+  return (x + round) - round;
+}
 template <class V>
 inline V rounded(const V& x) noexcept {
-  constexpr float kRound = 12582912.0f;  // 1.5 * 2^23: adding it leaves no room for fractions
-  return (x + kRound) - kRound;
+  return rounded_to(1.0f, x);
 }
 template <class V>
 inline V floored(const V& x) noexcept {
@@ -181,16 +189,10 @@ inline void transpose(Four (&row)[4]) noexcept {
 }
 #endif
 
-// To the nearest multiple of a power of 2, for |x| below 2^22 of it.
-template <class V>
-inline V rounded_to(float unit, const V& x) noexcept {
-  const float round = 12582912.0f * unit;
-  return (x + round) - round;
-}
-
 // --- Curves --------------------------------------------------------------------------------------
 
-// 0 at x <= 0, 1 at x >= 1; with zero slope at both ends, and with zero curvature, too.
+// From 0 at x <= 0 to 1 at x >= 1. smooth() has no slope at both ends; smoother() has no curvature
+// there either. With bounds: from 0 at `from` to 1 at `to`.
 template <class V>
 inline V smooth(const V& x) noexcept {
   const V u = within(x, 0.0f, 1.0f);
@@ -206,10 +208,14 @@ inline V smooth(float from, float to, const V& x) noexcept {
   return smooth(V((x - from) * (1.0f / (to - from))));
 }
 template <class V>
+inline V smoother(float from, float to, const V& x) noexcept {
+  return smoother(V((x - from) * (1.0f / (to - from))));
+}
+template <class V>
 inline V mix(const V& a, const V& b, const V& share) noexcept {
   return a + (b - a) * share;
 }
-// max(x, 0) and min(a, b) with their corner rounded by a parabola over |x| < width.
+// max(x, 0), and min(a, b) with x = a - b; a parabola rounds their corner over |x| < width.
 template <class V>
 inline V soft_positive(const V& x, const V& width) noexcept {
   const V rounded = (x + width) * (x + width) / (4.0f * width), above = x >= width ? x : rounded;
@@ -219,7 +225,8 @@ template <class V>
 inline V soft_least(const V& a, const V& b, const V& width) noexcept {
   return a - soft_positive(V(a - b), width);
 }
-// Cubics that carry a value, and a slope, from 0 to nothing at 1.
+// Cubics over 0 <= s <= 1 that begin with the value 1 and no slope, and with the value 0 and the
+// slope 1; both end with neither.
 template <class V>
 inline V value_left(const V& s) noexcept {
   return 1.0f + s * s * (2.0f * s - 3.0f);
@@ -229,9 +236,9 @@ inline V slope_left(const V& s) noexcept {
   return s * (1.0f - s) * (1.0f - s);
 }
 
-// --- Sines ---------------------------------------------------------------------------------------
+// --- Angles --------------------------------------------------------------------------------------
 
-// Below pi / 4 to 1e-7: minimax polynomials (Cephes, sinf and cosf).
+// Exact to 1e-7 for |x| below pi / 4: minimax polynomials (Cephes, sinf and cosf).
 template <class V>
 inline void sin_cos_small(const V& x, V& sine, V& cosine) noexcept {
   const V z = x * x;
@@ -240,7 +247,7 @@ inline void sin_cos_small(const V& x, V& sine, V& cosine) noexcept {
       1.0f - 0.5f * z +
       z * z * (4.166664568298827e-2f + z * (-1.388731625493765e-3f + z * 2.443315711809948e-5f));
 }
-// Of any angle below 1e4.
+// For any angle below 1e4 rad.
 template <class V>
 inline void sin_cos(const V& angle_rad, V& sine, V& cosine) noexcept {
   const V quarters = rounded(V(angle_rad * 0.63661977f));
@@ -258,7 +265,7 @@ inline void sin_cos(const V& angle_rad, V& sine, V& cosine) noexcept {
   sine = back ? -sine_of : sine_of;
   cosine = (odd != back) ? -cosine_of : cosine_of;
 }
-// To 1e-7 (Cephes, asinf): above a half by the arc of the other leg.
+// Exact to 1e-7 (Cephes, asinf); above a half it follows from the complementary angle.
 template <class V>
 inline V arc_sine(const V& x) noexcept {
   const V a = size(x);
@@ -269,8 +276,16 @@ inline V arc_sine(const V& x) noexcept {
                     (1.6666752422e-1f +
                      z * (7.4953002686e-2f +
                           z * (4.5470025998e-2f + z * (2.4181311049e-2f + z * 4.2163199048e-2f)))),
-          angle_rad = wide ? V(1.5707963f - 2.0f * arc) : arc;
+          angle_rad = wide ? V(kRightAngle_rad - 2.0f * arc) : arc;
   return x < V{} ? -angle_rad : angle_rad;
+}
+// The angle with a tangent of at most tan(pi / 8), exact to 1e-7 (Cephes, atanf).
+template <class V>
+inline V arc_tangent_small(const V& x) noexcept {
+  const V z = x * x;
+  return x + x * z *
+                 (-3.33329491539e-1f +
+                  z * (1.99777106478e-1f + z * (-1.38776856032e-1f + z * 8.05374449538e-2f)));
 }
 
 // --- Vectors and rotations -----------------------------------------------------------------------
@@ -301,6 +316,10 @@ inline Vec<V> chosen(const Mask<V>& mask, const Vec<V>& a, const Vec<V>& b) noex
   return {mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
 }
 template <class V>
+inline Turn<V> no_turn() noexcept {
+  return {all<V>(1.0f), V{}, V{}, V{}};
+}
+template <class V>
 inline Turn<V> operator*(const Turn<V>& p, const Turn<V>& q) noexcept {
   return {
       p.w * q.w - p.x * q.x - p.y * q.y - p.z * q.z, p.w * q.x + p.x * q.w + p.y * q.z - p.z * q.y,
@@ -325,30 +344,35 @@ inline Turn<V> chosen(const Mask<V>& mask, const Turn<V>& a, const Turn<V>& b) n
   if constexpr (kLanes<V> == 1) return mask ? a : b;
   return {mask ? a.w : b.w, mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
 }
-// About a unit axis, by less than a quarter turn.
+// A turn about a unit axis by less than a right angle.
 template <class V>
 inline Turn<V> turn_about(const Vec<V>& axis, const V& angle_rad) noexcept {
   V s, c;
   sin_cos_small(V(0.5f * angle_rad), s, c);
   return {c, axis.x * s, axis.y * s, axis.z * s};
 }
-// By a rotation vector of up to 30 degrees: the tangent of its half as a series.
+// The turn of a rotation vector of up to 30 degrees, by a series of the tangent of its half.
 template <class V>
 inline Turn<V> turn_by(const Vec<V>& v) noexcept {
   const V square = dot(v, v), k = 0.5f + square * (1.0f / 24.0f + square * (1.0f / 240.0f));
   return unit(Turn<V>{all<V>(1.0f), v.x * k, v.y * k, v.z * k});
 }
 
-// A direction on the ground, counted from straight ahead, to the left positive.
+// A direction on the ground as an angle from straight ahead, positive to the left.
 template <class V>
 struct Way {
   V half_sine{}, half_cosine = all<V>(1.0f), sine{}, cosine = all<V>(1.0f);
-  // A place seen from where it points so.
+  // Turns a vector by this angle.
   Vec<V> operator*(const Vec<V>& p) const noexcept {
     return {cosine * p.x + sine * p.z, p.y, cosine * p.z - sine * p.x};
   }
   Turn<V> turn() const noexcept { return {half_cosine, V{}, half_sine, V{}}; }
 };
+// The opposite angle.
+template <class V>
+inline Way<V> back(const Way<V>& way) noexcept {
+  return {-way.half_sine, way.half_cosine, -way.sine, way.cosine};
+}
 template <class V>
 [[gnu::always_inline]] inline Way<V> way_of(const V& heading_rad) noexcept {
   Way<V> way;
@@ -361,6 +385,33 @@ template <class V>
 inline Way<V> chosen(const Mask<V>& mask, const Way<V>& a, const Way<V>& b) noexcept {
   return {mask ? a.half_sine : b.half_sine, mask ? a.half_cosine : b.half_cosine,
           mask ? a.sine : b.sine, mask ? a.cosine : b.cosine};
+}
+
+// --- Limbs packed into full registers ------------------------------------------------------------
+
+// Calls `work` with the legs or arms of a block `where` they ask for it, put side by side in full
+// registers. Limb<V> holds nothing but numbers V: the first kTakes of them go to `work`, those
+// from number kGives on come back.
+template <int kTakes, int kGives, template <class> class Limb, class V, class Work>
+void work_packed(const Mask<V> (&where)[2], Limb<V> (&limbs)[2], const Work& work) noexcept {
+  constexpr int kWidth = kLanes<V>, kTogether = std::max(kWidth, kLeastLanes),
+                kNumbers = sizeof(Limb<float>) / sizeof(float);
+  const V is[2] = {chosen<V>(where[0], 1.0f, 0.0f), chosen<V>(where[1], 1.0f, 0.0f)};
+  float* places[2 * kWidth];
+  int count = 0;
+  for (int w = 0; w < kWidth; ++w)
+    for (int k : {0, 1})
+      if (lane(is[k], w) != 0.0f) places[count++] = reinterpret_cast<float*>(&limbs[k]) + w;
+  for (int begin = 0; begin < count; begin += kTogether) {
+    Limb<Floats<kTogether>> together;
+    float* to = reinterpret_cast<float*>(&together);
+    const int here = std::min(kTogether, count - begin);
+    for (int i = 0; i < here; ++i)
+      for (int n = 0; n < kTakes; ++n) to[n * kTogether + i] = places[begin + i][n * kWidth];
+    work(together);
+    for (int i = 0; i < here; ++i)
+      for (int n = kGives; n < kNumbers; ++n) places[begin + i][n * kWidth] = to[n * kTogether + i];
+  }
 }
 
 }  // namespace

@@ -57,7 +57,7 @@ V stands_alone(const Tables& tables, const V& phase, bool right) noexcept {
   const float middle =
       right ? share[0] + 0.5f * share[1] : share[0] + share[1] + share[2] + 0.5f * share[3];
   V sine, cosine;
-  sin_cos(V(6.2831853f * (phase - middle)), sine, cosine);
+  sin_cos(V(kTurn_rad * (phase - middle)), sine, cosine);
   const V half = 0.5f + 0.5f * cosine;
   return half * half;
 }
@@ -248,8 +248,8 @@ Bearing<V> bearing_of(const Tables& tables, const BodyTick<V>& tick, const Mask<
   const V phase = data_phase(tables, tick.time, tick.phase);
   to.forward_rad = push_rad - idle.breath_rad;
   if (any(is_styled)) {
-    const V lean_rad = kRadians * of(kLean_deg) + to.forward_rad,
-            left_rad = kRadians * tick.shown *
+    const V lean_rad = kDegree_rad * of(kLean_deg) + to.forward_rad,
+            left_rad = kDegree_rad * tick.shown *
                        (of(kOverLeft_deg) * stands_alone(tables, phase, false) -
                         of(kOverRight_deg) * stands_alone(tables, phase, true));
     to.forward_rad = is_styled ? lean_rad : to.forward_rad;
@@ -272,7 +272,7 @@ template <int kWidth, bool kPaper>
   using V = Floats<kWidth>;
   // Radians a second^2 by the square of the turn's rate, for the body's own turn is a part of
   // chest's and head's; the head leads.
-  constexpr float kMoreTurning = 110.0f * kRadians, kMostTurning = 260.0f * kRadians,
+  constexpr float kMoreTurning = 110.0f * kDegree_rad, kMostTurning = 260.0f * kDegree_rad,
                   kChestLess = 0.8f;
   const State<V>& state = block.state;
   Styled<V>& styled = block.styled;
@@ -351,7 +351,7 @@ template <int kWidth, bool kPaper>
   poise.acts = chosen<V>(acts, 1.0f, 0.0f);
   auto hangs = tilts;
   for (int side : {0, 1}) {
-    const V out_rad = (side == 0 ? kRadians : -kRadians) * styled.body[kArmOut_deg + side].x;
+    const V out_rad = (side == 0 ? kDegree_rad : -kDegree_rad) * styled.body[kArmOut_deg + side].x;
     const auto spreads = both(is_styled, out_rad != V{});
     if (!has[side] || kPaper) continue;
     turn_shoulder(side, seen(turn_z(spreads ? out_rad : V{})), spreads);

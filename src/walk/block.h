@@ -1,4 +1,4 @@
-// The numbers of a block of walks, which lie one after the other.
+// The numbers of a block of walks, one after the other.
 #pragma once
 #include <type_traits>
 
@@ -7,7 +7,7 @@
 
 namespace gaitpad {
 
-// Takes the place of a Footing where the ground is level.
+// In its place where the ground is level.
 struct NoFooting {};
 template <class F>
 inline constexpr bool kIsUneven = !std::is_same_v<F, NoFooting>;
@@ -18,15 +18,6 @@ inline constexpr int kStateNumbers = (sizeof(State<V>) + sizeof(Change<V>) + siz
                                       sizeof(Told<V>)) /
                                      sizeof(V);
 static_assert(sizeof(State<float>) <= 512);
-
-namespace {
-// The direction of the step frame in the walk's own coordinates.
-template <class V>
-Way<V> way_of_frame(const State<V>& state) noexcept {
-  const V &sine = state.frame_sine, &cosine = state.frame_cosine;
-  return {sine, cosine, 2.0f * sine * cosine, cosine * cosine - sine * sine};
-}
-}  // namespace
 
 // Copies a walk from a lane of one block to a lane of another.
 template <int kFrom, int kTo>

@@ -418,7 +418,7 @@ Vec<V> room_at(const V& u, const State<V>& state, const Footing<V>& footing) noe
   V raise[kRoomKnots], shift[kRoomKnots];
   for (int k = 0; k < kRoomKnots; ++k) raise[k] = footing.raise[k].x, shift[k] = footing.shift[k].x;
   const V away_m = spline_at(shift, V{}, u);
-  const Way<V> frame = way_of_frame(state);
+  const Way<V> frame = way_of_half(state.frame_sine, state.frame_cosine);
   return {-frame.sine * away_m, spline_at(raise, climb_over_risers(footing), u),
           frame.cosine * away_m};
 }

@@ -53,7 +53,7 @@ void write_root(const Tables& tables, const Hips<Floats<kWidth>>& hips,
                 const Poses& poses) noexcept {
   using V = Floats<kWidth>;
   const State<V>& state = block.state;
-  const Way<V> way = way_of_frame(state);
+  const Way<V> way = way_of_half(state.frame_sine, state.frame_cosine);
   const Vec<V> place_m = way * pelvis.place_m;
   for (int w = 0; w < poses.walks; ++w) {
     const Origin& origin = block.origin[w];

@@ -17,7 +17,10 @@ void move_frame(const Landing<Floats<kWidth>>& landing, const Mask<Floats<kWidth
                 Block<kWidth>& block) noexcept {
   using V = Floats<kWidth>;
   State<V>& state = block.state;
-  const Vec<V> moved = way_of_frame(state) * Vec<V>{landing.x_m, V{}, landing.z_m};
+  const Way<V> frame = {
+      state.frame_sine, state.frame_cosine, 2.0f * state.frame_sine * state.frame_cosine,
+      state.frame_cosine * state.frame_cosine - state.frame_sine * state.frame_sine};
+  const Vec<V> moved = frame * Vec<V>{landing.x_m, V{}, landing.z_m};
   const V is = chosen<V>(strikes, 1.0f, 0.0f);
   V half_rad{};
   for (int w = 0; w < kWidth; ++w) {

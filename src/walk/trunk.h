@@ -487,7 +487,7 @@ Vec<Floats<kWidth>> look_place(const Block<kWidth>& block, const Floats<kWidth>&
     set_lane(static_cast<float>(place_m.y - origin.y_m), w, p.y);
     set_lane(static_cast<float>(place_m.z - origin.z_m), w, p.z);
   }
-  return back(way_of_frame(state)) * p;
+  return back(way_of_half(state.frame_sine, state.frame_cosine)) * p;
 }
 
 // Turns the head as a style asks: to where the walk leads, in a direction, or to a place. Returns

@@ -9,7 +9,7 @@ namespace {
 
 inline constexpr float kLeastDamping_m2 = 1e-8f;  // above the rounding of floats
 inline constexpr float kSolved_m = 1e-6f;         // an error that ends a solve
-// One step turns an angle at most so far, and goes for at most so much of the error.
+// The greatest turn of an angle, and the greatest error, of one step.
 inline constexpr float kMostTurn_rad = 0.3f, kFarthestStep_m = 0.5f;
 // l^2 is kGrowth of the squared error; this share grows after a step that makes the error greater,
 // and falls again after others.

@@ -92,8 +92,8 @@ V flying_yaw(const Time<V>& time, const Landing<V>& landing, const Change<V>& ch
          state.lift_turn_rad * slope_left(time.u) + change.gap_rad * edge_left(time.u, change);
 }
 
-// How far a flying foot keeps away from the standing one, to the outside of its path, while it is
-// beside it: in a turn the feet would touch.
+// The distance by which a flying foot keeps away from the standing one, to the outside of its path,
+// while it is beside it: in a turn the feet would touch.
 template <class V>
 V keeps_apart_m(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
                 const Vec<V>& heel_m, const V& u, const Change<V>& change,
@@ -240,7 +240,7 @@ Vec<V> with_gap(const Tables& tables, const Time<V>& time, const Vec<V>& heel_m,
   if constexpr (kIsUneven<F>) p.y = changed ? V(p.y - footing.gap_under_m * of_gap) : p.y;
   return p;
 }
-// What is left of the pitch's difference from the tables, at a tick of the flight.
+// The rest of the pitch's difference from the tables, at a tick of the flight.
 template <class V>
 V pitch_off(const Time<V>& time, const V& tick, const Change<V>& change,
             const State<V>& state) noexcept {
@@ -254,15 +254,15 @@ V pitch_off(const Time<V>& time, const V& tick, const Change<V>& change,
                                             : V{};
 }
 
-// What is left of a height's difference from a new plan, and of its slope per flight.
+// The rest of a height's difference from a new plan, and of its slope per flight.
 template <class V>
 V gap_left(const V& u, const Gap<V>& gap, const Change<V>& change) noexcept {
   const V s = within(gap_share(u, change), 0.0f, 1.0f);
   return gap.x * (1.0f - smoother(s)) + gap.v * change.gap_lasts * slope_left(s);
 }
 
-// How loosely the floor bounds the pitch: by as much as the pitch is off the tables, once the toe
-// has left the floor.
+// The width over which the floor's bound on the pitch is loose: the pitch's difference from the
+// tables, once the toe has left the floor.
 template <class V>
 V loose_pitch(const V& u, const V& off, const Change<V>& change) noexcept {
   return size(off) * smooth(0.0f, 0.1f, V(u - change.gap_begin)) +
@@ -278,7 +278,7 @@ template <class V>
 V roll_over(const Change<V>& change, const State<V>& state) noexcept {
   return (state.tick - change.led_from) / roll_lasts(change, state);
 }
-// What is left of the pitch with which the standing foot landed.
+// The rest of the pitch with which the standing foot landed.
 template <class V>
 V landed_pitch(const Change<V>& change, const State<V>& state) noexcept {
   const V s = roll_over(change, state);
@@ -351,7 +351,8 @@ void pitch_in_flight(const Time<V>& time, const Sole<V>& sole, const Flight<V>& 
   const V u = time.u;
   V height_m = flight.heel_m.y;
   if constexpr (kIsUneven<F>) {
-    // At first the plane on which the foot stood bounds the toe, which may differ from the line.
+    // The plane on which the foot stood bounds the toe at first; it may differ from the ground
+    // line.
     const V lifted_m = flight.lifted_m * (1.0f - smoother(0.0f, kLiftGround, u));
     height_m = (height_m - (flight.base_m + lifted_m)) * upright(footing.print);
   }
@@ -406,7 +407,7 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
     if constexpr (kIsUneven<F>) {
       tilt = tilt_of(footing.stand);
       feet.flat_toe_m = tilt * sole.line_m;
-      // It rises on its toe as far as the hips have risen over it.
+      // The foot rises on its toe as far as the hips have risen over it.
       const V rises_m = rise_with_hips<V>(tables, right, stride.leg_rad[1][3], V{}, V{}, footing),
               begun = starts ? smoother(0.0f, kFirstRise, time.u) : one;
       planted = time.flies ? pitch_to_rise<V>(tables, right, V(rises_m * begun), planted) : planted;
@@ -468,7 +469,7 @@ V slope_of(const V& now, const V& last, const V& before) noexcept {
   return 0.5f * (3.0f * now - 4.0f * last + before);
 }
 
-// At a lift-off, keeps the differences of the foot and of its slope from its flight in the tables,
+// Keeps the differences of a foot that lifts off, and of its slope, from its flight in the tables,
 // which are read a tick ahead for their slope.
 template <class V, class F>
 void lift_off(const Tables& tables, const Time<V>& time, const Mask<V>& lifts,
@@ -516,7 +517,7 @@ void keep_swing(const Foot<V>& swing, State<V>& state) noexcept {
   state.last_pitch_rad[1] = state.last_pitch_rad[0], state.last_pitch_rad[0] = swing.pitch_rad;
 }
 
-// At a strike swing and stand are exchanged, and the step frame moves to the new footprint.
+// Exchanges swing and stand at a strike, and sees places from the new step frame.
 template <class V>
 void change_feet(const Landing<V>& landing, const Mask<V>& strikes, const Feet<V>& feet,
                  const Stride<V>& stride, State<V>& state) noexcept {

@@ -234,7 +234,7 @@ void move_hips_ground(const Tables& tables, const Time<V>& time, const Landing<V
              anew = either(both(time.flies, footing.is_new != V{}), rests),
              begins = either(strikes, anew);
   const V begun = state.tick + (time.flies ? state.roll_ticks : V{});
-  // How far heel or toe of the next foot lands below that of the standing one.
+  // The height by which heel or toe of the next foot lands below that of the standing one.
   const float leg_m = tables.leg_m;
   const V toe_m = of_leg<V>(tables, time.right, &LegBones::foot_m),
           stood_m = footing.stand.z * of_leg<V>(tables, no(time.right), &LegBones::foot_m),
@@ -318,9 +318,9 @@ V ankle_height_m(const Tables& tables, const Mask<V>& right) noexcept {
   return chosen<V>(right, -tables.leg[1].toe_m[1], -tables.leg[0].toe_m[1]);
 }
 
-// How far a foot over ground of height `base_m` has to rise with the hips. `knee_rad`: the knee's
-// bend in the tables. A foot that flies down follows the hips softly: its rise begins with hips
-// that are lower than its ground by twice `hover_m`.
+// The height by which a foot over ground at `base_m` has to rise with the hips. `knee_rad`: the
+// knee's bend in the tables. A foot that flies down follows the hips softly: its rise begins with
+// hips that are lower than its ground by twice `hover_m`.
 template <class V>
 V rise_with_hips(const Tables& tables, const Mask<V>& right, const V& knee_rad, const V& base_m,
                  const V& hover_m, const Footing<V>& footing) noexcept {
@@ -423,7 +423,7 @@ Vec<V> room_at(const V& u, const State<V>& state, const Footing<V>& footing) noe
           frame.cosine * away_m};
 }
 
-// At a strike the step frame moves to the landing, on which the foot then stands.
+// Moves the step frame at a strike to the landing, on which the foot then stands.
 template <class V>
 void change_footing(const Landing<V>& landing, const Mask<V>& strikes, const V& flat_toe_y_m,
                     Footing<V>& footing) noexcept {

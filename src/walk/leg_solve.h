@@ -174,7 +174,7 @@ template <class V>
 void solve_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stride,
                 const Feet<V>& feet, const Pelvis<V>& pelvis, State<V>& state, Leg<V> (&legs)[2],
                 V (*begun_rad)[kLegAngles]) noexcept {
-  // What is added to the tables' angles fades, and a share of its last change goes on. `ahead` is
+  // The part added to the tables' angles fades, and a share of its last change goes on. `ahead` is
   // the largest share with which the swivel returns without swinging: a double root.
   const float keep = 1.0f - std::min(1.0f, kLeak_per_s * tables.tick_s),
               square_root = 1.0f - std::sqrt(1.0f - keep), ahead = square_root * square_root;

@@ -298,8 +298,8 @@ void fill_upper_body(const WalkModel& model, BuildTables& tables) {
   tables.joints = static_cast<int>(joints);
 }
 
-// While a walk changes, the angular acceleration of chest and head may be so many times as large as
-// in the data at their own pace, and always as large as in the built-in walk.
+// Bounds of the angular acceleration of chest and head while a walk changes: multiples of that in
+// the data at their own pace, and at least those of the built-in walk.
 constexpr double kHarderChest = 1.7, kHarderHead = 1.9, kLeastChest_s2 = 252.0 * kDegree,
                  kLeastHead_s2 = 139.0 * kDegree;
 void fill_hardness(const WalkModel& model, BuildTables& tables) {

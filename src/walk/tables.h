@@ -27,7 +27,7 @@ struct StrideRow {
 inline constexpr int kRowNumbers = sizeof(StrideRow) / sizeof(float), kHeelNumbers = 8;
 static_assert(kRowNumbers == 40);
 
-// As many knots as a StrideFamily has samples: half of them change a knee at the lift-off by 0.17
+// The number of samples of a StrideFamily. Half as many change a knee at the lift-off by 0.17
 // degrees RMS.
 inline constexpr int kKnots = 128, kRatios = 8, kHarmonics = 2;
 template <std::size_t kOf>
@@ -150,8 +150,8 @@ struct Filters {
 };
 inline constexpr double kRailSmoothing_s = 0.06;  // time constant of `rail`, at the reference leg
 
-// What a tick reads beside its walks: the tables of a build, the filters of the tick's length, and
-// the ground.
+// All that a tick reads beside its walks: the tables of a build, the filters of the tick's length,
+// and the ground.
 struct Tables : BuildNumbers, Filters {
   const StrideRows& forward;
   const BackRows& back;

@@ -147,7 +147,7 @@ void turn_head(const Tables& tables, const Turn<V>& turn, Trunk<V>& trunk) noexc
   }
 }
 
-// How the trunk differs from the data: its lean forwards and to the left, the chest's turn ahead,
+// The trunk's differences from the data: its lean forwards and to the left, the chest's turn ahead,
 // the head's turn beside the chest's, and its nod upwards.
 template <class V>
 struct Bearing {

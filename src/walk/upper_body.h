@@ -119,7 +119,7 @@ void follow_rails(const Tables& tables, const Vec<Floats<kWidth>>& hips_m,
   }
 }
 
-// At a strike, which moves the step frame up by `up_m`, rails stay at their place in the world.
+// Keeps rails at their place in the world at a strike, which moves the step frame up by `up_m`.
 template <class V>
 void move_rails(const Mask<V>& strikes, const V& up_m, Styled<V>& styled) noexcept {
   for (Smoothed<V>& ground_m : styled.rail_ground_m)
@@ -186,7 +186,7 @@ void turn_ahead(const Tables& tables, const Turn<V>& heading, const Turn<V>& pel
   }
 }
 
-// What a tick knows when it poses the upper body.
+// The parts of a tick that its upper body depends on.
 template <class V>
 struct BodyTick {
   const Time<V>& time;
@@ -240,8 +240,8 @@ template <class V>
   begin(chest, poise.chest), begin(head, poise.head);
 }
 
-// How a walk's trunk differs from the data: by its turn ahead, its lean into a change of speed, its
-// style, and a stand's breath and glances.
+// The differences of a walk's trunk from the data: its turn ahead, its lean into a change of speed,
+// its style, and a stand's breath and glances.
 template <class V>
 Bearing<V> bearing_of(const Tables& tables, const BodyTick<V>& tick, const Mask<V>& is_styled,
                       const V& chest_rad, const V& head_rad, const V& push_rad,

@@ -25,7 +25,7 @@ inline constexpr float kFootLever_m = 0.2f;  // makes lengths of the foot's angl
 inline constexpr float kToeUntil = 0.15f, kOnHeel = 0.6f, kToLand = 0.4f, kLanded = 0.95f;
 // The foot becomes free to turn aside until kAsideFrom; from kAsideTo on it becomes held again.
 inline constexpr float kAsideFrom = 0.35f, kAsideTo = 0.6f;
-// How far a foot gives way, rad^2: the weight of its angle, where that of a free joint is 1.
+// The foot's give, rad^2: the weight of its angle, where that of a free joint is 1.
 inline constexpr float kGiveAside = 0.15f, kGiveFlying = 0.5f, kGiveRolling = 0.05f;
 inline constexpr float kTight_rad = 0.05235988f;  // 3 degrees of room: half of it gives way
 inline constexpr float kFloorRoom_m = 0.0003f;    // keeps the room above 0
@@ -399,7 +399,8 @@ void weigh_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stri
       keep(lagging, weighted.lagging_rad[k][j]), keep(mean, weighted.mean_rad[k][j]);
       keep(shift, weighted.last_shift_rad[k][j]);
     }
-    // How far the foot may turn about the planted point until its toe or heel is on the floor.
+    // The angle by which the foot may turn about the planted point until toe or heel is on the
+    // floor.
     const auto room = [](const V& over_m, const V& arm_m) {
       return V((most(over_m, V{}) + kFloorRoom_m) / (arm_m + kFloorRoom_m));
     };

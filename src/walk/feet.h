@@ -68,22 +68,8 @@ V low_pitch(const V& low, const V& u) noexcept {
   return mix(low, all<V>(1.0f), smoother(0.0f, 0.5f, u));
 }
 
-// Shares of the flight: a style's factor on the height acts fully from kLiftGrown on; a factor
-// above 1 ends between the other two.
-inline constexpr float kLiftGrown = 0.4f, kLiftFalls = 0.5f, kLiftEnds = 0.85f;
-// Heights that a first and a last flight add to those of their short strides; at the reference leg.
-inline constexpr float kFirstLift_m = 0.03f, kLastLift_m = 0.025f;
-// The pitch at the lift-off fades in this share of the flight, or of a first or last one.
-inline constexpr float kPitchFade = 0.2f, kShortPitchFade = 0.6f;
-// In the first roll the heel stays down for the share kHeelStays, and reaches kFirstPitch of the
-// tables' pitch; in the first flight the other foot's heel rises in the share kHeelRises.
-inline constexpr float kHeelStays = 0.25f, kFirstPitch = 0.8f, kHeelRises = 0.5f;
-inline constexpr float kSoftRoll_rad = kDegree_rad;  // rounds where a heel begins to rise
-inline constexpr float kRollEnd = 0.9f;  // share of the roll after which the toe is down
-// A flying toe may be kMostSink_m below its height in a stand, for in the tables toes only just
-// leave the floor. The limit of its pitch is rounded over kSoftPitch_rad, and over kWiderPitch of
-// what the pitch is off the tables.
-inline constexpr float kMostSink_m = 0.0015f, kSoftPitch_rad = 0.0069813f, kWiderPitch = 0.25f;
+inline constexpr float kLastLift_m = 0.025f;  // added to a last flight; at the reference leg
+inline constexpr float kRollEnd = 0.9f;       // share of the roll after which the toe is down
 
 template <class V>
 V flying_yaw(const Time<V>& time, const Landing<V>& landing, const Change<V>& change,
@@ -178,7 +164,9 @@ Vec<V> flight_heel(const Tables& tables, const Time<V>& time, const Landing<V>& 
     p.z = p.z + middle.sine * out;
   }
   p.x = p.x + keeps_apart_m(tables, time, landing, p, u, change, state);
-  // A factor above 1 acts while the foot is high, one below 1 from the lift-off on.
+  // A style's factor above 1 acts while the foot is high, one below 1 from the lift-off on. Shares
+  // of the flight: a factor acts fully from kLiftGrown on, one above 1 ends between the others.
+  constexpr float kLiftGrown = 0.4f, kLiftFalls = 0.5f, kLiftEnds = 0.85f;
   const V factor = lift_of<V>(time.right, state), low = least(factor, all<V>(1.0f));
   V more = 1.0f + (most(factor, all<V>(1.0f)) - 1.0f) * (1.0f - smooth(kLiftFalls, kLiftEnds, u));
   base_m = V{};
@@ -189,6 +177,7 @@ Vec<V> flight_heel(const Tables& tables, const Time<V>& time, const Landing<V>& 
   }
   p.y = stride.heel_high_m * low * mix(all<V>(1.0f), more, smoother(0.0f, kLiftGrown, u));
   // In a first or last flight the toe leaves the floor at once.
+  constexpr float kFirstLift_m = 0.03f;  // at the reference leg
   const V left_u = 1.0f - u, square_u = u * left_u;
   const V high_m = tables.size * 16.0f * chosen<V>(closes, kLastLift_m, kFirstLift_m);
   p.y = is_short ? V(p.y + high_m * square_u * square_u) : p.y;
@@ -244,6 +233,7 @@ Vec<V> with_gap(const Tables& tables, const Time<V>& time, const Vec<V>& heel_m,
 template <class V>
 V pitch_off(const Time<V>& time, const V& tick, const Change<V>& change,
             const State<V>& state) noexcept {
+  constexpr float kPitchFade = 0.2f, kShortPitchFade = 0.6f;  // shares of a flight; of a short one
   const auto is_short = either(change.starting != V{}, change.closing != V{}),
              changed = change.pitch_lasts != V{};
   const V own_ticks = state.flight_ticks * chosen<V>(is_short, kShortPitchFade, kPitchFade),
@@ -292,6 +282,7 @@ V landed_pitch(const Change<V>& change, const State<V>& state) noexcept {
 // it may have risen before. In a first step the foot has not landed; in a last one it stays flat.
 template <class V>
 V planned_pitch(const Time<V>& time, const Change<V>& change, const State<V>& state) noexcept {
+  constexpr float kHeelRises = 0.5f;  // share of the flight in which the heel comes to its pitch
   const V lands = time.flies ? V{} : smoother(roll_over(change, state)),
           rises = smoother(0.0f, kHeelRises, time.u);
   const auto starts = change.starting != V{}, later = both(change.led != V{}, time.flies);
@@ -348,6 +339,10 @@ template <class V, class F>
 void pitch_in_flight(const Time<V>& time, const Sole<V>& sole, const Flight<V>& flight,
                      const V& planned, const V& off, const Change<V>& change, const F& footing,
                      Foot<V>& foot) noexcept {
+  // The toe may be so much below its height in a stand, for in the tables toes only just leave the
+  // floor. The limit of the pitch is rounded over kSoftPitch_rad, and over kWiderPitch of
+  // loose_pitch().
+  constexpr float kMostSink_m = 0.0015f, kSoftPitch_rad = 0.0069813f, kWiderPitch = 0.25f;
   const V u = time.u;
   V height_m = flight.heel_m.y;
   if constexpr (kIsUneven<F>) {
@@ -423,13 +418,16 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
       fly(tables, time, landing, by_clock, stride, hips, state.phase, sole, change, state, footing);
   feet.table_heel_m = flight.table_heel_m;
   const V off = pitch_off(time, state.tick, change, state);
+  // In a first roll the heel stays down for the share kHeelStays of it, and rises to kFirstPitch of
+  // the tables' pitch.
+  constexpr float kHeelStays = 0.25f, kFirstPitch = 0.8f;
   const V rolled = state.tick / state.roll_ticks, lifts = smoother(kHeelStays, 1.0f, rolled);
   const V low = low_pitch(low_lift<V>(time.right, state), time.u);
   V planned = first_roll ? V(low * (kFirstPitch * by_clock.foot[0].pitch_rad * lifts))
                          : V(low * stride.foot[0].pitch_rad + off);
   // The phase of hips that lead may be beyond the lift-off, where the pitch in the tables falls.
   const auto stays = both(no(time.flies), both(change.led != V{}, no(first_roll)));
-  const V soft = kSoftRoll_rad * smoother(rolled);
+  const V soft = kDegree_rad * smoother(rolled);
   planned = both(stays, soft > V{}) ? soft_positive(planned, most(soft, all<V>(1e-6f))) : planned;
   foot.toe_m = {state.toe_x_m, sole.toe_rest_m, state.toe_z_m};
   if constexpr (kIsUneven<F>) {

@@ -9,6 +9,11 @@ namespace {
 
 inline bool is_uneven(const Tables& tables) noexcept { return tables.terrain != nullptr; }
 
+// The rise of a usual riser, 17 cm for an adult, and the highest one that a step can climb; in
+// legs.
+inline constexpr float kStairRise = 0.2f;
+inline constexpr double kMostRise = 0.345;
+
 // --- Planes --------------------------------------------------------------------------------------
 
 // The length of a plane's normal whose upward part is 1.
@@ -59,19 +64,13 @@ V spline_at(const V* knots, const V& end, const V& u) noexcept {
 
 // Trunks lean by 5 to 6 degrees up a grade of 15 %, by 7 to 8 up stairs, and back by 2 downhill
 // (Leroux, Fung and Barbeau 2002; Nadeau, McFadyen and Malouin 2003).
-inline constexpr float kUphillLean_rad = 0.14835299f, kDownhillLean_rad = 0.05235988f,
-                       kHalfLeanGrade = 0.09f;
-inline constexpr float kShortestRun = 0.2f;  // in legs: shorter steps count as this long in a grade
-// The share of its length that the ground leaves to a step is at least kLeastLeft. It is 1 for
-// steps that are asked to be shorter than kShortStep of the data's.
-inline constexpr float kShortStep = 0.1f, kLeastLeft = 0.3f;
-// A stick changes the ratio of a step's length to the data's at most so fast; a faster change comes
-// from the ground.
-inline constexpr float kRatioJump_1_s = 2.4f, kFirstRatioJump_1_s = 14.4f;
-
 template <class V>
 void lean_into_slope(const Tables& tables, const State<V>& state, const Change<V>& change,
                      Footing<V>& footing) noexcept {
+  // Leans on the steepest grades, and the grade of half of them.
+  constexpr float kUphillLean_rad = 0.14835299f, kDownhillLean_rad = 0.05235988f,
+                  kHalfLeanGrade = 0.09f;
+  constexpr float kShortestRun = 0.2f;  // in legs: shorter steps count as this long
   const V run_m = most(size(footing.step_m), all<V>(kShortestRun * tables.leg_m)),
           rise_m = state.backward != V{} ? -footing.landing_y_m : footing.landing_y_m,
           grade = change.stands != V{} ? V{} : V(rise_m / run_m),
@@ -109,6 +108,11 @@ template <class V>
 void follow_ground(const Tables& tables, const Time<V>& time, const AskedStep<V>& asked,
                    const Change<V>& change, const State<V>& state, Footing<V>& footing,
                    Landing<V>& landing) noexcept {
+  // The share that the ground leaves is at least kLeastLeft. It is 1 for steps that are asked to be
+  // shorter than kShortStep of the data's.
+  constexpr float kShortStep = 0.1f, kLeastLeft = 0.3f;
+  // A stick changes the ratio at most so fast; a faster change comes from the ground.
+  constexpr float kRatioJump_1_s = 2.4f, kFirstRatioJump_1_s = 14.4f;
   const auto stands = change.stands != V{};
   footing.step_m = landing.x_m * asked.to.sine + landing.z_m * asked.to.cosine;
   const V wanted_m = size(asked.length_m), step_m = size(footing.step_m),
@@ -137,7 +141,7 @@ template <class V>
 V slowness_of(const Tables& tables, const Mask<V>& right, const State<V>& state,
               const Footing<V>& footing) noexcept {
   constexpr float kSlowerByRise = 1.2f, kSlowestRise = 0.34f, kSteepRise = 0.15f,
-                  kStairStep_s = 0.84f, kStairRise = 0.2f, kSlowerBack = 2.05f;
+                  kStairStep_s = 0.84f, kSlowerBack = 2.05f;
   const V rise = least(footing.next_rise, all<V>(kSlowestRise)),
           own_s = by_side<V>(right, state.asked.time_s),
           other_s = by_side<V>(no(right), state.asked.time_s),
@@ -152,17 +156,16 @@ V slowness_of(const Tables& tables, const Mask<V>& right, const State<V>& state,
 // on steady stairs.
 template <class V>
 V flight_to_tread_s(const Tables& tables, const V& rise_m) noexcept {
-  constexpr float kFlight_s = 0.5f, kRise = 0.2f;  // at the reference leg, for a rise of kRise legs
-  return size(rise_m) * (kFlight_s * tables.time_scale / (kRise * tables.leg_m));
+  constexpr float kFlight_s = 0.5f;  // over a usual riser, at the reference leg
+  return size(rise_m) * (kFlight_s * tables.time_scale / (kStairRise * tables.leg_m));
 }
 // The least time of the running step's flight, by the rise between both feet or the rest of the
 // flying foot's rise, whichever is greater. Never 0.
 template <class V>
 V first_flight_s(const Tables& tables, const Footing<V>& footing) noexcept {
-  constexpr float kLeast_m = 1e-6f;
   const V step_m = size(footing.landing_y_m),
           foot_m = size(V(footing.landing_y_m - footing.print_y_m));
-  return flight_to_tread_s(tables, most(most(step_m, V(foot_m - step_m)), all<V>(kLeast_m)));
+  return flight_to_tread_s(tables, most(most(step_m, V(foot_m - step_m)), all<V>(1e-6f)));
 }
 
 // Lengthens the flight of a step that turns out, in its roll, to lead to another tread.
@@ -182,17 +185,13 @@ void take_time_to_tread(const Tables& tables, const Time<V>& time, const Change<
 
 // Up, the knee that lands bent straightens until late single support; down, the standing knee
 // holds, and yields from the middle of single support until the landed foot has taken the weight
-// (McFadyen & Winter 1988). The rise ends at the share kRiseLasts of the step; hips sink from the
-// share kSinkBegin of the flight to the share kSinkEnd of the next roll.
-inline constexpr float kRiseLasts = 0.9f, kSinkBegin = 0.5f, kSinkEnd = 0.25f;
+// (McFadyen & Winter 1988). Hips sink from the share kSinkBegin of the flight to the share kSinkEnd
+// of the next roll.
+inline constexpr float kSinkBegin = 0.5f, kSinkEnd = 0.25f;
 // The last step sinks to its landing, where both feet stand with straight knees, so it begins
 // early.
 inline constexpr float kSinkBeginClosing = 0.15f;
 inline constexpr float kSinkBeginBack = 0.35f;  // people feel for the ground behind them early
-// The knee of a foot that lands from a height gives way by up to kYield legs, and by half of that
-// at a fall of kHalfYield legs. Chosen so that the knee is bent by 20 to 35 degrees on house
-// stairs. The standing knee bends by kBentBefore of it, for a straight knee cannot yield smoothly.
-inline constexpr float kYield = 0.0255f, kHalfYield = 0.01f, kBentBefore = 0.65f;
 
 template <class V>
 struct Sinking {
@@ -228,6 +227,12 @@ template <class V>
 void move_hips_ground(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
                       const Change<V>& change, const State<V>& state,
                       Footing<V>& footing) noexcept {
+  // The knee of a foot that lands from a height gives way by up to kYield legs, and by half of that
+  // at a fall of kHalfYield legs. Chosen so that the knee is bent by 20 to 35 degrees on house
+  // stairs. The standing knee bends by kBentBefore of it, for a straight knee cannot yield
+  // smoothly.
+  constexpr float kYield = 0.0255f, kHalfYield = 0.01f, kBentBefore = 0.65f;
+  constexpr float kRiseLasts = 0.9f;  // share of the step
   const auto stands = change.stands != V{}, closes = change.closing != V{},
              strikes = both(no(stands), both(no(time.flies), state.tick == all<V>(1.0f))),
              rests = both(closes, both(time.flies, footing.level_m != V{})),
@@ -296,10 +301,6 @@ void move_hips_ground(const Tables& tables, const Time<V>& time, const Landing<V
 
 // --- Feet that rise with the hips ----------------------------------------------------------------
 
-// A leg stretches to the share kStretch of its length before its foot has to rise with the hips.
-// The foot rises by up to the share kMostOnToe of the height of its ankle when it stands upright.
-inline constexpr float kStretch = 0.998f, kSoftStretch_m = 0.02f, kMostOnToe = 0.5f,
-                       kSoftOnToe = 0.3f;
 inline constexpr float kFirstRise = 0.4f;  // share of the first flight after which this fully acts
 // The steepest pitch of a foot on its toe, as a sine, and the width over which it is approached.
 inline constexpr float kMostUpright = 0.99f, kSoftUpright = 0.12f;
@@ -324,6 +325,9 @@ V ankle_height_m(const Tables& tables, const Mask<V>& right) noexcept {
 template <class V>
 V rise_with_hips(const Tables& tables, const Mask<V>& right, const V& knee_rad, const V& base_m,
                  const V& hover_m, const Footing<V>& footing) noexcept {
+  // A leg stretches to the share kStretch of its length before its foot has to rise. The foot rises
+  // by up to the share kMostOnToe of the ankle's rise from a flat to an upright foot.
+  constexpr float kStretch = 0.998f, kSoftStretch_m = 0.02f, kMostOnToe = 0.5f, kSoftOnToe = 0.3f;
   const V a = of_leg<V>(tables, right, &LegBones::thigh_m),
           b = of_leg<V>(tables, right, &LegBones::shank_m),
           knee = knee_rad + stand_rad<V>(tables, right, 3);
@@ -363,11 +367,6 @@ V pitch_to_rise(const Tables& tables, const Mask<V>& right, const V& rise_m,
 
 // --- Flights -------------------------------------------------------------------------------------
 
-// Flights shorter than this climb by their time, longer ones by their place; at the reference leg.
-inline constexpr float kClimbsInPlace_m = 0.1f;
-// A foot that goes up by kHighUp legs is lifted less, and by kHighestUp legs by kLiftUp of the
-// lift: its way over the riser is lift enough, and the knee folds only so far.
-inline constexpr float kLiftUp = 0.5f, kHighUp = 0.2f, kHighestUp = 0.345f;
 inline constexpr float kLiftGround = 0.5f;  // share of the flight in which the plane left bounds it
 inline constexpr float kReplan_m = 0.002f;  // a landing that moves farther is planned for anew
 
@@ -386,6 +385,11 @@ Slope<V> plane_in_flight(const Time<V>& time, const Change<V>& change,
 template <class V>
 V ground_line(const Tables& tables, const Landing<V>& landing, const Vec<V>& heel_m, const V& u,
               const State<V>& state, const Footing<V>& footing, V& lift) noexcept {
+  // A shorter flight climbs by its time, a longer one by its place; at the reference leg.
+  constexpr float kClimbsInPlace_m = 0.1f;
+  // A foot that goes up by more than a usual riser is lifted less, down to this share: its way over
+  // the riser is lift enough, and the knee folds only so far.
+  constexpr float kLiftUp = 0.5f;
   const V way_x = landing.x_m - state.print_x_m, way_z = landing.z_m - state.print_z_m,
           gone_x = heel_m.x - state.print_x_m, gone_z = heel_m.z - state.print_z_m,
           in_place = all<V>(kClimbsInPlace_m * kClimbsInPlace_m * tables.size * tables.size),
@@ -394,7 +398,7 @@ V ground_line(const Tables& tables, const Landing<V>& landing, const Vec<V>& hee
                  (square + in_place),
           rise_m = footing.landing_y_m - footing.print_y_m;
   lift = mix(all<V>(1.0f), all<V>(kLiftUp),
-             smooth(kHighUp, kHighestUp, V(rise_m * (1.0f / tables.leg_m))));
+             smooth(kStairRise, static_cast<float>(kMostRise), V(rise_m * (1.0f / tables.leg_m))));
   return footing.print_y_m + (footing.crosses != V{} ? V{} : V(rise_m * gone));
 }
 

@@ -56,14 +56,14 @@ constexpr double kSkew = 0.25;
 // (steps shorter than kLeastStep legs count as that long), and costs of a step that is stuck in
 // place, goes sideways, rises, overhangs an edge or becomes long. Rises and lengths are in legs.
 constexpr double kLeastStep = 0.05, kStuck = 0.3, kStuckCosts = 2.0, kAside = 3.0;
-constexpr double kEasyRise = 0.22, kRiseCosts = 10.0, kMostRise = 0.345, kTooHigh = 100.0;
+constexpr double kEasyRise = 0.22, kRiseCosts = 10.0, kTooHigh = 100.0;
 constexpr double kOverhang = 30.0, kLongStep = 0.6, kLongCosts = 10.0;
 // Over a riser, in legs: the longest step, the longest way of the flying foot, and the least that
 // is left of it for the step.
 constexpr double kCrossStep = 0.5, kCrossWay = 0.85, kLeastCross = 0.25;
 constexpr double kStay = 0.1;       // another piece than before has to be cheaper by this
 constexpr double kBeside_m = 1e-6;  // a place so near to a riser is certainly on one side of it
-constexpr double kLeast_m = 1e-6;   // a step shorter than this has no slope
+constexpr double kLeast_m = 1e-6;   // not to divide by 0
 
 // The reach of the sole along z from its heel point.
 struct Extent {
@@ -383,8 +383,8 @@ constexpr int kTries = 4;
 constexpr double kOver = 0.685;  // share of a flight down at which it is over its landing's piece
 constexpr int kMostRisers = 4;   // that a flight down passes
 constexpr int kTautRounds = 24;
-constexpr double kTautRoom = 0.5;  // share of kRoomAbove_m that a taut spline keeps
-constexpr double kLeastWeight = 1e-6, kLeastLeft_m = 1e-6;  // not to divide by 0
+constexpr double kTautRoom = 0.5;      // share of kRoomAbove_m that a taut spline keeps
+constexpr double kLeastWeight = 1e-6;  // not to divide by 0
 
 using Spline = std::array<double, kRoomKnots>;
 double spline_of(const Spline& knots, double end, double u) noexcept {
@@ -719,9 +719,8 @@ bool leads_down(const Tables& tables, const Floor& floor, const PlannedFlight& f
 RoomPlan plan_down(const Tables& tables, const Floor& floor, const PlannedFlight& flight) noexcept {
   constexpr int over = static_cast<int>(kOver * kProbes);
   const double left = flight.left[over];
-  const double needed = std::abs(left) < kLeastLeft_m
-                            ? 0.0
-                            : way_on(tables, floor, flight, over, flight.climb) / left;
+  const double needed =
+      std::abs(left) < kLeast_m ? 0.0 : way_on(tables, floor, flight, over, flight.climb) / left;
   const double share = std::clamp(needed, 0.0, 1.0);
   RoomPlan room;
   for (int k = 1; k < kKnotsOfFlight; ++k)

@@ -9,19 +9,6 @@ namespace gaitpad {
 namespace {
 
 enum : int { kShoulderXAt, kShoulderZAt, kShoulderYAt, kElbowAt, kWristXAt, kWristZAt };
-// Greatest and least distance of a held hand from its shoulder, and the widths over which these
-// limits are rounded; shares of the stretched arm.
-inline constexpr float kFarthestHand = 0.985f, kSoftFarHand = 0.03f, kNearestHand = 0.3f,
-                       kSoftNearHand = 0.1f;
-inline constexpr float kRailAhead_m = 0.15f;  // how far ahead of the hips a hand holds a rail
-// Angles x, z, y of a left shoulder at which the solver starts: the elbow points down and a little
-// outwards if the hand carries a tray, and back if it holds a rail.
-inline constexpr float kCarrying_rad[3] = {-15 * kDegree_rad, 12 * kDegree_rad, -15 * kDegree_rad},
-                       kAtRail_rad[3] = {25 * kDegree_rad, 4 * kDegree_rad, 5 * kDegree_rad};
-// Weights of a held arm: shoulder and elbow bring the hand to its place, and the wrist hardly takes
-// part.
-inline constexpr float kHeldWeight[kArmAngles] = {1.0f, 1.0f, 0.7f, 1.0f, 0.25f, 0.25f};
-
 // An arm to be solved. All of its members are numbers V, of arms side by side.
 template <class N>
 struct ArmChain {
@@ -218,9 +205,12 @@ void stiffen_arm(const ArmBones& bones, const Styled<V>& styled, int side, const
 // Moves a place to where the arm can reach it: neither too far from the shoulder nor too near.
 template <class V>
 Vec<V> within_reach(const Vec<V>& way_m, const V& full_m) noexcept {
-  const V far = root(dot(way_m, way_m)), nearest = kNearestHand * full_m,
-          near = nearest + soft_positive(V(far - nearest), V(kSoftNearHand * full_m)),
-          to = soft_least(near, V(kFarthestHand * full_m), V(kSoftFarHand * full_m));
+  // Greatest and least distance of a held hand, and the widths over which these limits are rounded;
+  // shares of the stretched arm.
+  constexpr float kFarthest = 0.985f, kSoftFar = 0.03f, kNearest = 0.3f, kSoftNear = 0.1f;
+  const V far = root(dot(way_m, way_m)), nearest = kNearest * full_m,
+          near = nearest + soft_positive(V(far - nearest), V(kSoftNear * full_m)),
+          to = soft_least(near, V(kFarthest * full_m), V(kSoftFar * full_m));
   return way_m * (to / most(far, all<V>(1e-6f)));
 }
 
@@ -258,7 +248,15 @@ struct Holds {
 template <class V>
 void hold_hand(const Tables& tables, const Styled<V>& styled, int side, const Holds<V>& holds,
                Arm<V>& arm) noexcept {
-  constexpr float kFullFrom = 0.1f;  // a hand held by this share has all of kHeldWeight
+  constexpr float kRailAhead_m = 0.15f;  // how far ahead of the hips a hand holds a rail
+  // Angles x, z, y of a left shoulder at which the solver starts: the elbow points down and a
+  // little outwards if the hand carries a tray, and back if it holds a rail.
+  constexpr float kCarrying_rad[3] = {-15 * kDegree_rad, 12 * kDegree_rad, -15 * kDegree_rad},
+                  kAtRail_rad[3] = {25 * kDegree_rad, 4 * kDegree_rad, 5 * kDegree_rad};
+  // Weights of a held arm: shoulder and elbow bring the hand to its place, and the wrist hardly
+  // takes part. A hand held by the share kFullFrom has all of them.
+  constexpr float kHeldWeight[kArmAngles] = {1.0f, 1.0f, 0.7f, 1.0f, 0.25f, 0.25f};
+  constexpr float kFullFrom = 0.1f;
   const float outwards = side == kLeftSide ? 1.0f : -1.0f;
   const V carry = within(of_hand(styled, side, kCarry), 0.0f, 1.0f),
           rail = within(of_hand(styled, side, kRail), 0.0f, 1.0f),

@@ -181,23 +181,23 @@ void nod(const Tables& tables, const Turn<V>& heading, const Bearing<V>& bearing
 
 // --- Chest and head while a walk changes ---------------------------------------------------------
 
-// The trunk leans into a change of speed: forward while the walk is slower than asked, back while
-// it is faster. It leans by kPush_rad for each m/s that is missing beyond the share kCalm of the
-// speed; a start adds up to kFirstPush_rad, from the share kFirstFrom of the asked speed that is
-// missing on and fully from kFirstAll on, so that a slow walk leans as well.
-inline constexpr float kPush_rad = 3.0f * kDegree_rad, kFirstPush_rad = 2.0f * kDegree_rad,
-                       kFirstFrom = 0.4f, kFirstAll = 0.8f, kCalm = 0.25f, kSoftCalm_m_s = 0.1f;
-inline constexpr float kStill_rad = 1e-7f;  // a smaller lean counts as none
-// Chest and head are eased while the head's turn ahead changes by more than this, or is farther
-// from its goal.
-inline constexpr float kTurns_rad_s = 0.02f, kTurns_rad = 0.003f;
-inline constexpr float kSteady_s = 0.3f;  // at the reference leg: from then on a led walk is steady
-
 // Advances the mean speed and the lean into a change of it. Returns the walks whose chest and head
 // are to be eased. `is_new`: the plan has changed in this tick.
 template <class V>
 Mask<V> advance_poise(const Tables& tables, const Hips<V>& hips, const Mask<V>& is_new,
                       const Change<V>& change, const State<V>& state, Poise<V>& poise) noexcept {
+  // The trunk leans forward while the walk is slower than asked, back while it is faster: by
+  // kPush_rad for each m/s that is missing beyond the share kCalm of the speed. If the share
+  // kFirstFrom of the asked speed is missing, it leans by up to kFirstPush_rad more, which it
+  // reaches at kFirstAll, so that a slow walk leans as well.
+  constexpr float kPush_rad = 3.0f * kDegree_rad, kFirstPush_rad = 2.0f * kDegree_rad,
+                  kFirstFrom = 0.4f, kFirstAll = 0.8f, kCalm = 0.25f, kSoftCalm_m_s = 0.1f;
+  constexpr float kStill_rad = 1e-7f;  // a smaller lean counts as none
+  // Chest and head are eased while the head's turn ahead changes faster than this, or is farther
+  // from its goal.
+  constexpr float kTurns_rad_s = 0.02f, kTurns_rad = 0.003f;
+  constexpr float kSteady_s =
+      0.3f;  // at the reference leg: a walk is steady so long after a change
   const Asked<V>& a = state.asked;
   const V pace = (a.length_m[0] + a.length_m[1]) /
                  most(V(a.time_s[0] + a.time_s[1]), all<V>(kLeastCycle_s)),
@@ -292,7 +292,6 @@ Vec<V> eased(const Tables& tables, const Vec<V>& goal, const V& most_rad, const 
 // --- Spine ---------------------------------------------------------------------------------------
 
 inline constexpr float kNeckLever_m = 0.2f;  // makes a length of the neck's turn, for its row
-inline constexpr float kMostBend_rad = 60.0f * kDegree_rad;  // of one joint
 
 // The spine's joints share the movement that brings neck and shoulders to their place in the data.
 // Three rows: the neck's place sideways and forward, and forward that of a point beside the neck.
@@ -361,6 +360,7 @@ Mask<V> has_uneven_spine(const Styled<V>& styled) noexcept {
 template <class V>
 void share_spine(const Tables& tables, const Styled<V>& styled, const Mask<V>& uneven,
                  Trunk<V>& trunk) noexcept {
+  constexpr float kMostBend_rad = 60.0f * kDegree_rad;  // of one joint
   const int count = static_cast<int>(tables.spine.size());
   SpineChain<V> chain;
   chain.dofs = 3 * count;

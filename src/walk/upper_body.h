@@ -205,41 +205,6 @@ V data_phase(const Tables& tables, const Time<V>& time, const V& phase) noexcept
   return time.back ? V(share[0] + share[1] + share[2] - phase) : phase;
 }
 
-// Computes how chest and head were turned in the two ticks before easing begins, for steady walks
-// do not store it.
-template <class V>
-[[gnu::noinline]] void begin_easing(const Tables& tables, const BodyTick<V>& tick,
-                                    const Bearing<V> (&before)[2], const Mask<V>& begins,
-                                    const Change<V>& change, const State<V>& state,
-                                    Poise<V>& poise) noexcept {
-  const V is = chosen<V>(begins, 1.0f, 0.0f), over = planned_over(tick.time, change),
-          rate = either(change.stands != V{}, change.starting != V{}) ? V{} : state.phase_rate;
-  const Turn<V> heading = tick.hips.heading.turn(),
-                upright = tick.pelvis.turn * back(tilted(tables, tick.stride, state));
-  Vec<V> chest[2], head[2];
-  for (int k : {0, 1}) {
-    const V phase = tick.phase - static_cast<float>(k + 1) * rate;
-    Stride<V> stride =
-        read_stride(tables, tick.time, phase, state.ratio_behind, tick.landing.ratio, over);
-    show(change.shown, stride);
-    Trunk<V> trunk;
-    trunk.base = base_turn(tables, heading, upright * tilted(tables, stride, state));
-    const Knots<V> knots = knots_at(data_phase(tables, tick.time, phase));
-    for (int i = 0; i < joints_of_path(tables); ++i)
-      trunk.own[i] = data_turn(tables, tables.path[i], knots, tick.shown, is);
-    lean_trunk(tables, heading, before[k], trunk);
-    chest[k] = chest_turn(tables, heading, trunk);
-    nod(tables, heading, before[k], trunk);
-    head[k] = head_turn(tables, heading, trunk);
-  }
-  const auto begin = [&](const Vec<V>(&turn)[2], Eased<V>& eased) {
-    eased.at = chosen(begins, turn[0], eased.at);
-    eased.rate = chosen(begins, turn[0] - turn[1], eased.rate);
-    eased.ticks = begins ? V{} : eased.ticks;
-  };
-  begin(chest, poise.chest), begin(head, poise.head);
-}
-
 // The differences of a walk's trunk from the data: its turn ahead, its lean into a change of speed,
 // its style, and a stand's breath and glances.
 template <class V>
@@ -264,6 +229,50 @@ Bearing<V> bearing_of(const Tables& tables, const BodyTick<V>& tick, const Mask<
   to.turns_rad = head_rad - chest_rad + idle.glance_rad;
   to.nods_rad = kHeadStays * (push_rad - idle.breath_rad) - idle.nod_rad;
   return to;
+}
+
+// Computes how chest and head were turned in the two ticks before easing begins, for steady walks
+// do not store it.
+template <class V>
+[[gnu::noinline]] void begin_easing(const Tables& tables, const BodyTick<V>& tick,
+                                    const Mask<V>& is_styled, const Mask<V>& begins,
+                                    const Change<V>& change, const State<V>& state,
+                                    const Styled<V>& styled, Poise<V>& poise) noexcept {
+  const V is = chosen<V>(begins, 1.0f, 0.0f), over = planned_over(tick.time, change),
+          rate = either(change.stands != V{}, change.starting != V{}) ? V{} : state.phase_rate;
+  const Turn<V> heading = tick.hips.heading.turn(),
+                upright = tick.pelvis.turn * back(tilted(tables, tick.stride, state));
+  Vec<V> chest[2], head[2];
+  for (int k : {0, 1}) {
+    const float ago = static_cast<float>(k + 1);
+    const V phase = tick.phase - ago * rate, ago_s = all<V>(tables.tick_s * ago);
+    // The lean was 0 and the turns ahead had settled; breath and glances had their own past.
+    const Idle<V> idle =
+        idle_at(tables, most(V(styled.idle_ticks - (ago + 1.0f)), V{}), state, styled);
+    const BodyTick<V> then{tick.time,   tick.landing, tick.hips,  tick.stride,
+                           tick.pelvis, idle,         tick.phase, tick.shown};
+    const Bearing<V> before = bearing_of(
+        tables, then, is_styled, V(state.chest_ahead_rad.x - ago_s * state.chest_ahead_rad.v),
+        V(state.head_ahead_rad.x - ago_s * state.head_ahead_rad.v), V{}, styled);
+    Stride<V> stride =
+        read_stride(tables, tick.time, phase, state.ratio_behind, tick.landing.ratio, over);
+    show(change.shown, stride);
+    Trunk<V> trunk;
+    trunk.base = base_turn(tables, heading, upright * tilted(tables, stride, state));
+    const Knots<V> knots = knots_at(data_phase(tables, tick.time, phase));
+    for (int i = 0; i < joints_of_path(tables); ++i)
+      trunk.own[i] = data_turn(tables, tables.path[i], knots, tick.shown, is);
+    lean_trunk(tables, heading, before, trunk);
+    chest[k] = chest_turn(tables, heading, trunk);
+    nod(tables, heading, before, trunk);
+    head[k] = head_turn(tables, heading, trunk);
+  }
+  const auto begin = [&](const Vec<V>(&turn)[2], Eased<V>& eased) {
+    eased.at = chosen(begins, turn[0], eased.at);
+    eased.rate = chosen(begins, turn[0] - turn[1], eased.rate);
+    eased.ticks = begins ? V{} : eased.ticks;
+  };
+  begin(chest, poise.chest), begin(head, poise.head);
 }
 
 // Poses the upper body of walks that differ from the data, where `is_posed`: the trunk leans, arms
@@ -328,21 +337,8 @@ template <int kWidth, bool kPaper>
           of_chest = most(all<V>(tables.most_chest_s2), V(kChestLess * of_head));
   if (may_ease) {
     const auto begins = both(acts, poise.acts == V{});
-    if (any(begins)) {
-      // The lean was 0 and the turns ahead had settled; breath and glances had their own past.
-      Bearing<V> before[2];
-      for (int k : {0, 1}) {
-        const V ticks = most(V(styled.idle_ticks - static_cast<float>(k + 2)), V{});
-        const Idle<V> idle = idle_at(tables, ticks, state, styled);
-        const BodyTick<V> then{tick.time,   tick.landing, tick.hips,  tick.stride,
-                               tick.pelvis, idle,         tick.phase, tick.shown};
-        const V ago_s = all<V>(dt * static_cast<float>(k + 1));
-        before[k] = bearing_of(
-            tables, then, is_styled, V(state.chest_ahead_rad.x - ago_s * state.chest_ahead_rad.v),
-            V(state.head_ahead_rad.x - ago_s * state.head_ahead_rad.v), V{}, styled);
-      }
-      begin_easing(tables, tick, before, begins, block.change, state, poise);
-    }
+    if (any(begins))
+      begin_easing(tables, tick, is_styled, begins, block.change, state, styled, poise);
     const Vec<V> goal = chest_turn(tables, heading, trunk),
                  to = eased(tables, goal, V(of_chest * (dt * dt)), turns_rad, acts, eases,
                             poise.chest);

@@ -16,30 +16,7 @@ namespace {
 
 inline constexpr float kEvenWeights = 1e-6f;  // weights that differ by less are even
 inline constexpr float kStill_per_s = 1e-4f;  // a smoothed number that changes slower has settled
-inline constexpr float kLeastW = 0.09f;       // the weight of a locked joint in the solve
-// The pull of one joint approaches this; kHeldPull of it acts while the foot may not turn.
-inline constexpr float kMostPull_rad = 0.31415927f, kHeldPull = 0.3f;
-inline constexpr float kFootLever_m = 0.2f;  // makes lengths of the foot's angles, for their rows
-// Shares of the flight. The planted point is the toe until kToeUntil and the heel from kOnHeel on;
-// the foot turns back to its plan from kToLand to kLanded.
-inline constexpr float kToeUntil = 0.15f, kOnHeel = 0.6f, kToLand = 0.4f, kLanded = 0.95f;
-// The foot becomes free to turn aside until kAsideFrom; from kAsideTo on it becomes held again.
-inline constexpr float kAsideFrom = 0.35f, kAsideTo = 0.6f;
-// The foot's give, rad^2: the weight of its angle, where that of a free joint is 1.
-inline constexpr float kGiveAside = 0.15f, kGiveFlying = 0.5f, kGiveRolling = 0.05f;
-inline constexpr float kTight_rad = 0.05235988f;  // 3 degrees of room: half of it gives way
-inline constexpr float kFloorRoom_m = 0.0003f;    // keeps the room above 0
-// A knee straighter than this share of the even knee's bend is bent by a spring, which is this many
-// times as stiff as a free joint; the spring begins softly, at least over kLeastSoft_rad.
-inline constexpr float kBentKnee = 0.65f, kKneeSpring = 100.0f, kLeastSoft_rad = 0.0017453293f;
-// A step closes its exact rows and the share kShareStep of the others: if it closes all of them,
-// some walks swing between two poses.
-inline constexpr float kShareStep = 0.5f, kMostShareStep_rad = 0.6f;
-inline constexpr int kMostShareSteps = 8;
-// A solve ends after a smaller step, if its point was nearer than this.
-inline constexpr float kSharedNear_rad = 8.7266463e-4f, kSharedNear_m = 0.001f;
-inline constexpr float kExactRow_m2 = 1e-10f;  // a pivot above the rounding of floats
-inline constexpr float kRoomUsed = 0.8f;  // of the room: the cost of a turn is linear beyond it
+inline constexpr float kFootLever_m = 0.2f;   // makes lengths of the foot's angles, for their rows
 
 // A leg whose movement its joints share by weight: input, then the result. All of its members are
 // numbers V, of legs side by side.
@@ -165,6 +142,14 @@ void solve_rows(const V (&column)[kLegAngles][6], const V (&weight)[kLegAngles],
 template <class V>
 void step_of(const LegToShare<V>& leg, float lever_m, const LegPlace<V>& place,
              V (&step_rad)[kLegAngles]) noexcept {
+  // A step closes its exact rows and this share of the others: if it closes all of them, some walks
+  // swing between two poses.
+  constexpr float kShareStep = 0.5f;
+  constexpr float kExactRow_m2 = 1e-10f;  // a pivot above the rounding of floats
+  constexpr float kRoomUsed = 0.8f;       // of the room: the cost of a turn is linear beyond it
+  // Bends a straight knee: its stiffness where that of a free joint is 1, and the least angle over
+  // which it begins softly.
+  constexpr float kKneeSpring = 100.0f, kLeastSoft_rad = 0.0017453293f;
   V column[kLegAngles][6], weight[kLegAngles], first_rad[kLegAngles], b[6], give[6];
   set_columns(lever_m, place, column);
   // The foot's pitch beyond its plan, down positive. The nearer it brings toe or heel to the floor,
@@ -212,6 +197,10 @@ void step_of(const LegToShare<V>& leg, float lever_m, const LegPlace<V>& place,
 
 template <class V>
 void share_leg(float lever_m, LegToShare<V>& leg) noexcept {
+  constexpr float kMostShareStep_rad = 0.6f;
+  constexpr int kMostShareSteps = 8;
+  // A solve ends after a smaller step, if its point was nearer than this.
+  constexpr float kSharedNear_rad = 8.7266463e-4f, kSharedNear_m = 0.001f;
   LegPlace<V> place;
   place.goal_side = leg.planned * leg.side;
   place.goal_along = leg.planned * leg.line;
@@ -329,11 +318,49 @@ Mask<V> smooth_weights(const Tables& tables, Weighted<V>& weighted) noexcept {
   return acts;
 }
 
+// How freely a leg follows its weights: its joints in general, and its foot by pitch and aside.
+// `on_heel`: the planted point on the sole, 0 the toe and 1 the heel.
+template <class V>
+struct Freedom {
+  V joints, pitch, aside, on_heel;
+};
+// `u`, `rolled`: shares of flight and roll that are over. `loose`: 0 after a flat stand, 1 later.
+// `risen`: the share by which a standing foot may raise its heel.
+template <class V>
+Freedom<V> freedom_of(const Mask<V>& flies, const Mask<V>& rolls, const V& u, const V& rolled,
+                      const V& loose, const V& risen) noexcept {
+  // Shares of the flight. The planted point is the toe until kToeUntil and the heel from kOnHeel
+  // on; the foot turns back to its plan from kToLand to kLanded. It becomes free to turn aside
+  // until kAsideFrom, and held again from kAsideTo on.
+  constexpr float kToeUntil = 0.15f, kOnHeel = 0.6f, kToLand = 0.4f, kLanded = 0.95f;
+  constexpr float kAsideFrom = 0.35f, kAsideTo = 0.6f;
+  // The foot's give, rad^2: the weight of its angle, where that of a free joint is 1.
+  constexpr float kGiveAside = 0.15f, kGiveFlying = 0.5f, kGiveRolling = 0.05f;
+  const V none{}, one = all<V>(1.0f), rise = loose * risen, lands = smoother(kToLand, kLanded, u);
+  const auto by_stage = [&](const V& flying, const V& rolling, const V& standing) {
+    const V planted = rolls ? rolling : standing;
+    return V(flies ? flying : planted);
+  };
+  const V aside = smoother(0.0f, kAsideFrom, u) * (1.0f - smoother(kAsideTo, 1.0f, u));
+  return {by_stage(V(loose * (1.0f - lands)), none, rise),
+          by_stage(V(loose * (1.0f - (1.0f - kGiveFlying) * smoother(0.0f, kToLand, u) -
+                              (kGiveFlying - kGiveRolling) * lands)),
+                   V(kGiveRolling * (1.0f - smoother(0.0f, kRollEnd, rolled))), rise),
+          flies ? V(kGiveAside * aside) : none,
+          by_stage(smoother(kToeUntil, kOnHeel, u), one, none)};
+}
+
 template <class V>
 void weigh_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stride,
                 const Feet<V>& feet, const Pelvis<V>& pelvis, const V& phase,
                 const Change<V>& change, const State<V>& state, Weighted<V>& weighted,
                 Leg<V> (&legs)[2]) noexcept {
+  constexpr float kLeastW = 0.09f;  // the weight of a locked joint in the solve
+  // The pull of one joint approaches this; kHeldPull of it acts while the foot may not turn.
+  constexpr float kMostPull_rad = 0.31415927f, kHeldPull = 0.3f;
+  constexpr float kBentKnee = 0.65f;  // a knee straighter than this share of the even one is bent
+  constexpr float kTight_rad = 0.05235988f;  // 3 degrees of room: half of it gives way
+  constexpr float kFloorRoom_m = 0.0003f;    // keeps the room above 0
   if (!any(either(weighted.asked != V{}, weighted.acts != V{}))) return;
   const V one = all<V>(1.0f), zero{};
   V even_rad[2][kLegAngles];
@@ -363,20 +390,8 @@ void weigh_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stri
     Smoothed<V> loose{begins ? turns : weighted.loose[k].x, begins ? zero : weighted.loose[k].v};
     follow(turns, tables.loosens, loose);
     keep(loose.x, weighted.loose[k].x), keep(loose.v, weighted.loose[k].v);
-    const V u = flies ? flight_share(time.u, change) : zero, rolled = state.tick / state.roll_ticks,
-            lifts = loose.x, rise = lifts * risen;
-    const auto by_mode = [&](const V& flying, const V& rolling, const V& standing) {
-      const V planted = rolls ? rolling : standing;
-      return V(flies ? flying : planted);
-    };
-    const V lands = smoother(kToLand, kLanded, u),
-            freely = by_mode(V(lifts * (1.0f - lands)), zero, rise),
-            pitches = by_mode(V(lifts * (1.0f - (1.0f - kGiveFlying) * smoother(0.0f, kToLand, u) -
-                                         (kGiveFlying - kGiveRolling) * lands)),
-                              V(kGiveRolling * (1.0f - smoother(0.0f, kRollEnd, rolled))), rise),
-            aside = flies ? V(smoother(0.0f, kAsideFrom, u) * (1.0f - smoother(kAsideTo, 1.0f, u)))
-                          : zero,
-            on_heel = by_mode(smoother(kToeUntil, kOnHeel, u), one, zero);
+    const Freedom<V> may = freedom_of<V>(flies, rolls, flies ? flight_share(time.u, change) : zero,
+                                         V(state.tick / state.roll_ticks), loose.x, risen);
     V largest = all<V>(1e-9f), smallest = one, in_force[kLegAngles];
     for (int j = 0; j < kLegAngles; ++j) {
       in_force[j] = right ? weighted.weight[1][j].x : weighted.weight[0][j].x;
@@ -384,7 +399,7 @@ void weigh_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stri
     }
     const V bent = kBentKnee * (even_rad[k][3] - kLeastKnee_rad), over = 1.0f / largest;
     leg.knee_rad = kLeastKnee_rad + bent;
-    const V pull = change.shown * (kHeldPull + (1.0f - kHeldPull) * freely);
+    const V pull = change.shown * (kHeldPull + (1.0f - kHeldPull) * may.joints);
     for (int j = 0; j < kLegAngles; ++j) {
       const V even = even_rad[k][j], w = least(V(in_force[j] * over), one),
               shift = weighted.shift_rad[k][j];
@@ -405,16 +420,17 @@ void weigh_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stri
       return V((most(over_m, V{}) + kFloorRoom_m) / (arm_m + kFloorRoom_m));
     };
     const V base_m = k == 0 ? feet.base_m : zero;
-    leg.room_down_rad = room(V(foot.toe_m.y - base_m - sole.toe_rest_m), V(sole.foot_m * on_heel));
-    leg.room_up_rad = room(V(foot.heel_m.y - base_m), V(sole.foot_m * (1.0f - on_heel)));
+    leg.room_down_rad =
+        room(V(foot.toe_m.y - base_m - sole.toe_rest_m), V(sole.foot_m * may.on_heel));
+    leg.room_up_rad = room(V(foot.heel_m.y - base_m), V(sole.foot_m * (1.0f - may.on_heel)));
     const V down2 = leg.room_down_rad * leg.room_down_rad;
-    leg.give_aside = kGiveAside * aside;
-    leg.give_pitch = change.shown * pitches * (down2 / (down2 + kTight_rad * kTight_rad));
+    leg.give_aside = may.aside;
+    leg.give_pitch = change.shown * may.pitch * (down2 / (down2 + kTight_rad * kTight_rad));
     leg.line = sole.line_m * V(1.0f / sole.foot_m);
     leg.side = sole.side;
-    leg.point_m = sole.heel_m + sole.line_m * V(1.0f - on_heel);
+    leg.point_m = sole.heel_m + sole.line_m * V(1.0f - may.on_heel);
     leg.planned = to_pelvis * foot.turn;
-    const Vec<V> planted_m = foot.toe_m + (foot.heel_m - foot.toe_m) * on_heel;
+    const Vec<V> planted_m = foot.toe_m + (foot.heel_m - foot.toe_m) * may.on_heel;
     leg.goal_m = to_pelvis * (planted_m - pelvis.place_m - pelvis.hip_m[k]);
     leg.thigh_m = of_leg<V>(tables, right, &LegBones::thigh_m);
     leg.shank_m = of_leg<V>(tables, right, &LegBones::shank_m);

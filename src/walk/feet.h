@@ -128,23 +128,16 @@ Vec<V> flight_heel(const Tables& tables, const Time<V>& time, const Landing<V>& 
            mix(V(state.print_z_m + from.z), V(landing.z_m + to.z), gone)};
   const auto closes = change.closing != V{}, is_short = either(change.starting != V{}, closes);
   if (any(is_short)) {
-    // As far as strides of its own length have it; before it lands it is one of the walk.
-    constexpr float kInPlaceStride_m = 0.02f, kGoingStride_m = 0.12f, kLikeAStep = 0.4f,
-                    kWalksFrom = 0.3f;
+    // It goes evenly, and is off that as in strides of its own length, along where it points,
+    // wherever the step leads; before it lands it is one of the walk.
+    constexpr float kLikeAStep = 0.4f, kWalksFrom = 0.3f;
     const Vec<V> ahead = seen(hips.own, stride.heel_behind_m, turns, all<V>(kPastClosely));
-    const V stride_m = size(hips.own.stride_m),
-            over_stride =
-                1.0f / (stride_m > all<V>(kInPlaceStride_m) ? hips.own.stride_m : all<V>(1.0f)),
-            far = mix(smoother(u), V(1.0f + ahead.z * over_stride),
-                      smooth(kInPlaceStride_m, kGoingStride_m, stride_m)),
+    const V off_m = ahead.z + hips.own.stride_m * (1.0f - gone),
             goes = kLikeAStep * smoother(V((u - kWalksFrom) * (1.0f / (1.0f - kWalksFrom)))),
             walks = closes ? V{} : goes;
-    // Sideways, to or from hip width, it goes evenly.
-    const V goes_x = landing.x_m - state.print_x_m, goes_z = landing.z_m - state.print_z_m,
-            asides = goes_x * landing.way.cosine - goes_z * landing.way.sine,
-            left_m = ahead.x + asides * (gone - far);
-    const V x = state.print_x_m + goes_x * far + landing.way.cosine * left_m,
-            z = state.print_z_m + goes_z * far - landing.way.sine * left_m;
+    const Vec<V> off = landing.way * Vec<V>{ahead.x, V{}, off_m};
+    const V x = mix(state.print_x_m, landing.x_m, gone) + off.x,
+            z = mix(state.print_z_m, landing.z_m, gone) + off.z;
     p.x = is_short ? mix(x, V(landing.x_m + to.x), walks) : p.x;
     p.z = is_short ? mix(z, V(landing.z_m + to.z), walks) : p.z;
   }

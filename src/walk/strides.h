@@ -115,13 +115,17 @@ V last_ratio(const Mask<V>& back) noexcept {
   return chosen<V>(back, kBackRatios - 1.0f, kRatios - 1.0f);
 }
 
-// Of strides whose half is the way of the foot that flies.
+// Of strides whose half is the way of the foot that flies, ahead or aside: turning on the spot it
+// may be set down behind where it stood, and no stride of these tables leads there.
 // What that is off fades; one that flies soon goes at least as far as it is to.
 template <class V>
 V short_ratio(const Tables& tables, const Landing<V>& landing, const State<V>& state) noexcept {
   constexpr float kComesUp = 0.3f;  // of the flight
-  const V x = landing.x_m - state.print_x_m, z = landing.z_m - state.print_z_m;
-  const V own = root(V(x * x + z * z)) *
+  const V x = landing.x_m - state.print_x_m, z = landing.z_m - state.print_z_m,
+          goes_m = x * landing.way.sine + z * landing.way.cosine,
+          ahead_m = most(state.backward != V{} ? -goes_m : goes_m, V{}),
+          aside_m = x * landing.way.cosine - z * landing.way.sine;
+  const V own = root(V(ahead_m * ahead_m + aside_m * aside_m)) *
                 (1.0f / (tables.leg[0].own_step_m + tables.leg[1].own_step_m)),
           off = 0.5f * landing.off_ratio,
           flown = state.flies != V{} ? V(state.tick / state.flight_ticks) : V{},

@@ -343,19 +343,28 @@ inline Turn<V> turn_by(const Vec<V>& v) noexcept {
 template <class V>
 struct Way {
   V half_sine{}, half_cosine = all<V>(1.0f), sine{}, cosine = all<V>(1.0f);
-  // A place seen from where it points so.
+  // A place in the frame that points this way, seen from outside of that frame.
   Vec<V> operator*(const Vec<V>& p) const noexcept {
     return {cosine * p.x + sine * p.z, p.y, cosine * p.z - sine * p.x};
   }
+  // Components of a place along this way and to the left of it.
+  V ahead(const V& x_m, const V& z_m) const noexcept { return x_m * sine + z_m * cosine; }
+  V left(const V& x_m, const V& z_m) const noexcept { return x_m * cosine - z_m * sine; }
   Turn<V> turn() const noexcept { return {half_cosine, V{}, half_sine, V{}}; }
 };
 template <class V>
+[[gnu::always_inline]] inline Way<V> way_of_half(const V& sine, const V& cosine) noexcept {
+  return {sine, cosine, 2.0f * sine * cosine, cosine * cosine - sine * sine};
+}
+template <class V>
 [[gnu::always_inline]] inline Way<V> way_of(const V& heading_rad) noexcept {
-  Way<V> way;
-  sin_cos(V(0.5f * heading_rad), way.half_sine, way.half_cosine);
-  way.sine = 2.0f * way.half_sine * way.half_cosine;
-  way.cosine = way.half_cosine * way.half_cosine - way.half_sine * way.half_sine;
-  return way;
+  V sine, cosine;
+  sin_cos(V(0.5f * heading_rad), sine, cosine);
+  return way_of_half(sine, cosine);
+}
+template <class V>
+inline Off<V> chosen(const Mask<V>& mask, const Off<V>& a, const Off<V>& b) noexcept {
+  return {mask ? a.x : b.x, mask ? a.v : b.v, mask ? a.a : b.a};
 }
 template <class V>
 inline Way<V> chosen(const Mask<V>& mask, const Way<V>& a, const Way<V>& b) noexcept {

@@ -5,9 +5,9 @@
 namespace gaitpad {
 
 struct Poses {
-  quat* const* local;  // of each walk, by joint
-  vec3* const* root_m;
-  int walks;  // of the block; the lanes after them are not written
+  quat* const* local = nullptr;  // of each walk: rotations by joint
+  vec3* const* root_m = nullptr;
+  int walks = 0;  // of the block; lanes after them are not written
 };
 
 }  // namespace gaitpad

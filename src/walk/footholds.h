@@ -88,7 +88,7 @@ AskedStep<V> plan_landing(const Tables& tables, const Time<V>& time, Change<V>& 
   constexpr float kWider_m = 0.045f;  // in turns of 1 rad/s and more, less in slower ones
   constexpr float kInPlace_m = 0.2f, kStance_m = 0.105f, kLeastWider_m = 0.03f;
   constexpr float kFootAhead = 0.45f;  // of the turn during the step
-  constexpr float kSettling_s = 0.1f;  // time constant in the middle of settling
+  constexpr float kSettling_s = 0.1f;  // time constant at 0.62 of the way from kSettles to kFreeze
   const auto closes = change.closing != V{};
   const V heading = heading_ahead(tables, state, V(time.to_strike + 1.0f));
   const Way<V> to = way_of(heading), along = way_of(V(kWayTurns * heading));

@@ -298,13 +298,12 @@ void begin_step(const Tables& tables, const Time<V>& time, const Mask<V>& strike
   const V short_s = state.late_s + state.step_s - (state.roll_ticks + state.flight_ticks) * tick_s;
   constexpr float kLeastWay = 0.52f;  // of speed times time: on a shorter way a quintic goes back
   constexpr float kLeastTime = 0.5f;  // of the step's own time
-  constexpr float kLeastSpeed_m = 1e-5f;  // per tick, not to divide by 0
-  constexpr float kWalked = 0.2f;         // ratio from which on the last step was not on the spot
+  constexpr float kWalked = 0.2f;     // ratio from which on the last step was not on the spot
   const auto led = change.led != V{};
   const V way_m = 0.5f * (state.ratio_behind * own_step_m<V>(tables, time.right, time.back) +
                           by_side<V>(no(time.right), state.asked.length_m)),
           x = change.pelvis_x_m.v, z = change.pelvis_z_m.v,
-          speed_m = most(root(V(x * x + z * z)), all<V>(kLeastSpeed_m)),
+          speed_m = most(root(V(x * x + z * z)), all<V>(1e-5f)),
           own_s = next.roll_s + next.flight_s,
           least_time = change.slowness > all<V>(1.0f) ? all<V>(1.0f) : all<V>(kLeastTime),
           longest_s = most(V(tick_s * way_m / (kLeastWay * speed_m)), V(least_time * own_s));

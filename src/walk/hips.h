@@ -87,10 +87,9 @@ Hips<V> move_hips(const Tables& tables, const Time<V>& time, const Landing<V>& l
         z_m[n] = goes(change.pelvis_z_m) - pelvis.z - (to.z_m + to.per_cycle_z_m * at);
       }
       const auto go_on = [&](const V(&m)[3], Off<V>& off) {
-        constexpr float kPerTick = 1.0f / kAimTicks;
         off = chosen(was_led,
-                     {m[0], V(0.5f * kPerTick * (4.0f * m[1] - 3.0f * m[0] - m[2])),
-                      V(kPerTick * kPerTick * (m[0] - 2.0f * m[1] + m[2]))},
+                     {m[0], V((0.5f / kAimTicks) * (4.0f * m[1] - 3.0f * m[0] - m[2])),
+                      V((1.0f / (kAimTicks * kAimTicks)) * (m[0] - 2.0f * m[1] + m[2]))},
                      off);
       };
       go_on(x_m, state.hips_x_m);

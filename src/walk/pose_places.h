@@ -1,4 +1,4 @@
-// Where the poses of a block's walks go.
+// Memory for the poses of a block's walks.
 #pragma once
 #include "gaitpad/math.h"
 

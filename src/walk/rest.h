@@ -16,10 +16,11 @@ namespace gaitpad {
 namespace {
 
 // Times are in seconds at the reference leg.
-inline constexpr float kLeastStep = 0.25f;    // shortest landing ahead, over the foot's own step
-inline constexpr float kStays = 0.45f;        // share of a flight from which on its landing stays
-inline constexpr float kBehind_m = 0.02f;     // least distance of a landing from a foot behind it
-inline constexpr float kLandsAhead = 0.42f;   // of a step: distance of the hips to a landing foot
+inline constexpr float kLeastStep = 0.25f;  // shortest landing ahead, over the foot's own step
+inline constexpr float kStays = 0.45f;      // share of a flight from which on its landing stays
+inline constexpr float kBehind_m = 0.02f;   // a flying foot is at least so far behind its landing
+inline constexpr float kLandsAhead =
+    0.42f;  // of a step: least way of the hips to a foot that lands
 inline constexpr float kLeastRest_s = 0.25f;  // shortest time in which hips come to rest
 // Bounds of the last step: a roll or flight over the planned or the steady one.
 inline constexpr float kMostClosing = 1.25f, kLongestClosingRoll = 1.6f;

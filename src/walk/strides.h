@@ -55,11 +55,10 @@ struct Knots {
 // to the next one.
 template <class V>
 Knots<V> spline_knots(const V& first, const V& t) noexcept {
-  constexpr float kSixth = 1.0f / 6.0f;
   const V s = 1.0f - t;
   return {first,
-          {s * s * s * kSixth, (4.0f + t * t * (3.0f * t - 6.0f)) * kSixth,
-           (4.0f + s * s * (3.0f * s - 6.0f)) * kSixth, t * t * t * kSixth}};
+          {s * s * s * (1.0f / 6.0f), (4.0f + t * t * (3.0f * t - 6.0f)) * (1.0f / 6.0f),
+           (4.0f + s * s * (3.0f * s - 6.0f)) * (1.0f / 6.0f), t * t * t * (1.0f / 6.0f)}};
 }
 template <class V>
 Knots<V> knots_at(const V& phase) noexcept {

@@ -186,7 +186,7 @@ void change_ends(const Tables& tables, Block<kWidth>& block) noexcept {
 }
 
 // True in a flight whose next step is asked for at another pace than the last look ahead assumed.
-// Asks every knot of the sinking.
+// Asks once per knot of the sinking.
 template <class V>
 Mask<V> is_unforeseen(const Tables& tables, const State<V>& state,
                       const Change<V>& change) noexcept {
@@ -239,7 +239,6 @@ template <class V>
 void assume_foothold(const Time<V>& time, const AskedStep<V>& asked, State<V>& state,
                      Footing<V>& footing) noexcept {
   constexpr float kMostSteeper = 1.5f;  // times the last rise
-  constexpr float kLeast_m = 1e-3f;     // not to divide by 0
   const auto begins = both(no(time.flies), state.tick == all<V>(1.0f));
   const auto move = [&](const V& level_m, V& asked_m, V& landing_m) {
     const V moved_m = level_m - asked_m;
@@ -251,7 +250,7 @@ void assume_foothold(const Time<V>& time, const AskedStep<V>& asked, State<V>& s
           z_m = move(footing.level_z_m, footing.asked_z_m, state.landing_z_m);
   const auto far = [](const V& x, const V& z) { return root(V(x * x + z * z)); };
   const V longer = far(state.landing_x_m, state.landing_z_m) /
-                   most(far(state.print_x_m, state.print_z_m), all<V>(kLeast_m)),
+                   most(far(state.print_x_m, state.print_z_m), all<V>(1e-3f)),
           rise_m = asked.length_m == V{}
                        ? V{}
                        : V(-footing.print_y_m * least(longer, all<V>(kMostSteeper)));

@@ -76,7 +76,7 @@ struct State {
   V tick{};                        // ticks since the roll or the flight began
   V roll_ticks{}, flight_ticks{};  // their durations
   V step_s{};                      // duration of the step before rounding to ticks
-  V late_s{};                      // sum of the roundings so far
+  V late_s{};                      // by which rounding has made the steps too short so far
   V phase{}, phase_rate{};         // of the clock
   V strike_rate{}, end_rate{};     // phase rate at the last strike; at the end of roll or flight
 

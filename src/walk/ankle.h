@@ -43,7 +43,7 @@ void ease_ankle(const Tables& tables, const Time<V>& time, const Stride<V>& stri
   // The easing begins gradually in a first step: an ankle that stairs bend in a stand would jump.
   const V first = time.flies ? V(time.u * (1.0f / kFirstRise)) : V(state.tick / state.roll_ticks),
           begun = starts ? smooth(first) : all<V>(1.0f),
-          may = begun * heel_rise(tables, time, right, phase, no(Mask<V>{}), change);
+          may = begun * heel_rise(tables, right, phase, no(Mask<V>{}), change);
   const V soft = chosen<V>(flies, kSoftFlying_rad, kSoftBent_rad),
           excess = soft_positive(bent, soft) * (flies    ? all<V>(1.0f)
                                                 : stands ? may

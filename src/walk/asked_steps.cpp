@@ -1,4 +1,4 @@
-// What a program asks of a walk beside its stick: a place for the next footprint, and a push.
+// Requests of a program beside the stick: a place for the next footprint, and a push.
 #include "walk/asked_steps.h"
 
 #include <algorithm>
@@ -14,7 +14,7 @@ bool rests(const Change<float>& change) noexcept {
   return change.stands != 0.0f || change.stops != 0.0f || change.closing != 0.0f;
 }
 
-// True if a program may still change where the running step ends.
+// True if a program may still change the landing of the running step.
 bool is_open_step(const Tables& tables, const Block<1>& block) noexcept {
   const State<float>& state = block.state;
   if (rests(block.change)) return false;
@@ -22,12 +22,12 @@ bool is_open_step(const Tables& tables, const Block<1>& block) noexcept {
          (tables.terrain == nullptr && state.tick <= kLatestAim * state.flight_ticks);
 }
 
-// The landing nearest to `heel` that the running step's foot can reach, both in the step frame.
+// The landing nearest to `heel` that the swing foot can reach, both in the step frame.
 Placement reachable_step(const Tables& tables, const Block<1>& block,
                          const Placement& heel) noexcept {
-  // From heel to heel, in legs, so that feet neither touch nor do a split; and the turn of a foot.
-  constexpr double kAhead = 0.95, kBack = 0.45, kLeastAside = 0.07, kMostAside = 0.45,
-                   kMostTurn_rad = 0.7;
+  // From heel to heel, in legs: feet neither touch nor do a split.
+  constexpr double kAhead = 0.95, kBack = 0.45, kLeastAside = 0.07, kMostAside = 0.45;
+  constexpr double kMostTurn_rad = 0.7;  // between both feet: about the range of the hip
   const bool right = block.state.right_swings != 0.0f, backward = block.state.backward != 0.0f;
   const double leg_m = tables.leg_m, outwards = right ? -1.0 : 1.0, way = backward ? -1.0 : 1.0,
                most_m = (backward ? tables.most_back_ratio : tables.most_ratio) *
@@ -51,6 +51,7 @@ Placement step_frame(const WalkState& state) noexcept {
   const Origin& origin = state.walk.origin[0];
   return moved(state.placed, {vec3(origin.x_m, origin.y_m, origin.z_m), origin.heading_rad});
 }
+// A heel of the world in the step frame.
 Placement seen_in_step(const WalkState& state, const Placement& heel) noexcept {
   const Placement frame = step_frame(state);
   return {from_world(frame, heel.place_m), heel.heading_rad - frame.heading_rad};
@@ -65,14 +66,14 @@ bool is_finite(const Placement& place) noexcept {
 std::optional<Placement> nearest_step(const WalkModel& model, const Placement& heel,
                                       const WalkState& state) noexcept {
   const Tables tables = tables_of(model, state.tick_s);
-  // In the tick in which a foot strikes, the frame still shows its flight.
+  // In the tick of a strike the pose still shows the flight, but the step frame has changed.
   if (!is_finite(heel) || state.walk.told.struck != 0.0f || !is_open_step(tables, state.walk))
     return std::nullopt;
   return moved(step_frame(state), reachable_step(tables, state.walk, seen_in_step(state, heel)));
 }
 
 bool step_to(const WalkModel& model, const Placement& heel, WalkState& state) noexcept {
-  constexpr double kSame_m = 0.001, kSame_rad = 0.1 * kDegree;
+  constexpr double kSame_m = 0.001, kSame_rad = 0.1 * kDegree;  // not visible
   const auto near = nearest_step(model, heel, state);
   if (!near || horizontal_length(near->place_m - heel.place_m) > kSame_m ||
       std::abs(wrapped(near->heading_rad - heel.heading_rad)) > kSame_rad)
@@ -91,20 +92,18 @@ bool push_walk(const vec3& velocity_m_s, WalkState& state) noexcept {
 }
 
 void take_push(const Tables& tables, Block<1>& block) noexcept {
-  constexpr float kGravity_m_s2 = 9.81f;
-  // The time constant in which the hips take it, so that a straight knee does not snap; the least
-  // that is left of it.
-  constexpr float kPush_s = 0.05f, kLeastPush_m_s = 0.01f;
+  constexpr float kPush_s = 0.05f;  // time constant: hips that take it at once straighten the knee
+  constexpr float kLeastPush_m_s = 0.01f;  // a smaller rest is dropped
   State<float>& state = block.state;
   Change<float>& change = block.change;
   float &x_m_s = change.push_x_m_s, &z_m_s = change.push_z_m_s;
   const auto ends = [&] { x_m_s = z_m_s = 0.0f; };
   if (rests(change)) return ends();
   if (change.is_aimed == 0.0f) {
-    // The landing of a step that has just begun is planned in its first tick.
+    // The landing of a step is planned in its first tick, so before that there is none to change.
     const bool begins = state.flies == 0.0f && state.tick == 0.0f;
     if (begins || !is_open_step(tables, block)) return;
-    // A pendulum as long as the leg falls v sqrt(l / g) far: there a foot catches it (Hof 2008).
+    // A foot that lands v sqrt(l / g) farther catches a pendulum of the leg's length (Hof 2008).
     const float falls_s = std::sqrt(tables.leg_m / kGravity_m_s2);
     const vec3 caught_m(state.landing_x_m + falls_s * x_m_s, 0.0,
                         state.landing_z_m + falls_s * z_m_s);

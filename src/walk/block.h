@@ -1,4 +1,4 @@
-// The numbers of a block of walks, one after the other.
+// Copies walks between blocks, whose numbers lie one after the other.
 #pragma once
 #include <type_traits>
 
@@ -7,7 +7,7 @@
 
 namespace gaitpad {
 
-// In its place where the ground is level.
+// Stands for Footing on level ground, which is compiled without it.
 struct NoFooting {};
 template <class F>
 inline constexpr bool kIsUneven = !std::is_same_v<F, NoFooting>;

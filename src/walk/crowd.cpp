@@ -14,7 +14,7 @@
 
 namespace gaitpad {
 
-// Walks side by side. Lanes that have no walk repeat the last one.
+// A block of any width. Lanes without a walk of their own repeat the last walk.
 class WalkBlock {
  public:
   virtual ~WalkBlock() = default;
@@ -22,7 +22,7 @@ class WalkBlock {
   virtual std::size_t bytes() const noexcept = 0;
   virtual void put(const WalkState& state, int lane) noexcept = 0;
   virtual Block<1> walk(int lane) const noexcept = 0;
-  // Its root before the last tick.
+  // Root of a walk before the last tick.
   virtual Placement root_before(int lane) const noexcept = 0;
   virtual void ask(const GaitParams& params, int lane) noexcept = 0;
   virtual void place(const Placement& placed, int lane) noexcept = 0;
@@ -33,7 +33,7 @@ class WalkBlock {
 
 namespace {
 
-// What a root is made of.
+// The numbers from which root_of() computes a root.
 template <int kWidth>
 struct RootNumbers {
   Floats<kWidth> heading_rad{}, pelvis_x_m{}, pelvis_z_m{}, beside_x_m{}, beside_z_m{};
@@ -72,7 +72,7 @@ class BlockOf final : public WalkBlock {
   }
   void ask(const GaitParams& params, int lane) noexcept override {
     Asked& asked = asked_[lane];
-    // Equal bytes are equal parameters; others are asked for once more.
+    // Equal bytes are equal parameters; asking again for equal ones of other bytes does no harm.
     // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
     if (asked.is_known && std::memcmp(&asked.params, &params, sizeof params) == 0) return;
     std::memcpy(&asked.params, &params, sizeof params);
@@ -124,7 +124,7 @@ std::unique_ptr<WalkBlock> make_block(int width, int walks) {
     if (width < kWidth) return make_block<kCount + 1>(width, walks);
   return std::make_unique<BlockOf<kWidth>>(walks);
 }
-// The narrowest block for so many walks, no wider than the widest one.
+// Width of the narrowest block that holds `walks`, at most `widest`.
 int width_for(int walks, int widest) noexcept {
   int width = widest;
   for (const int narrower : kLaneCounts)
@@ -234,26 +234,25 @@ void Crowd::restart(int member, const vec3& place_m) noexcept {
   store_pose(member, pose);
 }
 
-void Crowd::move(int member, const Placement& by) noexcept {
+template <class Work>
+void Crowd::place_anew(int member, const Work& work) noexcept {
   if (!has(member)) return;
   Pose pose;
   copy_pose(member, pose);
   WalkState moving = state(member);
-  move_walk(by, moving, pose);
+  work(moving, pose);
   placed_[member] = moving.placed;
   bad_inputs_[member] = moving.frame.bad_inputs;
   store_pose(member, pose);
 }
 
+void Crowd::move(int member, const Placement& by) noexcept {
+  place_anew(member, [&](WalkState& moving, Pose& pose) { move_walk(by, moving, pose); });
+}
+
 void Crowd::put(int member, const vec3& place_m, double heading_rad) noexcept {
-  if (!has(member)) return;
-  Pose pose;
-  copy_pose(member, pose);
-  WalkState moving = state(member);
-  put_walk(place_m, heading_rad, moving, pose);
-  placed_[member] = moving.placed;
-  bad_inputs_[member] = moving.frame.bad_inputs;
-  store_pose(member, pose);
+  place_anew(member,
+             [&](WalkState& moving, Pose& pose) { put_walk(place_m, heading_rad, moving, pose); });
 }
 
 void Crowd::store_pose(int member, const Pose& pose) noexcept {

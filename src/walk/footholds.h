@@ -1,4 +1,4 @@
-// Second: where the swinging foot will land, and which stride the step is.
+// Second part of a tick: plans the landing of the swing foot and the stride that the step takes.
 #pragma once
 #include "walk/gait_clock.h"
 
@@ -7,13 +7,13 @@ namespace {
 
 template <class V>
 struct Landing {
-  V x_m{}, z_m{}, rad{};  // the footprint
-  Way<V> way;             // where it points
-  V ratio{};              // of the stride that the step is taken with
-  V off_ratio{};          // of a first step: what it still is off the step's own
+  V x_m{}, z_m{}, rad{};  // footprint: heel and direction
+  Way<V> way;             // the same direction
+  V ratio{};              // stride of this step over the data's
+  V off_ratio{};          // in a first step: difference of `ratio` from the ratio of the landing
 };
 
-// q^n of whole numbers n, at least 0.
+// q^n for whole n >= 0.
 template <class V>
 V power(float q, V n) noexcept {
   V result = all<V>(1.0f);
@@ -25,8 +25,8 @@ V power(float q, V n) noexcept {
   return result;
 }
 
-// The heading so many ticks ahead if the turn's goal stays: its filter is a linear recurrence with
-// the double root q, so the error is e_k = (e_0 + c k) q^k, and its sum has a closed form.
+// The heading `n` ticks from now if the turn's goal stays. The turn's filter is a linear recurrence
+// with the double root q: its error is e_k = (e_0 + c k) q^k, whose sum has a closed form.
 template <class V>
 V heading_ahead(const Tables& tables, const State<V>& state, const V& n) noexcept {
   const float dt = tables.tick_s, q = std::sqrt(tables.turn.keep), w = 1.0f / q - 1.0f;
@@ -40,27 +40,28 @@ V heading_ahead(const Tables& tables, const State<V>& state, const V& n) noexcep
   return turns ? V(state.heading_rad + (goal * n + e0 * s0 + c * s1) * dt) : straight;
 }
 
-// Footprints lie on both sides of the path, which in a turn is an arc from the one's direction to
-// the other's: the way between them leads so far round. Turning on the spot they stand wider apart
-// and point ahead of the body.
-inline constexpr float kWayTurns = 0.82f, kInPlace_m = 0.2f, kFootAhead = 0.45f, kWider_s = 0.045f,
-                       kWidest_m = 0.045f, kStance_m = 0.105f, kLeastWider_m = 0.03f;
+// Direction of the body at the coming strike.
+template <class V>
+Way<V> way_at_strike(const Tables& tables, const Time<V>& time, const State<V>& state) noexcept {
+  return way_of(heading_ahead(tables, state, V(time.to_strike + 1.0f)));
+}
 
-// A landing follows what is asked at once until kSettles of the flight, then more and more slowly,
-// and from kFreeze on no more. To stop it at once would be a jerk of the foot that flies.
-inline constexpr float kSettles = 0.25f, kFreeze = 0.6f, kSettling_s = 0.1f;
-// Of a flight: a landing may be asked for until kLatestAim, and is where it was asked to be from
+// A landing follows the parameters at once until kSettles of the flight, then ever more slowly, and
+// from kFreeze on it stays. If it stopped at once, the flying foot would jerk.
+inline constexpr float kSettles = 0.25f, kFreeze = 0.6f;
+// A program may ask for a landing until kLatestAim of the flight; the landing is there from
 // kAimSettles on.
 inline constexpr float kLatestAim = 0.5f, kAimSettles = 0.75f;
 
-// As it is planned. The step's stride counts along the heading `to`, which may still turn after the
-// place is settled; a step that closes keeps what is left of the last one.
+// The planned landing. The step's length is measured along `to`, the heading at the strike, which
+// may still turn when the place is settled. A closing step is taken with the stride of the last
+// step.
 template <class V>
 Landing<V> planned_landing(const Tables& tables, const Time<V>& time, const Way<V>& to,
                            const Change<V>& change, const State<V>& state) noexcept {
   Landing<V> landing{state.landing_x_m, state.landing_z_m, state.landing_rad,
                      way_of(state.landing_rad)};
-  const V step_m = landing.x_m * to.sine + landing.z_m * to.cosine,
+  const V step_m = to.ahead(landing.x_m, landing.z_m),
           own_m = own_step_m<V>(tables, time.right, time.back);
   landing.off_ratio = change.starting != V{} ? change.off_ratio.x : V{};
   landing.ratio =
@@ -68,41 +69,50 @@ Landing<V> planned_landing(const Tables& tables, const Time<V>& time, const Way<
   return landing;
 }
 
-// The step that is asked for: its length and the direction of its way, and where it is to point.
+// The step that is asked for.
 template <class V>
 struct AskedStep {
-  V length_m{};
-  Way<V> along, to;
+  V length_m{};  // on level ground, backwards negative; 0 with an aim, which no slope shortens
+  Way<V> along;  // from the standing footprint to the landing
+  Way<V> to;     // the body's direction at the strike
 };
 
-// Where it would land on level ground. An aim that is taken has no length that a slope shortens.
+// Moves the landing towards the one that is asked for on level ground.
 template <class V, class F>
 AskedStep<V> plan_landing(const Tables& tables, const Time<V>& time, Change<V>& change,
                           State<V>& state, F& footing) noexcept {
+  // In a turn the path is an arc: its chord points between both headings. Footprints lie a little
+  // outside of the data's tracks there. A turn on the spot, with steps below kInPlace_m, needs feet
+  // kStance_m from the middle that point ahead of the body. Lengths are at the reference leg.
+  constexpr float kWayTurns = 0.82f;  // of the turn, up to the direction of the chord
+  constexpr float kWider_m = 0.045f;  // in turns of 1 rad/s and more, less in slower ones
+  constexpr float kInPlace_m = 0.2f, kStance_m = 0.105f, kLeastWider_m = 0.03f;
+  constexpr float kFootAhead = 0.45f;  // of the turn during the step
+  constexpr float kSettling_s = 0.1f;  // time constant at 0.62 of the way from kSettles to kFreeze
   const auto closes = change.closing != V{};
   const V heading = heading_ahead(tables, state, V(time.to_strike + 1.0f));
   const Way<V> to = way_of(heading), along = way_of(V(kWayTurns * heading));
-  const float left_m = tables.leg[0].track_m, right_m = tables.leg[1].track_m, grown = tables.size;
+  const float grown = tables.size;
   const V steps_m = time.right ? state.length_m[1].x : state.length_m[0].x,
           ahead_m = time.back ? -steps_m : steps_m, length_m = closes ? V{} : ahead_m,
-          lands_m = chosen<V>(time.right, right_m, left_m),
-          stands_m = chosen<V>(time.right, left_m, right_m),
+          lands_m = of_leg<V>(tables, time.right, &LegBones::track_m),
+          stands_m = of_leg<V>(tables, no(time.right), &LegBones::track_m),
           outwards = chosen<V>(time.right, -1.0f, 1.0f);
-  const V round = size(state.turn_goal_rad_s.x),
+  const V turns = least(size(state.turn_goal_rad_s.x), all<V>(1.0f)),
           in_place = 1.0f - smooth(V(size(length_m) * (1.0f / (kInPlace_m * grown))));
-  const V arc_m = least(V(grown * kWider_s * round), all<V>(grown * kWidest_m)),
-          place_m = most(V(grown * kStance_m - size(lands_m)), all<V>(grown * kLeastWider_m)) *
-                    least(round, all<V>(1.0f)),
+  const V arc_m = grown * kWider_m * turns,
+          place_m =
+              most(V(grown * kStance_m - size(lands_m)), all<V>(grown * kLeastWider_m)) * turns,
           wider_m = most(mix(arc_m, place_m, in_place), V{});
-  // At rest both stand at hip width, wherever the foot that stands has landed.
-  const V rests_m = chosen<V>(time.right, tables.leg[1].stance_m, tables.leg[0].stance_m),
-          rested_m = chosen<V>(time.right, tables.leg[0].stance_m, tables.leg[1].stance_m),
+  // At rest both feet stand at hip width, wherever the standing foot has landed.
+  const V rests_m = of_leg<V>(tables, time.right, &LegBones::stance_m),
+          rested_m = of_leg<V>(tables, no(time.right), &LegBones::stance_m),
           asides_m = closes ? rests_m : V(lands_m + outwards * wider_m),
           stood_m = closes ? rested_m : V(stands_m - outwards * state.wider_m),
           lead_m = in_place * tables.rest_lead_m;
   const V ahead_rad = state.turn_goal_rad_s.x * (state.roll_ticks + state.flight_ticks) *
                       tables.tick_s * kFootAhead;
-  // A flight whose plan has changed on its way goes where the new one wants it at once.
+  // If the plan changes during the flight, the landing follows the new plan at once.
   const V changed_u = most(V(change.gap_begin - kSettles), V{}),
           y = (time.u - kSettles - changed_u) * (1.0f / (kFreeze - kSettles));
   const auto follows = y <= V{}, open = y < all<V>(1.0f);
@@ -118,7 +128,7 @@ AskedStep<V> plan_landing(const Tables& tables, const Time<V>& time, Change<V>& 
     rad = heading + (closes ? V{} : V(in_place * ahead_rad));
   const auto aimed = change.is_aimed != V{};
   if (any(aimed)) {
-    // It comes there evenly until it is settled.
+    // The landing moves to its aim evenly until it is settled.
     const auto begins = both(no(time.flies), state.tick == all<V>(1.0f));
     const V settled = (time.flies ? V{} : state.roll_ticks) +
                       chosen<V>(time.flies, kAimSettles, kSettles) * state.flight_ticks,

@@ -1,4 +1,4 @@
-// First of a tick: what is asked for, smoothed; how far the step has come.
+// First part of a tick: smooths the parameters that are asked for and moves the clock of the step.
 #pragma once
 #include "walk/block.h"
 #include "walk/tables.h"
@@ -6,12 +6,12 @@
 namespace gaitpad {
 namespace {
 
-// Where a tick is in its step.
+// Place of a tick in its step.
 template <class V>
 struct Time {
-  Mask<V> right, flies, back;   // the right foot swings; it flies already; steps lead backward
-  V u{};                        // share of the flight that is over, 0 before it
-  V share{};                    // of the step
+  Mask<V> right, flies, back;   // the right foot swings; it has lifted off; steps lead backward
+  V u{};                        // share of the flight that is over, 0 in the roll
+  V share{};                    // share of the step that is over
   V to_strike{};                // ticks
   V step_phase{}, stage_end{};  // phases at which the step began and this roll or flight ends
 };
@@ -37,54 +37,44 @@ template <class V>
 void follow(const V& goal, const V& pull, const V& keep, float tick_s,
             Smoothed<V>& value) noexcept {
   value.v = (value.v + (goal - value.x) * pull) * keep;
-  value.v = size(value.v) < all<V>(1e-30f) ? V{} : value.v;  // denormal numbers are slow
+  value.v = size(value.v) < all<V>(1e-30f) ? V{} : value.v;  // flush denormals, which are slow
   value.x = value.x + value.v * tick_s;
 }
 template <class V>
 void follow(const V& goal, const Filter& filter, Smoothed<V>& value) noexcept {
   follow(goal, all<V>(filter.pull), all<V>(filter.keep), filter.tick_s, value);
 }
-// `quick`: with the quicker filter.
+// Where `quick`, with the quicker filter.
 template <class V>
 void follow(const V& goal, const Mask<V>& quick, const Filter& quicker, const Filter& filter,
             Smoothed<V>& value) noexcept {
   follow(goal, chosen<V>(quick, quicker.pull, filter.pull),
          chosen<V>(quick, quicker.keep, filter.keep), filter.tick_s, value);
 }
-// A turn whose goal is 0 comes to exactly that.
+// The same for a turn. A filter alone never reaches 0: below `least` of a goal of 0 the value is 0.
 template <class V>
-void settle(const V& goal, Smoothed<V>& value) noexcept {
-  constexpr float kStraight_rad_s = 1e-5f;
-  const auto still = both(goal == V{}, size(value.x) < all<V>(kStraight_rad_s));
-  value.x = still ? V{} : value.x;
-  value.v = still ? V{} : value.v;
+void follow_turn(const V& goal, float least, const Filter& filter, Smoothed<V>& value) noexcept {
+  follow(goal, filter, value);
+  const auto ends = both(goal == V{}, size(value.x) < all<V>(least));
+  value.x = ends ? V{} : value.x;
+  value.v = ends ? V{} : value.v;
 }
 
-// Head and chest turn before the pelvis does (people: by 0.3 s and less).
-inline constexpr float kChestAhead_s = 0.13f, kHeadAhead_s = 0.30f;
-template <class V>
-void lead_turn(const V& ahead_rad, const Filter& filter, Smoothed<V>& value) noexcept {
-  constexpr float kStill_rad = 1e-7f;
-  follow(ahead_rad, filter, value);
-  const auto still = both(ahead_rad == V{}, size(value.x) < all<V>(kStill_rad));
-  value.x = still ? V{} : value.x;
-  value.v = still ? V{} : value.v;
-}
-
-// Of the foot that swings, in the data: run back, a foot makes the step that the other one makes
-// forwards.
+// Step length of the swing foot in the data. Run backwards, the data give a foot the step that the
+// other foot makes forwards.
 template <class V>
 V own_step_m(const Tables& tables, const Mask<V>& right, const Mask<V>& back) noexcept {
-  return chosen<V>(right != back, tables.leg[1].own_step_m, tables.leg[0].own_step_m);
+  return of_leg<V>(tables, right != back, &LegBones::own_step_m);
 }
-// The longer one of the steps asked for, over the data's: a limp does not change the other's.
+// The longer of both steps asked for, over the data's, so that a limp does not change the time of
+// the other foot.
 template <class V>
 V asked_ratio(const Tables& tables, const State<V>& state) noexcept {
   const auto back = state.backward != V{}, left = V{} != V{};
   return most(V(state.asked.length_m[0] / own_step_m<V>(tables, left, back)),
               V(state.asked.length_m[1] / own_step_m<V>(tables, no(left), back)));
 }
-// Whether it is to walk on as it walks: to go the other way it has to come to rest.
+// True if the walk is to go on. To walk the other way it first comes to rest.
 template <class V>
 Mask<V> is_to_walk(const State<V>& state) noexcept {
   const Asked<V>& asked = state.asked;
@@ -92,22 +82,25 @@ Mask<V> is_to_walk(const State<V>& state) noexcept {
   return both(asked.walks != V{}, either(on_spot, asked.backward == state.backward));
 }
 
-inline constexpr float kLeastCycle_s = 0.2f;
+// People turn their heads up to 0.3 s before their pelvis, and the chest in between.
+inline constexpr float kChestAhead_s = 0.13f, kHeadAhead_s = 0.30f;
+inline constexpr float kGravity_m_s2 = 9.81f;
+inline constexpr float kLeastCycle_s =
+    0.2f;  // of both steps: a time of 0 would be an endless speed
 
-// A tick turns by multiples of this, 2^-24, and a strike turns the step frame by multiples of
-// 2^-21.
+// A tick turns by multiples of 2^-24 rad, and a strike turns the step frame by multiples of 2^-21.
 inline constexpr float kTurned_rad = 5.9604645e-8f, kFrameTurned_rad = 8.0f * kTurned_rad;
 
-// `left`: the share of the lengths asked for that uneven ground leaves.
+// `left`: share of the lengths asked for that uneven ground leaves.
 template <class V>
 void smooth_asked(const Tables& tables, const Change<V>& change, const V& left,
                   State<V>& state) noexcept {
-  constexpr float kGravity_m_s2 = 9.81f;
-  constexpr float kFirstStep = 0.9f;  // of the length asked for
+  constexpr float kFirstStep = 0.9f;  // of the length asked for: a first step is shorter
+  constexpr float kStraight_rad_s = 1e-5f, kStill_rad = 1e-7f;  // too small to see
   const Asked<V>& asked = state.asked;
   const auto walks = is_to_walk(state);
   for (int side : {0, 1}) {
-    // The first step goes as far as the push that is still on its way asks.
+    // A first step follows a stick that is still on its way, so its filter is quicker.
     const auto starts = change.starting != V{},
                steps = both(starts, state.right_swings == all<V>(static_cast<float>(side)));
     const auto stops = change.stops != V{}, is_quick = either(starts, stops),
@@ -125,12 +118,10 @@ void smooth_asked(const Tables& tables, const Change<V>& change, const V& left,
   follow(walks ? V(0.5f * cycle_s) : state.step_time_s.x, change.starting != V{}, tables.first_step,
          tables.step, state.step_time_s);
   const V turn_rad_s = walks ? asked.turn_rad_s : V{};
-  follow(turn_rad_s, tables.turn_goal, state.turn_goal_rad_s);
-  settle(turn_rad_s, state.turn_goal_rad_s);
-  follow(state.turn_goal_rad_s.x, tables.turn, state.turn_rad_s);
-  settle(state.turn_goal_rad_s.x, state.turn_rad_s);
-  lead_turn(V(kChestAhead_s * turn_rad_s), tables.chest, state.chest_ahead_rad);
-  lead_turn(V(kHeadAhead_s * turn_rad_s), tables.head, state.head_ahead_rad);
+  follow_turn(turn_rad_s, kStraight_rad_s, tables.turn_goal, state.turn_goal_rad_s);
+  follow_turn(state.turn_goal_rad_s.x, kStraight_rad_s, tables.turn, state.turn_rad_s);
+  follow_turn(V(kChestAhead_s * turn_rad_s), kStill_rad, tables.chest, state.chest_ahead_rad);
+  follow_turn(V(kHeadAhead_s * turn_rad_s), kStill_rad, tables.head, state.head_ahead_rad);
   follow(asked.bounce, tables.bounce, state.bounce);
   follow(asked.sway, tables.bounce, state.sway);
   const V both_m = state.length_m[0].x + state.length_m[1].x;
@@ -139,13 +130,14 @@ void smooth_asked(const Tables& tables, const Change<V>& change, const V& left,
   // A lean of v w / g puts the weight on the standing foot's edge, as on a bicycle.
   const V speed_m_s = both_m / most(cycle_s, all<V>(kLeastCycle_s));
   follow(V(speed_m_s * state.turn_rad_s.x * (1.0f / kGravity_m_s2)), tables.lean, state.lean_rad);
-  // Sums of such multiples have no rounding, so a walk to the left has exactly the headings of one
-  // to the right, although they strike at other ticks.
+  // Sums of multiples of 2^-24 are exact, so mirrored sticks give exactly mirrored headings,
+  // although their walks strike at other ticks.
   state.heading_rad =
       state.heading_rad + rounded_to(kTurned_rad, V(state.turn_rad_s.x * tables.tick_s));
 }
 
-// Double support takes a longer share of shorter steps (roll_time_share() of stride_family.h).
+// Share of a cycle that a roll takes in strides of a ratio to the data's: longer in shorter steps.
+// The numbers are those of roll_time_share() (stride_family.h).
 template <class V>
 V roll_share(const V& data_share, const V& ratio) noexcept {
   constexpr float kLonger = 0.9f, kShorter = 2.4f, kLeast = 0.04f, kMost = 0.22f;
@@ -154,8 +146,8 @@ V roll_share(const V& data_share, const V& ratio) noexcept {
   return least(most(share, least(all<V>(kLeast), data_share)), most(all<V>(kMost), data_share));
 }
 
-// Ticks of a stage of this time: whole beats of 1/240 s, so that a steady walk is periodic and has
-// the same rhythm at every rate.
+// Rounds the time of a stage to beats of 1/240 s, so that a steady walk is periodic and has the
+// same rhythm at every tick rate.
 template <class V>
 V whole_beats(const V& time_s, float least_beats) noexcept {
   return most(floored(V(time_s * 240.0f + 0.5f)), all<V>(least_beats)) * (1.0f / 240.0f);
@@ -165,7 +157,21 @@ V ticks_of(const V& time_s, float tick_s) noexcept {
   return most(floored(V(time_s * (1.0f / tick_s) + 0.5f)), all<V>(2.0f));
 }
 
-// Of the step in which `right` swings: shares of the phase, and times of roll and flight.
+// Cycles of the data in which the step of the swing foot `right` begins, rolls and flies.
+template <class V>
+V step_phase_of(const Tables& tables, const Mask<V>& right) noexcept {
+  return chosen<V>(right, tables.stage_share[0] + tables.stage_share[1], 0.0f);
+}
+template <class V>
+V roll_cycles(const Tables& tables, const Mask<V>& right) noexcept {
+  return chosen<V>(right, tables.stage_share[2], tables.stage_share[0]);
+}
+template <class V>
+V flight_cycles(const Tables& tables, const Mask<V>& right) noexcept {
+  return chosen<V>(right, tables.stage_share[3], tables.stage_share[1]);
+}
+
+// Roll and flight of the step in which `right` swings: cycles of the data, and times.
 template <class V>
 struct Stages {
   V roll, flight, roll_s, flight_s;
@@ -173,14 +179,13 @@ struct Stages {
 template <class V>
 Stages<V> stages_of(const Tables& tables, const Change<V>& change, const State<V>& state,
                     const Mask<V>& right) noexcept {
-  constexpr float kLeastRoll = 6.0f, kLeastFlight = 12.0f;  // beats
+  constexpr float kLeastRoll = 6.0f, kLeastFlight = 12.0f;  // beats: 0.025 s, 0.05 s
   const Asked<V>& asked = state.asked;
-  const auto& share = tables.stage_share;
-  const V roll = chosen<V>(right, share[2], share[0]),
-          flight = chosen<V>(right, share[3], share[1]);
-  const V ratio = asked_ratio(tables, state);
+  const V roll = roll_cycles<V>(tables, right), flight = flight_cycles<V>(tables, right),
+          ratio = asked_ratio(tables, state);
   const V rolls = roll_share(roll, ratio), flies = roll + flight - rolls;
-  // Smoothed: a thumb that lets go passes through deflections whose steps are slow.
+  // The step time is smoothed because a thumb that lets go passes through deflections of slow
+  // steps.
   const V cycle_s = most(V(asked.time_s[0] + asked.time_s[1]), all<V>(kLeastCycle_s)),
           smoothed = state.step_time_s.x / cycle_s, lands_s = by_side<V>(no(right), asked.time_s),
           swings_s = by_side<V>(right, asked.time_s), factor = 4.0f * smoothed * change.slowness;
@@ -188,15 +193,14 @@ Stages<V> stages_of(const Tables& tables, const Change<V>& change, const State<V
           whole_beats(V(swings_s * factor * flies), kLeastFlight)};
 }
 
-// A start: from the stick to the lift-off, and the first flight, in seconds and of a steady one.
-inline constexpr float kFirstRoll_s = 0.25f, kLeastFirstFlight_s = 0.38f,
-                       kMostFirstFlight_s = 0.62f, kFirstFlight = 0.9f;
-
-// The first flight follows the stick until the foot lifts off: a thumb takes some time.
-// Over uneven ground it takes `least_s`, to which it comes by a few ticks a tick.
+// Times a first step, again in each tick of its roll, because the thumb still moves. On uneven
+// ground the flight takes at least `least_s` (0: no bound), to which it changes by 2 ticks a tick.
 template <class V>
 void time_first_flight(const Tables& tables, const Mask<V>& where, const V& least_s,
                        const Change<V>& change, State<V>& state) noexcept {
+  constexpr float kFirstRoll_s = 0.25f;  // from the stick to the lift-off
+  constexpr float kFirstFlight = 0.9f;   // of a steady flight, within these bounds
+  constexpr float kLeastFirstFlight_s = 0.38f, kMostFirstFlight_s = 0.62f;
   constexpr float kMostChange = 2.0f;  // ticks
   const float tick_s = tables.tick_s, scale = tables.time_scale;
   const Stages<V> here = stages_of(tables, change, state, state.right_swings != V{});
@@ -219,27 +223,20 @@ template <class V>
 V ticks_of_stage(const State<V>& state) noexcept {
   return state.flies != V{} ? state.flight_ticks : state.roll_ticks;
 }
-// The phases at which the step began, and at which the roll or the flight ends.
-template <class V>
-V step_phase_of(const Tables& tables, const State<V>& state) noexcept {
-  const auto& share = tables.stage_share;
-  return chosen<V>(state.right_swings != V{}, share[0] + share[1], 0.0f);
-}
+// Phase at which the roll or the flight ends.
 template <class V>
 V stage_end_of(const Tables& tables, const State<V>& state) noexcept {
   const auto right = state.right_swings != V{};
-  const auto& share = tables.stage_share;
-  return step_phase_of(tables, state) + chosen<V>(right, share[2], share[0]) +
-         (state.flies != V{} ? chosen<V>(right, share[3], share[1]) : V{});
+  return step_phase_of<V>(tables, right) + roll_cycles<V>(tables, right) +
+         (state.flies != V{} ? flight_cycles<V>(tables, right) : V{});
 }
-// Where the walk's tick is in its step.
 template <class V>
 Time<V> time_of(const Tables& tables, const State<V>& state) noexcept {
   Time<V> time;
   time.right = state.right_swings != V{};
   time.flies = state.flies != V{};
   time.back = state.backward != V{};
-  time.step_phase = step_phase_of(tables, state);
+  time.step_phase = step_phase_of<V>(tables, time.right);
   time.stage_end = stage_end_of(tables, state);
   time.u = time.flies ? V(state.tick / state.flight_ticks) : V{};
   time.to_strike = ticks_of_stage(state) - state.tick + (time.flies ? V{} : state.flight_ticks);
@@ -248,30 +245,40 @@ Time<V> time_of(const Tables& tables, const State<V>& state) noexcept {
   return time;
 }
 
-// Moves the clock on by one tick. The phase follows a cubic to the end of the stage. `least_s`: of
-// a first flight over uneven ground.
+// A phase that moves along a cubic over a stage: `way` cycles, at rates of v0 and v1 per stage.
+template <class V>
+struct PhaseCubic {
+  PhaseCubic(const V& way, const V& v0, const V& v1) noexcept
+      : v0(v0), c2(3.0f * way - 2.0f * v0 - v1), c3(v0 + v1 - 2.0f * way) {}
+  // Cycles gone after the share s of the stage, and the rate per stage.
+  V at(const V& s) const noexcept { return (v0 + (c2 + c3 * s) * s) * s; }
+  V rate(const V& s) const noexcept { return v0 + (2.0f * c2 + 3.0f * c3 * s) * s; }
+  V v0, c2, c3;
+};
+
+// Moves the clock on by one tick. `least_s`: bound of time_first_flight().
 template <class V>
 Time<V> advance_clock(const Tables& tables, const V& least_s, const Change<V>& change,
                       State<V>& state) noexcept {
   const auto follows = both(change.starting != V{}, state.flies == V{}),
              runs = change.stands == V{};
   if (any(follows)) time_first_flight(tables, follows, least_s, change, state);
-  const V stage_end = stage_end_of(tables, state), left = ticks_of_stage(state) - state.tick,
-          s = 1.0f / left, way = stage_end - state.phase, v0 = state.phase_rate * left,
-          v1 = state.end_rate * left, c2 = 3.0f * way - 2.0f * v0 - v1, c3 = v0 + v1 - 2.0f * way;
-  state.phase = runs ? V(state.phase + (v0 + (c2 + c3 * s) * s) * s) : state.phase;
-  state.phase_rate = runs ? V((v0 + (2.0f * c2 + 3.0f * c3 * s) * s) * s) : V{};
+  const V left = ticks_of_stage(state) - state.tick, s = 1.0f / left;
+  const PhaseCubic<V> moves(stage_end_of(tables, state) - state.phase, state.phase_rate * left,
+                            state.end_rate * left);
+  state.phase = runs ? V(state.phase + moves.at(s)) : state.phase;
+  state.phase_rate = runs ? V(moves.rate(s) * s) : V{};
   state.tick = runs ? V(state.tick + 1.0f) : V{};
   return time_of(tables, state);
 }
 
-// After the roll, where `lifts`: the flight begins.
+// Begins the flight, where `lifts`: after the last tick of the roll.
 template <class V>
 void begin_flight(const Tables& tables, const Time<V>& time, const Mask<V>& lifts,
                   const Change<V>& change, State<V>& state) noexcept {
   const Stages<V> here = stages_of(tables, change, state, time.right),
                   next = stages_of(tables, change, state, no(time.right));
-  // At its end the phase runs at the mean of both stages' rates, so that nothing has a kink there.
+  // At the flight's end the phase runs at the mean of both stages' rates, so that it has no kink.
   const V end_rate =
       0.5f * (here.flight / state.flight_ticks + next.roll / ticks_of(next.roll_s, tables.tick_s));
   state.end_rate = lifts ? end_rate : state.end_rate;
@@ -279,25 +286,24 @@ void begin_flight(const Tables& tables, const Time<V>& time, const Mask<V>& lift
   state.tick = lifts ? V{} : state.tick;
 }
 
-// After the flight, where `strikes`: the other foot's step begins. It makes up for what the steps
-// before were too short or long by rounding. Where it is slower than the last one (`led`), hips
-// that still are as fast would have to sink for the foot behind: it leaves the floor sooner. Nor
-// does it take so long that they would have to go back, but on stairs; its roll is shorter as its
-// flight is.
+// Begins the other foot's step, where `strikes`: after the last tick of the flight. The step makes
+// up for the roundings of the steps before. If it is slower than the last one (`led`), the hips are
+// still fast and would sink for the rear foot, so its roll is shorter. Except on stairs it is also
+// short enough that slowing hips need not go back.
 template <class V>
 void begin_step(const Tables& tables, const Time<V>& time, const Mask<V>& strikes,
                 const Change<V>& change, State<V>& state) noexcept {
   const float tick_s = tables.tick_s;
   const Stages<V> next = stages_of(tables, change, state, no(time.right));
   const V short_s = state.late_s + state.step_s - (state.roll_ticks + state.flight_ticks) * tick_s;
-  // A quintic that slows down goes back if its way is less than so much of its first speed's.
-  constexpr float kLeastWay = 0.52f, kLeastTime = 0.5f, kLeastSpeed_m = 1e-5f,
-                  kWalked = 0.2f;  // the ratio of a step that was none on the spot
+  constexpr float kLeastWay = 0.52f;  // of speed times time: on a shorter way a quintic goes back
+  constexpr float kLeastTime = 0.5f;  // of the step's own time
+  constexpr float kWalked = 0.2f;     // ratio from which on the last step was not on the spot
   const auto led = change.led != V{};
   const V way_m = 0.5f * (state.ratio_behind * own_step_m<V>(tables, time.right, time.back) +
                           by_side<V>(no(time.right), state.asked.length_m)),
           x = change.pelvis_x_m.v, z = change.pelvis_z_m.v,
-          speed_m = most(root(V(x * x + z * z)), all<V>(kLeastSpeed_m)),
+          speed_m = most(root(V(x * x + z * z)), all<V>(1e-5f)),
           own_s = next.roll_s + next.flight_s,
           least_time = change.slowness > all<V>(1.0f) ? all<V>(1.0f) : all<V>(kLeastTime),
           longest_s = most(V(tick_s * way_m / (kLeastWay * speed_m)), V(least_time * own_s));

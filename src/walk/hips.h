@@ -1,16 +1,11 @@
-// Third: where the hips are, and the phase that goes with it.
+// Third part of a tick: moves the hips, and finds the phase at which the tables are read.
 #pragma once
 #include "walk/strides.h"
 
 namespace gaitpad {
 namespace {
 
-// The hips' path in the strides of some footprints, without their oscillation: a line in phase.
-template <class V>
-struct Path {
-  V x_m{}, z_m{}, per_cycle_x_m{}, per_cycle_z_m{};
-};
-// To the next landing. `turns`: cycles at the end of the step.
+// The path to the next landing. `turns`: whole cycles at the end of the step.
 template <class V>
 Path<V> path_to(const Landing<V>& landing, const FootprintsIn<V>& prints, const V& turns) noexcept {
   const Vec<V> seen =
@@ -19,7 +14,8 @@ Path<V> path_to(const Landing<V>& landing, const FootprintsIn<V>& prints, const 
           landing.way.cosine * prints.stride_m};
 }
 
-// Moves what a value is off its plan by one tick along the quintic that ends in 0 after `ticks`.
+// Moves a difference by one tick along the quintic that brings it, its rate and its acceleration to
+// 0 in `ticks`.
 template <class V>
 void fade(const V& ticks, Off<V>& off) noexcept {
   const V n = most(ticks, all<V>(1.0f)), s = 1.0f / n, p = off.v * n, q = off.a * (0.5f * n * n);
@@ -35,18 +31,18 @@ void fade(const V& ticks, Off<V>& off) noexcept {
 
 template <class V>
 struct Hips {
-  V x_m{}, z_m{};  // of the pelvis, on the ground
-  Way<V> heading;  // of the body
-  FootprintsIn<V> behind, ahead;
-  FootprintsIn<V> own;  // in a first step: of the foot that flies
+  V x_m{}, z_m{};                 // of the pelvis, on the ground
+  Way<V> heading;                 // of the body
+  FootprintsIn<V> behind, ahead;  // of the last step's stride and of this step's
+  FootprintsIn<V> own;            // in a first or a last step: of short_ratio()
 };
 
-// The tables' rate and acceleration at a strike are read over so many ticks: over one tick they are
-// those of the spline between two knots.
+// Distance of the three ticks at which the tables' rate and acceleration at a strike are read. Over
+// single ticks they would be those of one piece of the spline.
 inline constexpr float kAimTicks = 4.0f;
 
-// They follow the stride ahead to the landing. What they are off that path, for the step before was
-// another one or the landing has moved, fades until the strike.
+// The hips follow this step's stride to the landing. Their difference from that path fades until
+// the strike; it begins where the last step had another stride, or the landing moves.
 template <class V>
 Hips<V> move_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
                   const Stride<V>& stride, const Change<V>& change, State<V>& state) noexcept {
@@ -62,28 +58,23 @@ Hips<V> move_hips(const Tables& tables, const Time<V>& time, const Landing<V>& l
           z_m = to.z_m + to.per_cycle_z_m * state.phase;
   const auto strikes = both(no(time.flies), state.tick == all<V>(1.0f));
   if (any(strikes)) {
-    // From the path past the foot that stands, in the stride behind, at this strike and the two
-    // ticks after it.
+    // The difference from the path of the last step's stride, at this strike and two ticks after
+    // it.
     const V from_x_m = -hips.behind.stand_m.x - to.x_m, from_z_m = -hips.behind.stand_m.z - to.z_m,
             per_x_m = -to.per_cycle_x_m, per_z_m = hips.behind.stride_m - to.per_cycle_z_m;
-    const V ticks = state.roll_ticks, way = time.stage_end - time.step_phase;
-    const V v0 = state.strike_rate * ticks, v1 = state.end_rate * ticks,
-            c2 = 3.0f * way - 2.0f * v0 - v1, c3 = v0 + v1 - 2.0f * way;
-    const auto phase_at = [&](float n) {
-      const V s = n / ticks;
-      return V(time.step_phase + (v0 + (c2 + c3 * s) * s) * s);
-    };
+    const V ticks = state.roll_ticks;
+    const PhaseCubic<V> moves(time.stage_end - time.step_phase, state.strike_rate * ticks,
+                              state.end_rate * ticks);
+    const auto phase_at = [&](float n) { return V(time.step_phase + moves.at(V(n / ticks))); };
     const V p0 = time.step_phase, p1 = phase_at(1.0f), p2 = phase_at(2.0f),
             p4 = phase_at(kAimTicks), p8 = phase_at(2.0f * kAimTicks),
             rate = 0.5f * (4.0f * p1 - 3.0f * p0 - p2), bend = p0 - 2.0f * p1 + p2;
     const auto begin = [&](const V& from_m, const V& per_m, Off<V>& off) {
-      off.x = strikes ? V(from_m + per_m * p0) : off.x;
-      off.v = strikes ? V(per_m * rate) : off.v;
-      off.a = strikes ? V(per_m * bend) : off.a;
+      off = chosen(strikes, {V(from_m + per_m * p0), V(per_m * rate), V(per_m * bend)}, off);
     };
     begin(from_x_m, per_x_m, state.hips_x_m);
     begin(from_z_m, per_z_m, state.hips_z_m);
-    // After a step in which the hips led they go on from where they are.
+    // After a step in which the hips led, they go on from their place.
     const auto was_led = both(strikes, change.was_led != V{});
     if (any(was_led)) {
       V x_m[3], z_m[3];
@@ -96,22 +87,22 @@ Hips<V> move_hips(const Tables& tables, const Time<V>& time, const Landing<V>& l
         z_m[n] = goes(change.pelvis_z_m) - pelvis.z - (to.z_m + to.per_cycle_z_m * at);
       }
       const auto go_on = [&](const V(&m)[3], Off<V>& off) {
-        constexpr float kPerTick = 1.0f / kAimTicks;
-        off.x = was_led ? m[0] : off.x;
-        off.v = was_led ? V(0.5f * kPerTick * (4.0f * m[1] - 3.0f * m[0] - m[2])) : off.v;
-        off.a = was_led ? V(kPerTick * kPerTick * (m[0] - 2.0f * m[1] + m[2])) : off.a;
+        off = chosen(was_led,
+                     {m[0], V((0.5f / kAimTicks) * (4.0f * m[1] - 3.0f * m[0] - m[2])),
+                      V((1.0f / (kAimTicks * kAimTicks)) * (m[0] - 2.0f * m[1] + m[2]))},
+                     off);
       };
       go_on(x_m, state.hips_x_m);
       go_on(z_m, state.hips_z_m);
     }
   }
-  // Where the path has moved the hips have not.
-  const V was_x_m = state.path_x_m + state.per_cycle_x_m * state.phase,
-          was_z_m = state.path_z_m + state.per_cycle_z_m * state.phase;
+  // The hips do not jump when the path moves.
+  const Path<V>& was = state.path;
+  const V was_x_m = was.x_m + was.per_cycle_x_m * state.phase,
+          was_z_m = was.z_m + was.per_cycle_z_m * state.phase;
   state.hips_x_m.x = state.hips_x_m.x + (strikes ? V{} : V(was_x_m - x_m));
   state.hips_z_m.x = state.hips_z_m.x + (strikes ? V{} : V(was_z_m - z_m));
-  state.path_x_m = to.x_m, state.path_z_m = to.z_m;
-  state.per_cycle_x_m = to.per_cycle_x_m, state.per_cycle_z_m = to.per_cycle_z_m;
+  state.path = to;
   const V ticks = time.to_strike + 1.0f;
   fade(ticks, state.hips_x_m);
   fade(ticks, state.hips_z_m);
@@ -123,21 +114,18 @@ Hips<V> move_hips(const Tables& tables, const Time<V>& time, const Landing<V>& l
 
 // --- A change of pace: the hips lead, the phase follows ------------------------------------------
 
-// Steps whose ratios, or whose flights' times, differ by more are led. What the phase is off the
-// one found fades in kCarry_s.
 inline constexpr float kLiftFade = 0.5f;  // of the flight: until then the lift-off's motion fades
-inline constexpr float kOtherPace = 0.02f, kOtherTime = 0.06f, kCarry_s = 0.15f,
-                       kMostBend_m_s2 = 15.0f;
-// How much a phase that is a cycle off the clock counts, against hips that are off their place:
-// metres at the reference leg. It keeps heights in time with the landing.
-inline constexpr float kInTime_m = 1.2f, kLeastWay_m2 = 0.02f, kPhaseStep = 1e-3f;
-inline constexpr float kGoesSomewhere = 0.2f;                   // of the data's stride
-inline constexpr float kBeforeStep = 0.1f, kAfterStep = 0.14f;  // phases around the step's own
-inline constexpr float kFastestPhase = 2.5f;                    // of the clock's
-inline constexpr int kFewTries = 2, kPhaseTries = 6;
+inline constexpr float kCarry_s = 0.15f;  // at the reference leg: a phase of a new plan fades in
 
-// Moves the pelvis by one tick to where the tables have it at the coming strike, with their rate
-// and acceleration there.
+// Rate, acceleration and place of a path at the middle of three places, kAimTicks apart.
+template <class V>
+Off<V> middle_of(const V (&m)[3]) noexcept {
+  return {m[1], V((m[2] - m[0]) * (0.5f / kAimTicks)),
+          V((m[2] - 2.0f * m[1] + m[0]) * (0.5f / (kAimTicks * kAimTicks)))};
+}
+
+// Moves the pelvis by one tick to its place in the tables at the coming strike, with their rate and
+// acceleration there.
 template <class V>
 void move_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
                  const V& strike_phase, const V& strike_rate, const State<V>& state,
@@ -147,15 +135,15 @@ void move_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& la
     const V at = strike_phase + (static_cast<float>(k - 1) * kAimTicks) * strike_rate;
     const Vec<V> pelvis =
         landing.way * read_pelvis(tables, time, at, landing.ratio, landing.ratio, V{});
-    x_m[k] = state.path_x_m + state.per_cycle_x_m * at + pelvis.x;
-    z_m[k] = state.path_z_m + state.per_cycle_z_m * at + pelvis.z;
+    x_m[k] = state.path.x_m + state.path.per_cycle_x_m * at + pelvis.x;
+    z_m[k] = state.path.z_m + state.path.per_cycle_z_m * at + pelvis.z;
   }
   const auto led = change.led != V{}, closes = change.closing != V{}, stops = change.stops != V{};
   const V left = stops ? change.rest_ticks : time.to_strike, ticks = left + 1.0f;
-  // Or to rest between the feet as the last step leaves them.
+  // In a stop it comes to rest between the feet as the last step leaves them.
   if (any(stops)) {
-    const V swings_m = chosen<V>(time.right, tables.leg[1].stance_m, tables.leg[0].stance_m),
-            stands_m = chosen<V>(time.right, tables.leg[0].stance_m, tables.leg[1].stance_m),
+    const V swings_m = of_leg<V>(tables, time.right, &LegBones::stance_m),
+            stands_m = of_leg<V>(tables, no(time.right), &LegBones::stance_m),
             next_m = time.right ? change.length_m[0] : change.length_m[1];
     const V further_m = change.further * (time.back ? -next_m : next_m);
     const Vec<V> rest = landing.way * Vec<V>{-swings_m, V{}, tables.rest_lead_m + further_m};
@@ -165,45 +153,50 @@ void move_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& la
     }
   }
   const auto move = [&](const V(&m)[3], Off<V>& pelvis) {
-    const V rate = (m[2] - m[0]) * (0.5f / kAimTicks),
-            bend = (m[2] - 2.0f * m[1] + m[0]) * (0.5f / (kAimTicks * kAimTicks));
-    const auto goal = [&](const V& n) {
-      return Off<V>{V(m[1] - n * (rate - 0.5f * n * bend)), V(rate - bend * n), bend};
+    const Off<V> at = middle_of(m);
+    const auto goal = [&](const V& n) {  // n ticks before the strike
+      return Off<V>{V(at.x - n * (at.v - 0.5f * n * at.a)), V(at.v - at.a * n), at.a};
     };
     const Off<V> was = goal(ticks), is = goal(left);
     Off<V> off{V(pelvis.x - was.x), V(pelvis.v - was.v), V(pelvis.a - was.a)};
     fade(stops ? ticks : most(ticks, change.catch_ticks), off);
-    pelvis.x = led ? V(is.x + off.x) : pelvis.x;
-    pelvis.v = led ? V(is.v + off.v) : pelvis.v;
-    pelvis.a = led ? V(is.a + off.a) : pelvis.a;
+    pelvis = chosen(led, {V(is.x + off.x), V(is.v + off.v), V(is.a + off.a)}, pelvis);
   };
   move(x_m, change.pelvis_x_m);
   move(z_m, change.pelvis_z_m);
 }
 
-// The phase at which the tables have the pelvis where it is: by Newton's method, from `phase` on.
+// The phase at which the tables have the pelvis at its place, by Newton's method on a sum of
+// squares: distance of the hips from their place, and of the phase from the clock's. `rate` becomes
+// the phase's rate.
 template <class V>
 V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
                   const Hips<V>& hips, const V& strike_phase, const V& strike_rate, const V& share,
                   const Mask<V>& is_new, const State<V>& state, const Change<V>& change,
                   V& rate) noexcept {
+  // A phase that is a cycle off the clock counts as much as hips that are kInTime_m off their
+  // place. That keeps the hips' height in time with the landing. In first and last steps that go
+  // farther than kGoesSomewhere of the data's stride the hips alone tell the phase; kLeastWay_m2
+  // bounds the Newton step there.
+  constexpr float kInTime_m = 1.2f, kLeastWay_m2 = 0.02f, kGoesSomewhere = 0.2f;
+  constexpr float kPhaseStep = 1e-3f;                      // cycles, of the slope
+  constexpr float kBeforeStep = 0.1f, kAfterStep = 0.14f;  // cycles around the step's own
+  constexpr float kFastestPhase = 2.5f;                    // of the clock's rate
+  constexpr int kFewTries = 2, kPhaseTries = 6;            // iterations: usually, and of a new plan
   const Way<V>& way = landing.way;
-  const auto along = [&](const V& x_m, const V& z_m) {
-    return V(x_m * way.sine + z_m * way.cosine);
-  };
-  const V at_zero = mix(along(V(-hips.behind.stand_m.x), V(-hips.behind.stand_m.z)),
-                        along(state.path_x_m, state.path_z_m), share),
-          per_cycle = mix(along(V{}, hips.behind.stride_m),
-                          along(state.per_cycle_x_m, state.per_cycle_z_m), share);
+  const Path<V>& path = state.path;
+  const V at_zero = mix(way.ahead(V(-hips.behind.stand_m.x), V(-hips.behind.stand_m.z)),
+                        way.ahead(path.x_m, path.z_m), share),
+          per_cycle = mix(way.ahead(V{}, hips.behind.stride_m),
+                          way.ahead(path.per_cycle_x_m, path.per_cycle_z_m), share);
   const auto by_tables = [&](const V& p) {
     return V(at_zero + per_cycle * p +
              read_pelvis(tables, time, p, state.ratio_behind, landing.ratio, share).z);
   };
-  const V wanted = along(change.pelvis_x_m.x, change.pelvis_z_m.x),
-          goes = along(change.pelvis_x_m.v, change.pelvis_z_m.v);
+  const V wanted = way.ahead(change.pelvis_x_m.x, change.pelvis_z_m.x),
+          goes = way.ahead(change.pelvis_x_m.v, change.pelvis_z_m.v);
   const float square = tables.size * tables.size, in_time_m2 = kInTime_m * kInTime_m * square,
               least_m2 = kLeastWay_m2 * square;
-  // Of a first step hips that go somewhere tell the phase alone.
   const V in_time = in_time_m2 * (1.0f - most(change.starting, change.closing) *
                                              smooth(0.0f, kGoesSomewhere, landing.ratio));
   const V low = time.step_phase - kBeforeStep, high = strike_phase + kAfterStep;
@@ -226,7 +219,7 @@ V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& l
   return is_new ? phase : least(most(phase, V(last - fastest)), V(last + fastest));
 }
 
-// So much of a stride shows.
+// Scales a stride towards standing: `shown` is the share of it that is left.
 template <class V>
 void show(const V& shown, Stride<V>& stride) noexcept {
   for (FootInStride<V>& foot : stride.foot) {
@@ -244,17 +237,16 @@ void show(const V& shown, Stride<V>& stride) noexcept {
     for (V& angle_rad : leg) angle_rad = shown * angle_rad;
 }
 
-inline constexpr float kShownAfter = 0.55f;  // of a first step: all of the tables shows
-
-// What is left of a last step, from its plan on.
+// Share of a last step that is left, from its plan on.
 template <class V>
 V closing_left(const Time<V>& time, const Change<V>& change) noexcept {
   return smoother(V(time.to_strike / most(change.closing_ticks, all<V>(1.0f))));
 }
-// By the plan: how much of the tables shows, and how far the step has come over from the stride
-// behind, at 0, to the one ahead, at 1.
+// Shares by the plan: of the tables that is shown; by which the step has changed from the last
+// step's stride into its own.
 template <class V>
 V planned_shown(const Time<V>& time, const Change<V>& change) noexcept {
+  constexpr float kShownAfter = 0.55f;  // of a first step: from then on all of it
   const V begins = smoother(V(time.share * (1.0f / kShownAfter))),
           walks = change.closing != V{} ? closing_left(time, change) : all<V>(1.0f);
   return change.stands != V{} ? V{} : change.starting != V{} ? begins : walks;
@@ -265,8 +257,8 @@ V planned_over(const Time<V>& time, const Change<V>& change) noexcept {
   return change.closing != V{} ? V{} : walks;
 }
 
-// A foot stood, and will stand, at another phase than it flies at: how far the flying one's edges
-// have come over, by the plan, to the phase at which it flies.
+// Share by which the flying foot's edges follow the phase of the clock, by the plan. Before
+// lift-off and after the strike they follow the phase of the hips.
 template <class V>
 V planned_edge(const Time<V>& time, const Change<V>& change) noexcept {
   constexpr float kEdgeGoes = 0.4f;  // of the flight
@@ -275,8 +267,8 @@ V planned_edge(const Time<V>& time, const Change<V>& change) noexcept {
   return smoother(V(time.u * (1.0f / kEdgeGoes))) * (1.0f - lands);
 }
 
-// Where hips lead or have led: their place, and the stride at the phase that goes with it. The foot
-// that flies keeps to the clock. Returns that phase; elsewhere that of the clock.
+// If the hips lead or have just led: moves them to their place, and reads the stride at their
+// phase; the flying foot keeps to the clock. Returns that phase, else the clock's.
 template <class V>
 V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
             const Stride<V>& by_clock, State<V>& state, Change<V>& change, Hips<V>& hips,
@@ -289,8 +281,7 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
   const auto is_new = change.is_new != V{}, was_new = both(no(is_new), change.was_new != V{});
   const V last_found = change.phase - change.off_phase.x;
   for (Off<V>* off : {&change.off_phase, &change.off_shown}) fade(change.off_ticks, *off);
-  // What the step has not come over to its own stride ends with it, and the standing foot's pitch
-  // with its roll or with the other's flight.
+  // Differences of the step end with it, and that of the standing foot's pitch with its stage.
   const V step_ticks = least(change.off_ticks, V(time.to_strike + 1.0f));
   for (Off<V>* off : {&change.off_over, &change.off_ratio, &change.off_edge})
     fade(step_ticks, *off);
@@ -302,7 +293,7 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
   V phase = state.phase, rate = state.phase_rate;
   if (any(led)) {
     const Stages<V> next = stages_of(tables, change, state, no(time.right));
-    const V flight = chosen<V>(time.right, tables.stage_share[3], tables.stage_share[1]),
+    const V flight = flight_cycles<V>(tables, time.right),
             strike_phase = time.stage_end + (time.flies ? V{} : flight),
             strike_rate = time.flies ? state.end_rate
                                      : V(0.5f * (flight / state.flight_ticks +
@@ -314,13 +305,13 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
     phase = led ? found : phase;
     rate = led ? moves : rate;
   }
-  // How fast the phase of a new plan goes is seen a tick later, for its path moves, too.
+  // The rate of a new plan's phase is measured a tick later, because its path moves as well.
   const V cycles = floored(V(change.phase - phase + 0.5f)), was = change.phase - cycles,
           goes_on = was_new ? V(phase - (last_found - cycles)) : rate;
   const auto carries = either(is_new, was_new);
-  change.off_phase.x = carries ? V(was + change.phase_rate - phase) : change.off_phase.x;
-  change.off_phase.v = carries ? V(change.phase_rate - goes_on) : change.off_phase.v;
-  change.off_phase.a = carries ? V{} : change.off_phase.a;
+  change.off_phase =
+      chosen(carries, {V(was + change.phase_rate - phase), V(change.phase_rate - goes_on), V{}},
+             change.off_phase);
   const float carry = kCarry_s * tables.time_scale / tables.tick_s;
   change.off_ticks =
       is_new ? most(floored(all<V>(carry + 0.5f)), change.off_ticks) : change.off_ticks;
@@ -367,7 +358,8 @@ void keep_pelvis(const Hips<V>& hips, State<V>& state) noexcept {
   state.pelvis_x_m[0] = hips.x_m, state.pelvis_z_m[0] = hips.z_m;
 }
 
-// Where the pelvis is, and how it moves there.
+// Where `begins`: the leading pelvis starts with the place, rate and acceleration of the last
+// ticks.
 template <class V>
 void go_on_from_here(const Tables& tables, const Mask<V>& begins, const State<V>& state,
                      Change<V>& change) noexcept {
@@ -376,22 +368,24 @@ void go_on_from_here(const Tables& tables, const Mask<V>& begins, const State<V>
           b_x = state.pelvis_x_m[1] - state.pelvis_x_m[2],
           b_z = state.pelvis_z_m[1] - state.pelvis_z_m[2];
   const V bend_x = m_x - b_x, bend_z = m_z - b_z, bend = root(V(bend_x * bend_x + bend_z * bend_z));
+  constexpr float kMostBend_m_s2 = 15.0f;  // more is rounding, or a plan's own jump
   const float most_bend = kMostBend_m_s2 * tables.tick_s * tables.tick_s;
   const V within_most = most_bend / most(bend, all<V>(most_bend));
   const auto begin = [&](const V& place, const V& m, const V& b, const V& bends, Off<V>& pelvis) {
-    pelvis.x = begins ? place : pelvis.x;
-    pelvis.v = begins ? V(1.5f * m - 0.5f * b) : pelvis.v;
-    pelvis.a = begins ? V(bends * within_most) : pelvis.a;
+    pelvis = chosen(begins, {place, V(1.5f * m - 0.5f * b), V(bends * within_most)}, pelvis);
   };
   begin(state.pelvis_x_m[0], m_x, b_x, bend_x, change.pelvis_x_m);
   begin(state.pelvis_z_m[0], m_z, b_z, bend_z, change.pelvis_z_m);
 }
 
-// Where a step begins that goes another way than the last one, or follows one that did: it goes on
-// from where the pelvis is, in the new step frame. `phase`: what was shown at the strike.
+// At a strike: decides whether the hips lead the step that begins, which they do if its length or
+// its time is another than the last one's. In it, and in the step after it, the pelvis goes on from
+// its place, in the new step frame. `phase`, `rate`: as shown at the strike.
 template <class V>
 void begin_lead(const Tables& tables, const Mask<V>& strikes, const V& phase, const V& rate,
                 const Mask<V>& is_level, const State<V>& state, Change<V>& change) noexcept {
+  // Differences that lead: of a step's length over the data's, and of its flight's time.
+  constexpr float kOtherPace = 0.02f, kOtherTime = 0.06f;
   const auto right = state.right_swings == V{};  // it swings in the step that begins
   const V own_m = own_step_m<V>(tables, right, state.backward != V{}),
           asked_m = by_side<V>(right, state.asked.length_m),
@@ -405,8 +399,8 @@ void begin_lead(const Tables& tables, const Mask<V>& strikes, const V& phase, co
   change.further = strikes ? V{} : change.further;
   change.closing = closes ? all<V>(1.0f) : strikes ? V{} : change.closing;
   auto changes = size(V(asked_m - smoothed_m)) > kOtherPace * own_m;
-  if (any(is_level)) {  // elsewhere the ground makes steps shorter and slower
-    // A led step gives of its roll to its flight: that alone leads no further step.
+  if (any(is_level)) {  // on slopes and stairs the ground itself makes steps shorter and slower
+    // A led step takes time from its roll for its flight. That alone does not lead another step.
     const Stages<V> own = stages_of(tables, change, state, no(right));
     const V rolls = change.led != V{} ? V(own.roll_s - state.roll_ticks * tables.tick_s) : V{},
             flight_ticks = (own.flight_s + rolls) * (1.0f / tables.tick_s);
@@ -422,24 +416,17 @@ void begin_lead(const Tables& tables, const Mask<V>& strikes, const V& phase, co
   change.off_ticks = rests ? V{} : change.off_ticks;
   for (Off<V>* off : {&change.off_phase, &change.off_shown}) off->x = rests ? V{} : off->x;
   for (Off<V>* off : {&change.off_over, &change.off_ratio, &change.off_pitch, &change.off_edge})
-    off->x = strikes ? V{} : off->x, off->v = strikes ? V{} : off->v,
-    off->a = strikes ? V{} : off->a;
+    *off = chosen(strikes, {}, *off);
   change.led = strikes ? chosen<V>(leads, 1.0f, 0.0f) : change.led;
-  change.starting = strikes ? V{} : change.starting;
-  change.resumes = strikes ? V{} : change.resumes;
   const auto begins = both(strikes, either(change.led != V{}, change.was_led != V{}));
   go_on_from_here(tables, begins, state, change);
   change.is_new = begins ? all<V>(1.0f) : change.is_new;
-  change.gap_begin = strikes ? V{} : change.gap_begin;
+  for (V* ends : {&change.starting, &change.resumes, &change.gap_begin, &change.gap_rad,
+                  &change.gap_twist_rad, &change.gap_roll_rad, &change.gap_loose_rad,
+                  &change.pitch_lasts, &change.led_from, &change.led_rate_rad})
+    *ends = strikes ? V{} : *ends;
   change.gap_lasts = strikes ? all<V>(kLiftFade) : change.gap_lasts;
-  change.pitch_lasts = strikes ? V{} : change.pitch_lasts;
-  change.gap_rad = strikes ? V{} : change.gap_rad;
-  change.gap_loose_rad = strikes ? V{} : change.gap_loose_rad;
-  change.led_from = strikes ? V{} : change.led_from;
   change.led_until = strikes ? all<V>(kNever) : change.led_until;
-  change.led_rate_rad = strikes ? V{} : change.led_rate_rad;
-  change.gap_twist_rad = strikes ? V{} : change.gap_twist_rad;
-  change.gap_roll_rad = strikes ? V{} : change.gap_roll_rad;
   change.phase = begins ? phase : change.phase;
   change.phase_rate = begins ? rate : change.phase_rate;
 }
@@ -449,10 +436,10 @@ template <class V>
 struct Pelvis {
   Vec<V> place_m;
   Turn<V> turn;
-  Vec<V> hip_m[2];  // joints, from its place; swing and stand
+  Vec<V> hip_m[2];  // hip joints relative to `place_m`; swing and stand
 };
 
-// On uneven ground: into a slope the trunk leans about the hip joints.
+// On a slope the trunk leans about the middle of the hip joints, and the hips follow the ground.
 template <class V>
 void lean_pelvis(const Tables& tables, const Turn<V>& upright, const Turn<V>& turned,
                  const Footing<V>& footing, Pelvis<V>& pelvis) noexcept {
@@ -466,7 +453,7 @@ void lean_pelvis(const Tables& tables, const Turn<V>& upright, const Turn<V>& tu
   pelvis.turn = leans;
 }
 
-// The pelvis' turn in the upright body.
+// Rotation of the pelvis in the upright body.
 template <class V>
 [[gnu::always_inline]] inline Turn<V> tilted(const Tables& tables, const Stride<V>& stride,
                                              const State<V>& state) noexcept {
@@ -480,7 +467,7 @@ template <class V>
 template <class V, class F>
 Pelvis<V> pelvis_over(const Tables& tables, const Time<V>& time, const Hips<V>& hips,
                       const Stride<V>& stride, const State<V>& state, const F& footing) noexcept {
-  // More bounce lets it sink deeper, less keeps it as low as its lowest: no leg has to be longer.
+  // More bounce scales about the highest place, less about the lowest, so that no leg gets longer.
   const V more = state.bounce.x - 1.0f, y = stride.pelvis_m.y,
           stays = more > V{} ? stride.pelvis_high_m : stride.pelvis_low_m;
   const V height_m = tables.stand_m + y + more * (y - stays);
@@ -502,52 +489,55 @@ Pelvis<V> pelvis_over(const Tables& tables, const Time<V>& time, const Hips<V>& 
   return pelvis;
 }
 
-// A leg reaches so far, of its length: a knee bent by 4 degrees. Lengths in metres at the reference
-// leg: what the tables ask for is let through, a turn or the ground may ask for more and more.
-inline constexpr float kReach = 0.9994f, kSoftReach_m = 0.006f, kKnown_m = 0.0015f,
-                       kWiderReach = 0.6f, kWidestReach_m = 0.06f, kMostSunk_m = 0.34f,
-                       kSoftSunk_m = 0.12f;
-inline constexpr float kLowReach =
-    0.985f;  // of the leg: a foot whose heel stays low reaches so far
+// Reach of a foot whose heel a style keeps low, over the leg's length.
+inline constexpr float kLowReach = 0.985f;
 
-// The spline's knots stand so far apart, in seconds at the reference leg.
-inline constexpr float kSinkKnot_s = 0.06f, kSoftSink_m = 0.007f,
-                       kSoftSinkOnGround_m = 0.012f;  // over uneven ground
+// Ticks between two knots of Change::sink_m, and from its beginning to its end.
 inline int sink_knot_ticks(const Tables& tables) noexcept {
+  constexpr float kSinkKnot_s = 0.06f;  // at the reference leg
   return std::max(1, static_cast<int>(kSinkKnot_s * tables.time_scale / tables.tick_s + 0.5f));
 }
+inline int all_sink_ticks(const Tables& tables) noexcept {
+  return (kSinkKnots - 3) * sink_knot_ticks(tables);
+}
+// The planned sinking in this tick, in metres.
 template <class V>
 V known_sink(const Tables& tables, const Change<V>& change) noexcept {
-  constexpr float kSixth = 1.0f / 6.0f;
-  const int knot = sink_knot_ticks(tables), all_ticks = (kSinkKnots - 3) * knot;
+  const int knot = sink_knot_ticks(tables), all_ticks = all_sink_ticks(tables);
   V sink_m{};
   for (int w = 0; w < kLanes<V>; ++w) {
     const int left = static_cast<int>(lane(change.sink_ticks, w));
     if (left == 0) continue;
     const int at = all_ticks - left, i = at / knot;
-    const float t = static_cast<float>(at - i * knot) / static_cast<float>(knot), s = 1.0f - t;
-    set_lane(s * s * s * kSixth * lane(change.sink_m[i], w) +
-                 (4.0f + t * t * (3.0f * t - 6.0f)) * kSixth * lane(change.sink_m[i + 1], w) +
-                 (4.0f + s * s * (3.0f * s - 6.0f)) * kSixth * lane(change.sink_m[i + 2], w) +
-                 t * t * t * kSixth * lane(change.sink_m[i + 3], w),
-             w, sink_m);
+    const Knots<float> knots =
+        spline_knots(0.0f, static_cast<float>(at - i * knot) / static_cast<float>(knot));
+    float sum_m = knots.weight[0] * lane(change.sink_m[i], w);
+    for (int k : {1, 2, 3}) sum_m += knots.weight[k] * lane(change.sink_m[i + k], w);
+    set_lane(sum_m, w, sink_m);
   }
   return sink_m;
 }
 
-// Lowers it where a leg is asked for more than the tables know. `ankle_m`: swing and stand.
+// Lowers the pelvis where a leg would have to be longer than in the tables. `ankle_m`: swing and
+// stand.
 template <class V>
 void sink(const Tables& tables, const Time<V>& time, const Stride<V>& stride,
           const Vec<V> (&ankle_m)[2], const State<V>& state, Change<V>& change,
           Pelvis<V>& pelvis) noexcept {
+  // Reach of a leg over its length, with a knee bent by 4 degrees. The bound is rounded: by
+  // kSoftReach_m, and by kWiderReach of what a turn or the ground asks beyond the tables, up to
+  // kWidestReach_m of that. Below kKnown_m beyond the tables it hardly acts. At most kMostSunk_m.
+  // Metres are at the reference leg.
+  constexpr float kReach = 0.9994f, kSoftReach_m = 0.006f, kWiderReach = 0.6f,
+                  kWidestReach_m = 0.06f, kKnown_m = 0.0015f, kMostSunk_m = 0.34f,
+                  kSoftSunk_m = 0.12f;
+  constexpr float kSoftSink_m = 0.007f, kSoftSinkOnGround_m = 0.012f;  // of the planned sinking
   const float grown = tables.size;
   V squares{};
   for (int k : {0, 1}) {
     const auto right = k == 0 ? time.right : no(time.right);
-    const auto of = [&](float LegBones::*bone) {
-      return chosen<V>(right, tables.leg[1].*bone, tables.leg[0].*bone);
-    };
-    const V a = of(&LegBones::thigh_m), b = of(&LegBones::shank_m),
+    const V a = of_leg<V>(tables, right, &LegBones::thigh_m),
+            b = of_leg<V>(tables, right, &LegBones::shank_m),
             knee = stride.leg_rad[k][3] +
                    chosen<V>(right, tables.leg[1].stand_rad[3], tables.leg[0].stand_rad[3]);
     V sine, cosine;
@@ -568,7 +558,7 @@ void sink(const Tables& tables, const Time<V>& time, const Stride<V>& stride,
   change.wants_m = sunk_m;
   const auto ahead = change.sink_ticks != V{};
   if (any(ahead)) {
-    // What it was known to want, or more.
+    // The planned sinking, or more if a leg needs more.
     const float soft_m = tables.terrain != nullptr ? kSoftSinkOnGround_m : kSoftSink_m;
     const V known_m = known_sink(tables, change),
             width_m = most(least(known_m, all<V>(soft_m * grown)), all<V>(1e-6f)),

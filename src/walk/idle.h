@@ -1,7 +1,6 @@
-// A person who stands breathes, sways over the feet, and looks round now and then. All of it
-// follows from the ticks of the stand, so a replay stands the same; it begins some time after the
-// feet are at rest and ends while a walk begins. Planted feet stay where they are: hips move over
-// them.
+// A standing character breathes, sways over its feet and now and then glances aside. All of it
+// follows from the ticks of the stand, so a replay stands alike. It begins some time after the feet
+// are at rest and ends while a walk begins. The hips move over planted feet.
 #pragma once
 #include <cstdint>
 
@@ -13,10 +12,10 @@ namespace {
 template <class V>
 struct Idle {
   V breath_rad{}, glance_rad{}, nod_rad{};
-  V ahead_m{}, left_m{};  // of the hips
+  V ahead_m{}, left_m{};  // sway of the hips
 };
 
-// 0 .. 1 of the draw `which` of a glance: splitmix64, so that neighbours have nothing in common.
+// Random number from 0 to 1, the draw `which` of a glance: splitmix64, whose neighbours are unlike.
 inline float drawn(std::uint64_t glance, std::uint64_t which) noexcept {
   std::uint64_t bits = (4 * glance + which + 1) * 0x9e3779b97f4a7c15u;
   bits = (bits ^ (bits >> 30)) * 0xbf58476d1ce4e5b9u;
@@ -31,13 +30,14 @@ V sine_of_cycles(const V& cycles, float begin_rad) noexcept {
   return sine;
 }
 
-// `amount`: of it all.
+// Glances aside every few seconds. `amount`: share that is shown.
 template <class V>
 void glance(const V& time_s, const V& amount, const V& outwards, Idle<V>& idle) noexcept {
-  // A glance every seven seconds: when it begins, how far it goes, how long it is held.
-  constexpr float kEvery_s = 7.0f, kFirst_s = 1.0f, kLast_s = 3.5f, kTurns_s = 0.6f, kBack_s = 0.7f,
-                  kHeldLeast_s = 0.6f, kHeldMost_s = 1.6f, kLeast_rad = 0.13962634f,
-                  kMost_rad = 0.45378561f, kMostNod_rad = 0.10471976f;
+  constexpr float kEvery_s = 7.0f, kFirst_s = 1.0f,
+                  kLast_s = 3.5f;  // begins 1 to 3.5 s into every 7
+  constexpr float kTurns_s = 0.6f, kHeldLeast_s = 0.6f, kHeldMost_s = 1.6f, kBack_s = 0.7f;
+  constexpr float kLeast_rad = 0.13962634f, kMost_rad = 0.45378561f;  // 8 and 26 degrees
+  constexpr float kMostNod_rad = 0.10471976f;                         // 6 degrees, 0.7 of it down
   const V number = floored(V(time_s * (1.0f / kEvery_s)));
   V draw[4];
   for (int w = 0; w < kLanes<V>; ++w) {
@@ -54,11 +54,11 @@ void glance(const V& time_s, const V& amount, const V& outwards, Idle<V>& idle) 
   idle.nod_rad = amount * turned * kMostNod_rad * (draw[3] - 0.3f);
 }
 
-// What shows after so many ticks of the stand.
+// Breath, glance and sway after `ticks` of the stand.
 template <class V>
 Idle<V> idle_at(const Tables& tables, const V& ticks, const State<V>& state,
                 const Styled<V>& styled) noexcept {
-  // 14 breaths a minute raise the trunk by so much (people at rest: 12 to 18).
+  // 14 breaths a minute (people at rest: 12 to 18) raise the trunk by 0.6 degrees.
   constexpr float kBreath_Hz = 0.235f, kBreath_rad = 0.010471976f;
   Idle<V> idle;
   const V time_s = ticks * tables.tick_s,
@@ -67,7 +67,7 @@ Idle<V> idle_at(const Tables& tables, const V& ticks, const State<V>& state,
   if (!any(amount != V{})) return idle;
   idle.breath_rad = amount * kBreath_rad *
                     (0.5f - 0.5f * sine_of_cycles(V(kBreath_Hz * time_s), kRightAngle_rad));
-  // Of mirrored walks the stands are mirrored, too: the foot that landed last says which it is.
+  // Mirrored walks have mirrored stands: the foot that landed last decides the side.
   const V outwards = state.right_swings != V{} ? all<V>(1.0f) : all<V>(-1.0f);
   glance(time_s, amount, outwards, idle);
   // Quiet stance sways by 3 to 5 mm (standard deviation of the centre of pressure, Winter 1995),
@@ -84,7 +84,8 @@ Idle<V> idle_at(const Tables& tables, const V& ticks, const State<V>& state,
 template <class V>
 Idle<V> advance_idle(const Tables& tables, const Change<V>& change, const State<V>& state,
                      Styled<V>& styled) noexcept {
-  constexpr float kBeginsAfter_s = 1.0f, kBegins_s = 2.0f, kEnds_s = 0.8f;
+  constexpr float kBeginsAfter_s = 1.0f;             // of standing
+  constexpr float kBegins_s = 2.0f, kEnds_s = 0.8f;  // fading in and out
   const auto stands = change.stands != V{}, acts = either(stands, styled.idle_share != V{});
   if (!any(either(acts, styled.idle_ticks != V{}))) return {};
   const float dt = tables.tick_s;

@@ -1,6 +1,6 @@
-// Numbers of several walks side by side, one in each lane of a register, or of one walk alone.
-// Every lane gets the bits that its walk gets alone: + - * / and square roots in one order, masks
-// in place of branches, and no contraction (see the flags of the build).
+// Arithmetic on the numbers V of walks: a register with one walk in each lane, or a float of one
+// walk. Every lane gets the bits that its walk gets alone, because + - * / and square roots are in
+// one order, masks replace branches, and nothing is contracted (see the flags of the build).
 #pragma once
 #include <algorithm>
 #include <array>
@@ -14,8 +14,7 @@
 namespace gaitpad {
 
 #ifdef GAITPAD_NO_VECTORS
-// In place of a register: floats one after the other. Rows of tables are read by four of them; the
-// numbers of a walk are plain floats (FloatsOf<1>).
+// Stands for a register of four numbers of a table's row. Walks are computed alone, in floats.
 template <int kWidth>
 struct Numbers {
   float number[kWidth];
@@ -225,8 +224,8 @@ template <class V>
 inline V soft_least(const V& a, const V& b, const V& width) noexcept {
   return a - soft_positive(V(a - b), width);
 }
-// Cubics over 0 <= s <= 1 that begin with the value 1 and no slope, and with the value 0 and the
-// slope 1; both end with neither.
+// Cubics over s from 0 to 1 that end with value 0 and slope 0. They begin with value 1, and with
+// slope 1.
 template <class V>
 inline V value_left(const V& s) noexcept {
   return 1.0f + s * s * (2.0f * s - 3.0f);
@@ -238,7 +237,7 @@ inline V slope_left(const V& s) noexcept {
 
 // --- Angles --------------------------------------------------------------------------------------
 
-// Exact to 1e-7 for |x| below pi / 4: minimax polynomials (Cephes, sinf and cosf).
+// Sine and cosine of an angle below pi / 4, to 1e-7: minimax polynomials (Cephes, sinf and cosf).
 template <class V>
 inline void sin_cos_small(const V& x, V& sine, V& cosine) noexcept {
   const V z = x * x;
@@ -247,7 +246,7 @@ inline void sin_cos_small(const V& x, V& sine, V& cosine) noexcept {
       1.0f - 0.5f * z +
       z * z * (4.166664568298827e-2f + z * (-1.388731625493765e-3f + z * 2.443315711809948e-5f));
 }
-// For any angle below 1e4 rad.
+// Sine and cosine of any angle below 1e4.
 template <class V>
 inline void sin_cos(const V& angle_rad, V& sine, V& cosine) noexcept {
   const V quarters = rounded(V(angle_rad * 0.63661977f));
@@ -265,7 +264,7 @@ inline void sin_cos(const V& angle_rad, V& sine, V& cosine) noexcept {
   sine = back ? -sine_of : sine_of;
   cosine = (odd != back) ? -cosine_of : cosine_of;
 }
-// Exact to 1e-7 (Cephes, asinf); above a half it follows from the complementary angle.
+// Arc sine to 1e-7 (Cephes, asinf). Above 0.5 it is a right angle less the other acute angle.
 template <class V>
 inline V arc_sine(const V& x) noexcept {
   const V a = size(x);
@@ -344,14 +343,14 @@ inline Turn<V> chosen(const Mask<V>& mask, const Turn<V>& a, const Turn<V>& b) n
   if constexpr (kLanes<V> == 1) return mask ? a : b;
   return {mask ? a.w : b.w, mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
 }
-// A turn about a unit axis by less than a right angle.
+// Rotation about a unit axis by less than a quarter turn.
 template <class V>
 inline Turn<V> turn_about(const Vec<V>& axis, const V& angle_rad) noexcept {
   V s, c;
   sin_cos_small(V(0.5f * angle_rad), s, c);
   return {c, axis.x * s, axis.y * s, axis.z * s};
 }
-// The turn of a rotation vector of up to 30 degrees, by a series of the tangent of its half.
+// Rotation by a vector of up to 30 degrees, with a series of the tangent of half its length.
 template <class V>
 inline Turn<V> turn_by(const Vec<V>& v) noexcept {
   const V square = dot(v, v), k = 0.5f + square * (1.0f / 24.0f + square * (1.0f / 240.0f));
@@ -366,6 +365,9 @@ struct Way {
   Vec<V> operator*(const Vec<V>& p) const noexcept {
     return {cosine * p.x + sine * p.z, p.y, cosine * p.z - sine * p.x};
   }
+  // Components of a place along this way and to the left of it.
+  V ahead(const V& x_m, const V& z_m) const noexcept { return x_m * sine + z_m * cosine; }
+  V left(const V& x_m, const V& z_m) const noexcept { return x_m * cosine - z_m * sine; }
   Turn<V> turn() const noexcept { return {half_cosine, V{}, half_sine, V{}}; }
 };
 template <class V>
@@ -377,6 +379,10 @@ template <class V>
   V sine, cosine;
   sin_cos(V(0.5f * heading_rad), sine, cosine);
   return way_of_half(sine, cosine);
+}
+template <class V>
+inline Off<V> chosen(const Mask<V>& mask, const Off<V>& a, const Off<V>& b) noexcept {
+  return {mask ? a.x : b.x, mask ? a.v : b.v, mask ? a.a : b.a};
 }
 template <class V>
 inline Way<V> chosen(const Mask<V>& mask, const Way<V>& a, const Way<V>& b) noexcept {

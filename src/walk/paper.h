@@ -34,7 +34,7 @@ inline void solve_by_paper(const Tables& tables, const Time<float>& time, float 
                side_of = wide(leg.side);
     const bool on_toe = !flies && !rolls;
     const bool both_ends =
-        rolls || (on_toe && heel_rise(tables, time, right, phase, k == 1, change) == 0.0f);
+        rolls || (on_toe && heel_rise(tables, right, phase, k == 1, change) == 0.0f);
     const quat to_pelvis = glm::conjugate(wide(pelvis.turn)), turn = to_pelvis * wide(foot.turn);
     const vec3 hip_m = wide(pelvis.place_m + pelvis.hip_m[k]),
                end_m = to_pelvis * (wide(on_toe ? foot.toe_m : foot.heel_m) - hip_m),

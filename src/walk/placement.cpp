@@ -60,10 +60,10 @@ void put_walk(const vec3& place_m, double heading_rad, WalkState& state, Pose& p
 
 GaitParams following(const CapsuleMotion& capsule, const WalkState& state, const StyleValues& style,
                      const GaitLimits& limits) noexcept {
+  // Time constants: of the distance to the body, and of the turn towards it.
   constexpr double kCatchUp_s = 0.6, kTurns_s = 0.35;
-  // A body that is slower and nearer has arrived.
-  constexpr double kStill_m_s = 0.1, kBeside_m = 0.8;
-  constexpr double kNear_m = 0.12, kFaces = 3.0 * kDegree;
+  constexpr double kStill_m_s = 0.1, kBeside_m = 0.8;  // a slower and nearer body has arrived
+  constexpr double kNear_m = 0.12, kFaces_rad = 3.0 * kDegree;  // a walk that is nearer stands
   const WalkFrame& frame = state.frame;
   Stick stick;
   if (!is_finite(capsule)) {
@@ -78,7 +78,7 @@ GaitParams following(const CapsuleMotion& capsule, const WalkState& state, const
   const double aim_rad = arrives ? capsule.heading_rad : heading_of(goes);
   const double off_rad = aim_rad - frame.heading_rad,
                left_rad = off_rad - 2.0 * kPi * std::floor(off_rad / (2.0 * kPi) + 0.5);
-  // A body that has arrived may be followed by steps back; otherwise the walk turns round.
+  // The walk steps back only to a body that has arrived; otherwise it turns round.
   const double along = glm::dot(goes, heading_direction(frame.heading_rad)),
                ahead = arrives ? along : std::max(0.0, along);
   GaitOverrides overrides;
@@ -89,7 +89,7 @@ GaitParams following(const CapsuleMotion& capsule, const WalkState& state, const
   if (std::abs(ahead) > kNear_m / kCatchUp_s) {
     stick.left.y = 1.0;
     ask(GaitKey::speed_m_s, ahead);
-  } else if (std::abs(left_rad) < kFaces) {
+  } else if (std::abs(left_rad) < kFaces_rad) {
     return gait_params(stick, style, limits);
   }
   ask(GaitKey::turn_rate_rad_s, capsule.turn_rate_rad_s + left_rad / kTurns_s);

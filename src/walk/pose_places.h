@@ -1,13 +1,13 @@
-// The callers' memory for the poses of a block's walks.
+// Memory for the poses of a block's walks.
 #pragma once
 #include "gaitpad/math.h"
 
 namespace gaitpad {
 
 struct Poses {
-  quat* const* local;   // for each walk, its joints' rotations
-  vec3* const* root_m;  // for each walk, its root's place
-  int walks;            // lanes of the block from this number on are not written
+  quat* const* local = nullptr;  // of each walk: rotations by joint
+  vec3* const* root_m = nullptr;
+  int walks = 0;  // of the block; lanes after them are not written
 };
 
 }  // namespace gaitpad

@@ -1,30 +1,20 @@
-// Fourth, where a leg would be too short, or a style keeps a heel low: the standing foot rises on
-// its toe.
+// Lets a foot rise on its toe if its leg would be too short, or if a style keeps its heel low.
 #pragma once
 #include "walk/feet.h"
 
 namespace gaitpad {
 namespace {
 
-// How far a standing foot may leave the floor with its heel: from here on in its own phase, and
-// wholly so much later.
-inline constexpr float kRiseBegin = 0.20f, kHeelRiseLasts = 0.18f;
-// Of the leg: with the hip farther away, the heel rises.
-inline constexpr float kReachOnToe = 0.99995f;
-inline constexpr float kMostPitch_rad = 1.4835299f, kWidePitch_rad = 0.43633231f;  // 85, 25 degrees
-// A low foot rises when its leg is longer than kLowReach, with hips that are lower by this.
-inline constexpr float kLowHips_m = 0.045f, kLowUntil = 0.25f, kLowRisen_rad = 0.78539816f,
-                       kSoftRise_rad = 0.20943951f;
-
-// 0 flat .. 1 freely. `right`: the foot's side.
+// Share by which a standing foot may raise its heel: 0 flat, 1 freely. `right`: the foot's side.
 template <class V>
-V heel_rise(const Tables& tables, const Time<V>& time, const Mask<V>& right, const V& phase,
-            const Mask<V>& is_stand, const Change<V>& change) noexcept {
-  const auto& share = tables.stage_share;
-  const V p = phase - chosen<V>(right, 0.0f, share[0] + share[1]), own = p - floored(p),
-          begin = most(chosen<V>(right, share[0], share[2]), all<V>(kRiseBegin)),
-          rises = smooth(V((own - begin) * (1.0f / kHeelRiseLasts)));
-  // In a last step it stays down, and comes back with the tables where the walk goes on.
+V heel_rise(const Tables& tables, const Mask<V>& right, const V& phase, const Mask<V>& is_stand,
+            const Change<V>& change) noexcept {
+  constexpr float kRiseBegin = 0.20f, kRiseLasts = 0.18f;  // cycles from the foot's strike
+  const auto other = no(right);
+  const V p = phase - step_phase_of<V>(tables, other), own = p - floored(p),
+          begin = most(roll_cycles<V>(tables, other), all<V>(kRiseBegin)),
+          rises = smooth(V((own - begin) * (1.0f / kRiseLasts)));
+  // In a last step the heel stays down; if the walk goes on, it rises again with the tables.
   const auto shows = both(is_stand, change.starting == V{});
   return change.stands != V{} ? V{} : shows ? V(rises * change.shown) : rises;
 }
@@ -38,11 +28,12 @@ V angle_of(const V& sine, const V& cosine) noexcept {
   return 4.0f * arc_tangent_small(quarter);
 }
 
-// The pitch at which the ankle, turning about the planted toe, is so far from the hip: P cos + Q
-// sin = K in the foot's own vertical plane.
+// Pitch at which the ankle, which turns about the planted toe, is `reach_m` from the hip: the
+// solution of P cos + Q sin = K in the foot's own vertical plane.
 template <class V>
 V pitch_in_reach(const Foot<V>& foot, const Sole<V>& sole, const Vec<V>& hip_m,
                  const V& reach_m) noexcept {
+  constexpr float kMostPitch_rad = 1.4835299f, kSoftPitch_rad = 0.43633231f;  // 85, 25 degrees
   const Vec<V> d = back(foot.yaw) * (hip_m - foot.toe_m), c = (sole.heel_m + sole.line_m) * -1.0f;
   const V cf = dot(c, sole.forward), df = dot(d, sole.forward);
   const V p = df * cf + d.y * c.y, q = df * c.y - d.y * cf,
@@ -53,10 +44,10 @@ V pitch_in_reach(const Foot<V>& foot, const Sole<V>& sole, const Vec<V>& hip_m,
       most(soft_least(V(k * over), all<V>(kMostUpright), all<V>(kSoftUpright)), all<V>(-1.0f));
   const V sine = root(V(1.0f - cosine * cosine));
   return soft_least(angle_of(V((q * cosine - p * sine) * over), V((p * cosine + q * sine) * over)),
-                    all<V>(kMostPitch_rad), all<V>(kWidePitch_rad));
+                    all<V>(kMostPitch_rad), all<V>(kSoftPitch_rad));
 }
 
-// Pitches a foot about its toe, where `rises`.
+// Pitches a foot about its toe where `rises`.
 template <class V>
 void rise_on_toe(const Sole<V>& sole, const V& pitch_rad, const Mask<V>& rises,
                  Foot<V>& foot) noexcept {
@@ -69,19 +60,24 @@ void rise_on_toe(const Sole<V>& sole, const V& pitch_rad, const Mask<V>& rises,
 
 template <class V>
 V leg_m(const Tables& tables, const Mask<V>& right) noexcept {
-  const LegBones &l = tables.leg[0], &r = tables.leg[1];
-  return chosen<V>(right, r.thigh_m + r.shank_m, l.thigh_m + l.shank_m);
+  return of_leg<V>(tables, right, &LegBones::thigh_m) +
+         of_leg<V>(tables, right, &LegBones::shank_m);
 }
 
-// Feet whose heels a style keeps low: the hips sink for them, and they rise as far as their legs
-// ask. `asked_rad`: swing and stand, by how much.
+// If a style keeps a heel low, the hips sink while the foot would rise, and the foot rises as far
+// as its leg asks. `asked_rad`: pitch that this adds to swing and stand.
 template <class V>
 void keep_heels_low(const Tables& tables, const Time<V>& time, const V& phase,
                     const Stride<V>& stride, const Change<V>& change, const State<V>& state,
                     Styled<V>& styled, Pelvis<V>& pelvis, Feet<V>& feet,
                     V (&asked_rad)[2]) noexcept {
-  constexpr float kAsGoodAsOne = 1e-5f, kAsGoodAsNone = 1e-6f;
-  const auto is_low = least(state.lift[0].x, state.lift[1].x) < all<V>(1.0f - kAsGoodAsOne),
+  constexpr float kLowHips_m = 0.045f;  // most sinking, at the reference leg
+  constexpr float kLowRisen_rad =
+      0.78539816f;                    // 45 degrees: pitch of the foot at which it is whole
+  constexpr float kLowUntil = 0.25f;  // of the flight: the hips have risen again
+  constexpr float kSoftRise_rad = 0.20943951f;      // 12 degrees
+  constexpr float kSame = 1e-5f, kNothing = 1e-6f;  // at which smoothed factors count as 1 and 0
+  const auto is_low = least(state.lift[0].x, state.lift[1].x) < all<V>(1.0f - kSame),
              acts = either(is_low, either(styled.low[0].x != V{}, styled.low[1].x != V{}));
   if (!any(acts)) return;
   const Mask<V> none{};
@@ -91,15 +87,15 @@ void keep_heels_low(const Tables& tables, const Time<V>& time, const V& phase,
   for (int k : {0, 1}) {
     const auto right = k == 0 ? time.right : no(time.right), flies = k == 0 ? time.flies : none;
     const V rises = flies ? V(1.0f - smoother(V(time.u * (1.0f / kLowUntil))))
-                          : heel_rise(tables, time, right, phase, k == 1 ? no(none) : none, change);
+                          : heel_rise(tables, right, phase, k == 1 ? no(none) : none, change);
     const V goal = rolls[k] ? V{} : V(presence * rises * (1.0f - low_lift<V>(right, state)));
     Smoothed<V> next = styled.low[k];
     follow(goal, tables.lowers, next);
-    const auto over = both(goal == V{}, next.x < all<V>(kAsGoodAsNone));
+    const auto over = both(goal == V{}, next.x < all<V>(kNothing));
     styled.low[k].x = acts ? (over ? V{} : next.x) : V{};
     styled.low[k].v = acts ? (over ? V{} : next.v) : V{};
     low[k] = styled.low[k].x;
-    // By the phase of the hips: a foot that flies by the clock may have another pitch.
+    // The pitch at the phase of the hips; a foot that flies by the clock may have another one.
     const V risen_rad = k == 0 ? stride.stood_pitch_rad : stride.foot[1].pitch_rad;
     const V down_m = (kLowHips_m * tables.size) * low[k] * smooth(0.0f, kLowRisen_rad, risen_rad);
     pelvis.place_m.y = acts ? V(pelvis.place_m.y - down_m) : pelvis.place_m.y;
@@ -117,10 +113,11 @@ void keep_heels_low(const Tables& tables, const Time<V>& time, const V& phase,
   }
 }
 
-// Lets a standing foot rise on its toe where its leg would be too short.
+// Lets a standing foot rise on its toe if its leg would be too short.
 template <class V>
 void reach_with_toe(const Tables& tables, const Time<V>& time, const Change<V>& change,
                     const Pelvis<V>& pelvis, Feet<V>& feet) noexcept {
+  constexpr float kReachOnToe = 0.99995f;  // over the leg's length
   for (int k : {0, 1}) {
     const auto right = k == 0 ? time.right : no(time.right),
                stands = both(change.stands == V{}, k == 0 ? no(time.flies) : time.flies);
@@ -135,7 +132,7 @@ void reach_with_toe(const Tables& tables, const Time<V>& time, const Change<V>& 
   }
 }
 
-// The feet as they were planned, before they rose as their legs asked.
+// Takes the pitch away again that keep_heels_low() added: plans do not count it.
 template <class V>
 void take_back(const V (&asked_rad)[2], Feet<V>& feet) noexcept {
   for (int k : {0, 1}) {
@@ -146,7 +143,7 @@ void take_back(const V (&asked_rad)[2], Feet<V>& feet) noexcept {
   }
 }
 
-// At a strike.
+// At a strike the feet change their parts.
 template <class V>
 void change_styled_feet(const Mask<V>& strikes, Styled<V>& styled) noexcept {
   for (V Smoothed<V>::*part : {&Smoothed<V>::x, &Smoothed<V>::v}) {

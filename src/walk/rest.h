@@ -1,10 +1,11 @@
-// How one walk comes to rest at any moment of a step, and how it goes on if the stick comes back.
+// Plans how one walk comes to rest at any moment of a step, and how it goes on if the stick comes
+// back. Both are rare, so the walks of a block are planned one after the other.
 //
-// A stop chooses among three ends the first that brakes softly: the flying foot closes beside the
-// standing one; it lands ahead and the other foot closes; one more step comes between. The hips go
-// to their place between the feet along a quintic, whose time is chosen for the least braking. It
-// is rare, so that lanes take their turns. Over uneven ground the foothold is chosen and the flight
-// planned anew; one whose new flight would not clear the ground keeps its landing.
+// A stop takes the first of three ends that brakes softly: the flying foot closes beside the
+// standing foot; it lands ahead and the other foot closes; one more step comes between. The hips go
+// to their place between the feet along a quintic, whose time is chosen for the least braking. On
+// uneven ground the foothold is chosen anew and the flight is planned anew; if the new flight would
+// not clear the ground, the landing stays.
 #pragma once
 #include <limits>
 
@@ -14,39 +15,32 @@
 namespace gaitpad {
 namespace {
 
-// A quintic to rest brakes with about kNeed v^2 / way. Times are in seconds at the reference leg.
-inline constexpr float kNeed = 0.72f, kBrake_m_s2 = 3.0f, kCloseBrake_m_s2 = 3.0f,
-                       kHastyBrake_m_s2 = 3.3f, kMostBrake_m_s2 = 3.9f;
-inline constexpr float kLeastStep = 0.25f, kFurtherStep = 0.3f;  // of the foot's own step
-inline constexpr float kToClose_s = 0.40f, kWayWhileClosing = 0.44f, kNextStep_s = 0.35f;
-inline constexpr float kStays = 0.45f;     // from this flight on its landing stays
-inline constexpr float kBehind_m = 0.02f;  // the foot that may still close
+// Times are in seconds at the reference leg.
+inline constexpr float kLeastStep = 0.25f;  // shortest landing ahead, over the foot's own step
+inline constexpr float kStays = 0.45f;      // share of a flight from which on its landing stays
+inline constexpr float kBehind_m = 0.02f;   // a flying foot is at least so far behind its landing
 inline constexpr float kLandsAhead =
-    0.42f;  // of a step: so far are hips behind the foot that lands
-inline constexpr float kTurnsOnSpot = 0.1f;  // steps below this ratio
-inline constexpr float kTurnsBack = 0.45f;   // of a closing flight: until then the walk goes on
-inline constexpr float kFlightLeft = 0.45f;  // of a steady flight, which a slow one had been
-inline constexpr float kMostCatch_s = 0.8f;  // until hips that have braked are in their place
-inline constexpr float kNearStrike_s = 0.15f, kLow_m = 0.001f;
-inline constexpr float kLeastRest_s = 0.25f, kAfterLanding_s = 0.15f;
-// Of the last step: its roll and its flight, the latter also of a steady one.
-inline constexpr float kLeastClosing_s = 0.30f, kMostClosing = 1.25f, kMostClosingOnSpot = 1.7f,
-                       kLeastClosingRoll_s = 0.11f, kLeastRollLeft_s = 0.05f,
-                       kLongestClosingRoll = 1.6f;
+    0.42f;  // of a step: least way of the hips to a foot that lands
+inline constexpr float kLeastRest_s = 0.25f;  // shortest time in which hips come to rest
+// Bounds of the last step: a roll or flight over the planned or the steady one.
+inline constexpr float kMostClosing = 1.25f, kLongestClosingRoll = 1.6f;
+inline constexpr float kLeastRollLeft_s = 0.05f;  // of a roll whose plan changes
+// Costs when a time is chosen, in m/s^2 of braking: of a second, and of 1 m/s backwards.
+inline constexpr float kLate = 0.8f, kBack = 50.0f;
 
-// At this time from now the hips have at least so far to go yet: their foot lands ahead of them.
+// The hips are at least `way_m` from their place until `time_s`, when a foot lands ahead of them.
 struct Behind {
   float time_s = 0.0f, way_m = 0.0f;
 };
 
 // The time in which hips come to rest most softly, neither beyond their place nor back, and not
-// before their feet. `goes`, `aside`: off their place ahead and to the side, in seconds; of those
-// that turn on the spot no way is back.
+// before their feet. `goes`, `aside`: place, rate and acceleration ahead and to the left, from
+// their place at rest, per second. A turn on the spot (`on_spot`) has no direction to go beyond or
+// back.
 inline float best_rest_s(const Off<float>& goes, const Off<float>& aside, bool on_spot,
                          float least_s, float most_s, const Behind (&landings)[2]) noexcept {
-  constexpr int kTimes = 20, kPoints = 40;
-  constexpr float kLate = 0.8f, kAhead = 40.0f;  // costs, in m/s2
-  const float kOver = on_spot ? 0.0f : 200.0f, kBack = on_spot ? 0.0f : 50.0f;
+  constexpr int kTimes = 20, kPoints = 40;         // times that are tried; points of each quintic
+  constexpr float kOver = 200.0f, kAhead = 40.0f;  // costs of a metre, in m/s^2
   float best_s = least_s, least = std::numeric_limits<float>::infinity();
   for (int k = 0; k < kTimes; ++k) {
     const float time_s = least_s + (most_s - least_s) * static_cast<float>(k) / (kTimes - 1.0f),
@@ -66,18 +60,21 @@ inline float best_rest_s(const Off<float>& goes, const Off<float>& aside, bool o
       for (const Behind& landing : landings)
         if (now_s <= landing.time_s) ahead = most(ahead, off.x + landing.way_m);
     }
+    if (on_spot) over = back = 0.0f;
     const float cost = brakes + kOver * over + kBack * back + kLate * time_s + kAhead * ahead;
     if (cost < least) best_s = time_s, least = cost;
   }
   return best_s;
 }
 
-// The flying foot by the plan in force, now and a tick later; without what it rises with the hips.
+// The flying foot by the plan in force, without its rise with the hips; pairs are now and a tick
+// later.
 struct Flown {
   Vec<float> heel_m[2];
-  float pitch_rad[2], over_m[2];  // over the ground line
-  float line_m[2]{}, room_m[2]{}, loose_rad = 0.0f;
-  float yaw_rad, twist_rad, roll_rad;
+  float pitch_rad[2], over_m[2];       // the latter: height of the heel above the ground line
+  float line_m[2]{}, room_m[2]{};      // height of the ground line, and of what clears the ground
+  float loose_rad = 0.0f;              // width in which the floor's bound on the pitch is rounded
+  float yaw_rad, twist_rad, roll_rad;  // now
 };
 template <class F>
 Flown flown(const Tables& tables, const Change<float>& change, const State<float>& state,
@@ -86,8 +83,8 @@ Flown flown(const Tables& tables, const Change<float>& change, const State<float
   State<float> at = state;
   for (int k : {0, 1}) {
     const Time<float> time = time_of(tables, at);
-    const Way<float> to = way_of(heading_ahead(tables, at, time.to_strike + 1.0f));
-    const Landing<float> landing = landing_over(tables, time, to, change, at, footing);
+    const Landing<float> landing =
+        landing_over(tables, time, way_at_strike(tables, time, at), change, at, footing);
     const Stride<float> stride =
         read_by_clock(tables, time, landing, at.phase, time.share, time.u, change, at);
     Hips<float> hips;
@@ -106,22 +103,23 @@ Flown flown(const Tables& tables, const Change<float>& change, const State<float
       flown.line_m[k] = base_m + gap_left(time.u, footing.gap_line_m, change);
       flown.room_m[k] = room_m.y + gap_left(time.u, footing.gap_room_m, change);
     }
+    const float pitch_off_rad = pitch_off(time, at.tick, change, at);
     if (k == 0) {
       flown.yaw_rad = flying_yaw(time, landing, change, at);
       const float edge = edge_left(time.u, change);
       flown.twist_rad = stride.foot[0].twist_rad + edge * change.gap_twist_rad;
       flown.roll_rad = stride.foot[0].roll_rad + edge * change.gap_roll_rad;
+      flown.loose_rad = loose_pitch(time.u, pitch_off_rad, change);
     }
     flown.pitch_rad[k] =
         low_pitch(low_lift<float>(time.right, at), time.u) * stride.foot[0].pitch_rad +
-        pitch_off(time, at.tick, change, at);
-    if (k == 0) flown.loose_rad = loose_pitch(time.u, pitch_off(time, at.tick, change, at), change);
+        pitch_off_rad;
     at.tick += 1.0f, at.phase += at.phase_rate;
   }
   return flown;
 }
 
-// The landing of the running step as it is asked for now; over uneven ground it is chosen anew.
+// Plans the landing of the running step again, by the parameters of now.
 template <class F>
 void plan_landing_anew(const Tables& tables, const Time<float>& time, Block<1>& block,
                        F& footing) noexcept {
@@ -135,13 +133,13 @@ void plan_landing_anew(const Tables& tables, const Time<float>& time, Block<1>& 
         tables,
         {asked.along.sine, asked.along.cosine, asked.length_m, false, true, goes_on(state, change)},
         block);
-    footing.step_m = state.landing_x_m * asked.to.sine + state.landing_z_m * asked.to.cosine;
+    footing.step_m = asked.to.ahead(state.landing_x_m, state.landing_z_m);
     footing.step_ratio = size(footing.step_m) / own_step_m<float>(tables, time.right, time.back);
     footing.off_ratio = {};
   }
 }
 
-// A foot in flight that is to land on another tread than it was takes its time to come there.
+// Gives a flight that is to land on another tread the time that it needs to get there.
 inline void take_time_for_rise(const Tables& tables, Block<1>& block) noexcept {
   State<float>& state = block.state;
   Change<float>& change = block.change;
@@ -161,8 +159,9 @@ inline void take_time_for_rise(const Tables& tables, Block<1>& block) noexcept {
   }
 }
 
-// Gives the running step another end. A foot in flight whose landing `moves` goes over to its new
-// path until it lands.
+// Changes the plan of the running step: `work` sets the new one. Differences between both plans
+// fade. If the landing `moves`, it is planned again, and a flying foot changes over to its new path
+// until it lands.
 template <class F, class Work>
 void change_step(const Tables& tables, bool moves, Block<1>& block, F& footing,
                  const Work& work) noexcept {
@@ -171,8 +170,7 @@ void change_step(const Tables& tables, bool moves, Block<1>& block, F& footing,
   const bool flies = state.flies != 0.0f;
   const auto ratio = [&] {
     const Time<float> time = time_of(tables, state);
-    return landing_over(tables, time, way_of(heading_ahead(tables, state, time.to_strike + 1.0f)),
-                        change, state, footing)
+    return landing_over(tables, time, way_at_strike(tables, time, state), change, state, footing)
         .ratio;
   };
   const Flown was = flies ? flown(tables, change, state, footing) : Flown{};
@@ -186,9 +184,8 @@ void change_step(const Tables& tables, bool moves, Block<1>& block, F& footing,
     go_on_from_here(tables, true, state, change);
     change.phase = state.phase, change.phase_rate = state.phase_rate;
   }
-  if (!flies &&
-      (change.led == 0.0f ||
-       roll_over(change, state) < 0.8f)) {  // the foot that rolls down goes on from its pitch
+  // A foot that rolls down goes on from its pitch, unless its roll is nearly over.
+  if (!flies && (change.led == 0.0f || roll_over(change, state) < 0.8f)) {
     State<float> next = state;
     next.tick += 1.0f;
     const float pitch_rad = landed_pitch(change, state);
@@ -211,13 +208,14 @@ void change_step(const Tables& tables, bool moves, Block<1>& block, F& footing,
   change.off_pitch = {pitch - planned_pitch(now, change, state), 0.0f, 0.0f};
   change.off_edge = {flies ? edge - planned_edge(now, change) : 0.0f, 0.0f, 0.0f};
   if (!moves) return;
-  change.limp = 0.0f;  // its step is as long as hips need it
+  change.limp = 0.0f;  // the hips choose the step's length, see plan_limp()
   if constexpr (kIsUneven<F>) footing.is_new = 1.0f;
   change.gap_begin = now.u, change.gap_share = flown_share;
   plan_landing_anew(tables, now, block, footing);
   change.off_ratio = {};
   change.off_ratio.x = ratio_was - ratio();
   if (!flies) return;
+  constexpr float kLow_m = 0.001f;  // least height that a difference is scaled by
   const float ticks = state.flight_ticks;
   change.gap_lasts = most(1.0f - change.gap_begin, 1.0f / ticks);
   change.pitch_begin = state.tick, change.pitch_lasts = change.gap_lasts * ticks;
@@ -238,7 +236,7 @@ void change_step(const Tables& tables, bool moves, Block<1>& block, F& footing,
     };
     footing.gap_plane = {left(lands.x, footing.print.x, footing.landing.x),
                          left(lands.z, footing.print.z, footing.landing.z)};
-    // The ground is cleared where the foot goes over it.
+    // How the new flight clears the ground is planned without the height of the old one.
     for (int k = 0; k < kRoomKnots; ++k) footing.raise[k] = footing.shift[k] = {};
     fit_gap(flown(tables, change, state, footing));
     state.gap_m.y = state.gap_slope_m.y = 0.0f;
@@ -268,12 +266,12 @@ void change_step(const Tables& tables, bool moves, Block<1>& block, F& footing,
   state.swing_pitch_rate = (was.pitch_rad[1] - is.pitch_rad[1]) - state.swing_pitch_rad;
 }
 
-// Ticks until the hips are as far ahead of the foot that stands as in a walk when the other one
-// lifts off.
+// Ticks until the hips are as far ahead of the standing foot as in the tables at the lift-off of
+// the other foot.
 inline float ticks_to_lift_off(const Tables& tables, const State<float>& state,
                                const Change<float>& change) noexcept {
   const Time<float> time = time_of(tables, state);
-  const float phase = time.step_phase + tables.stage_share[time.right ? 2 : 0];
+  const float phase = time.step_phase + roll_cycles<float>(tables, time.right);
   const FootprintsIn<float> prints = footprints_of(tables, time, state.ratio_behind);
   const float place_m =
       prints.stride_m * phase - prints.stand_m.z +
@@ -288,9 +286,10 @@ inline float ticks_to_lift_off(const Tables& tables, const State<float>& state,
   return ticks;
 }
 
-// Times the last step, whose foot has yet to lift off: it lands when the hips rest, or later.
+// Times the last step in its roll: the foot lands when the hips rest, or later.
 inline void time_closing_step(const Tables& tables, State<float>& state,
                               Change<float>& change) noexcept {
+  constexpr float kLeastClosing_s = 0.30f, kLeastClosingRoll_s = 0.11f;  // flight and roll
   const float scale = tables.time_scale / tables.tick_s;
   const auto ticks_of_time = [&](float time_s) { return floored(time_s * scale + 0.5f); };
   const float shortest = ticks_of_time(kLeastClosing_s * change.slowness),
@@ -298,7 +297,7 @@ inline void time_closing_step(const Tables& tables, State<float>& state,
               least_roll =
                   most(least(ticks_of_time(kLeastClosingRoll_s), state.roll_ticks) - state.tick,
                        ticks_of_time(kLeastRollLeft_s));
-  // Hips may rest before it lands.
+  // The hips may come to rest before the foot lands.
   const float all_ticks = most(change.rest_ticks, shortest + least_roll),
               most_roll =
                   least(all_ticks - shortest, floored(kLongestClosingRoll * state.roll_ticks)),
@@ -309,35 +308,50 @@ inline void time_closing_step(const Tables& tables, State<float>& state,
   change.closing_ticks = rolls + state.flight_ticks;
   change.rest_ticks = least(change.rest_ticks, change.closing_ticks);
   const bool right = state.right_swings != 0.0f;
-  state.end_rate = 0.5f * (tables.stage_share[right ? 2 : 0] / state.roll_ticks +
-                           tables.stage_share[right ? 3 : 1] / state.flight_ticks);
+  state.end_rate = 0.5f * (roll_cycles<float>(tables, right) / state.roll_ticks +
+                           flight_cycles<float>(tables, right) / state.flight_ticks);
 }
 
-// Over uneven ground: how far a step that is to be so long will lead, from foothold to foothold.
+// The longest last step, in seconds, if its times were those of the running step.
+inline float longest_closing_s(const Tables& tables, const State<float>& state) noexcept {
+  return (kLongestClosingRoll * state.roll_ticks + kMostClosing * state.flight_ticks) *
+         tables.tick_s;
+}
+
+// On uneven ground: length of the step, from foothold to foothold, if `asked_m` is asked for.
 inline float foothold_m(const Tables& tables, float asked_m, Block<1> block) noexcept {
   State<float>& state = block.state;
   const Time<float> time = time_of(tables, state);
   state.length_m[time.right ? 1 : 0] = {asked_m, 0.0f};
   block.change.gap_begin = time.u;
   plan_landing_anew(tables, time, block, block.footing);
-  const Way<float> way = way_of(state.landing_rad);
   return (time.back ? -1.0f : 1.0f) *
-         (state.landing_x_m * way.sine + state.landing_z_m * way.cosine);
+         way_of(state.landing_rad).ahead(state.landing_x_m, state.landing_z_m);
 }
 
-// Where one that walks is not to any more: how it comes to rest. `may_move`: a flight may land
-// elsewhere.
+// Plans the stop of a walk. `may_move`: the landing of a flight may still move.
 template <class F>
 void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing) noexcept {
   State<float>& state = block.state;
   Change<float>& change = block.change;
   const bool flies = state.flies != 0.0f, right = state.right_swings != 0.0f;
-  if (!flies && state.tick == 0.0f) return;  // its landing is planned in this tick
+  if (!flies && state.tick == 0.0f) return;  // the step's landing is planned in this tick
+  // A quintic to rest brakes with at most about kNeed v^2 / way. The ends are chosen for a soft
+  // braking, in a hurry for a harder one; above the hardest one, one more step comes between.
+  constexpr float kNeed = 0.72f;
+  constexpr float kBrake_m_s2 = 3.0f, kHastyBrake_m_s2 = 3.3f, kMostBrake_m_s2 = 3.9f;
+  // From the landing to the end of a closing step, and of a step between; the share of speed times
+  // time that braking hips go in it.
+  constexpr float kToClose_s = 0.40f, kNextStep_s = 0.35f, kWayWhileClosing = 0.44f;
+  constexpr float kFurtherStep = 0.3f;  // shortest step between, over the foot's own step
+  constexpr float kTurnsOnSpot = 0.1f;  // steps below this ratio are on the spot
+  constexpr float kMostClosingOnSpot = 1.7f;
+  constexpr float kAfterLanding_s = 0.15f;  // hips rest at least this long after the landing
   const float tick_s = tables.tick_s, scale = tables.time_scale;
   const Time<float> time = time_of(tables, state);
   const Way<float> way = way_of(state.landing_rad);
   const float sign = time.back ? -1.0f : 1.0f;
-  const auto along = [&](float x, float z) { return sign * (x * way.sine + z * way.cosine); };
+  const auto along = [&](float x, float z) { return sign * way.ahead(x, z); };
   Change<float> here = change;
   if (change.led == 0.0f) go_on_from_here(tables, true, state, here);
   const Off<float>&x = here.pelvis_x_m, &z = here.pelvis_z_m;
@@ -351,21 +365,19 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
                              : along(state.print_x_m, state.print_z_m);
   const bool on_spot = planned < kTurnsOnSpot * own_m;
   const float most_closing = on_spot ? kMostClosingOnSpot : kMostClosing;
-  const float longest_s =
-      (kLongestClosingRoll * state.roll_ticks + kMostClosing * state.flight_ticks) * tick_s;
-  const auto left_of = [&](float x, float z) { return x * way.cosine - z * way.sine; };
-  // `aside_m`: where they are to rest, to the left of the foot that stands.
+  const float longest_s = longest_closing_s(tables, state);
+  // `aside_m`: place at which the hips are to rest, to the left of the standing foot.
   const auto to_rest = [&](float way_m, float aside_m, float least_s, float most_s,
                            const Behind(&landings)[2]) {
-    const Off<float> aside{left_of(x.x, z.x) - aside_m, left_of(x.v, z.v) / tick_s,
-                           left_of(x.a, z.a) / (tick_s * tick_s)};
+    const Off<float> aside{way.left(x.x, z.x) - aside_m, way.left(x.v, z.v) / tick_s,
+                           way.left(x.a, z.a) / (tick_s * tick_s)};
     const float time_s = best_rest_s({-way_m, speed, bend}, aside, on_spot, least_s,
                                      most(least_s, most_s), landings);
     change.rest_ticks = ticks_of(time_s, tick_s);
     change.stops = 1.0f;
   };
-  // One who is to go the other way is in a hurry.
-  const float close_m_s2 = state.asked.walks != 0.0f ? kHastyBrake_m_s2 : kCloseBrake_m_s2;
+  // A walk that is to go the other way is in a hurry.
+  const float close_m_s2 = state.asked.walks != 0.0f ? kHastyBrake_m_s2 : kBrake_m_s2;
   const bool may_close = (from >= need / close_m_s2 && foot_m < -kBehind_m) || on_spot;
   const bool moves = !flies || (may_move && time.u < kStays);
   if (may_close && change.starting == 0.0f && moves) {
@@ -406,48 +418,45 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
                               {left_s + between_s, kLandsAhead * further_m + lead_m}};
   change_step(tables, moves, block, footing, [&] {
     to_rest(from + step_m + further_m,
-            left_of(state.landing_x_m, state.landing_z_m) - tables.leg[right ? 1 : 0].stance_m,
+            way.left(state.landing_x_m, state.landing_z_m) - tables.leg[right ? 1 : 0].stance_m,
             left_s + between_s + kAfterLanding_s * scale, left_s + between_s + longest_s, landings);
     change.further = further_m > 0.0f ? 1.0f : 0.0f;
     const int swing = right ? 1 : 0;
     change.length_m[swing] = asked_m;
     change.length_m[1 - swing] = further_m / share;
-    // A foot that has yet to lift off for the first step rises as the landing asks.
+    // In the roll of a first step the length stays smoothed, so that the foot's rise follows it.
     if (flies || change.starting == 0.0f) state.length_m[swing] = {asked_m, 0.0f};
     if (further_m > 0.0f) state.length_m[1 - swing] = {further_m / share, 0.0f};
   });
 }
 
-// The ticks in which hips that have braked come most softly to where the tables have them, at the
+// The ticks in which hips that have braked come most softly to their place in the tables: at the
 // coming strike or later.
 template <class F>
 float catch_ticks(const Tables& tables, const State<float>& state, const Change<float>& change,
                   const F& footing) noexcept {
-  constexpr int kTimes = 12;
-  constexpr float kBack = 50.0f, kLate = 0.8f;  // costs, in m/s2
+  constexpr int kTimes = 12;            // that are tried
+  constexpr float kMostCatch_s = 0.8f;  // longest of them
   const Time<float> time = time_of(tables, state);
-  const float tick_s = tables.tick_s, share = tables.stage_share[time.right ? 3 : 1],
+  const float tick_s = tables.tick_s, share = flight_cycles<float>(tables, time.right),
               strike_phase = time.stage_end + (time.flies ? 0.0f : share),
               rate = share / state.flight_ticks;
-  const Way<float> to = way_of(heading_ahead(tables, state, time.to_strike + 1.0f));
-  const Landing<float> landing = landing_over(tables, time, to, change, state, footing);
+  const Landing<float> landing =
+      landing_over(tables, time, way_at_strike(tables, time, state), change, state, footing);
   const Path<float> path =
       path_to(landing, footprints_of(tables, time, landing.ratio), time.right ? 1.0f : 0.0f);
   const float sign = time.back ? -1.0f : 1.0f;
-  const auto along = [&](float x, float z) {
-    return sign * (x * landing.way.sine + z * landing.way.cosine);
-  };
+  const auto along = [&](float x, float z) { return sign * landing.way.ahead(x, z); };
   float m[3];
   for (int k : {0, 1, 2}) {
     const float at = strike_phase + static_cast<float>(k - 1) * kAimTicks * rate;
     m[k] = along(path.x_m + path.per_cycle_x_m * at, path.z_m + path.per_cycle_z_m * at) +
            sign * read_pelvis(tables, time, at, landing.ratio, landing.ratio, 0.0f).z;
   }
-  const float goes = (m[2] - m[0]) * (0.5f / kAimTicks),
-              bend = (m[2] - 2.0f * m[1] + m[0]) * (0.5f / (kAimTicks * kAimTicks)),
-              left = time.to_strike;
+  const Off<float> there = middle_of(m);
+  const float goes = there.v, bend = there.a, left = time.to_strike;
   const Off<float>&x = change.pelvis_x_m, &z = change.pelvis_z_m;
-  const Off<float> begin{along(x.x, z.x) - m[1] + left * (goes - 0.5f * left * bend),
+  const Off<float> begin{along(x.x, z.x) - there.x + left * (goes - 0.5f * left * bend),
                          along(x.v, z.v) - goes + bend * left, along(x.a, z.a) - bend};
   const float longest = most(left, ticks_of(kMostCatch_s * tables.time_scale, tick_s));
   float best = left, least_cost = std::numeric_limits<float>::infinity();
@@ -466,33 +475,35 @@ float catch_ticks(const Tables& tables, const State<float>& state, const Change<
   return best;
 }
 
-// The stick has come back while the walk comes to rest.
+// Plans how a walk that comes to rest goes on, because the stick has come back.
 template <class F>
 void walk_on(const Tables& tables, bool may_move, Block<1>& block, F& footing) noexcept {
   State<float>& state = block.state;
   Change<float>& change = block.change;
   const bool flies = state.flies != 0.0f, closes = change.closing != 0.0f,
              right = state.right_swings != 0.0f;
+  constexpr float kNearStrike_s = 0.15f;
   if (!flies && state.tick == 0.0f) return;
   const Time<float> time = time_of(tables, state);
-  if (closes && flies && (time.u > kTurnsBack || !may_move)) return;
-  // Hips that have braked cannot be where the tables have them at a strike that is near.
+  if (closes && flies && (time.u > kStays || !may_move)) return;
+  // Hips that have braked cannot reach their place in the tables before a strike that is near.
   if (flies && time.to_strike * tables.tick_s < kNearStrike_s * tables.time_scale) return;
-  // As far as the hips, which have braked, can be where the tables have them at its strike.
+  // The step becomes so long that hips that have braked reach their place at its strike.
   const int swing = right ? 1 : 0;
-  float share = 1.0f;  // of a length that the ground leaves
+  float share = 1.0f;  // of the length that the ground leaves
   if constexpr (kIsUneven<F>) share = footing.share;
   const float asked_m = share * state.asked.length_m[swing], tick_s = tables.tick_s;
   const Stages<float> own = stages_of(tables, change, state, right);
   const Way<float> way = way_of(state.landing_rad);
   const float sign = time.back ? -1.0f : 1.0f;
-  const auto along = [&](float x, float z) { return sign * (x * way.sine + z * way.cosine); };
+  const auto along = [&](float x, float z) { return sign * way.ahead(x, z); };
   const bool moves = !flies || (may_move && (closes || time.u < kStays));
   const float at_m = along(change.pelvis_x_m.x, change.pelvis_z_m.x),
               speed = along(change.pelvis_x_m.v, change.pelvis_z_m.v) / tick_s,
               foot_m = flies ? along(state.last_heel_m[0].x, state.last_heel_m[0].z) : 0.0f;
   change_step(tables, moves, block, footing, [&] {
     if (closes) {
+      constexpr float kFlightLeft = 0.45f;  // least part of a steady flight that is still to come
       const float least_left = floored(kLeastRollLeft_s * tables.time_scale / tick_s + 0.5f);
       if (!flies)
         state.roll_ticks = least(most(state.tick + least_left, ticks_of(own.roll_s, tick_s)),
@@ -514,24 +525,22 @@ void walk_on(const Tables& tables, bool may_move, Block<1>& block, F& footing) n
   change.catch_ticks = catch_ticks(tables, state, change, footing);
 }
 
-// Over uneven ground a foothold may be another one than was planned: in the last step hips come to
-// rest as softly as they still can.
+// Times the hips' rest again at the last step's beginning, because on uneven ground its foothold
+// may differ from the plan.
 inline void time_rest(const Tables& tables, const State<float>& state,
                       Change<float>& change) noexcept {
   const float tick_s = tables.tick_s, sign = state.backward != 0.0f ? -1.0f : 1.0f,
-              longest_s =
-                  (kLongestClosingRoll * state.roll_ticks + kMostClosing * state.flight_ticks) *
-                  tick_s,
               stands_m = tables.leg[state.right_swings != 0.0f ? 0 : 1].stance_m;
   const auto of_time = [&](const Off<float>& of, float goal_m, float to) {
     return Off<float>{to * (of.x - goal_m), to * of.v / tick_s, to * of.a / (tick_s * tick_s)};
   };
   const Behind none[2] = {};
   const float least_s = kLeastRest_s * tables.time_scale;
-  change.rest_ticks = ticks_of(best_rest_s(of_time(change.pelvis_z_m, tables.rest_lead_m, sign),
-                                           of_time(change.pelvis_x_m, -stands_m, 1.0f), false,
-                                           least_s, most(least_s, longest_s), none),
-                               tick_s);
+  change.rest_ticks =
+      ticks_of(best_rest_s(of_time(change.pelvis_z_m, tables.rest_lead_m, sign),
+                           of_time(change.pelvis_x_m, -stands_m, 1.0f), false, least_s,
+                           most(least_s, longest_closing_s(tables, state)), none),
+               tick_s);
 }
 
 }  // namespace

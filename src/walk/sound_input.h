@@ -9,14 +9,14 @@ bool is_sound(const GaitParams& params) noexcept;
 inline bool is_sound_tick(double dt_s) noexcept {
   return dt_s >= kLeastTick_s && dt_s <= kMostTick_s;
 }
-// A longer tick is walked in equal parts: in coarser ticks a foot would visibly land late.
+// A longer tick is walked in equal parts; otherwise a foot would visibly land late.
 constexpr double kLongestPart_s = 1.0 / 60.0;
 inline int tick_parts(double dt_s) noexcept {
   constexpr double kRounding = 1e-6;  // tolerance for a host that computes in single precision
   return std::max(1, static_cast<int>(std::ceil(dt_s / kLongestPart_s - kRounding)));
 }
 
-// The parameters, in which the values in force replace numbers that are not sound. Counts these.
+// The parameters, with the values in force in place of numbers that are not sound. Counts those.
 GaitParams mended_params(const GaitParams& params, WalkState& state) noexcept;
 // The tick's length, or the last tick's if it is not sound; counts that.
 double mended_tick(WalkState& state) noexcept;

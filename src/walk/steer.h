@@ -1,4 +1,4 @@
-// What a walk is asked for, as its tick reads it.
+// Writes the parameters of a walk, and its place in the world, into a block.
 #pragma once
 #include <array>
 #include <cstring>
@@ -8,7 +8,7 @@
 
 namespace gaitpad {
 
-// A style's numbers of the upper body in the order of BodyNumber, and back.
+// UpperBodyParams as numbers in the order of BodyNumber, and back.
 using BodyNumbers = std::array<double, kBodyNumbers>;
 static_assert(sizeof(UpperBodyParams) == sizeof(BodyNumbers));
 inline BodyNumbers body_numbers(const UpperBodyParams& params) noexcept {
@@ -22,7 +22,7 @@ inline UpperBodyParams body_params(const BodyNumbers& numbers) noexcept {
   return params;
 }
 
-// A walk that is to end keeps its steps' times and lengths.
+// Asks a walk for parameters. A walk that is to end keeps the times and lengths of its steps.
 template <int kWidth>
 void ask(const GaitParams& params, int walk, Block<kWidth>& block) noexcept {
   using V = Floats<kWidth>;

@@ -1,5 +1,5 @@
-// Reads the strides' tables: of each walk its own rows, summed row by row; then one number of all
-// walks in a register.
+// Reads the strides' tables. For each walk the rows around its phase and ratio are summed; then the
+// sums are transposed, so that a register holds one number of all walks.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -9,8 +9,8 @@
 namespace gaitpad {
 namespace {
 
-// As many numbers of a row as a register holds. The sums go across rows, never along them, so their
-// bits do not depend on it.
+// The numbers of a row that fit in a register. Sums go across rows, never along them, so their bits
+// do not depend on the register's width.
 #if defined(__AVX2__)
 using RowPart = Floats<8>;
 #else
@@ -24,7 +24,8 @@ inline R part(const float* from) noexcept {
   return r;
 }
 
-// Rows of numbers, one a walk, to registers, one a number. `numbers` is a multiple of four.
+// Transposes rows, one for each walk, to registers, one for each number. `numbers` is a multiple of
+// four.
 template <class V>
 inline void to_lanes(const float* rows, int numbers, V* to) noexcept {
   constexpr int kWidth = kLanes<V>;
@@ -44,23 +45,29 @@ inline void to_lanes(const float* rows, int numbers, V* to) noexcept {
   }
 }
 
-// The four knots around a phase: the row of the first, and weights.
+// Four neighbouring rows: the number of the first, and their weights.
 template <class V>
 struct Knots {
   V first;
   V weight[4];
 };
+// Cubic B-spline weights of the knots around a place: the share t of the way from knot `first + 1`
+// to the next one.
+template <class V>
+Knots<V> spline_knots(const V& first, const V& t) noexcept {
+  const V s = 1.0f - t;
+  return {first,
+          {s * s * s * (1.0f / 6.0f), (4.0f + t * t * (3.0f * t - 6.0f)) * (1.0f / 6.0f),
+           (4.0f + s * s * (3.0f * s - 6.0f)) * (1.0f / 6.0f), t * t * t * (1.0f / 6.0f)}};
+}
 template <class V>
 Knots<V> knots_at(const V& phase) noexcept {
-  constexpr float kSixth = 1.0f / 6.0f;
   const V x = (phase - floored(phase)) * float(kKnots),
-          i = least(floored(x), all<V>(kKnots - 1.0f)), t = x - i, s = 1.0f - t;
-  return {i,
-          {s * s * s * kSixth, (4.0f + t * t * (3.0f * t - 6.0f)) * kSixth,
-           (4.0f + s * s * (3.0f * s - 6.0f)) * kSixth, t * t * t * kSixth}};
+          i = least(floored(x), all<V>(kKnots - 1.0f));
+  return spline_knots(i, V(x - i));
 }
-// The four ratios around one, the first may be -1, and their Catmull-Rom weights; beyond the ends
-// the tables go on straight.
+// The four ratios around one and their Catmull-Rom weights. The first row may be -1, with weight 0:
+// beyond the ends the tables go on straight.
 template <class V>
 Knots<V> ratios_at(const V& ratio, const V& last) noexcept {
   const V y = least(most(V(ratio * float(1.0 / kRatioStep)), V{}), last),
@@ -77,20 +84,21 @@ template <class V>
 struct FootInStride {
   V pitch_rad{}, twist_rad{}, roll_rad{};
 };
-// The strides at one phase: of the step before, of this step, and both mixed. Swing foot first.
+// The tables at one phase, mixed from the last step's stride and this step's stride. Pairs are
+// swing and stand. Places are in the travel frame of the stride.
 template <class V>
 struct Stride {
-  Vec<V> heel_behind_m, heel_ahead_m;  // of the swing foot
-  V heel_high_m{};                     // mixed
+  Vec<V> heel_behind_m, heel_ahead_m;  // swing heel in the last step's stride; in this step's
+  V heel_high_m{};                     // its height, mixed
   FootInStride<V> foot[2];
   Vec<V> pelvis_m, pelvis_tilt_rad;
-  V pelvis_yaw_rad{}, pelvis_low_m{}, pelvis_high_m{};
+  V pelvis_yaw_rad{};
+  V pelvis_low_m{}, pelvis_high_m{};  // lowest and highest place of the pelvis in the stride
   V leg_rad[2][kLegAngles]{};
-  V stood_pitch_rad{};  // the swing foot's, as it would stand
-  V ratio_ahead{};
+  V stood_pitch_rad{};  // of the swing foot by the phase of the hips, not of the clock
 };
 
-// The number of the swing foot or leg, and of the other one.
+// Sorts the numbers of left and right by swing and stand.
 template <class V>
 inline void by_foot(const Mask<V>& right, const V& of_left, const V& of_right, V& swing,
                     V& stand) noexcept {
@@ -98,7 +106,7 @@ inline void by_foot(const Mask<V>& right, const V& of_left, const V& of_right, V
   stand = right ? of_left : of_right;
 }
 
-// A walk's rows: a knot's after the one before, a ratio's after the one before.
+// The rows of a table, in order of knots, and at each knot in order of ratios.
 struct Rows {
   const float* first;
   int of_knot;
@@ -115,16 +123,17 @@ V last_ratio(const Mask<V>& back) noexcept {
   return chosen<V>(back, kBackRatios - 1.0f, kRatios - 1.0f);
 }
 
-// Of strides whose half is the way of the foot that flies, ahead or aside: turning on the spot it
-// may be set down behind where it stood, and no stride of these tables leads there.
-// What that is off fades; one that flies soon goes at least as far as it is to.
+// Ratio of the strides whose half is the way of the flying foot, ahead or aside, for a first or a
+// last step. Turning on the spot it may be set down behind where it stood; no stride of these
+// tables leads there. A difference that a change of plan leaves in the ratio fades with the change;
+// one that makes the stride shorter than the way fades by kComesUp of the flight.
 template <class V>
 V short_ratio(const Tables& tables, const Landing<V>& landing, const State<V>& state) noexcept {
-  constexpr float kComesUp = 0.3f;  // of the flight
+  constexpr float kComesUp = 0.3f;
   const V x = landing.x_m - state.print_x_m, z = landing.z_m - state.print_z_m,
-          goes_m = x * landing.way.sine + z * landing.way.cosine,
+          goes_m = landing.way.ahead(x, z),
           ahead_m = most(state.backward != V{} ? -goes_m : goes_m, V{}),
-          aside_m = x * landing.way.cosine - z * landing.way.sine;
+          aside_m = landing.way.left(x, z);
   const V own = root(V(ahead_m * ahead_m + aside_m * aside_m)) *
                 (1.0f / (tables.leg[0].own_step_m + tables.leg[1].own_step_m)),
           off = 0.5f * landing.off_ratio,
@@ -133,7 +142,8 @@ V short_ratio(const Tables& tables, const Landing<V>& landing, const State<V>& s
   return most(V(own + (off < V{} ? low : off)), V{});
 }
 
-// `change`: from the stride behind, at 0, to the one ahead, at 1.
+// Reads all numbers of a stride. `change`: share by which the last step's stride, of ratio
+// `behind`, has changed into this step's, of ratio `ahead`.
 template <class V>
 Stride<V> read_stride(const Tables& tables, const Time<V>& time, const V& phase, const V& behind,
                       const V& ahead, const V& change) noexcept {
@@ -206,11 +216,10 @@ Stride<V> read_stride(const Tables& tables, const Time<V>& time, const V& phase,
   stride.pelvis_low_m = n[33];
   stride.pelvis_high_m = n[34];
   stride.stood_pitch_rad = swing.pitch_rad;
-  stride.ratio_ahead = ahead;
   return stride;
 }
 
-// Four neighbours of a row's numbers, from `at` on, at any phase.
+// Reads four neighbouring numbers of a row, from number `at` on.
 template <class V>
 void read_four(const Tables& tables, const Time<V>& time, int at, const V& phase, const V& behind,
                const V& ahead, const V& change, V (&to)[4]) noexcept {
@@ -242,23 +251,24 @@ void read_four(const Tables& tables, const Time<V>& time, int at, const V& phase
   to_lanes(&row[0][0], 4, to);
 }
 
-// Where one foot's steps are shorter than the other's, the tables of short strides would keep both
-// feet low: then a heel flies as high as in strides in which both go as far as the longer one, and
-// comes down as the tables have it. A flight limps as was asked when its foot lifted off: a style
-// that changes on its way would else let the heel jump.
+// Plans the limp of a flight at its lift-off; if it followed a style that changes during the
+// flight, the heel would jump. In a limp the mean stride is short, and its tables would keep the
+// heels of both feet low. So a heel flies as high as in strides in which both feet go as far as the
+// longer step, and comes down as in the tables.
 template <class V>
 void plan_limp(const Tables& tables, const Time<V>& time, const Mask<V>& lifts,
                const State<V>& state, Change<V>& change) noexcept {
-  // A walk limps from the one difference of both feet's strides on, wholly from the other.
+  // The limp begins where the steps' ratios differ by kEvenSteps and is whole from kUnevenSteps on.
+  // kLeastAsked, a ratio, keeps tiny steps from counting as uneven.
   constexpr float kEvenSteps = 0.03f, kUnevenSteps = 0.2f, kLeastAsked = 0.1f;
-  // Even styles ask for equal steps, or for the data's own, which may differ.
+  // An even style asks for equal lengths or for equal ratios to the data, whose steps may differ.
   const V &left_m = state.length_m[0].x, &right_m = state.length_m[1].x;
-  const float left_1_m = 1.0f / tables.leg[0].own_step_m,
-              right_1_m = 1.0f / tables.leg[1].own_step_m;
-  const V left = left_m * chosen<V>(time.back, right_1_m, left_1_m),
-          right = right_m * chosen<V>(time.back, left_1_m, right_1_m), longer = most(left, right),
+  const auto none = V{} != V{};
+  const V per_left_m = 1.0f / own_step_m<V>(tables, none, time.back),
+          per_right_m = 1.0f / own_step_m<V>(tables, no(none), time.back),
+          left = left_m * per_left_m, right = right_m * per_right_m, longer = most(left, right),
           shorter = least(left, right);
-  // The last steps of a stop, and one that goes on after all, are as long as hips need them.
+  // Stops, and walks that go on after all, choose their own lengths: that is no limp.
   const auto walks = both(both(change.stops == V{}, change.closing == V{}), change.resumes == V{}),
              limps = both(walks, longer - shorter > kEvenSteps * (longer + kLeastAsked));
   change.limp = lifts ? V{} : change.limp;
@@ -266,18 +276,19 @@ void plan_limp(const Tables& tables, const Time<V>& time, const Mask<V>& lifts,
   const auto evenness = [](const V& a, const V& b) {
     return V((least(a, b) + kLeastAsked) / (most(a, b) + kLeastAsked));
   };
-  // Nor do steps that only come to be as long as both are asked for.
-  const V &asked_left_m = state.asked.length_m[0], &asked_right_m = state.asked.length_m[1],
-          asked_left = asked_left_m * chosen<V>(time.back, right_1_m, left_1_m),
-          asked_right = asked_right_m * chosen<V>(time.back, left_1_m, right_1_m);
-  const V even =
-              most(most(evenness(left, right), evenness(left_m, right_m)),
-                   most(evenness(asked_left, asked_right), evenness(asked_left_m, asked_right_m))),
+  const auto even_of = [&](const V& of_left_m, const V& of_right_m) {
+    return most(evenness(V(of_left_m * per_left_m), V(of_right_m * per_right_m)),
+                evenness(of_left_m, of_right_m));
+  };
+  // Nor is it a limp if steps are still on their way to the even lengths that are asked for.
+  const V even = most(even_of(left_m, right_m),
+                      even_of(state.asked.length_m[0], state.asked.length_m[1])),
           uneven = 1.0f - even, own = time.right ? right : left;
   const auto begins = both(lifts, limps);
   change.limp = begins ? smooth(kEvenSteps, kUnevenSteps, uneven) : change.limp;
   change.limp_far = begins ? V(longer / most(own, all<V>(kLeastAsked))) : change.limp_far;
 }
+// Raises a limping heel by the plan: from 0 to 0.2 of the flight, and back from 0.5 to 0.9.
 template <class V>
 void raise_limping_heel(const Tables& tables, const Time<V>& time, const V& phase, const V& ratio,
                         const V& u, const Change<V>& change, Stride<V>& stride) noexcept {
@@ -285,47 +296,47 @@ void raise_limping_heel(const Tables& tables, const Time<V>& time, const V& phas
   if (!any(limps)) return;
   const V shows = change.limp * smoother(V(u * 5.0f)) * (1.0f - smoother(V((u - 0.5f) * 2.5f))),
           as_far = ratio * change.limp_far;
-  V heel_m[4];  // the left one's height, .., the right one's
+  V heel_m[4];  // 0: height of the left heel, 3: of the right one
   read_four(tables, time, 1, phase, as_far, as_far, V{}, heel_m);
   const V high_m = most(stride.heel_high_m, time.right ? heel_m[3] : heel_m[0]);
   stride.heel_high_m = limps ? mix(stride.heel_high_m, high_m, shows) : stride.heel_high_m;
 }
 
-// The stride of the foot that flies, at a phase of the clock. In a first
-// and in a last step it flies as in strides of its own length, half of one, and before it lifts off
-// it is read as it will then be; at the end of the last it lands flat.
+// The stride at a phase of the clock, for the flying foot. In a first and in a last step the foot
+// flies as in half a stride of its own length (short_ratio()); in the roll it is read at its
+// lift-off. In the last step it lands flat.
 template <class V>
 Stride<V> read_by_clock(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
                         const V& phase, const V& share, const V& u, const Change<V>& change,
                         const State<V>& state) noexcept {
-  const auto closes = change.closing != V{}, starts = either(change.starting != V{}, closes);
-  if (!any(starts)) {
+  const auto closes = change.closing != V{}, is_short = either(change.starting != V{}, closes);
+  if (!any(is_short)) {
     Stride<V> stride =
         read_stride(tables, time, phase, state.ratio_behind, landing.ratio, smoother(share));
     raise_limping_heel(tables, time, phase, landing.ratio, u, change, stride);
     return stride;
   }
-  Stride<V> stride =
-      read_stride(tables, time, both(starts, no(time.flies)) ? most(phase, time.stage_end) : phase,
-                  starts ? short_ratio(tables, landing, state) : state.ratio_behind, landing.ratio,
-                  closes ? V{} : smoother(starts ? u : share));
+  Stride<V> stride = read_stride(
+      tables, time, both(is_short, no(time.flies)) ? most(phase, time.stage_end) : phase,
+      is_short ? short_ratio(tables, landing, state) : state.ratio_behind, landing.ratio,
+      closes ? V{} : smoother(is_short ? u : share));
   const V flat = closes ? V(1.0f - smoother(u)) : all<V>(1.0f);
   FootInStride<V>& flies = stride.foot[0];
   flies.pitch_rad = flat * flies.pitch_rad;
   flies.twist_rad = flat * flies.twist_rad, flies.roll_rad = flat * flies.roll_rad;
   raise_limping_heel(tables, time, phase, landing.ratio, u, change, stride);
-  stride.heel_high_m = starts ? stride.heel_behind_m.y : stride.heel_high_m;
+  stride.heel_high_m = is_short ? stride.heel_behind_m.y : stride.heel_high_m;
   return stride;
 }
 
-// The share of what a change of plan has left of twist and roll of the foot that flies.
+// Share that is left of the differences of yaw, twist and roll after a change of plan.
 template <class V>
 V edge_left(const V& u, const Change<V>& change) noexcept {
   return 1.0f - smoother(V((u - change.gap_begin) / change.gap_lasts));
 }
 
-// The share of a flight that is over, without the step that it makes where a changed plan gives the
-// flight another time.
+// Share of a flight that is over. It does not jump where a changed plan gives the flight another
+// duration, as u does.
 template <class V>
 V flight_share(const V& u, const Change<V>& change) noexcept {
   const V share =
@@ -333,7 +344,7 @@ V flight_share(const V& u, const Change<V>& change) noexcept {
   return change.gap_begin != V{} ? share : u;
 }
 
-// The pelvis alone, at any phase.
+// Reads the place of the pelvis alone.
 template <class V>
 Vec<V> read_pelvis(const Tables& tables, const Time<V>& time, const V& phase, const V& behind,
                    const V& ahead, const V& change) noexcept {
@@ -343,7 +354,7 @@ Vec<V> read_pelvis(const Tables& tables, const Time<V>& time, const V& phase, co
   return {n[0], n[1], n[2]};
 }
 
-// Where a stride of this ratio goes: its length, and the footprints of swing and stand.
+// The footprints of a stride, in its travel frame: its length, and the heels of swing and stand.
 template <class V>
 struct FootprintsIn {
   V stride_m{};

@@ -1,4 +1,4 @@
-// One tick of the walks of a block, in the order of its data.
+// One tick of the walks of a block: advance_on(), at the end, in the order of its data.
 #pragma once
 #include "walk/ankle.h"
 #include "walk/asked_steps.h"
@@ -11,16 +11,14 @@
 namespace gaitpad {
 namespace {
 
-// The step frame of the walks that strike goes to the new footprint.
+// Moves the step frame of the walks that strike to the new footprint.
 template <int kWidth>
 void move_frame(const Landing<Floats<kWidth>>& landing, const Mask<Floats<kWidth>>& strikes,
                 Block<kWidth>& block) noexcept {
   using V = Floats<kWidth>;
   State<V>& state = block.state;
-  const Way<V> frame = {
-      state.frame_sine, state.frame_cosine, 2.0f * state.frame_sine * state.frame_cosine,
-      state.frame_cosine * state.frame_cosine - state.frame_sine * state.frame_sine};
-  const Vec<V> moved = frame * Vec<V>{landing.x_m, V{}, landing.z_m};
+  const Vec<V> moved =
+      way_of_half(state.frame_sine, state.frame_cosine) * Vec<V>{landing.x_m, V{}, landing.z_m};
   const V is = chosen<V>(strikes, 1.0f, 0.0f);
   V half_rad{};
   for (int w = 0; w < kWidth; ++w) {
@@ -39,12 +37,12 @@ void move_frame(const Landing<Floats<kWidth>>& landing, const Mask<Floats<kWidth
   state.frame_cosine = strikes ? cosine : state.frame_cosine;
 }
 
-// A stand that is asked for very little waits whether it is meant: a stick that is touched in
-// passing would else cost two slow steps.
+// True if a standing walk is to start. It waits longer the smaller the command is; otherwise a
+// stick that is touched in passing would cost two slow steps.
 template <class V>
 Mask<V> is_meant(const Tables& tables, const State<V>& state, const Change<V>& change) noexcept {
-  constexpr float kHesitation_s = 0.2f;  // for next to nothing; less for more, none from
-  constexpr float kSureRatio = 0.3f, kSureTurn_rad_s = 0.15f;  // this stride or turn on
+  constexpr float kHesitation_s = 0.2f;                        // longest, for a tiny command
+  constexpr float kSureRatio = 0.3f, kSureTurn_rad_s = 0.15f;  // step or turn that need not wait
   const V ratio = asked_ratio(tables, state),
           sure = most(V(ratio * (1.0f / kSureRatio)),
                       V(size(state.asked.turn_rad_s) * (1.0f / kSureTurn_rad_s)));
@@ -52,7 +50,7 @@ Mask<V> is_meant(const Tables& tables, const State<V>& state, const Change<V>& c
          kHesitation_s * tables.time_scale * (1.0f - least(sure, all<V>(1.0f)));
 }
 
-// Where one that stands is to walk: the foot on the side of the turn goes first.
+// Starts standing walks that are asked to walk: the foot on the inner side of the turn goes first.
 template <int kWidth>
 void begin_walks(const Tables& tables, Block<kWidth>& block) noexcept {
   using V = Floats<kWidth>;
@@ -64,7 +62,7 @@ void begin_walks(const Tables& tables, Block<kWidth>& block) noexcept {
   const auto begins = both(asked, is_meant(tables, state, change));
   if (!any(begins)) return;
   change.asked_ticks = begins ? V{} : change.asked_ticks;
-  // Who has not stood yet begins with the other foot than the one that is still landing.
+  // A walk whose last foot is still landing starts with the other foot.
   const auto right = state.right_swings != V{}, stood = block.told.settle_ticks == V{},
              other = both(both(begins, stood), right != (state.asked.turn_rad_s < V{}));
   if (any(other)) {
@@ -90,26 +88,25 @@ void begin_walks(const Tables& tables, Block<kWidth>& block) noexcept {
   }
   const auto set = [&](const V& to, V& number) { number = begins ? to : number; };
   const auto first = state.right_swings != V{};
-  const auto& share = tables.stage_share;
-  const V begin = chosen<V>(first, share[0] + share[1], 0.0f),
-          middle = 0.5f * chosen<V>(first, share[2] + share[3], share[0] + share[1]);
+  const V begin = step_phase_of<V>(tables, first),
+          middle = 0.5f * (roll_cycles<V>(tables, first) + flight_cycles<V>(tables, first));
   set(state.asked.backward, state.backward);
-  set(V{}, change.stands), set(all<V>(1.0f), change.starting), set(all<V>(1.0f), change.led);
-  set(all<V>(1.0f), change.is_new);
-  set(V{}, change.was_led), set(V{}, change.off_phase.x), set(V{}, change.off_ticks);
-  // The tables' hips are over the foot that stands in the middle of its support.
-  set(V(begin + middle), change.phase), set(V{}, change.phase_rate);
-  set(begin, state.phase), set(V{}, state.phase_rate), set(V{}, state.strike_rate);
-  set(V{}, state.tick), set(V{}, state.flies), set(V{}, state.late_s);
-  set(V{}, state.ratio_behind), set(V{}, state.stand_pitch_rad);
+  for (V* flag : {&change.starting, &change.led, &change.is_new}) set(all<V>(1.0f), *flag);
+  // In the tables the hips are over the standing foot in the middle of its support.
+  set(V(begin + middle), change.phase), set(begin, state.phase);
+  for (V* number :
+       {&change.stands, &change.was_led, &change.off_phase.x, &change.off_ticks, &change.phase_rate,
+        &state.phase_rate, &state.strike_rate, &state.tick, &state.flies, &state.late_s,
+        &state.ratio_behind, &state.stand_pitch_rad, &state.length_m[0].x, &state.length_m[0].v,
+        &state.length_m[1].x, &state.length_m[1].v})
+    set(V{}, *number);
   for (V* number : {&block.told.stride_m[0], &block.told.stride_m[1], &block.told.step_ticks[0],
                     &block.told.step_ticks[1]})
     *number = both(begins, stood) ? V{} : *number;
-  for (Smoothed<V>& length_m : state.length_m) set(V{}, length_m.x), set(V{}, length_m.v);
   go_on_from_here(tables, begins, state, change);
 }
 
-// Where both feet stand no clock runs, and nothing is left of the last step.
+// Stops the clock of walks that stand and drops what is left of their last step.
 template <class V>
 void rest(const Tables& tables, const Change<V>& change, State<V>& state) noexcept {
   const auto stands = change.stands != V{};
@@ -120,7 +117,7 @@ void rest(const Tables& tables, const Change<V>& change, State<V>& state) noexce
   set(std::abs(left.stance_m) - std::abs(left.track_m), state.wider_m);
 }
 
-// What is rare is done for one walk after the other.
+// Does rare work for one walk after the other.
 template <int kWidth, class Work>
 void one_by_one(const Mask<Floats<kWidth>>& where, Block<kWidth>& block,
                 const Work& work) noexcept {
@@ -139,25 +136,26 @@ void one_by_one(const Mask<Floats<kWidth>>& where, Block<kWidth>& block,
   }
 }
 
-// A foot in flight goes to a new foothold where its way there is as clear of the ground as it was.
+// Plans a stop, or its end, on uneven ground. A flying foot goes to a new foothold only if it gets
+// no deeper into the ground on its way than before.
 template <class Plan>
 void change_over_ground(const Tables& tables, Block<1>& block, const Plan& plan) noexcept {
-  constexpr float kDeep_m = 0.004f;
+  constexpr float kDeep_m = 0.004f;  // below the 5 mm at which a sole is judged to be in the ground
   if (block.state.flies == 0.0f) return plan(true, block, block.footing);
   const Block<1> was = block;
   plan(true, block, block.footing);
-  if (block.change.gap_begin == was.change.gap_begin) return;  // its landing stays
+  if (block.change.gap_begin == was.change.gap_begin) return;  // the landing has not moved
   if (depth_of_flight(tables, block) <= most(kDeep_m, depth_of_flight(tables, was))) return;
   block = was;
   plan(false, block, block.footing);
 }
 
-// Where one that walks is to come to rest, or to go on after all: when the stick, which passes
-// through small deflections on its way, is where it is meant to be.
+// Plans stops, and walks that go on after all. Both wait until the stick has come to rest, because
+// on its way it passes through small deflections.
 template <int kWidth, bool kUneven>
 void change_ends(const Tables& tables, Block<kWidth>& block) noexcept {
   using V = Floats<kWidth>;
-  constexpr float kGrows_per_s = 5.0f;
+  constexpr float kGrows_per_s = 5.0f;  // share of a command: faster is a stick on its way
   const Asked<V>& asked = block.state.asked;
   V& asked_m = block.change.asked_m;
   const V way_m = asked.length_m[0] + asked.length_m[1] + size(asked.turn_rad_s);
@@ -179,7 +177,7 @@ void change_ends(const Tables& tables, Block<kWidth>& block) noexcept {
       plan(true, one, level);
     }
   };
-  // A landing that was asked for keeps its place; the step after it may end.
+  // A landing that a program asked for keeps its place, so the stop waits for the next step.
   const auto is_open = both(no(stops), block.change.is_aimed == V{});
   one_by_one<kWidth>(both(moves, both(no(walks), is_open)), block,
                      [&](Block<1>& one, int) { change(one, ends); });
@@ -187,31 +185,32 @@ void change_ends(const Tables& tables, Block<kWidth>& block) noexcept {
                      [&](Block<1>& one, int) { change(one, comes_back); });
 }
 
-// Whether a flight is asked to be followed by another pace than was known; from time to time.
+// True in a flight whose next step is asked for at another pace than the last look ahead assumed.
+// Asks once per knot of the sinking.
 template <class V>
 Mask<V> is_unforeseen(const Tables& tables, const State<V>& state,
                       const Change<V>& change) noexcept {
-  constexpr float kOther = 0.1f;
+  constexpr float kOther = 0.1f;  // of the steps' lengths
   const V asked_m = state.asked.length_m[0] + state.asked.length_m[1],
           part = state.tick / static_cast<float>(sink_knot_ticks(tables));
   return both(size(V(asked_m - change.foreseen_m)) > kOther * asked_m,
               both(state.flies != V{}, part == floored(part)));
 }
 
-// From time to time: slow steps on stairs last longer than what is known ahead.
+// True when half of a look ahead is over: slow steps on stairs last longer than one.
 template <class V>
 Mask<V> is_half_seen(const Tables& tables, const State<V>& state) noexcept {
   const V part = state.tick / static_cast<float>((kSinkKnots - 3) / 2 * sink_knot_ticks(tables));
   return both(state.tick != V{}, part == floored(part));
 }
 
-// Where the landing on level ground has moved, the ground is asked for another one.
+// Chooses a foothold where the landing on level ground has moved.
 template <int kWidth>
 void choose_footholds(const Tables& tables, const Time<Floats<kWidth>>& time,
                       const AskedStep<Floats<kWidth>>& asked, Block<kWidth>& block) noexcept {
   using V = Floats<kWidth>;
-  constexpr float kMoved = 7e-6f;        // metres, radians
-  constexpr float kPieceSettles = 0.6f;  // of the roll: until then a step may still go elsewhere
+  constexpr float kMoved = 7e-6f;        // metres, radians: more than rounding
+  constexpr float kPieceSettles = 0.6f;  // of the roll: then the landing's section is settled
   const State<V>& state = block.state;
   Footing<V>& footing = block.footing;
   const auto begins = both(no(time.flies), state.tick == all<V>(1.0f)),
@@ -234,12 +233,12 @@ void choose_footholds(const Tables& tables, const Time<Floats<kWidth>>& time,
   });
 }
 
-// One that is walked ahead asks for no ground. Its running step lands on the plane that was chosen
-// for it, and the next ones rise as the last one did.
+// Stands for choose_footholds() in a look ahead, which does not ask the ground. The running step
+// lands on its plane, and the next steps rise like the last one, in proportion to their length.
 template <class V>
 void assume_foothold(const Time<V>& time, const AskedStep<V>& asked, State<V>& state,
                      Footing<V>& footing) noexcept {
-  constexpr float kMostSteeper = 1.5f, kLeast_m = 1e-3f;
+  constexpr float kMostSteeper = 1.5f;  // times the last rise
   const auto begins = both(no(time.flies), state.tick == all<V>(1.0f));
   const auto move = [&](const V& level_m, V& asked_m, V& landing_m) {
     const V moved_m = level_m - asked_m;
@@ -251,7 +250,7 @@ void assume_foothold(const Time<V>& time, const AskedStep<V>& asked, State<V>& s
           z_m = move(footing.level_z_m, footing.asked_z_m, state.landing_z_m);
   const auto far = [](const V& x, const V& z) { return root(V(x * x + z * z)); };
   const V longer = far(state.landing_x_m, state.landing_z_m) /
-                   most(far(state.print_x_m, state.print_z_m), all<V>(kLeast_m)),
+                   most(far(state.print_x_m, state.print_z_m), all<V>(1e-3f)),
           rise_m = asked.length_m == V{}
                        ? V{}
                        : V(-footing.print_y_m * least(longer, all<V>(kMostSteeper)));
@@ -259,7 +258,7 @@ void assume_foothold(const Time<V>& time, const AskedStep<V>& asked, State<V>& s
       begins ? rise_m : V(footing.landing_y_m + rise_of(footing.landing, x_m, z_m));
 }
 
-// Where a flight begins, or its landing has moved, it is planned how it keeps clear of the ground.
+// Plans how a flight keeps clear of the ground, where it begins or its landing has moved.
 template <int kWidth>
 void plan_rooms(const Tables& tables, const Mask<Floats<kWidth>>& lifts,
                 Block<kWidth>& block) noexcept {
@@ -276,7 +275,7 @@ void plan_rooms(const Tables& tables, const Mask<Floats<kWidth>>& lifts,
       plans, block, [&](Block<1>& one, int w) { plan_room(tables, lane(begins, w) != 0.0f, one); });
 }
 
-// What was asked of a landing is over; a push goes on in the next step's frame.
+// At a strike an asked landing is over, and a push is turned to the new step frame.
 template <class V>
 void end_aims(const Landing<V>& landing, const Mask<V>& strikes, Change<V>& change) noexcept {
   const Way<V>& way = landing.way;
@@ -286,34 +285,39 @@ void end_aims(const Landing<V>& landing, const Mask<V>& strikes, Change<V>& chan
   change.push_z_m_s = strikes ? V(way.cosine * z + way.sine * x) : z;
 }
 
-// `footing`: the block's, or none. kPaper: with the paper's own solver, of one walk; the body leans
-// into nothing then.
+// `footing`: the block's, or NoFooting. kPaper: with the paper's own solver and without leans,
+// which it does not have. `looks_ahead`: false in a look ahead itself.
 template <int kWidth, bool kPaper, class F>
 void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Poses& poses,
                 bool looks_ahead = true) noexcept;
 
-// Walks ahead, to know when legs will be at their reach: hips sink before that.
+template <bool kUneven>
+auto& footing_of(Block<1>& block, NoFooting& level) noexcept {
+  if constexpr (kUneven) {
+    return block.footing;
+  } else {
+    return level;
+  }
+}
+
+// Walks ahead to find when legs will be at their reach, and plans how the hips sink before that.
 template <bool kPaper, bool kUneven>
 void look_ahead(const Tables& tables, Block<1>& block) noexcept {
   Change<float>& change = block.change;
-  const int knot = sink_knot_ticks(tables), all_ticks = (kSinkKnots - 3) * knot,
+  const int knot = sink_knot_ticks(tables), all_ticks = all_sink_ticks(tables),
             left = static_cast<int>(change.sink_ticks), at = left > 0 ? all_ticks - left : 0,
             first = at / knot, gone = at - first * knot;
-  std::array<float, kSinkKnots> wants_m{};  // between knots, the most
+  std::array<float, kSinkKnots> wants_m{};  // most sinking between two knots
   Block<1> ahead = block;
   NoFooting level;
   ahead.change.sink_ticks = 0.0f;
   for (int tick = gone; tick < all_ticks; ++tick) {
-    if constexpr (kUneven) {
-      advance_on<1, kPaper>(tables, ahead, ahead.footing, Poses{nullptr, nullptr, 0}, false);
-    } else {
-      advance_on<1, kPaper>(tables, ahead, level, Poses{nullptr, nullptr, 0}, false);
-    }
+    advance_on<1, kPaper>(tables, ahead, footing_of<kUneven>(ahead, level), Poses{}, false);
     float& most_m = wants_m[tick / knot];
     most_m = most(most_m, ahead.change.wants_m);
   }
-  // Knot k stands at the beginning of part k - 1: it takes the most of the parts before and after
-  // that. The four that act now stay.
+  // Knot k is at the beginning of interval k - 1 and takes the greatest need of the intervals
+  // around it. The four knots that act now stay.
   std::array<float, kSinkKnots> knots_m{};
   bool sinks = false;
   for (int k = 0; k < kSinkKnots; ++k) {
@@ -328,9 +332,10 @@ void look_ahead(const Tables& tables, Block<1>& block) noexcept {
   change.sink_ticks = sinks ? static_cast<float>(all_ticks - gone) : 0.0f;
 }
 
+// Reports the legs' solves.
 template <class V>
 void keep_solves(const Time<V>& time, const Leg<V> (&legs)[2], Told<V>& told) noexcept {
-  constexpr float kReached_m = 1e-4f;
+  constexpr float kReached_m = 1e-4f;  // a larger error counts as failed
   for (int side : {0, 1}) {
     const auto swings = side == 1 ? time.right : no(time.right);
     told.iterations[side] = swings ? legs[0].iterations : legs[1].iterations;
@@ -340,12 +345,12 @@ void keep_solves(const Time<V>& time, const Leg<V> (&legs)[2], Told<V>& told) no
         chosen<V>(either(failed, told.error_m[side] > all<V>(kReached_m)), 1.0f, 0.0f);
   }
 }
-// The landings, and what the step was, where one ends.
+// Reports the step that ends with a strike.
 template <class V>
 void count_step(const Time<V>& time, const Landing<V>& landing, const Way<V>& to,
                 const Mask<V>& strikes, const State<V>& state, const V& overhangs,
                 Told<V>& told) noexcept {
-  const V length_m = landing.x_m * to.sine + landing.z_m * to.cosine;
+  const V length_m = to.ahead(landing.x_m, landing.z_m);
   for (int side : {0, 1}) {
     const auto steps = both(strikes, side == 1 ? time.right : no(time.right));
     told.steps[side] = steps ? V(told.steps[side] + 1.0f) : told.steps[side];
@@ -356,18 +361,18 @@ void count_step(const Time<V>& time, const Landing<V>& landing, const Way<V>& to
   told.step_ticks[0] = strikes ? V(state.roll_ticks + state.flight_ticks) : told.step_ticks[0];
 }
 
-// The last roll, until both feet count as flat.
+// Counts the ticks of the last roll, until the report says that both feet stand.
 template <class V>
 void count_last_roll(const Tables& tables, const Mask<V>& strikes, const Change<V>& change,
                      Told<V>& told) noexcept {
-  constexpr float kLastRoll_s = 0.17f;
+  constexpr float kLastRoll_s = 0.17f;  // at the reference leg: until the foot is flat
   const V last = all<V>(kLastRoll_s * tables.time_scale / tables.tick_s);
   told.settle_ticks = both(strikes, change.stands != V{}) ? floored(V(last + 0.5f))
                                                           : most(V(told.settle_ticks - 1.0f), V{});
 }
 
-// A walk may change its solver: the paper's one starts from whole angles, and weights of the other
-// one from their own means.
+// Converts the legs' angles where a walk changes its solver: the paper's solver starts from whole
+// angles, the other one from differences to the tables; its weights start again.
 template <bool kPaper>
 void change_solver(const Tables& tables, const Time<float>& time, const Stride<float>& stride,
                    State<float>& state, Change<float>& change, Weighted<float>& weighted) noexcept {
@@ -384,7 +389,7 @@ void change_solver(const Tables& tables, const Time<float>& time, const Stride<f
   }
 }
 
-// Legs and upper body, and the root. `is_new`: the plan has changed in this tick.
+// Poses legs, upper body and root. `is_new`: the plan has changed in this tick.
 template <int kWidth, bool kPaper, class F>
 void pose_walks(const Tables& tables, const BodyTick<Floats<kWidth>>& tick,
                 const Mask<Floats<kWidth>>& is_new, Block<kWidth>& block, const F& footing,
@@ -423,7 +428,7 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
   State<V>& state = block.state;
   Change<V>& change = block.change;
   constexpr bool kUneven = kIsUneven<F>;
-  const auto follows = change.is_new != V{};  // for a step has begun
+  const auto follows = change.is_new != V{};  // already new because a step has begun
   begin_walks(tables, block);
   if (!kUneven || looks_ahead) change_ends<kWidth, kUneven>(tables, block);
   one_by_one<kWidth>(either(change.push_x_m_s != V{}, change.push_z_m_s != V{}), block,
@@ -474,7 +479,7 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
   for (int k : {0, 1}) feet.ankle_m[k] = ankle_of(feet.foot[k], feet.sole[k]);
   sink(tables, time, stride, feet.ankle_m, state, change, pelvis);
   reach_with_toe(tables, time, change, pelvis, feet);
-  if (looks_ahead)  // nobody sees a walk that is walked ahead
+  if (looks_ahead)  // a look ahead needs no pose
     pose_walks<kWidth, kPaper>(
         tables, BodyTick<V>{time, landing, hips, stride, pelvis, idle, phase, change.shown}, is_new,
         block, footing, feet, poses);
@@ -502,7 +507,7 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
       change.slowness = strikes ? slow : change.slowness;
       is_level = both(is_level, slow == all<V>(1.0f));
     }
-    // A step whose plan changed late has not come over to its own stride yet.
+    // After a late change of plan the step has not yet changed over to its own stride.
     landing.ratio = change.off_over.x != V{}
                         ? mix(state.ratio_behind, landing.ratio, V(1.0f + change.off_over.x))
                         : landing.ratio;
@@ -528,7 +533,7 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
     if (kUneven && looks_ahead) plan_rooms<kWidth>(tables, lifts, block);
   }
   if (!looks_ahead) return;
-  // Over uneven ground any change of pace asks for more than the tables know.
+  // On uneven ground any change of pace may ask more of a leg than the tables do.
   const auto sinks = either(change.led != V{}, change.sink_ticks != V{}),
              changes = kUneven ? either(is_short, sinks) : is_short,
              again = kUneven ? either(either(lifts, strikes), is_half_seen(tables, state))

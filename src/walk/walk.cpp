@@ -1,4 +1,4 @@
-// The walk as callers see it: one walk in their memory, moved on by the tick that crowds have, too.
+// One walk in the caller's memory. Crowds use the same tick.
 #include "gaitpad/walk.h"
 
 #include "walk/pose.h"
@@ -14,7 +14,7 @@ std::span<const quat> locals_of(const WalkModel& model, const Pose& pose) noexce
   return {pose.local.data(), model.cycle.skeleton.joints.size()};
 }
 
-// Ticks of `tables`, one after another.
+// Moves a walk on by `parts` ticks.
 void advance_by(const Tables& tables, IkMode mode, int parts, WalkState& state,
                 Pose& pose) noexcept {
   pose.joint_count = tables.joints;

@@ -10,10 +10,13 @@ namespace {
 
 Side side_of(bool right) noexcept { return right ? kRightSide : kLeftSide; }
 
-// Where a walk is in its step, as its last tick left it.
+// The part of the step that the pose of the last tick shows. After a strike it still shows the
+// flight.
 struct Moment {
-  bool stands, settles, struck, flies, right;  // the right foot swings, or has just landed
-  int ticks;                                   // of the step
+  bool stands, settles;  // after a stop; its last roll is still shown
+  bool struck, flies;    // a foot has landed in this tick; a foot is in flight
+  bool right;            // the right foot swings, or has just landed
+  int ticks;             // of the step
 };
 Moment moment_of(const Block<1>& block) noexcept {
   const State<float>& state = block.state;
@@ -28,21 +31,19 @@ Moment moment_of(const Block<1>& block) noexcept {
   return at;
 }
 
-// Whether the hips lead or have led: else a walk is where its clock is.
+// True if the pose shows the phase of leading hips, not that of the clock.
 bool runs_by_hips(const Moment& at, const Block<1>& block) noexcept {
   const Change<float>& change = block.change;
   return change.was_led != 0.0f || (!at.struck && change.led != 0.0f) || change.off_ticks != 0.0f;
 }
 
-// The step that runs: along the heading at its landing.
+// Length of the running step along the heading at its strike.
 float step_m(const Tables& tables, const State<float>& state) noexcept {
-  const float ticks = state.flies != 0.0f ? state.flight_ticks : state.roll_ticks,
-              left = ticks - state.tick + (state.flies != 0.0f ? 0.0f : state.flight_ticks);
-  const Way<float> to = way_of(heading_ahead(tables, state, left + 1.0f));
-  return state.landing_x_m * to.sine + state.landing_z_m * to.cosine;
+  return way_at_strike(tables, time_of(tables, state), state)
+      .ahead(state.landing_x_m, state.landing_z_m);
 }
 
-// A joint in the frame of its pose.
+// A joint in the frame of its pose: the world, or a body that follows the walk.
 struct JointFrame {
   vec3 place_m;
   quat turn;
@@ -108,10 +109,10 @@ void report(const WalkModel& model, const Tables& tables, const Block<1>& block,
   const Placement& placed = block.placed[0];
   const Moment at = moment_of(block);
   frame.stage = at.flies ? Stage::flight : at.stands && !at.settles ? Stage::idle : Stage::roll;
-  // Of one that stands: the foot that has landed last.
+  // While standing, the foot that has landed last.
   frame.swing = at.stands ? side_of(!at.right) : side_of(at.flies == at.right);
   int step_ticks = at.ticks, last_ticks = static_cast<int>(told.step_ticks[0]);
-  if (at.struck) {  // the step that has ended is still shown
+  if (at.struck) {  // the pose still shows the step that has ended
     step_ticks = last_ticks;
     last_ticks = static_cast<int>(told.step_ticks[1]);
   }
@@ -141,10 +142,6 @@ void report(const WalkModel& model, const Tables& tables, const Block<1>& block,
   frame.pelvis_m = root_m;
   report_feet(model, tables, placed, root_m, local, frame);
 }
-
-}  // namespace gaitpad
-
-namespace gaitpad {
 
 std::array<LegAngles, 2> leg_angles(const WalkModel& model, const Pose& pose) noexcept {
   std::array<LegAngles, 2> angles_rad{};

@@ -1,4 +1,4 @@
-// What a tick did, read from a walk and its pose where somebody asks for it.
+// Reports a tick (WalkFrame) from the walk's state and pose. Blocks report only on request.
 #pragma once
 #include <span>
 
@@ -18,10 +18,10 @@ Placement root_of(const Block<kWidth>& block, int walk) noexcept {
   return root_of(one);
 }
 
-// The data's phase that is shown.
+// Phase of the data that the pose shows.
 float phase_of(const Block<1>& block) noexcept;
 
-// Fills a frame, but for the inputs that were refused. `before`: the root before the tick.
+// Fills a frame, except WalkFrame::bad_inputs. `before`: root before the tick.
 void report(const WalkModel& model, const Tables& tables, const Block<1>& block,
             const Placement& before, const vec3& root_m, std::span<const quat> local,
             WalkFrame& frame) noexcept;

@@ -9,19 +9,9 @@ namespace {
 
 // --- The upper body ------------------------------------------------------------------------------
 
-// Limits in radians (degrees here) of a left arm, after AAOS; a right one's z and y are mirrored.
+// Limits of a left arm in degrees, after AAOS; those of a right arm are mirrored in z and y.
 constexpr ArmAngles kMin = {-170, -35, -90, -150, -60, -25};
 constexpr ArmAngles kMax = {60, 150, 80, -2, 60, 35};
-constexpr double kLeastFlexion = 4.0 * kDegree;  // least bend of an elbow whose swing is magnified
-constexpr double kGrip = 0.075;                  // distance from the wrist to the middle of an
-                                                 // adult's hand, metres
-constexpr double kHandPart = 0.5;                // that distance as a share of the length of a
-                                                 // shorter hand
-// Mean sine of the elbow's bend from which on the data show its hinge.
-constexpr double kClearHinge = 0.05;
-// Radians of shoulder z: nearer to a right angle the turns about x and y are the same.
-constexpr double kWidestTurn = 1.45;
-
 // World frames of the joints in the data's sample i, with the root at the origin.
 JointFrames frames_of_sample(const GaitCycle& cycle, int i) {
   const std::size_t joints = cycle.skeleton.joints.size();
@@ -66,6 +56,7 @@ quat hanging_axes(const GaitCycle& cycle, const ArmChain& joints, const JointFra
   const vec3 y = -glm::normalize(bone);
   hinge = perpendicular(hinge / double(kCycleSamples), y);
   const vec3 left = perpendicular(glm::conjugate(standing.rotation[joints.shoulder]) * kLeft, y);
+  constexpr double kClearHinge = 0.05;  // mean sine of the elbow's bend that shows the hinge
   const bool is_clear = glm::length(hinge) > kClearHinge && glm::dot(hinge, left) > 0.0;
   vec3 x = is_clear ? hinge : left;
   if (glm::length(x) < 1e-3) x = perpendicular(std::abs(y.x) < 0.9 ? kLeft : kUp, y);
@@ -82,7 +73,9 @@ vec3 grip_of(const GaitCycle& cycle, const ArmBuild& arm, const JointFrames& sta
     sum += joint.offset_m;
     longest_m = std::max(longest_m, glm::length(joint.offset_m));
   }
-  const double usual_m = kGrip * arm.length_m / kReferenceArm_m;
+  constexpr double kGrip_m = 0.075;  // of an adult, from the wrist to the middle of the hand
+  constexpr double kHandPart = 0.5;  // the same over the length of a short hand
+  const double usual_m = kGrip_m * arm.length_m / kReferenceArm_m;
   if (glm::length(sum) < 1e-6) {
     const vec3 fore = standing.position_m[arm.joints.wrist] - standing.position_m[arm.joints.elbow];
     return glm::conjugate(standing.rotation[arm.joints.wrist]) * glm::normalize(fore) * usual_m;
@@ -126,10 +119,13 @@ void fill_ranges(const GaitCycle& cycle, Side side, const JointFrames& standing,
     const double room = d == kElbowX ? 0.0 : 5.0 * kDegree;
     arm.min_rad[d] = std::min(min, low[d] - room), arm.max_rad[d] = std::max(max, high[d] + room);
   }
+  constexpr double kLeastFlexion = 4.0 * kDegree;  // bend that an elbow keeps in a wide swing
+  constexpr double kWidestTurn_rad =
+      1.45;  // of shoulder z: near a right angle x and y are one axis
   const double middle = arm.middle_rad[kElbowX];
   const double room = std::max(0.0, -kLeastFlexion - middle);
   arm.most_elbow_swing = std::max(1.0, room / std::max(1e-3, straightest - middle));
-  arm.is_there = std::max(std::abs(low[kShoulderZ]), std::abs(high[kShoulderZ])) < kWidestTurn;
+  arm.is_there = std::max(std::abs(low[kShoulderZ]), std::abs(high[kShoulderZ])) < kWidestTurn_rad;
 }
 
 ArmBuild arm_build(const GaitCycle& cycle, const ArmChain& joints, Side side,
@@ -214,8 +210,7 @@ UpperBodyModel upper_body_model(const GaitCycle& cycle, double leg_ratio, double
 
 // --- Legs and tables -----------------------------------------------------------------------------
 
-// Joint limits of a walker in radians (hip flexion and dorsiflexion are negative): AAOS-type
-// ranges, dorsiflexion under load up to 38 degrees.
+// Joint limits of a leg in degrees (hip flexion and dorsiflexion are negative), after AAOS.
 constexpr std::array<double, kLegDofs> kLegMin = {-120, -50, -70, 1.0, -60, -60, -80};
 constexpr std::array<double, kLegDofs> kLegMax = {60, 50, 70, 150, 75, 60, 80};
 
@@ -283,7 +278,8 @@ vec3 foot_point(const CycleSample& sample, Side side, const vec3& point_m) {
   return leg.ankle_m + leg.foot * point_m;
 }
 
-// The place of a standing heel, from the pelvis' path: its mean over the flat part of support.
+// Mean place of a standing heel relative to the pelvis' path, over the flat part of support: from
+// 0.12 to 0.32 of the cycle after the strike.
 vec3 mean_heel(const GaitCycle& source, Side side) {
   vec3 sum(0.0);
   constexpr int kCount = 16;

@@ -1,4 +1,4 @@
-// Events, partial poses, and poses in the caller's floats.
+// Walk events, mixing a walk into the caller's pose, and poses as the caller's floats.
 #include "gaitpad/walk_output.h"
 
 #include <algorithm>
@@ -8,7 +8,7 @@
 namespace gaitpad {
 namespace {
 
-// The foot whose step runs.
+// The foot whose step is running.
 std::optional<Side> steps_of(Stage stage, Side swing) noexcept {
   if (stage == Stage::flight) return swing;
   if (stage == Stage::roll) return other(swing);
@@ -32,7 +32,7 @@ int bones_of(std::span<const int> joints, std::span<float> out, std::size_t floa
 WalkEvents walk_events(const WalkFrame& before, const WalkState& state) noexcept {
   const WalkFrame& now = state.frame;
   WalkEvents events;
-  // Where a foot stands or stood last: the step's stand foot, and the other one's heel or toe.
+  // Place of an event: the heel or toe where the foot stands, or stood last.
   const Block<1>& walk = state.walk;
   const Origin& origin = walk.origin[0];
   const Placement step{vec3(origin.x_m, origin.y_m, origin.z_m), origin.heading_rad};

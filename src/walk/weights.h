@@ -384,7 +384,7 @@ void weigh_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stri
     const Foot<V>& foot = feet.foot[k];
     const Sole<V>& sole = feet.sole[k];
     LegToShare<V>& leg = shared[k];
-    const V risen = heel_rise(tables, time, right, phase, k == 1 ? no(none) : none, change);
+    const V risen = heel_rise(tables, right, phase, k == 1 ? no(none) : none, change);
     const auto may_turn = either(flies, both(no(rolls), risen != zero));
     const V turns = chosen<V>(may_turn, 1.0f, 0.0f);
     Smoothed<V> loose{begins ? turns : weighted.loose[k].x, begins ? zero : weighted.loose[k].v};

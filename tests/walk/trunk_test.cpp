@@ -273,7 +273,7 @@ TEST(UpperBody, SwingsArmsAgainstTheLegsFromTheFirstStepOn) {
 // is written on. Returns the root's rotation.
 quat last_root(const WalkModel& model, const Placement& placed) {
   Alone walk(model);
-  move_walk(placed, 0, walk.block);
+  place(placed, 0, walk.block);
   const GaitParams params = params_of(0.2, 0.8);
   walk.walk(params, 4 * kRate);
   for (int tick = 0; tick < 2 * kRate; ++tick) {
@@ -315,7 +315,7 @@ TEST(Joints, BetweenRootAndPelvisTurnWithTheHeading) {
   const quat root = last_root(model, placed);
   // The root itself does not move in the data.
   Alone walk(model);
-  move_walk(placed, 0, walk.block);
+  place(placed, 0, walk.block);
   walk.walk(params_of(0.2, 0.8), 6 * kRate);
   const double heading_rad =
       0.5 + walk.block.origin[0].heading_rad + static_cast<double>(walk.block.state.heading_rad);

@@ -129,7 +129,7 @@ TEST(Moved, WalkHasInItsOwnCoordinatesTheBitsOfOneThatIsNot) {
     if (tick % 37 == 5) {  // a platform, and now and then a teleport
       const Placement by{vec3(0.3, tick == 1189 ? 200.0 : 0.1, tick == 1226 ? -5e4 : 0.02),
                          0.1 * tick};
-      move_walk(by, 0, goes.block);
+      place(moved(by, goes.block.placed[0]), 0, goes.block);
       placed = moved(by, placed);
     }
     stays.step(params);

@@ -83,6 +83,9 @@ class Crowd {
   bool has(int member) const noexcept { return member >= 0 && member < size(); }
   void store_pose(int member, const Pose& pose) noexcept;
   void put_state(int member, const WalkState& state) noexcept;
+  // Lets `work` place the state and the pose of a member.
+  template <class Work>
+  void place_anew(int member, const Work& work) noexcept;
 
   IkMode mode_ = IkMode::robust;
   // Members of one model stand in blocks, in their order.

@@ -128,13 +128,13 @@ Vec<V> flight_heel(const Tables& tables, const Time<V>& time, const Landing<V>& 
            mix(V(state.print_z_m + from.z), V(landing.z_m + to.z), gone)};
   const auto closes = change.closing != V{}, is_short = either(change.starting != V{}, closes);
   if (any(is_short)) {
-    // It goes evenly, and is off that as in strides of its own length, along where it points,
-    // wherever the step leads; before it lands it is one of the walk.
+    // A first or last step goes evenly along its way; its differences from that are those of
+    // strides of its own length, in the foot's direction. From the share kWalksFrom of a first
+    // flight on it comes over to the walk's stride, up to the share kLikeAStep.
     constexpr float kLikeAStep = 0.4f, kWalksFrom = 0.3f;
     const Vec<V> ahead = seen(hips.own, stride.heel_behind_m, turns, all<V>(kPastClosely));
     const V off_m = ahead.z + hips.own.stride_m * (1.0f - gone),
-            goes = kLikeAStep * smoother(V((u - kWalksFrom) * (1.0f / (1.0f - kWalksFrom)))),
-            walks = closes ? V{} : goes;
+            goes = kLikeAStep * smoother(kWalksFrom, 1.0f, u), walks = closes ? V{} : goes;
     const Vec<V> off = landing.way * Vec<V>{ahead.x, V{}, off_m};
     const V x = mix(state.print_x_m, landing.x_m, gone) + off.x,
             z = mix(state.print_z_m, landing.z_m, gone) + off.z;

@@ -27,10 +27,19 @@ Vec<V> by_side(const Mask<V>& right, const std::array<float, 3>& left_of,
           chosen<V>(right, right_of[2], left_of[2])};
 }
 
-// A number of the right or the left leg.
+// A number of the right or the left leg, and an angle of its standing pose.
 template <class V>
 V of_leg(const Tables& tables, const Mask<V>& right, float LegBones::*number) noexcept {
   return chosen<V>(right, tables.leg[1].*number, tables.leg[0].*number);
+}
+template <class V>
+V stand_rad(const Tables& tables, const Mask<V>& right, int angle) noexcept {
+  return chosen<V>(right, tables.leg[1].stand_rad[angle], tables.leg[0].stand_rad[angle]);
+}
+// Whether foot k, 0 for swing and 1 for stand, is the right one.
+template <class V>
+Mask<V> is_right(const Time<V>& time, int k) noexcept {
+  return k == 0 ? time.right : no(time.right);
 }
 
 template <class V>
@@ -327,17 +336,6 @@ void begin_step(const Tables& tables, const Time<V>& time, const Mask<V>& strike
   state.right_swings = strikes ? V(1.0f - state.right_swings) : state.right_swings;
   state.flies = strikes ? V{} : state.flies;
   state.tick = strikes ? V{} : state.tick;
-}
-
-// Whether foot k, 0 for swing and 1 for stand, is the right one.
-template <class V>
-Mask<V> is_right(const Time<V>& time, int k) noexcept {
-  return k == 0 ? time.right : no(time.right);
-}
-// An angle of the right or the left leg in the standing pose.
-template <class V>
-V stand_rad(const Tables& tables, const Mask<V>& right, int angle) noexcept {
-  return chosen<V>(right, tables.leg[1].stand_rad[angle], tables.leg[0].stand_rad[angle]);
 }
 
 }  // namespace

@@ -114,7 +114,7 @@ void follow_ground(const Tables& tables, const Time<V>& time, const AskedStep<V>
   // A stick changes the ratio at most so fast; a faster change comes from the ground.
   constexpr float kRatioJump_1_s = 2.4f, kFirstRatioJump_1_s = 14.4f;
   const auto stands = change.stands != V{};
-  footing.step_m = landing.x_m * asked.to.sine + landing.z_m * asked.to.cosine;
+  footing.step_m = asked.to.ahead(landing.x_m, landing.z_m);
   const V wanted_m = size(asked.length_m), step_m = size(footing.step_m),
           least_m = all<V>(kShortStep * tables.source_step_m),
           left = wanted_m < least_m ? all<V>(1.0f)
@@ -162,7 +162,7 @@ V flight_to_tread_s(const Tables& tables, const V& rise_m) noexcept {
 // The least time of the running step's flight, by the rise between both feet or the rest of the
 // flying foot's rise, whichever is greater. Never 0.
 template <class V>
-V first_flight_s(const Tables& tables, const Footing<V>& footing) noexcept {
+V least_flight_s(const Tables& tables, const Footing<V>& footing) noexcept {
   const V step_m = size(footing.landing_y_m),
           foot_m = size(V(footing.landing_y_m - footing.print_y_m));
   return flight_to_tread_s(tables, most(most(step_m, V(foot_m - step_m)), all<V>(1e-6f)));
@@ -176,7 +176,7 @@ void take_time_to_tread(const Tables& tables, const Time<V>& time, const Change<
   const auto walks = both(both(change.stands == V{}, change.starting == V{}),
                           both(change.closing == V{}, change.stops == V{})),
              may = both(no(time.flies), walks);
-  const V least_ticks = floored(V(first_flight_s(tables, footing) * (1.0f / tables.tick_s))),
+  const V least_ticks = floored(V(least_flight_s(tables, footing) * (1.0f / tables.tick_s))),
           more = within(V(least_ticks - state.flight_ticks), 0.0f, kMostChange);
   state.flight_ticks = state.flight_ticks + (may ? more : V{});
 }

@@ -517,9 +517,9 @@ PlannedFlight planned_flight(const Tables& tables, const Floor& floor, const Fra
     hips.own = footprints_of(tables, time, short_ratio(tables, landing, state));
   };
   read_ratio();
-  const float left = state.flight_ticks - state.tick, way = time.stage_end - state.phase,
-              v0 = state.phase_rate * left, v1 = state.end_rate * left,
-              c2 = 3.0f * way - 2.0f * v0 - v1, c3 = v0 + v1 - 2.0f * way;
+  const float left = state.flight_ticks - state.tick;
+  const PhaseCubic<float> moves(time.stage_end - state.phase, state.phase_rate * left,
+                                state.end_rate * left);
   const vec3 lands = frame.out(vec3(landing.x_m, footing.landing_y_m, landing.z_m)),
              print = frame.out(vec3(state.print_x_m, footing.print_y_m, state.print_z_m));
   const LegBones& leg = tables.leg[time.right ? 1 : 0];
@@ -536,7 +536,7 @@ PlannedFlight planned_flight(const Tables& tables, const Floor& floor, const Fra
       change.off_ticks -= 1.0f;
     }
     if (change.off_ratio.x != off_ratio) read_ratio();
-    const float phase = state.phase + (v0 + (c2 + c3 * s) * s) * s;
+    const float phase = state.phase + moves.at(s);
     time.share = (state.roll_ticks + tick) / (state.roll_ticks + state.flight_ticks);
     const Stride<float> stride =
         read_by_clock(tables, time, landing, phase, time.share, time.u, change, state);

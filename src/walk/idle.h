@@ -47,8 +47,8 @@ void glance(const V& time_s, const V& amount, const V& outwards, Idle<V>& idle) 
   const V begins_s = kFirst_s + (kLast_s - kFirst_s) * draw[0],
           held_s = kHeldLeast_s + (kHeldMost_s - kHeldLeast_s) * draw[1],
           since_s = time_s - number * kEvery_s - begins_s;
-  const V turned = smoother(V(since_s * (1.0f / kTurns_s))) *
-                   (1.0f - smoother(V((since_s - kTurns_s - held_s) * (1.0f / kBack_s))));
+  const V turned = smoother(0.0f, kTurns_s, since_s) *
+                   (1.0f - smoother(0.0f, kBack_s, V(since_s - kTurns_s - held_s)));
   const V to = 2.0f * draw[2] - 1.0f, far = kLeast_rad + (kMost_rad - kLeast_rad) * size(to);
   idle.glance_rad = amount * turned * outwards * (to < V{} ? V(-far) : far);
   idle.nod_rad = amount * turned * kMostNod_rad * (draw[3] - 0.3f);

@@ -85,8 +85,8 @@ void keep_heels_low(const Tables& tables, const Time<V>& time, const V& phase,
   Mask<V> rolls[2] = {none, no(time.flies)};
   V low[2];
   for (int k : {0, 1}) {
-    const auto right = k == 0 ? time.right : no(time.right), flies = k == 0 ? time.flies : none;
-    const V rises = flies ? V(1.0f - smoother(V(time.u * (1.0f / kLowUntil))))
+    const auto right = is_right(time, k), flies = k == 0 ? time.flies : none;
+    const V rises = flies ? V(1.0f - smoother(0.0f, kLowUntil, time.u))
                           : heel_rise(tables, right, phase, k == 1 ? no(none) : none, change);
     const V goal = rolls[k] ? V{} : V(presence * rises * (1.0f - low_lift<V>(right, state)));
     Smoothed<V> next = styled.low[k];
@@ -101,8 +101,7 @@ void keep_heels_low(const Tables& tables, const Time<V>& time, const V& phase,
     pelvis.place_m.y = acts ? V(pelvis.place_m.y - down_m) : pelvis.place_m.y;
   }
   for (int k : {0, 1}) {
-    const auto right = k == 0 ? time.right : no(time.right),
-               rises = both(no(rolls[k]), low[k] > V{});
+    const auto right = is_right(time, k), rises = both(no(rolls[k]), low[k] > V{});
     Foot<V>& foot = feet.foot[k];
     const V pitch_rad = pitch_in_reach<V>(foot, feet.sole[k], pelvis.place_m + pelvis.hip_m[k],
                                           V(kLowReach * leg_m<V>(tables, right)));
@@ -119,7 +118,7 @@ void reach_with_toe(const Tables& tables, const Time<V>& time, const Change<V>& 
                     const Pelvis<V>& pelvis, Feet<V>& feet) noexcept {
   constexpr float kReachOnToe = 0.99995f;  // over the leg's length
   for (int k : {0, 1}) {
-    const auto right = k == 0 ? time.right : no(time.right),
+    const auto right = is_right(time, k),
                stands = both(change.stands == V{}, k == 0 ? no(time.flies) : time.flies);
     Foot<V>& foot = feet.foot[k];
     const V reach_m = kReachOnToe * leg_m<V>(tables, right);

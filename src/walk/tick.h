@@ -381,7 +381,7 @@ void change_solver(const Tables& tables, const Time<float>& time, const Stride<f
   change.by_paper = kPaper ? 1.0f : 0.0f;
   for (int k : {0, 1}) {
     float table_rad[kLegAngles];
-    set_table_angles(tables, k == 0 ? time.right : no(time.right), stride, k, table_rad);
+    set_table_angles(tables, is_right(time, k), stride, k, table_rad);
     for (int j = 0; j < kLegAngles; ++j) {
       state.leg_rad[k][j] += kPaper ? table_rad[j] : -table_rad[j];
       state.last_leg_rad[k][j] = state.leg_rad[k][j];
@@ -443,7 +443,7 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
   smooth_asked(tables, change, left, state);
   if constexpr (kPaper) state.lean_rad = state.chest_ahead_rad = state.head_ahead_rad = {};
   V first_s{};
-  if constexpr (kUneven) first_s = first_flight_s(tables, footing);
+  if constexpr (kUneven) first_s = least_flight_s(tables, footing);
   const Time<V> time = advance_clock(tables, first_s, change, state);
   const AskedStep<V> asked = plan_landing(tables, time, change, state, footing);
   if constexpr (kUneven) {

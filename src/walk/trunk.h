@@ -218,10 +218,7 @@ Mask<V> advance_poise(const Tables& tables, const Hips<V>& hips, const Mask<V>& 
             more =
                 kPush_rad * soft_positive(V(missing - calm - kSoftCalm_m_s), all<V>(kSoftCalm_m_s)),
             push = more + (asked != V{} ? first : V{}), goal = lacks < V{} ? V(-push) : push;
-    follow(goal, tables.push, poise.push_rad);
-    const auto still = both(goal == V{}, size(poise.push_rad.x) < all<V>(kStill_rad));
-    poise.push_rad.x = still ? V{} : poise.push_rad.x;
-    poise.push_rad.v = still ? V{} : poise.push_rad.v;
+    follow_turn(goal, kStill_rad, tables.push, poise.push_rad);
   }
   const V ahead_rad = kHeadAhead_s * (is_to_walk(state) ? a.turn_rad_s : V{});
   const auto turns = either(size(state.head_ahead_rad.v) > all<V>(kTurns_rad_s),

@@ -46,24 +46,9 @@ struct Frame {
 
 // --- Footholds -----------------------------------------------------------------------------------
 
-// The sole keeps kEdgeRoom legs away from an edge, but gives up at most kMostEdgeShare of its room.
-constexpr double kEdgeRoom = 0.05, kMostEdgeShare = 0.3;
-constexpr int kMostPieces = 8;  // compared, from the wanted one to the standing foot's
-// Cost of a move along the heading, where one across it costs 1: a foot moves ahead rather than
-// aside.
-constexpr double kSkew = 0.25;
-// The cost of a piece: about the logarithm of the factor by which it lengthens or shortens the step
-// (steps shorter than kLeastStep legs count as that long), and costs of a step that is stuck in
-// place, goes sideways, rises, overhangs an edge or becomes long. Rises and lengths are in legs.
-constexpr double kLeastStep = 0.05, kStuck = 0.3, kStuckCosts = 2.0, kAside = 3.0;
-constexpr double kEasyRise = 0.22, kRiseCosts = 10.0, kTooHigh = 100.0;
-constexpr double kOverhang = 30.0, kLongStep = 0.6, kLongCosts = 10.0;
-// Over a riser, in legs: the longest step, the longest way of the flying foot, and the least that
-// is left of it for the step.
-constexpr double kCrossStep = 0.5, kCrossWay = 0.85, kLeastCross = 0.25;
-constexpr double kStay = 0.1;       // another piece than before has to be cheaper by this
-constexpr double kBeside_m = 1e-6;  // a place so near to a riser is certainly on one side of it
-constexpr double kLeast_m = 1e-6;   // not to divide by 0
+constexpr double kLeastStep = 0.05;  // in legs: shorter steps count as this long
+constexpr double kBeside_m = 1e-6;   // a place so near to a riser is certainly on one side of it
+constexpr double kLeast_m = 1e-6;    // not to divide by 0
 
 // The reach of the sole along z from its heel point.
 struct Extent {
@@ -83,6 +68,8 @@ struct Room {
   double low_m, high_m, lacks_m;
 };
 Room room_on(const Stretch& piece, const Extent& sole, double leg_m) noexcept {
+  // The sole keeps kEdgeRoom legs away from an edge, but gives up at most this share of its room.
+  constexpr double kEdgeRoom = 0.05, kMostEdgeShare = 0.3;
   const double low = piece.from_m - sole.back_m, high = piece.to_m - sole.front_m;
   if (high < low) return {0.5 * (low + high), 0.5 * (low + high), low - high};
   const double edge = std::min(kEdgeRoom * leg_m, kMostEdgeShare * (high - low));
@@ -102,6 +89,9 @@ struct Step {
 // The longest step over a riser, counted from the foot that stands and over the whole way of the
 // foot that flies: that foot has to rise before it may go forward.
 double longest_to(const Step& step, const Stretch& piece) noexcept {
+  // In legs: the longest step, the longest way of the flying foot, and the least that this way
+  // leaves to a step.
+  constexpr double kCrossStep = 0.5, kCrossWay = 0.85, kLeastCross = 0.25;
   double longest = std::numeric_limits<double>::infinity();
   const double sign = step.length_m() < 0.0 ? -1.0 : 1.0;
   if (piece.from_m != step.stands.from_m) longest = kCrossStep * step.leg_m;
@@ -116,8 +106,9 @@ vec3 wanted_on(const Step& step, const Stretch& piece) noexcept {
   return step.wanted_m + step.forward * (std::clamp(wanted, -longest, longest) - wanted);
 }
 
-// The cheapest move, by kSkew, that shifts a place by `dz_m` along z.
+// The cheapest move that shifts a place by `dz_m` along z.
 vec3 shifted(const Step& step, double dz_m) noexcept {
+  constexpr double kSkew = 0.25;  // cost of a move ahead, where one aside costs 1
   const vec3& f = step.forward;
   const vec3 left = glm::cross(kUp, f);
   return (f * f.z + left * (left.z * kSkew)) * (dz_m / (f.z * f.z + left.z * left.z * kSkew));
@@ -130,11 +121,19 @@ vec3 place_on(const Step& step, const Stretch& piece) noexcept {
 
 // True if a step of this length would hardly leave its place although a longer one is wanted.
 bool is_stuck(const Step& step, double length_m) noexcept {
+  constexpr double kStuck = 0.3;  // share of the wanted length
   const double wanted = step.length_m(), sign = wanted < 0.0 ? -1.0 : 1.0;
   return sign * wanted > kLeastStep * step.leg_m && sign * length_m < kStuck * sign * wanted;
 }
 
+// About the logarithm of the factor by which a piece lengthens or shortens the step, and costs of a
+// step that goes aside, is stuck in place, becomes long, rises or overhangs an edge.
 double cost_of(const Floor& floor, const Step& step, const Stretch& piece) noexcept {
+  // Costs of being stuck, and for each leg aside, beyond a long step, beyond an easy rise, beyond
+  // the highest rise, and of an overhang.
+  constexpr double kStuckCosts = 2.0, kAside = 3.0, kLongCosts = 10.0, kRiseCosts = 10.0,
+                   kTooHigh = 100.0, kOverhang = 30.0;
+  constexpr double kLongStep = 0.6, kEasyRise = 0.22;  // in legs
   const vec3 place = place_on(step, piece), move = place - wanted_on(step, piece);
   const double middle =
       std::clamp(place.z + step.sole.middle_m(), piece.from_m + kBeside_m, piece.to_m - kBeside_m);
@@ -157,6 +156,8 @@ double cost_of(const Floor& floor, const Step& step, const Stretch& piece) noexc
 // Tries the pieces from the one of the wanted place back to the standing foot's. If both are the
 // same piece, and its edge stops the step, it also tries the piece beyond this edge.
 Stretch best_piece(const Floor& floor, const Step& step, const Stretch* settled) noexcept {
+  constexpr int kMostPieces = 8;  // compared
+  constexpr double kStay = 0.1;   // another piece than `settled` has to be cheaper by this
   const double middle = step.sole.middle_m(), stands = step.from_m.z + middle;
   Stretch piece = piece_at(floor, step.wanted_m.z + middle), best = piece;
   if (piece.from_m == step.stands.from_m) {
@@ -373,18 +374,9 @@ constexpr int kKnotsOfFlight = kRoomKnots + 1;  // intervals between knots
 // lands and beside one where it lifts off; the height from which on a step of the ground counts.
 constexpr double kRoomAbove_m = 0.025, kRoomBeside_m = 0.005, kRoomAhead_m = 0.016;
 constexpr double kRiser_m = 0.01;
-// The largest shift along z. A plan is sharpened if a shift lacks kLack_m or exceeds kEasyShift_m.
-constexpr double kMostShift_m = 0.25, kLack_m = 0.006, kEasyShift_m = 0.2;
+constexpr double kMostShift_m = 0.25;     // along z
 constexpr double kLeastWanted_m = 0.004;  // smaller shifts and heights are ignored
-// Each of kTries sharpens the ends of a spline by kSharper. The lift-off stays below kMostSharp,
-// for there the leg is stretched.
-constexpr double kSharper = 1.5, kMostSharp = 0.38, kMostGain = 6.0;
-constexpr int kTries = 4;
 constexpr double kOver = 0.685;  // share of a flight down at which it is over its landing's piece
-constexpr int kMostRisers = 4;   // that a flight down passes
-constexpr int kTautRounds = 24;
-constexpr double kTautRoom = 0.5;      // share of kRoomAbove_m that a taut spline keeps
-constexpr double kLeastWeight = 1e-6;  // not to divide by 0
 
 using Spline = std::array<double, kRoomKnots>;
 double spline_of(const Spline& knots, double end, double u) noexcept {
@@ -427,6 +419,7 @@ Spline envelope(const Wanted& wanted, const Ends& ends) noexcept {
 // The same for values of both signs. If the spline falls short of them, a gain multiplies all of
 // it; no knot exceeds `most_m`.
 Spline wide_envelope(const Wanted& wanted, double most_m) noexcept {
+  constexpr double kMostGain = 6.0;
   Wanted positive, negative;
   for (int i = 0; i <= kProbes; ++i) {
     positive[i] = std::max(0.0, wanted[i]);
@@ -448,6 +441,9 @@ Spline wide_envelope(const Wanted& wanted, double most_m) noexcept {
 // Sharpens an end if the sideways shift there is too large or was not reached; returns false if
 // neither end changed.
 bool sharpen(const Wanted& beside, const Spline& shift, double size, Ends& ends) noexcept {
+  constexpr double kLack_m = 0.006, kEasyShift_m = 0.2;  // at the reference leg
+  // The factor on an end. The lift-off stays gentler, for there the leg is stretched.
+  constexpr double kSharper = 1.5, kMostSharp = 0.38;
   Ends more = ends;
   for (int i = 1; i < kProbes; ++i) {
     const double got = spline_of(shift, 0.0, static_cast<double>(i) / kProbes);
@@ -633,6 +629,7 @@ struct RoomPlan {
 // The plan of a flight that stays level or goes up somewhere.
 RoomPlan plan_over(const Tables& tables, const Floor& floor, const PlannedFlight& flight,
                    bool crosses) noexcept {
+  constexpr int kTries = 4;
   const double size = tables.size;
   const Wanted above = wanted_raise(tables, floor, flight, crosses, Spline{});
   Wanted beside{};
@@ -663,6 +660,7 @@ RoomPlan plan_over(const Tables& tables, const Floor& floor, const PlannedFlight
 // `raise` and lies before the landing's piece.
 double way_on(const Tables& tables, const Floor& floor, const PlannedFlight& flight, int i,
               double raise) noexcept {
+  constexpr int kMostRisers = 4;  // before the landing's piece
   const double room = kRoomBeside_m * tables.size, least_m = kLeastWanted_m * tables.size;
   const bool ahead = flight.left[i] > 0.0;
   double on = 0.0;
@@ -683,6 +681,9 @@ double way_on(const Tables& tables, const Floor& floor, const PlannedFlight& fli
 // their room: the envelope alone holds each height for two knots longer than needed. A spline that
 // is too low already is not lowered.
 void draw_taut(const Wanted& wanted, double room_m, Spline& knots) noexcept {
+  constexpr double kTautRoom = 0.5;  // share of the room that the spline keeps
+  constexpr int kTautRounds = 24;
+  constexpr double kLeastWeight = 1e-6;  // not to divide by 0
   Wanted slack;
   std::array<Wanted, kRoomKnots> weight;  // of each knot at each probe
   for (int i = 0; i <= kProbes; ++i) {

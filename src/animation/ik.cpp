@@ -13,15 +13,13 @@ namespace {
 // The robust solver: theta += W J^T (J W J^T + l^2 I)^-1 dX inside joint limits, where
 // l^2 = damping^2 + growth |dX|^2 (after Sugihara 2011, "Solvability-unconcerned inverse kinematics
 // by the Levenberg-Marquardt method"); growth rises where a step makes the error greater.
-constexpr double kLeastDampingSquared = 1e-20;
-constexpr double kGrowth = 0.1;
-constexpr double kGrowthUp = 8.0, kGrowthDown = 0.25;
-constexpr double kFarthest = 0.5;  // the largest |dX| that one step uses, metres
+constexpr double kLeastDamping_m2 = 1e-20;  // above the rounding of doubles
+constexpr double kGrowth = 0.1, kGrowthUp = 8.0, kGrowthDown = 0.25;
+constexpr double kFarthest_m = 0.5;  // the largest |dX| that one step uses
 // The error counts as constant if kPatience iterations together reduce it by less than the share
-// kLeastGain of itself, or of kGainFrom metres if that is larger.
+// kLeastGain of itself, or of kGainFrom_m if that is less.
 constexpr int kPatience = 6;
-constexpr double kLeastGain = 0.001;
-constexpr double kGainFrom = 0.1;
+constexpr double kLeastGain = 0.001, kGainFrom_m = 0.1;
 
 // Turns a frame about its own first axis: (y, z) are the other two, in cyclic order.
 void turn(vec3& y, vec3& z, double sine, double cosine) noexcept {
@@ -506,7 +504,7 @@ struct Try {
 template <int kRows>
 Try one_try(const Problem& p, const IkAngles& start, int max_iterations) noexcept {
   constexpr double kInfinite = std::numeric_limits<double>::infinity(),
-                   kMost = kFarthest * kFarthest;
+                   kMost_m2 = kFarthest_m * kFarthest_m;
   const int dofs = p.chain.dofs;
   const double enough = p.options.tolerance_m * p.options.tolerance_m;
   IkAngles angles_rad = start, next = start;
@@ -523,17 +521,18 @@ Try one_try(const Problem& p, const IkAngles& start, int max_iterations) noexcep
     if (p.trace != nullptr) add_trace_row(p.trace, angles_rad, std::sqrt(best.squares));
     if (best.squares <= enough || k >= max_iterations) return {angles_rad, best.squares, k};
     const double error_m = std::sqrt(best.squares);
-    if (error_m < seen_m - kLeastGain * std::min(error_m, kGainFrom)) seen_at = k, seen_m = error_m;
+    if (error_m < seen_m - kLeastGain * std::min(error_m, kGainFrom_m))
+      seen_at = k, seen_m = error_m;
     if (k - seen_at >= kPatience || !(best.squares < kInfinite))
       return {angles_rad, best.squares, k};
 
     ColumnsOf<kRows> column;
     set_columns<kRows>(p, best, column);
-    const double share = best.squares > kMost ? kFarthest / error_m : 1.0;
+    const double share = best.squares > kMost_m2 ? kFarthest_m / error_m : 1.0;
     Step<kRows> step;
     step.weight = p.weight;
-    step.damping = std::max(p.options.damping * p.options.damping, kLeastDampingSquared) +
-                   growth * std::min(best.squares, kMost);
+    step.damping = std::max(p.options.damping * p.options.damping, kLeastDamping_m2) +
+                   growth * std::min(best.squares, kMost_m2);
     for (int r = 0; r < kRows; ++r) step.error[r] = share * best.dx[r];
     IkDofValues delta;
     limited_step<kRows>(p, column, step, angles_rad, delta);

@@ -14,7 +14,7 @@ namespace {
 // are relative to the height at which the section begins.
 
 constexpr double kMinLength_m = 0.1, kMaxLength_m = 1000.0;
-constexpr double kMinTread_m = 0.15, kMaxTread_m = 2.0, kMaxRise_m = 0.4;
+constexpr double kMinTread_m = 0.15, kMaxTread_m = 2.0, kMinRise_m = 0.01, kMaxRise_m = 0.4;
 constexpr int kMaxRisers = 100;
 
 bool is_within(double x, double min, double max) noexcept { return x >= min && x <= max; }
@@ -25,7 +25,7 @@ std::optional<Error> length_problem(double length_m) {
                short_number(kMinLength_m) + " and " + short_number(kMaxLength_m) + " m"};
 }
 
-// The reason why a sole would not lie on a surface with this bend and grade; none if it would.
+// The reason why a sole would not lie on a surface with this bend and grade.
 std::optional<Error> shape_problem(double bend_1_m, double grade) {
   if (!(grade <= kMaxGrade))
     return Error{"a grade of " + fixed(grade, 2) + " is too steep: at most " +
@@ -135,9 +135,9 @@ std::optional<Error> problem_of(const StairsSection& stairs) {
   if (!is_within(stairs.tread_m, kMinTread_m, kMaxTread_m))
     return Error{"a tread of " + short_number(stairs.tread_m) + " m is not within " +
                  short_number(kMinTread_m) + " and " + short_number(kMaxTread_m) + " m"};
-  if (!is_within(std::abs(stairs.rise_m), 0.01, kMaxRise_m))
-    return Error{"a rise of " + short_number(stairs.rise_m) + " m is not within 0.01 and " +
-                 short_number(kMaxRise_m) + " m, up or down"};
+  if (!is_within(std::abs(stairs.rise_m), kMinRise_m, kMaxRise_m))
+    return Error{"a rise of " + short_number(stairs.rise_m) + " m is not within " +
+                 short_number(kMinRise_m) + " and " + short_number(kMaxRise_m) + " m, up or down"};
   if (stairs.count < 1 || stairs.count > kMaxRisers)
     return Error{std::to_string(stairs.count) + " risers are not 1 to " +
                  std::to_string(kMaxRisers)};

@@ -1,5 +1,6 @@
-// After the legs: an ankle that bends up too far is eased. In flight the foot points down, in late
-// support the heel rises; a foot that has to stand still does neither.
+// Uneven ground bends some ankles up too far. After the legs are solved, such an ankle is eased: in
+// flight the foot points down, in late support the heel rises. A foot that has to stand still keeps
+// its angle.
 #pragma once
 #include "walk/leg_solve.h"
 #include "walk/reach.h"
@@ -7,12 +8,13 @@
 namespace gaitpad {
 namespace {
 
-// Ankles bend up to 38 degrees, and softly beyond it: people's reach 35 to 40 with a bent knee.
+// Ankles bend up to 38 degrees, for people's reach 35 to 40 with a bent knee. The limit is rounded
+// over 6 degrees, and over 12 in flight.
 inline constexpr float kMostBent_rad = 0.66322512f, kSoftBent_rad = 0.10471976f,
                        kSoftFlying_rad = 0.20943951f;
 
-// Points a flying foot down: as far as the ground allows by its pitch alone, and farther by lifting
-// it so that its toe stays at its height.
+// Points a flying foot down: by its pitch alone as far as the ground allows, then about its toe,
+// which keeps its height.
 template <class V>
 void point_down(const Time<V>& time, const Sole<V>& sole, const Turn<V>& yaw, const V& heel_m,
                 const V& more_rad, Foot<V>& foot) noexcept {
@@ -29,17 +31,16 @@ void point_down(const Time<V>& time, const Sole<V>& sole, const Turn<V>& yaw, co
   foot.toe_m.y = foot.toe_m.y + lift_m;
 }
 
-// `phase`: what is shown. `bent`: by how much its ankle is bent too far.
+// Eases the ankle of foot k, which is bent too far by `bent`. `phase`: the phase that shows.
 template <class V>
 void ease_ankle(const Tables& tables, const Time<V>& time, const Stride<V>& stride, const V& phase,
                 const V& bent, int k, const Pelvis<V>& pelvis, const Change<V>& change,
                 const Footing<V>& footing, State<V>& state, Feet<V>& feet,
                 const V (&begun_rad)[kLegAngles], Leg<V>& leg) noexcept {
   const auto starts = change.starting != V{};
-  const auto right = k == 0 ? time.right : no(time.right);
-  const LegBones &l = tables.leg[0], &r = tables.leg[1];
+  const auto right = is_right(time, k);
   const auto flies = k == 0 ? time.flies : Mask<V>{}, stands = k == 0 ? no(time.flies) : time.flies;
-  // An ankle that stairs bend while standing would jump where a walk starts.
+  // The easing begins gradually in a first step: an ankle that stairs bend in a stand would jump.
   const V first = time.flies ? V(time.u * (1.0f / kFirstRise)) : V(state.tick / state.roll_ticks),
           begun = starts ? smooth(first) : all<V>(1.0f),
           may = begun * heel_rise(tables, right, phase, no(Mask<V>{}), change);
@@ -64,15 +65,15 @@ void ease_ankle(const Tables& tables, const Time<V>& time, const Stride<V>& stri
     risen.turn = chosen(flies, down.turn, risen.turn);
     risen.pitch_rad = flies ? down.pitch_rad : risen.pitch_rad;
   }
-  // Once more, from where it started: it turns little there, and its knee does not swivel away.
+  // Solve the leg again from its first start, so that its knee does not swivel away.
   V start_rad[kLegAngles], off_rad[kLegAngles];
   set_table_angles(tables, right, stride, k, start_rad);
   std::copy_n(begun_rad, kLegAngles, off_rad);
   const Turn<V> to_pelvis = back(pelvis.turn);
   const Vec<V> ankle_m = to_pelvis * (ankle_of(risen, sole) - pelvis.place_m - pelvis.hip_m[k]);
-  const Leg<V> again =
-      solve_leg<V>(chosen<V>(right, r.thigh_m, l.thigh_m), chosen<V>(right, r.shank_m, l.shank_m),
-                   ankle_m, to_pelvis * risen.turn, start_rad, off_rad);
+  const Leg<V> again = solve_leg<V>(of_leg<V>(tables, right, &LegBones::thigh_m),
+                                    of_leg<V>(tables, right, &LegBones::shank_m), ankle_m,
+                                    to_pelvis * risen.turn, start_rad, off_rad);
   foot.heel_m = chosen(eases, risen.heel_m, foot.heel_m);
   foot.toe_m = chosen(eases, risen.toe_m, foot.toe_m);
   foot.turn = chosen(eases, risen.turn, foot.turn);
@@ -89,12 +90,10 @@ void ease_ankles(const Tables& tables, const Time<V>& time, const Stride<V>& str
                  const Pelvis<V>& pelvis, const Change<V>& change, const Footing<V>& footing,
                  State<V>& state, Feet<V>& feet, const V (&begun_rad)[2][kLegAngles],
                  Leg<V> (&legs)[2]) noexcept {
-  const LegBones &l = tables.leg[0], &r = tables.leg[1];
   for (int k : {0, 1}) {
-    const auto right = k == 0 ? time.right : no(time.right);
-    const V bent = -(stride.leg_rad[k][4] + chosen<V>(right, r.stand_rad[4], l.stand_rad[4]) +
-                     state.leg_rad[k][4]) -
-                   kMostBent_rad;
+    const V bent =
+        -(stride.leg_rad[k][4] + stand_rad<V>(tables, is_right(time, k), 4) + state.leg_rad[k][4]) -
+        kMostBent_rad;
     if (!any(bent > all<V>(-kSoftFlying_rad))) continue;
     ease_ankle(tables, time, stride, phase, bent, k, pelvis, change, footing, state, feet,
                begun_rad[k], legs[k]);

@@ -1,6 +1,6 @@
-// The arms where a style's weights differ or a hand is held: six angles, weighted half-Jacobian IK,
-// the end-effector in the middle of the hand. Other arms swing as in the data. Arms of a block that
-// are posed are packed into full registers.
+// The arms, where a style gives their joints different weights or asks a hand to carry something or
+// hold a rail: weighted half-Jacobian IK over six angles, with the middle of the hand as the
+// end-effector. Other arms swing as in the data.
 #pragma once
 #include "walk/chain_solve.h"
 #include "walk/trunk.h"
@@ -9,27 +9,14 @@ namespace gaitpad {
 namespace {
 
 enum : int { kShoulderXAt, kShoulderZAt, kShoulderYAt, kElbowAt, kWristXAt, kWristZAt };
-inline constexpr float kEvenArm = 1e-6f;  // weights closer to each other than this are even
-// How far a hand goes from its shoulder and how near it comes, as shares of the stretched arm, and
-// the widths in which that is approached.
-inline constexpr float kFarthestHand = 0.985f, kSoftFarHand = 0.03f, kNearestHand = 0.3f,
-                       kSoftNearHand = 0.1f;
-inline constexpr float kRailAhead_m = 0.15f;  // ahead of the shoulder a hand holds a rail
-// Where the solver starts with a left shoulder: elbows point down and a little outwards when a tray
-// is carried, and back beside a rail.
-inline constexpr float kCarrying_rad[3] = {-15 * kRadians, 12 * kRadians, -15 * kRadians},
-                       kAtRail_rad[3] = {25 * kRadians, 4 * kRadians, 5 * kRadians};
-// Shoulder and elbow bring a held hand to its place; the wrist hardly takes part.
-inline constexpr float kHeldWeight[kArmAngles] = {1.0f, 1.0f, 0.7f, 1.0f, 0.25f, 0.25f};
-
-// An arm to be solved; all of these are numbers of arms side by side.
+// An arm to be solved. All of its members are numbers V, of arms side by side.
 template <class N>
 struct ArmChain {
   using V = N;
   static constexpr int kDofs = kArmAngles, dofs = kArmAngles;
-  V solves{};  // 1 or 0
+  V solves{};  // 1: solve it
   Vec<V> upper_m, fore_m, grip_m, goal_m;
-  V has_height{};  // 1: the height of the goal counts, too
+  V has_height{};  // 1: the hand also goes to the height of its goal
   V weight[kArmAngles]{}, min_rad[kArmAngles]{}, max_rad[kArmAngles]{}, angle_rad[kArmAngles]{};
 
   struct Place {
@@ -74,44 +61,30 @@ struct ArmChain {
   }
 };
 
-// Both arms of the block's walks, close together in registers.
 template <class V>
 void solve_arms(ArmChain<V> (&arms)[2]) noexcept {
-  constexpr int kWidth = kLanes<V>, kTogether = std::max(kWidth, kLeastLanes),
-                kNumbers = sizeof(ArmChain<float>) / sizeof(float);
-  float* places[2 * kWidth];
-  int count = 0;
-  for (int w = 0; w < kWidth; ++w)
-    for (ArmChain<V>& arm : arms)
-      if (lane(arm.solves, w) != 0.0f) places[count++] = reinterpret_cast<float*>(&arm) + w;
-  for (int begin = 0; begin < count; begin += kTogether) {
-    ArmChain<Floats<kTogether>> together;
-    float* to = reinterpret_cast<float*>(&together);
-    const int here = std::min(kTogether, count - begin);
-    for (int i = 0; i < here; ++i)
-      for (int n = 0; n < kNumbers; ++n) to[n * kTogether + i] = places[begin + i][n * kWidth];
-    solve_chains(together, together.solves != Floats<kTogether>{}, together.angle_rad);
-    for (int i = 0; i < here; ++i)
-      for (int n = kNumbers - kArmAngles; n < kNumbers; ++n)
-        places[begin + i][n * kWidth] = to[n * kTogether + i];
-  }
+  constexpr int kNumbers = sizeof(ArmChain<float>) / sizeof(float);
+  const Mask<V> solves[2] = {arms[0].solves != V{}, arms[1].solves != V{}};
+  work_packed<kNumbers, kNumbers - kArmAngles>(solves, arms, [](auto& packed) {
+    solve_chains(packed, packed.solves != decltype(packed.solves){}, packed.angle_rad);
+  });
 }
 
-// One arm of each walk in a pose, in the step frame.
+// One arm of each walk, as it is posed in the step frame.
 template <class V>
 struct Arm {
-  Turn<V> above, base, upper;    // above the shoulder; the walker's axes there; hanging axes
-  Turn<V> fore_rest, hand_rest;  // joint frames, from the forearm's hanging axes
+  Turn<V> above, base, upper;    // the shoulder's parent; the walker's axes there; hanging axes
+  Turn<V> fore_rest, hand_rest;  // frames of elbow and wrist, from the forearm's hanging axes
   Vec<V> shoulder_m, hand_m;
   ArmChain<V> chain;
 };
 
-// Where the shoulder is, and how it is turned without its own joint.
+// Computes the place of the shoulder, and the turn of its parent.
 template <class V>
 void place_shoulder(const ArmBones& bones, const Trunk<V>& trunk, const V& is, const Poses& poses,
                     Arm<V>& arm) noexcept {
   const int begin = bones.on_trunk;
-  Turn<V> turn = begin > 0 ? trunk.turned[begin - 1] : trunk.base;
+  Turn<V> turn = below(trunk, begin);
   Vec<V> place_m = begin > 0 ? trunk.place_m[begin - 1] : trunk.base_m;
   for (int i = begin; i <= bones.shoulder; ++i) {
     place_m = place_m + turn * every<V>(bones.path[i].offset_m);
@@ -121,12 +94,12 @@ void place_shoulder(const ArmBones& bones, const Trunk<V>& trunk, const V& is, c
   arm.shoulder_m = place_m;
 }
 
-// The arm as the pose has it, which is written so far.
+// Takes the arm's angles and lengths from the pose as it is written so far.
 template <class V>
 void take_arm(const ArmBones& bones, const Turn<V>& shoulder, const V& is, const Poses& poses,
               Arm<V>& arm) noexcept {
   const Turn<V> upper_joint = arm.above * shoulder;
-  Turn<V> turn = upper_joint, elbow{all<V>(1.0f), V{}, V{}, V{}};
+  Turn<V> turn = upper_joint, elbow = no_turn<V>();
   Vec<V> place_m = arm.shoulder_m, elbow_m;
   const int last = static_cast<int>(bones.path.size()) - 1;
   for (int i = bones.shoulder + 1; i <= last; ++i) {
@@ -197,7 +170,7 @@ Mask<V> has_uneven_arm(const Styled<V>& styled, int side) noexcept {
   V low = weight[0].x, high = low;
   for (int j = 1; j < kArmAngles; ++j)
     low = least(low, weight[j].x), high = most(high, weight[j].x);
-  return high - low >= all<V>(kEvenArm);
+  return high - low >= all<V>(kEvenWeights);
 }
 enum : int { kCarry, kCarryX, kCarryY, kCarryZ, kRail, kRailHeight, kRailSide, kHandNumbers };
 template <class V>
@@ -212,7 +185,7 @@ Mask<V> is_arm_posed(const Styled<V>& styled, int side) noexcept {
 }
 
 // Keeps joints of small weight near the middle of their swing. The others compensate, so that the
-// hand goes equally far forward and sideways. Its height is left free: with three rows the path
+// hand keeps its way forward and sideways. Its height is free: with three rows the hand's path
 // alone would determine the shoulder's angle.
 template <class V>
 void stiffen_arm(const ArmBones& bones, const Styled<V>& styled, int side, const Mask<V>& uneven,
@@ -232,14 +205,17 @@ void stiffen_arm(const ArmBones& bones, const Styled<V>& styled, int side, const
 // Moves a place to where the arm can reach it: neither too far from the shoulder nor too near.
 template <class V>
 Vec<V> within_reach(const Vec<V>& way_m, const V& full_m) noexcept {
-  const V far = root(dot(way_m, way_m)), nearest = kNearestHand * full_m,
-          near = nearest + soft_positive(V(far - nearest), V(kSoftNearHand * full_m)),
-          to = soft_least(near, V(kFarthestHand * full_m), V(kSoftFarHand * full_m));
+  // Greatest and least distance of a held hand, and the widths over which these limits are rounded;
+  // shares of the stretched arm.
+  constexpr float kFarthest = 0.985f, kSoftFar = 0.03f, kNearest = 0.3f, kSoftNear = 0.1f;
+  const V far = root(dot(way_m, way_m)), nearest = kNearest * full_m,
+          near = nearest + soft_positive(V(far - nearest), V(kSoftNear * full_m)),
+          to = soft_least(near, V(kFarthest * full_m), V(kSoftFar * full_m));
   return way_m * (to / most(far, all<V>(1e-6f)));
 }
 
 // Turns the whole arm at the shoulder towards its goal. The solver then starts near its answer and
-// leaves the wrist as it is.
+// hardly turns the wrist.
 template <class V>
 void aim_arm(const Mask<V>& where, ArmChain<V>& chain) noexcept {
   typename ArmChain<V>::Place at;
@@ -259,8 +235,8 @@ void aim_arm(const Mask<V>& where, ArmChain<V>& chain) noexcept {
   a[kShoulderYAt] = aims ? next_y : a[kShoulderYAt];
 }
 
-// Where hands are held: before the chest, in the upright frame that turns with the shoulders, so
-// that what both hands hold stays level; and on a rail along the hips' path.
+// The frames in which hands are held. A carrying hand is placed in the upright frame that turns
+// with the shoulders, so that a tray in both hands stays level; a rail runs along the hips' path.
 template <class V>
 struct Holds {
   Vec<V> middle_m;  // between the shoulders
@@ -272,9 +248,15 @@ struct Holds {
 template <class V>
 void hold_hand(const Tables& tables, const Styled<V>& styled, int side, const Holds<V>& holds,
                Arm<V>& arm) noexcept {
-  constexpr float kReferenceArm = static_cast<float>(kReferenceArm_m),
-                  kReferenceShoulder = static_cast<float>(kReferenceShoulder_m);
-  constexpr float kFullFrom = 0.1f;  // of what is held: the wrist's own weights are over
+  constexpr float kRailAhead_m = 0.15f;  // how far ahead of the hips a hand holds a rail
+  // Angles x, z, y of a left shoulder at which the solver starts: the elbow points down and a
+  // little outwards if the hand carries a tray, and back if it holds a rail.
+  constexpr float kCarrying_rad[3] = {-15 * kDegree_rad, 12 * kDegree_rad, -15 * kDegree_rad},
+                  kAtRail_rad[3] = {25 * kDegree_rad, 4 * kDegree_rad, 5 * kDegree_rad};
+  // Weights of a held arm: shoulder and elbow bring the hand to its place, and the wrist hardly
+  // takes part. A hand held by the share kFullFrom has all of them.
+  constexpr float kHeldWeight[kArmAngles] = {1.0f, 1.0f, 0.7f, 1.0f, 0.25f, 0.25f};
+  constexpr float kFullFrom = 0.1f;
   const float outwards = side == kLeftSide ? 1.0f : -1.0f;
   const V carry = within(of_hand(styled, side, kCarry), 0.0f, 1.0f),
           rail = within(of_hand(styled, side, kRail), 0.0f, 1.0f),
@@ -293,8 +275,8 @@ void hold_hand(const Tables& tables, const Styled<V>& styled, int side, const Ho
     goal_m = goal_m + (to - goal_m) * share;
   };
   Vec<V> goal_m = at.end_m;
-  const float arm_scale = tables.arm_m / kReferenceArm,
-              rail_scale = tables.shoulder_height_m / kReferenceShoulder;
+  const float arm_scale = tables.arm_m / static_cast<float>(kReferenceArm_m),
+              rail_scale = tables.shoulder_height_m / static_cast<float>(kReferenceShoulder_m);
   const V x_m = (outwards * arm_scale) * of_hand(styled, side, kCarryX),
           y_m = arm_scale * of_hand(styled, side, kCarryY),
           z_m = arm_scale * of_hand(styled, side, kCarryZ);
@@ -308,7 +290,7 @@ void hold_hand(const Tables& tables, const Styled<V>& styled, int side, const Ho
   move_to(Vec<V>{V(holds.hips_m.x + (way.cosine * aside_m + way.sine * ahead_m)), over_m,
                  V(holds.hips_m.z + (way.cosine * ahead_m - way.sine * aside_m))},
           rail, goal_m);
-  // The solver starts with the elbow outwards, bent as the place's distance asks.
+  // The solver starts with the elbow outwards, and bent for the distance of the goal.
   const V far2 = dot(goal_m, goal_m),
           cosine =
               within(V((far2 - a * a - b * b) / most(V(2.0f * a * b), all<V>(1e-6f))), -1.0f, 1.0f),
@@ -333,7 +315,7 @@ void hold_hand(const Tables& tables, const Styled<V>& styled, int side, const Ho
   aim_arm(holds_it, chain);
 }
 
-// Poses the arms of walks that `are`. `own_m`: where their hands would be in the data.
+// Poses arms, where `is_posed` by side. `own_m`: places of the hands in the data.
 template <class V>
 void pose_arms(const Tables& tables, const Hips<V>& hips, const Vec<V>& hips_m,
                const Trunk<V>& trunk, const Mask<V> (&is_posed)[2], const Vec<V> (&own_m)[2],

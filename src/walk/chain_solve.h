@@ -1,6 +1,6 @@
-// The robust solver of ik.cpp in floats, of chains side by side with up to three rows:
-// theta += W J^T (J W J^T + l^2 I)^-1 dX inside joint limits (equation 5), until the point is where
-// it is to be.
+// The robust solver of ik.cpp in floats, for chains side by side with up to three rows:
+// theta += W J^T (J W J^T + l^2 I)^-1 dX inside joint limits (equation 5), repeated until the
+// chain's point is at its goal.
 #pragma once
 #include "walk/lanes.h"
 
@@ -8,14 +8,18 @@ namespace gaitpad {
 namespace {
 
 inline constexpr float kLeastDamping_m2 = 1e-8f;  // above the rounding of floats
-inline constexpr float kSolved_m = 1e-6f, kMostTurn_rad = 0.3f, kFarthestStep_m = 0.5f;
-// l^2 grows with the error, and where a step has made it greater.
+inline constexpr float kSolved_m = 1e-6f;         // an error that ends a solve
+// The greatest turn of an angle, and the greatest error, of one step.
+inline constexpr float kMostTurn_rad = 0.3f, kFarthestStep_m = 0.5f;
+// l^2 is kGrowth of the squared error; this share grows after a step that makes the error greater,
+// and falls again after others.
 inline constexpr float kGrowth = 0.1f, kGrowthUp = 8.0f, kGrowthDown = 0.25f;
-// A solve ends where this many steps have taken less than this of the error away.
+// A solve ends after kMostSolves steps, or if kPatience of them together reduce the error by less
+// than the share kLeastGain of it, or of kGainFrom_m if that is less.
 inline constexpr int kMostSolves = 40, kPatience = 6;
-inline constexpr float kLeastGain = 0.001f;
+inline constexpr float kLeastGain = 0.001f, kGainFrom_m = 0.1f;
 
-// (J W J^T + damping) y = b, by L D L^T; b becomes y.
+// Solves (J W J^T + damping I) y = b by L D L^T; b becomes y.
 template <class V>
 void solve_three(int dofs, const V (*column)[3], const V* weight, const V& damping,
                  V (&b)[3]) noexcept {
@@ -44,8 +48,8 @@ void solve_three(int dofs, const V (*column)[3], const V* weight, const V& dampi
   b[0] = b[0] - m[0][1] * b[1] - m[0][2] * b[2];
 }
 
-// A step within the limits: an angle that it would carry past its limit goes there exactly, and the
-// others close what is left.
+// Computes a step within the limits: an angle that it would carry past a limit goes to the limit
+// exactly, and the others are solved again for what is left of the error.
 template <class V, class Chain, std::size_t kDofs>
 void step_within(const Chain& chain, const V (&column)[kDofs][3], const V (&angle_rad)[kDofs],
                  V (&error_m)[3], const V& damping, const Mask<V>& open,
@@ -74,9 +78,9 @@ void step_within(const Chain& chain, const V (&column)[kDofs][3], const V (&angl
   }
 }
 
-// Chain: V; kDofs, the most, and dofs; weight (the greatest 1), min_rad, max_rad; a Place; place(),
-// its error_m of three rows (0 of rows that do not count); set_columns(). `open`: the chains that
-// are to be solved. Leaves the best angles.
+// Solves the chains that are `open` and leaves the best angles found. A Chain has the number type
+// V, kDofs and dofs (the most and its own number of angles), weight (the greatest is 1), min_rad,
+// max_rad, a type Place with error_m (0 in rows that do not count), place(), set_columns(), keep().
 template <class Chain, class V, std::size_t kDofs>
 void solve_chains(const Chain& chain, Mask<V> open, V (&angle_rad)[kDofs]) noexcept {
   typename Chain::Place place{}, best{};
@@ -98,7 +102,7 @@ void solve_chains(const Chain& chain, Mask<V> open, V (&angle_rad)[kDofs]) noexc
     best_m2 = better ? m2 : best_m2;
     open = both(open, best_m2 > all<V>(kSolved_m * kSolved_m));
     const V error_m = root(best_m2);
-    const auto falls = error_m < seen_m - kLeastGain * least(error_m, all<V>(0.1f));
+    const auto falls = error_m < seen_m - kLeastGain * least(error_m, all<V>(kGainFrom_m));
     patience = falls ? all<V>(kPatience) : V(patience - 1.0f);
     seen_m = falls ? error_m : seen_m;
     open = both(open, patience > V{});
@@ -120,7 +124,7 @@ void solve_chains(const Chain& chain, Mask<V> open, V (&angle_rad)[kDofs]) noexc
   }
 }
 
-// The greatest of some weights becomes 1.
+// Divides weights by the greatest one.
 template <class V, std::size_t kDofs>
 void make_relative(int dofs, V (&weight)[kDofs]) noexcept {
   V largest = all<V>(1e-6f);
@@ -128,32 +132,30 @@ void make_relative(int dofs, V (&weight)[kDofs]) noexcept {
   const V over = 1.0f / largest;
   for (int j = 0; j < dofs; ++j) weight[j] = within(V(weight[j] * over), 0.0f, 1.0f);
 }
-// What a joint of relative weight w leaves to the others (walk_parts.h).
+// The share of a joint's own movement that the others take over if its relative weight is w.
+// Fitted to the range of a hip after two iterations of equation (5).
 template <class V>
 V held_back(const V& w) noexcept {
   const V square = w * w;
   return 0.8f * (1.0f - square * square);
 }
 
-// --- Angles --------------------------------------------------------------------------------------
+// --- Angles of a joint ---------------------------------------------------------------------------
 
-// The angle of any direction, within half a turn.
+// The angle with a sine and a cosine that are proportional to y and x, from -pi to pi.
 template <class V>
 V arc_of(const V& y, const V& x) noexcept {
   const V length = root(V(x * x + y * y)), over = 1.0f / most(length, all<V>(1e-12f)), s = y * over,
           c = x * over;
-  // Tangents of a half, a quarter and an eighth of it, then its arc (Cephes, atanf).
+  // Tangents of a half, a quarter and an eighth of the angle.
   const V behind = (1.0f - c) / (s < V{} ? least(s, all<V>(-1e-6f)) : most(s, all<V>(1e-6f))),
           half = c < V{} ? behind : V(s / (1.0f + most(c, V{}))),
           quarter = half / (1.0f + root(V(1.0f + half * half))),
-          t = quarter / (1.0f + root(V(1.0f + quarter * quarter))), z = t * t;
-  return 8.0f *
-         (t + t * z *
-                  (-3.33329491539e-1f +
-                   z * (1.99777106478e-1f + z * (-1.38776856032e-1f + z * 8.05374449538e-2f))));
+          eighth = quarter / (1.0f + root(V(1.0f + quarter * quarter)));
+  return 8.0f * arc_tangent_small(eighth);
 }
 
-// q = Rx(x) Rz(z) Ry(y), z within a quarter turn (leg_pose.h).
+// Angles of q = Rx(x) Rz(z) Ry(y), z within a right angle (as angles_xzy() of leg_pose.h).
 template <class V>
 void angles_xzy(const Turn<V>& q, V& x, V& z, V& y) noexcept {
   const Vec<V> up = q * Vec<V>{V{}, all<V>(1.0f), V{}};
@@ -177,7 +179,7 @@ Turn<V> turn_xzy(const V& x, const V& z, const V& y) noexcept {
 }
 template <class V>
 V within_half_turn(const V& angle_rad) noexcept {
-  return angle_rad - 6.2831853f * rounded(V(angle_rad * 0.15915494f));
+  return angle_rad - kTurn_rad * rounded(V(angle_rad * 0.15915494f));
 }
 
 }  // namespace

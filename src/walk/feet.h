@@ -1,4 +1,4 @@
-// Fourth: where both feet are, and how they are turned.
+// Fourth: the places and turns of both feet.
 #pragma once
 #include "walk/ground.h"
 
@@ -12,17 +12,16 @@ struct Foot {
   Turn<V> yaw, edge, turn;
 };
 
-// The numbers of a foot that the swinging one and the standing one differ in, for they are of
-// different sides.
+// A foot's part of LegBones, on the side of each walk's swing or stand.
 template <class V>
 struct Sole {
-  Vec<V> heel_m, line_m, forward, side;  // in the foot's frame; from heel to toe
+  Vec<V> heel_m, line_m, forward, side;  // in the foot's frame; line_m: from heel to toe
   V elevation_rad, foot_m, toe_rest_m, half_width_m;
 };
 template <class V>
 Sole<V> sole_of(const Tables& tables, const Mask<V>& right) noexcept {
   const LegBones &l = tables.leg[0], &r = tables.leg[1];
-  const auto of = [&](float LegBones::*bone) { return chosen<V>(right, r.*bone, l.*bone); };
+  const auto of = [&](float LegBones::*number) { return of_leg<V>(tables, right, number); };
   const Vec<V> heel_m = by_side<V>(right, l.heel_m, r.heel_m);
   return {heel_m,
           by_side<V>(right, l.toe_m, r.toe_m) - heel_m,
@@ -39,7 +38,8 @@ Turn<V> edge_of(const Sole<V>& sole, const V& twist_rad, const V& roll_rad) noex
   const Vec<V>& f = sole.forward;
   return turn_by(Vec<V>{f.x * roll_rad, twist_rad + f.y * roll_rad, f.z * roll_rad});
 }
-// Of the foot by its direction, pitch and edge; then the point that is not planted follows.
+// Turns a foot by its direction, pitch and edge about its planted point: the toe where it is
+// `on_toe`, else the heel. The other point follows.
 template <class V>
 void set_pitch(const Sole<V>& sole, const Turn<V>& yaw, const V& pitch_rad, const Mask<V>& on_toe,
                Foot<V>& foot) noexcept {
@@ -54,32 +54,22 @@ void set_pitch(const Sole<V>& sole, const Turn<V>& yaw, const V& pitch_rad, cons
 
 // The style's factor on the height of the flight.
 template <class V>
-V lift_of(const Time<V>& time, const State<V>& state) noexcept {
-  return time.right ? state.lift[1].x : state.lift[0].x;
+V lift_of(const Mask<V>& right, const State<V>& state) noexcept {
+  return right ? state.lift[1].x : state.lift[0].x;
 }
-// At most 1: a lame foot stays low.
+// The same, but at most 1: a lame foot stays low.
 template <class V>
 V low_lift(const Mask<V>& right, const State<V>& state) noexcept {
-  return least(right ? state.lift[1].x : state.lift[0].x, all<V>(1.0f));
+  return least(lift_of<V>(right, state), all<V>(1.0f));
 }
-// Of its pitch in the tables, until the middle of its flight.
+// A low foot's factor on the pitch in the tables: `low` at the lift-off, 1 from mid-flight on.
 template <class V>
 V low_pitch(const V& low, const V& u) noexcept {
-  return mix(low, all<V>(1.0f), smoother(V(2.0f * u)));
+  return mix(low, all<V>(1.0f), smoother(0.0f, 0.5f, u));
 }
 
-// Of the flight: a style's factor on the height grows until here, and goes between the others.
-inline constexpr float kLiftGrown = 0.4f, kLiftFalls = 0.5f, kLiftEnds = 0.85f, kPitchFade = 0.2f;
-inline constexpr float kShortPitchFade = 0.6f, kFirstLift_m = 0.03f,
-                       kLastLift_m = 0.025f;  // of a first and a last one
-// Of the first roll: until then the heel stays down; of the tables' pitch when it lifts off.
-inline constexpr float kHeelStays = 0.25f, kFirstPitch = 0.8f;
-inline constexpr float kHeelRises = 0.5f;  // of the first flight: of the other foot
-inline constexpr float kSoftRoll_rad = 0.0174532925f;
-inline constexpr float kRollEnd = 0.9f;  // of the roll: the toe is down
-// A flying toe may be that far below where it stands: the tables' own, which only just leave the
-// floor, are let through.
-inline constexpr float kMostSink_m = 0.0015f, kSoftPitch_rad = 0.0069813f, kWiderPitch = 0.25f;
+inline constexpr float kLastLift_m = 0.025f;  // added to a last flight; at the reference leg
+inline constexpr float kRollEnd = 0.9f;       // share of the roll after which the toe is down
 
 template <class V>
 V flying_yaw(const Time<V>& time, const Landing<V>& landing, const Change<V>& change,
@@ -88,31 +78,32 @@ V flying_yaw(const Time<V>& time, const Landing<V>& landing, const Change<V>& ch
          state.lift_turn_rad * slope_left(time.u) + change.gap_rad * edge_left(time.u, change);
 }
 
-// How far a foot that flies keeps away from the one that stands where both point elsewhere: to the
-// outside of its path, while it is beside that one.
+// The distance by which a flying foot keeps away from the standing one, to the outside of its path,
+// while it is beside it: in a turn the feet would touch.
 template <class V>
 V keeps_apart_m(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
                 const Vec<V>& heel_m, const V& u, const Change<V>& change,
                 const State<V>& state) noexcept {
-  constexpr float kTurned_rad = 0.1f;             // both footprints' turns: wholly from here on
-  constexpr float kApart = 0.65f, kSoft = 0.12f;  // of the tracks' distance
-  constexpr float kBeside_m = 0.15f, kPast_m = 0.4f, kEnds = 0.25f;  // of the flight
+  constexpr float kTurned_rad = 0.1f;  // acts fully from this sum of footprints' turns on
+  constexpr float kApart = 0.65f, kSoft = 0.12f;      // shares of the distance of both tracks
+  constexpr float kBeside_m = 0.15f, kPast_m = 0.4f;  // acts fully until, and ends at; in the way
+  constexpr float kEnds = 0.25f;  // share of the flight at both ends in which it comes and goes
   const V turned = size(state.print_rad) + size(landing.rad);
   if (!any(turned != V{})) return V{};
   const LegBones &l = tables.leg[0], &r = tables.leg[1];
   const float tracks_m = std::abs(l.track_m) + std::abs(r.track_m);
   const V outwards = chosen<V>(time.right, -1.0f, 1.0f),
-          foot_m = chosen<V>(time.right, r.foot_m, l.foot_m), heel = outwards * heel_m.x,
+          foot_m = of_leg<V>(tables, time.right, &LegBones::foot_m), heel = outwards * heel_m.x,
           toe = heel + outwards * foot_m * way_of(flying_yaw(time, landing, change, state)).sine,
           soft_m = all<V>(kSoft * tracks_m), near_m = soft_least(heel, toe, soft_m),
           beside = 1.0f - smooth(kBeside_m * tables.size, kPast_m * tables.size, size(heel_m.z)),
-          flies = smoother(V(u * (1.0f / kEnds))) * smoother(V((1.0f - u) * (1.0f / kEnds)));
+          flies = smoother(0.0f, kEnds, u) * smoother(0.0f, kEnds, V(1.0f - u));
   return outwards * smooth(0.0f, kTurned_rad, turned) * beside * flies *
          soft_positive(V(kApart * tracks_m - near_m), soft_m);
 }
 
-// The tables' place of the swinging heel, from its footprint to the landing; `base_m`: the height
-// of the ground line below it.
+// The place of the swinging heel in the tables, moved onto its footprint and its landing. `base_m`:
+// the height of the ground line below it.
 template <class V, class F>
 Vec<V> flight_heel(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
                    const Stride<V>& stride, const Hips<V>& hips, const V& phase, const V& u,
@@ -137,28 +128,21 @@ Vec<V> flight_heel(const Tables& tables, const Time<V>& time, const Landing<V>& 
            mix(V(state.print_z_m + from.z), V(landing.z_m + to.z), gone)};
   const auto closes = change.closing != V{}, is_short = either(change.starting != V{}, closes);
   if (any(is_short)) {
-    // As far as strides of its own length have it; before it lands it is one of the walk.
-    constexpr float kInPlaceStride_m = 0.02f, kGoingStride_m = 0.12f, kLikeAStep = 0.4f,
-                    kWalksFrom = 0.3f;
+    // It goes evenly, and is off that as in strides of its own length, along where it points,
+    // wherever the step leads; before it lands it is one of the walk.
+    constexpr float kLikeAStep = 0.4f, kWalksFrom = 0.3f;
     const Vec<V> ahead = seen(hips.own, stride.heel_behind_m, turns, all<V>(kPastClosely));
-    const V stride_m = size(hips.own.stride_m),
-            over_stride =
-                1.0f / (stride_m > all<V>(kInPlaceStride_m) ? hips.own.stride_m : all<V>(1.0f)),
-            far = mix(smoother(u), V(1.0f + ahead.z * over_stride),
-                      smooth(kInPlaceStride_m, kGoingStride_m, stride_m)),
+    const V off_m = ahead.z + hips.own.stride_m * (1.0f - gone),
             goes = kLikeAStep * smoother(V((u - kWalksFrom) * (1.0f / (1.0f - kWalksFrom)))),
             walks = closes ? V{} : goes;
-    // Sideways, to or from hip width, it goes evenly.
-    const V goes_x = landing.x_m - state.print_x_m, goes_z = landing.z_m - state.print_z_m,
-            asides = goes_x * landing.way.cosine - goes_z * landing.way.sine,
-            left_m = ahead.x + asides * (gone - far);
-    const V x = state.print_x_m + goes_x * far + landing.way.cosine * left_m,
-            z = state.print_z_m + goes_z * far - landing.way.sine * left_m;
+    const Vec<V> off = landing.way * Vec<V>{ahead.x, V{}, off_m};
+    const V x = mix(state.print_x_m, landing.x_m, gone) + off.x,
+            z = mix(state.print_z_m, landing.z_m, gone) + off.z;
     p.x = is_short ? mix(x, V(landing.x_m + to.x), walks) : p.x;
     p.z = is_short ? mix(z, V(landing.z_m + to.z), walks) : p.z;
   }
-  // On an arc: neither on its chord, which leads through the standing leg, nor on both directions
-  // mixed, which lead far out.
+  // In a turn the foot goes along an arc. The chord would lead through the standing leg, and a mix
+  // of both footprints' directions far out.
   const V turn = landing.rad - state.print_rad;
   if (any(turn != V{})) {
     const V x = landing.x_m - state.print_x_m, z = landing.z_m - state.print_z_m,
@@ -173,8 +157,10 @@ Vec<V> flight_heel(const Tables& tables, const Time<V>& time, const Landing<V>& 
     p.z = p.z + middle.sine * out;
   }
   p.x = p.x + keeps_apart_m(tables, time, landing, p, u, change, state);
-  // A greater factor acts while the foot is high, a smaller one from the lift-off on.
-  const V factor = lift_of(time, state), low = least(factor, all<V>(1.0f));
+  // A style's factor above 1 acts while the foot is high, one below 1 from the lift-off on. Shares
+  // of the flight: a factor acts fully from kLiftGrown on, one above 1 ends between the others.
+  constexpr float kLiftGrown = 0.4f, kLiftFalls = 0.5f, kLiftEnds = 0.85f;
+  const V factor = lift_of<V>(time.right, state), low = least(factor, all<V>(1.0f));
   V more = 1.0f + (most(factor, all<V>(1.0f)) - 1.0f) * (1.0f - smooth(kLiftFalls, kLiftEnds, u));
   base_m = V{};
   if constexpr (kIsUneven<F>) {
@@ -182,8 +168,9 @@ Vec<V> flight_heel(const Tables& tables, const Time<V>& time, const Landing<V>& 
     base_m = ground_line(tables, landing, p, u, state, footing, up);
     more = more * up;
   }
-  p.y = stride.heel_high_m * low * mix(all<V>(1.0f), more, smoother(V(u * (1.0f / kLiftGrown))));
-  // Its toe leaves the floor at once.
+  p.y = stride.heel_high_m * low * mix(all<V>(1.0f), more, smoother(0.0f, kLiftGrown, u));
+  // In a first or last flight the toe leaves the floor at once.
+  constexpr float kFirstLift_m = 0.03f;  // at the reference leg
   const V left_u = 1.0f - u, square_u = u * left_u;
   const V high_m = tables.size * 16.0f * chosen<V>(closes, kLastLift_m, kFirstLift_m);
   p.y = is_short ? V(p.y + high_m * square_u * square_u) : p.y;
@@ -191,24 +178,28 @@ Vec<V> flight_heel(const Tables& tables, const Time<V>& time, const Landing<V>& 
   return p;
 }
 
-// What the lift-off, or a change of plan, differed by fades: of the heel and of the pitch.
+// The share that is over of the time in which a flight's gap fades: the heel's difference from the
+// tables at its lift-off, or from a new plan.
 template <class V>
-V gap_share(const Time<V>& time, const Change<V>& change) noexcept {
-  return (time.u - change.gap_begin) / change.gap_lasts;
+V gap_share(const V& u, const Change<V>& change) noexcept {
+  return (u - change.gap_begin) / change.gap_lasts;
 }
-// The heel from its table's place, `heel_m`, to where it is, and off the floor, whose height is
-// `base_m`.
+// Adds what is left of the gap to the heel's place in the tables, `heel_m`, and keeps it off the
+// floor, whose height is `base_m`.
 template <class V, class F>
 Vec<V> with_gap(const Tables& tables, const Time<V>& time, const Vec<V>& heel_m, const V& base_m,
                 const Change<V>& change, const State<V>& state, const F& footing) noexcept {
+  // The floor's corner is rounded after a change of plan: fully from kSoftFrom of the fade on,
+  // until kSoftUntil of the flight.
   constexpr float kSoftFloor_m = 0.02f, kSoftFrom = 0.3f, kSoftUntil = 0.7f;
-  const V s = gap_share(time, change);
+  const V s = gap_share(time.u, change);
   const auto fading = both(time.flies, s < all<V>(1.0f)), changed = change.gap_begin != V{};
   V of_gap = value_left(s), of_slope = slope_left(s), falls = all<V>(1.0f);
   Vec<V> p = heel_m;
   if (any(changed)) {
-    // It may come down fast: a quintic then stays higher. One that was lower than it is to be goes
-    // over in proportion: it would else come to the ground.
+    // The foot may come down fast, so its gap fades along a quintic, which stays higher. A gap
+    // below the new plan shrinks with the plan's height, so that the foot does not come to the
+    // ground.
     const V w = 1.0f - s, w3 = w * w * w,
             lift = tables.size * 16.0f * kLastLift_m * change.gap_lasts;
     of_gap = changed ? V(w3 * (1.0f + s * (3.0f + 6.0f * s))) : of_gap;
@@ -222,8 +213,8 @@ Vec<V> with_gap(const Tables& tables, const Time<V>& time, const Vec<V>& heel_m,
       state.gap_slope_m * of_slope;
   V high_m = most(p.y, base_m);
   if (any(changed)) {
-    const V soft_m = kSoftFloor_m * tables.size * smoother(V(s * (1.0f / kSoftFrom))) *
-                     (1.0f - smoother(V((time.u - kSoftUntil) * (1.0f / (1.0f - kSoftUntil)))));
+    const V soft_m = kSoftFloor_m * tables.size * smoother(0.0f, kSoftFrom, s) *
+                     (1.0f - smoother(kSoftUntil, 1.0f, time.u));
     high_m =
         changed ? V(base_m + soft_positive(V(p.y - base_m), most(soft_m, all<V>(1e-6f)))) : high_m;
   }
@@ -231,10 +222,11 @@ Vec<V> with_gap(const Tables& tables, const Time<V>& time, const Vec<V>& heel_m,
   if constexpr (kIsUneven<F>) p.y = changed ? V(p.y - footing.gap_under_m * of_gap) : p.y;
   return p;
 }
-// `tick`: of the flight.
+// The rest of the pitch's difference from the tables, at a tick of the flight.
 template <class V>
 V pitch_off(const Time<V>& time, const V& tick, const Change<V>& change,
             const State<V>& state) noexcept {
+  constexpr float kPitchFade = 0.2f, kShortPitchFade = 0.6f;  // shares of a flight; of a short one
   const auto is_short = either(change.starting != V{}, change.closing != V{}),
              changed = change.pitch_lasts != V{};
   const V own_ticks = state.flight_ticks * chosen<V>(is_short, kShortPitchFade, kPitchFade),
@@ -245,22 +237,22 @@ V pitch_off(const Time<V>& time, const V& tick, const Change<V>& change,
                                             : V{};
 }
 
-// What is left of a height that a changed plan was off, and of its slope per flight.
+// The rest of a height's difference from a new plan, and of its slope per flight.
 template <class V>
 V gap_left(const V& u, const Gap<V>& gap, const Change<V>& change) noexcept {
-  const V s = within(V((u - change.gap_begin) / change.gap_lasts), 0.0f, 1.0f);
+  const V s = within(gap_share(u, change), 0.0f, 1.0f);
   return gap.x * (1.0f - smoother(s)) + gap.v * change.gap_lasts * slope_left(s);
 }
 
-// How far its pitch may be off what the floor bounds it to: as far as it is off the tables, when
-// the toe has left the floor.
+// The width over which the floor's bound on the pitch is loose: the pitch's difference from the
+// tables, once the toe has left the floor.
 template <class V>
 V loose_pitch(const V& u, const V& off, const Change<V>& change) noexcept {
   return size(off) * smooth(0.0f, 0.1f, V(u - change.gap_begin)) +
          edge_left(u, change) * change.gap_loose_rad;
 }
 
-// How long a roll takes until the toe is down, and how much of that is over.
+// The ticks of a roll until the toe is down, and the share of them that is over.
 template <class V>
 V roll_lasts(const Change<V>& change, const State<V>& state) noexcept {
   return kRollEnd * (least(state.roll_ticks, change.led_until) - change.led_from);
@@ -269,7 +261,7 @@ template <class V>
 V roll_over(const Change<V>& change, const State<V>& state) noexcept {
   return (state.tick - change.led_from) / roll_lasts(change, state);
 }
-// What is left of the pitch with which it landed.
+// The rest of the pitch with which the standing foot landed.
 template <class V>
 V landed_pitch(const Change<V>& change, const State<V>& state) noexcept {
   const V s = roll_over(change, state);
@@ -278,25 +270,27 @@ V landed_pitch(const Change<V>& change, const State<V>& state) noexcept {
                           : V{};
 }
 
-// How much of the tables' pitch the foot that stands has, by the plan. Where the hips lead, its toe
-// is down when the other foot lifts off, and only then its heel begins to rise: in the tables it
-// may have risen by then. In a first step it has not landed. In a last one it stays flat.
+// The share of the tables' pitch that the standing foot has by the plan. If the hips lead, its toe
+// is down when the other foot lifts off, and its heel begins to rise only then, for by the tables
+// it may have risen before. In a first step the foot has not landed; in a last one it stays flat.
 template <class V>
 V planned_pitch(const Time<V>& time, const Change<V>& change, const State<V>& state) noexcept {
+  constexpr float kHeelRises = 0.5f;  // share of the flight in which the heel comes to its pitch
   const V lands = time.flies ? V{} : smoother(roll_over(change, state)),
-          rises = smoother(V(time.u * (1.0f / kHeelRises)));
+          rises = smoother(0.0f, kHeelRises, time.u);
   const auto starts = change.starting != V{}, later = both(change.led != V{}, time.flies);
   const V share = either(starts, later) ? rises : V(1.0f - change.led * lands);
   return both(change.closing != V{}, time.flies) ? V{} : share;
 }
 
-// A foot in the air, still without its pitch.
+// A foot in the air, before its pitch is known.
 template <class V>
 struct Flight {
   Vec<V> heel_m, table_heel_m;
-  V base_m{}, lifted_m{};  // the ground line below it; how much higher the plane that it left is
-  Way<V> way;              // where it points
-  Turn<V> tilt{V{} + 1.0f, V{}, V{}, V{}}, edge;
+  V base_m{},
+      lifted_m{};  // height of the ground line; by how much the plane that it left is higher
+  Way<V> way;      // the foot's direction
+  Turn<V> tilt = no_turn<V>(), edge;
 };
 
 template <class V, class F>
@@ -305,15 +299,15 @@ Flight<V> fly(const Tables& tables, const Time<V>& time, const Landing<V>& landi
               const V& phase, const Sole<V>& sole, const Change<V>& change, const State<V>& state,
               const F& footing) noexcept {
   Flight<V> flight;
-  const V one = all<V>(1.0f), u = time.u;
+  const V u = time.u;
   flight.table_heel_m = flight_heel(tables, time, landing, by_clock, hips, phase, u, change, state,
                                     footing, flight.base_m);
   flight.heel_m =
       with_gap(tables, time, flight.table_heel_m, flight.base_m, change, state, footing);
   // A low foot that hardly leaves the floor does not roll onto an edge.
   const V over = flight_share(u, change);
-  const V low = mix(one, low_lift<V>(time.right, state),
-                    V(smoother(V(over * 2.0f)) * (1.0f - smoother(V((over - 0.6f) * 2.5f)))));
+  const V low = mix(all<V>(1.0f), low_lift<V>(time.right, state),
+                    V(smoother(0.0f, 0.5f, over) * (1.0f - smoother(V((over - 0.6f) * 2.5f)))));
   const FootInStride<V>& table = stride.foot[0];
   flight.edge = edge_of(sole, V(low * table.twist_rad), V(low * table.roll_rad));
   const Way<V> left = way_of(state.print_rad),
@@ -333,16 +327,21 @@ Flight<V> fly(const Tables& tables, const Time<V>& time, const Landing<V>& landi
   return flight;
 }
 
-// Its pitch: what is planned, as far as toe and edge stay off the ground.
+// Turns the flying foot to its planned pitch, as far as toe and edges stay off the ground.
 template <class V, class F>
 void pitch_in_flight(const Time<V>& time, const Sole<V>& sole, const Flight<V>& flight,
                      const V& planned, const V& off, const Change<V>& change, const F& footing,
                      Foot<V>& foot) noexcept {
+  // The toe may be so much below its height in a stand, for in the tables toes only just leave the
+  // floor. The limit of the pitch is rounded over kSoftPitch_rad, and over kWiderPitch of
+  // loose_pitch().
+  constexpr float kMostSink_m = 0.0015f, kSoftPitch_rad = 0.0069813f, kWiderPitch = 0.25f;
   const V u = time.u;
   V height_m = flight.heel_m.y;
   if constexpr (kIsUneven<F>) {
-    // The toe leaves the plane that it stood on, which may be another one than the ground line.
-    const V lifted_m = flight.lifted_m * (1.0f - smoother(V(u * (1.0f / kLiftGround))));
+    // The plane on which the foot stood bounds the toe at first; it may differ from the ground
+    // line.
+    const V lifted_m = flight.lifted_m * (1.0f - smoother(0.0f, kLiftGround, u));
     height_m = (height_m - (flight.base_m + lifted_m)) * upright(footing.print);
   }
   foot.edge = flight.edge;
@@ -353,8 +352,8 @@ void pitch_in_flight(const Time<V>& time, const Sole<V>& sole, const Flight<V>& 
   const V edge_m =
       sole.half_width_m * size(across) * smooth(0.0f, 0.25f, u) * (1.0f - smooth(0.9f, 1.0f, u));
   const V deep = (sole.toe_rest_m + edge_m - kMostSink_m - height_m) / sole.foot_m;
-  // A heel that is as high as the foot is long leaves it free.
-  constexpr float kSteep = 0.95f, kSteeper = 3.2025631f;  // the arc's slope there
+  // The arc goes on straight beyond kSteep: a heel as high as the foot is long leaves it free.
+  constexpr float kSteep = 0.95f, kSteeper = 3.2025631f;  // the slope of the arc at kSteep
   const V arc = arc_sine(within(deep, -kSteep, kSteep)) + kSteeper * least(V(deep + kSteep), V{});
   const V limit = sole.elevation_rad - arc + arc_sine(steeper);
   const V soft = kSoftPitch_rad + kWiderPitch * loose_pitch(u, off, change) + edge_m / sole.foot_m;
@@ -368,10 +367,10 @@ template <class V>
 struct Feet {
   Foot<V> foot[2];  // swing, stand
   Sole<V> sole[2];
-  Vec<V> table_heel_m;  // of the swinging one
+  Vec<V> table_heel_m;  // of the swinging foot, in the tables
   V base_m{};           // the ground line below it
-  Vec<V> flat_toe_m;    // of the standing one, where it is flat on its ground
-  Vec<V> ankle_m[2];    // once both are where they are to be
+  Vec<V> flat_toe_m;    // of the standing foot, if it stands flat
+  Vec<V> ankle_m[2];    // of the feet after all moves
 };
 
 template <class V, class F>
@@ -383,24 +382,23 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
   const auto starts = change.starting != V{}, first_roll = both(starts, no(time.flies));
   {  // The foot that stands: on its heel while it rolls, then on its toe.
     Foot<V>& foot = feet.foot[1];
-    const Sole<V>& sole = feet.sole[1] = sole_of<V>(tables, no(time.right));
+    const auto right = no(time.right);
+    const Sole<V>& sole = feet.sole[1] = sole_of<V>(tables, right);
     const FootInStride<V>& table = stride.foot[1];
     const V off = landed_pitch(change, state),
             shows = planned_pitch(time, change, state) + change.off_pitch.x;
-    const V low = time.flies ? low_lift<V>(no(time.right), state) : one;
+    const V low = time.flies ? low_lift<V>(right, state) : one;
     const V pitch = low * table.pitch_rad * shows + (time.flies ? V{} : off);
     V planted = time.flies ? most(pitch, V{}) : least(pitch, V{});
-    Turn<V> tilt{one, V{}, V{}, V{}};
+    Turn<V> tilt = no_turn<V>();
     feet.flat_toe_m = sole.line_m;
     if constexpr (kIsUneven<F>) {
       tilt = tilt_of(footing.stand);
       feet.flat_toe_m = tilt * sole.line_m;
-      // Where the hips have risen over it, it rises on its toe.
-      const V rises_m = rise_with_hips<V>(tables, no(time.right), stride.leg_rad[1][3], V{}, V{},
-                                          footing),
-              begun = starts ? smoother(V(time.u * (1.0f / kFirstRise))) : one;
-      planted = time.flies ? pitch_to_rise<V>(tables, no(time.right), V(rises_m * begun), planted)
-                           : planted;
+      // The foot rises on its toe as far as the hips have risen over it.
+      const V rises_m = rise_with_hips<V>(tables, right, stride.leg_rad[1][3], V{}, V{}, footing),
+              begun = starts ? smoother(0.0f, kFirstRise, time.u) : one;
+      planted = time.flies ? pitch_to_rise<V>(tables, right, V(rises_m * begun), planted) : planted;
     }
     foot.edge = edge_of(sole, table.twist_rad, table.roll_rad);
     foot.toe_m = feet.flat_toe_m;
@@ -413,14 +411,16 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
       fly(tables, time, landing, by_clock, stride, hips, state.phase, sole, change, state, footing);
   feet.table_heel_m = flight.table_heel_m;
   const V off = pitch_off(time, state.tick, change, state);
-  const V lifts =
-      smoother(V((state.tick / state.roll_ticks - kHeelStays) * (1.0f / (1.0f - kHeelStays))));
+  // In a first roll the heel stays down for the share kHeelStays of it, and rises to kFirstPitch of
+  // the tables' pitch.
+  constexpr float kHeelStays = 0.25f, kFirstPitch = 0.8f;
+  const V rolled = state.tick / state.roll_ticks, lifts = smoother(kHeelStays, 1.0f, rolled);
   const V low = low_pitch(low_lift<V>(time.right, state), time.u);
   V planned = first_roll ? V(low * (kFirstPitch * by_clock.foot[0].pitch_rad * lifts))
                          : V(low * stride.foot[0].pitch_rad + off);
-  // The phase of hips that lead may be beyond the lift-off, where the tables' pitch falls.
+  // The phase of hips that lead may be beyond the lift-off, where the pitch in the tables falls.
   const auto stays = both(no(time.flies), both(change.led != V{}, no(first_roll)));
-  const V soft = kSoftRoll_rad * smoother(V(state.tick / state.roll_ticks));
+  const V soft = kDegree_rad * smoother(rolled);
   planned = both(stays, soft > V{}) ? soft_positive(planned, most(soft, all<V>(1e-6f))) : planned;
   foot.toe_m = {state.toe_x_m, sole.toe_rest_m, state.toe_z_m};
   if constexpr (kIsUneven<F>) {
@@ -454,14 +454,14 @@ Vec<V> ankle_of(const Foot<V>& foot, const Sole<V>& sole) noexcept {
   return foot.heel_m - foot.turn * sole.heel_m;
 }
 
-// A value's slope now, per tick, from its last three.
+// A value's slope per tick at its end, from its last three values.
 template <class V>
 V slope_of(const V& now, const V& last, const V& before) noexcept {
   return 0.5f * (3.0f * now - 4.0f * last + before);
 }
 
-// Where a foot lifts off, what it and its slope differ by from its flight in the tables, which are
-// read a tick ahead.
+// Keeps the differences of a foot that lifts off, and of its slope, from its flight in the tables,
+// which are read a tick ahead for their slope.
 template <class V, class F>
 void lift_off(const Tables& tables, const Time<V>& time, const Mask<V>& lifts,
               const Landing<V>& landing, const Hips<V>& hips, const Feet<V>& feet,
@@ -488,7 +488,7 @@ void lift_off(const Tables& tables, const Time<V>& time, const Mask<V>& lifts,
   state.gap_slope_m = chosen(lifts, Vec<V>{slope(&Vec<V>::x), slope(&Vec<V>::y), slope(&Vec<V>::z)},
                              state.gap_slope_m);
   if constexpr (kIsUneven<F>) {
-    // How it rises with the hips is no part of it.
+    // The foot's rise with the hips is added apart from this.
     const V rises_m = slope_of(footing.rise_m, footing.last_rise_m[0], footing.last_rise_m[1]);
     state.gap_m.y = lifts ? V(state.gap_m.y - footing.rise_m) : state.gap_m.y;
     state.gap_slope_m.y = lifts ? V(state.gap_slope_m.y - rises_m * ticks) : state.gap_slope_m.y;
@@ -498,7 +498,7 @@ void lift_off(const Tables& tables, const Time<V>& time, const Mask<V>& lifts,
   }
   state.swing_pitch_rad = lifts ? V(pitch - table_pitch) : state.swing_pitch_rad;
   state.swing_pitch_rate = lifts ? rate : state.swing_pitch_rate;
-  // In a turn it pivots on its planted toe as its heel rises.
+  // In a turn the foot pivots on its planted toe as its heel rises.
   state.lift_turn_rad = lifts ? V(state.turn_rad_s.x * tables.tick_s * ticks) : state.lift_turn_rad;
 }
 
@@ -508,13 +508,12 @@ void keep_swing(const Foot<V>& swing, State<V>& state) noexcept {
   state.last_pitch_rad[1] = state.last_pitch_rad[0], state.last_pitch_rad[0] = swing.pitch_rad;
 }
 
-// At a strike the feet change their parts, and the step frame moves to the footprint that is new.
+// Exchanges swing and stand at a strike, and sees places from the new step frame.
 template <class V>
 void change_feet(const Landing<V>& landing, const Mask<V>& strikes, const Feet<V>& feet,
                  const Stride<V>& stride, State<V>& state) noexcept {
   const auto set = [&](const V& to, V& number) { number = strikes ? to : number; };
-  const Way<V> back_turn{-landing.way.half_sine, landing.way.half_cosine, -landing.way.sine,
-                         landing.way.cosine};
+  const Way<V> back_turn = back(landing.way);
   const auto moved = [&](const V& x_m, const V& z_m) {
     return back_turn * Vec<V>{x_m - landing.x_m, V{}, z_m - landing.z_m};
   };

@@ -329,5 +329,16 @@ void begin_step(const Tables& tables, const Time<V>& time, const Mask<V>& strike
   state.tick = strikes ? V{} : state.tick;
 }
 
+// Whether foot k, 0 for swing and 1 for stand, is the right one.
+template <class V>
+Mask<V> is_right(const Time<V>& time, int k) noexcept {
+  return k == 0 ? time.right : no(time.right);
+}
+// An angle of the right or the left leg in the standing pose.
+template <class V>
+V stand_rad(const Tables& tables, const Mask<V>& right, int angle) noexcept {
+  return chosen<V>(right, tables.leg[1].stand_rad[angle], tables.leg[0].stand_rad[angle]);
+}
+
 }  // namespace
 }  // namespace gaitpad

@@ -1,5 +1,6 @@
-// Uneven ground in lanes: what planes make of feet, hips and stride. Where a landing is chosen, and
-// how a flight keeps clear of risers, is planned for one walk at a time (ground_plan.h).
+// Uneven ground, for walks side by side: how the planes below the feet move feet, hips and stride.
+// ground_plan.h chooses landings, and plans how flights keep clear of risers, for one walk at a
+// time.
 #pragma once
 #include "walk/hips.h"
 
@@ -8,17 +9,27 @@ namespace {
 
 inline bool is_uneven(const Tables& tables) noexcept { return tables.terrain != nullptr; }
 
+// The rise of a usual riser, 17 cm for an adult, and the highest one that a step can climb; in
+// legs.
+inline constexpr float kStairRise = 0.2f;
+inline constexpr double kMostRise = 0.345;
+
 // --- Planes --------------------------------------------------------------------------------------
 
-// From level ground to a plane.
+// The length of a plane's normal whose upward part is 1.
+template <class V>
+V steepness(const Slope<V>& slope) noexcept {
+  return root(V(1.0f + (slope.x * slope.x + slope.z * slope.z)));
+}
+// The upward part of the unit normal.
+template <class V>
+V upright(const Slope<V>& slope) noexcept {
+  return 1.0f / steepness(slope);
+}
+// The turn from level ground to a plane.
 template <class V>
 Turn<V> tilt_of(const Slope<V>& slope) noexcept {
-  const V steep = root(V(1.0f + (slope.x * slope.x + slope.z * slope.z)));
-  return unit(Turn<V>{V(steep + 1.0f), -slope.z, V{}, slope.x});
-}
-template <class V>
-V upright(const Slope<V>& slope) noexcept {  // of its normal
-  return 1.0f / root(V(1.0f + (slope.x * slope.x + slope.z * slope.z)));
+  return unit(Turn<V>{V(steepness(slope) + 1.0f), -slope.z, V{}, slope.x});
 }
 template <class V>
 V rise_of(const Slope<V>& slope, const V& x_m, const V& z_m) noexcept {
@@ -29,11 +40,11 @@ Slope<V> chosen(const Mask<V>& mask, const Slope<V>& a, const Slope<V>& b) noexc
   return {mask ? a.x : b.x, mask ? a.z : b.z};
 }
 
-// The cubic B-spline from 0 at u = 0 to `end` at u = 1, with slope 0 at both, by its inner knots.
+// The cubic B-spline with these inner knots from 0 at u = 0 to `end` at u = 1, where it is level.
 template <class V>
 V spline_at(const V* knots, const V& end, const V& u) noexcept {
   constexpr int n = kRoomKnots + 1;
-  const V low = u < V{} ? V{} : u, x = (low > V{} + 1.0f ? V{} + 1.0f : low) * float(n);
+  const V x = within(u, 0.0f, 1.0f) * float(n);
   V sum{};
   for (int k = -1; k <= n + 1; ++k) {
     const V control = k < 0    ? knots[0]
@@ -41,8 +52,8 @@ V spline_at(const V* knots, const V& end, const V& u) noexcept {
                       : k < n  ? knots[k - 1]
                       : k == n ? V(1.5f * end - 0.5f * knots[n - 2])
                                : knots[n - 2];
-    const V off = x - float(k), d = off < V{} ? -off : off, left = 2.0f - d,
-            near = 4.0f + d * d * (3.0f * d - 6.0f), far = left * left * left;
+    const V d = size(V(x - float(k))), left = 2.0f - d, near = 4.0f + d * d * (3.0f * d - 6.0f),
+            far = left * left * left;
     const V weight = d < V{} + 1.0f ? near : far;
     sum = sum + (left > V{} ? V(control * weight) : V{});
   }
@@ -53,17 +64,13 @@ V spline_at(const V* knots, const V& end, const V& u) noexcept {
 
 // Trunks lean by 5 to 6 degrees up a grade of 15 %, by 7 to 8 up stairs, and back by 2 downhill
 // (Leroux, Fung and Barbeau 2002; Nadeau, McFadyen and Malouin 2003).
-inline constexpr float kUphillLean_rad = 0.14835299f, kDownhillLean_rad = 0.05235988f,
-                       kHalfLeanGrade = 0.09f;
-inline constexpr float kShortestRun = 0.2f;  // in legs: a step over less ground has no grade
-inline constexpr float kShortStep = 0.1f;  // of the data's: shorter ones say nothing of the ground
-inline constexpr float kLeastLeft = 0.3f;  // the ground leaves that much of a step's length
-// Sticks change the ratio slower, but for a first step.
-inline constexpr float kRatioJump_1_s = 2.4f, kFirstRatioJump_1_s = 14.4f;
-
 template <class V>
 void lean_into_slope(const Tables& tables, const State<V>& state, const Change<V>& change,
                      Footing<V>& footing) noexcept {
+  // Leans on the steepest grades, and the grade of half of them.
+  constexpr float kUphillLean_rad = 0.14835299f, kDownhillLean_rad = 0.05235988f,
+                  kHalfLeanGrade = 0.09f;
+  constexpr float kShortestRun = 0.2f;  // in legs: shorter steps count as this long
   const V run_m = most(size(footing.step_m), all<V>(kShortestRun * tables.leg_m)),
           rise_m = state.backward != V{} ? -footing.landing_y_m : footing.landing_y_m,
           grade = change.stands != V{} ? V{} : V(rise_m / run_m),
@@ -72,37 +79,40 @@ void lean_into_slope(const Tables& tables, const State<V>& state, const Change<V
 }
 
 template <class V>
-V ratio_on_ground(const Change<V>& change, const State<V>& state,
-                  const Footing<V>& footing) noexcept {
-  return change.closing != V{}
-             ? V(state.ratio_behind + change.off_ratio.x)
-             : most(V(footing.step_ratio + footing.off_ratio.x + change.off_ratio.x), V{});
+void set_ratio_on_ground(const Change<V>& change, const State<V>& state, const Footing<V>& footing,
+                         Landing<V>& landing) noexcept {
+  landing.ratio = change.closing != V{}
+                      ? V(state.ratio_behind + change.off_ratio.x)
+                      : most(V(footing.step_ratio + footing.off_ratio.x + change.off_ratio.x), V{});
+  landing.off_ratio = change.starting != V{} ? V(footing.off_ratio.x + change.off_ratio.x) : V{};
 }
 
-// The landing that is planned, wherever it is.
+// The landing as it is planned, on level or on uneven ground.
 template <class V, class F>
 Landing<V> landing_over(const Tables& tables, const Time<V>& time, const Way<V>& to,
                         const Change<V>& change, const State<V>& state, const F& footing) noexcept {
   Landing<V> landing = planned_landing(tables, time, to, change, state);
-  if constexpr (kIsUneven<F>) {
-    landing.ratio = ratio_on_ground(change, state, footing);
-    landing.off_ratio = change.starting != V{} ? V(footing.off_ratio.x + change.off_ratio.x) : V{};
-  }
+  if constexpr (kIsUneven<F>) set_ratio_on_ground(change, state, footing, landing);
   return landing;
 }
-// Another step follows.
+// Whether another step follows.
 template <class V>
 Mask<V> goes_on(const State<V>& state, const Change<V>& change) noexcept {
   return both(change.closing == V{}, either(is_to_walk(state), change.further != V{}));
 }
 
-// What the ground leaves of the step's length, and the ratio for which the tables are read: a step
-// that is to end on another tread than it was has another ratio at once, and the tables come to it
-// until the flight begins.
+// Updates the share of the step's length that the ground leaves, and the ratio for which the tables
+// are read. A step that is planned to another tread has another ratio at once; the tables come to
+// it until the flight begins.
 template <class V>
 void follow_ground(const Tables& tables, const Time<V>& time, const AskedStep<V>& asked,
                    const Change<V>& change, const State<V>& state, Footing<V>& footing,
                    Landing<V>& landing) noexcept {
+  // The share that the ground leaves is at least kLeastLeft. It is 1 for steps that are asked to be
+  // shorter than kShortStep of the data's.
+  constexpr float kShortStep = 0.1f, kLeastLeft = 0.3f;
+  // A stick changes the ratio at most so fast; a faster change comes from the ground.
+  constexpr float kRatioJump_1_s = 2.4f, kFirstRatioJump_1_s = 14.4f;
   const auto stands = change.stands != V{};
   footing.step_m = landing.x_m * asked.to.sine + landing.z_m * asked.to.cosine;
   const V wanted_m = size(asked.length_m), step_m = size(footing.step_m),
@@ -121,47 +131,48 @@ void follow_ground(const Tables& tables, const Time<V>& time, const AskedStep<V>
   off.v = strikes ? V{} : off.v;
   off.a = strikes ? V{} : off.a;
   fade(time.flies ? all<V>(1.0f) : V(state.roll_ticks - state.tick + 1.0f), off);
-  landing.ratio = ratio_on_ground(change, state, footing);
-  landing.off_ratio = change.starting != V{} ? V(footing.off_ratio.x + change.off_ratio.x) : V{};
+  set_ratio_on_ground(change, state, footing, landing);
 }
 
-// Rises are in legs. A riser of 17 cm takes an adult at least 0.84 s; both feet equally long.
+// The factor on a step's times for the next rise, in legs. On stairs both feet take equally long: a
+// riser of kStairRise legs takes at least kStairStep_s, and kSlowerBack times as long backwards.
+// Times of gentler rises grow with the rise.
 template <class V>
 V slowness_of(const Tables& tables, const Mask<V>& right, const State<V>& state,
               const Footing<V>& footing) noexcept {
-  constexpr float kSlowerOnStairs = 1.2f, kSlowestRise = 0.34f, kSteepRise = 0.15f,
-                  kStairStep_s = 0.84f, kStairRise = 0.2f,
-                  kSlowerBack = 2.05f;  // on stairs
+  constexpr float kSlowerByRise = 1.2f, kSlowestRise = 0.34f, kSteepRise = 0.15f,
+                  kStairStep_s = 0.84f, kSlowerBack = 2.05f;
   const V rise = least(footing.next_rise, all<V>(kSlowestRise)),
           own_s = by_side<V>(right, state.asked.time_s),
           other_s = by_side<V>(no(right), state.asked.time_s),
           level_s = mix(own_s, most(own_s, other_s), smooth(0.0f, kSteepRise, rise)),
           stair_s = rise * (kStairStep_s * tables.time_scale / kStairRise) *
                     chosen<V>(state.backward != V{}, kSlowerBack, 1.0f),
-          slow_s = most(V(level_s * (1.0f + kSlowerOnStairs * rise)), stair_s);
+          slow_s = most(V(level_s * (1.0f + kSlowerByRise * rise)), stair_s);
   return rise == V{} ? all<V>(1.0f) : V(slow_s / own_s);
 }
 
-// A flight to another tread, `rise_m` higher or lower, takes as long as one of steady stairs.
+// The time of a flight to a tread that is `rise_m` higher or lower: in proportion to the rise, as
+// on steady stairs.
 template <class V>
 V flight_to_tread_s(const Tables& tables, const V& rise_m) noexcept {
-  constexpr float kFlight_s = 0.5f, kRise = 0.2f;  // of so many legs
-  return size(rise_m) * (kFlight_s * tables.time_scale / (kRise * tables.leg_m));
+  constexpr float kFlight_s = 0.5f;  // over a usual riser, at the reference leg
+  return size(rise_m) * (kFlight_s * tables.time_scale / (kStairRise * tables.leg_m));
 }
-// The same of a first one, which begins from a stand; never 0.
+// The least time of the running step's flight, by the rise between both feet or the rest of the
+// flying foot's rise, whichever is greater. Never 0.
 template <class V>
 V first_flight_s(const Tables& tables, const Footing<V>& footing) noexcept {
-  constexpr float kLeast_m = 1e-6f;
   const V step_m = size(footing.landing_y_m),
           foot_m = size(V(footing.landing_y_m - footing.print_y_m));
-  return flight_to_tread_s(tables, most(most(step_m, V(foot_m - step_m)), all<V>(kLeast_m)));
+  return flight_to_tread_s(tables, most(most(step_m, V(foot_m - step_m)), all<V>(1e-6f)));
 }
 
-// A step that turns out to lead to another tread takes as long, from its roll on.
+// Lengthens the flight of a step that turns out, in its roll, to lead to another tread.
 template <class V>
 void take_time_to_tread(const Tables& tables, const Time<V>& time, const Change<V>& change,
                         const Footing<V>& footing, State<V>& state) noexcept {
-  constexpr float kMostChange = 2.0f;  // ticks a tick
+  constexpr float kMostChange = 2.0f;  // ticks in a tick
   const auto walks = both(both(change.stands == V{}, change.starting == V{}),
                           both(change.closing == V{}, change.stops == V{})),
              may = both(no(time.flies), walks);
@@ -174,19 +185,17 @@ void take_time_to_tread(const Tables& tables, const Time<V>& time, const Change<
 
 // Up, the knee that lands bent straightens until late single support; down, the standing knee
 // holds, and yields from the middle of single support until the landed foot has taken the weight
-// (McFadyen & Winter 1988). Of the step, of the flight, of the roll.
-inline constexpr float kRiseLasts = 0.9f, kSinkBegin = 0.5f, kSinkEnd = 0.25f;
-// Closing, both feet then stand, with straight knees, at the landing.
+// (McFadyen & Winter 1988). Hips sink from the share kSinkBegin of the flight to the share kSinkEnd
+// of the next roll.
+inline constexpr float kSinkBegin = 0.5f, kSinkEnd = 0.25f;
+// The last step sinks to its landing, where both feet stand with straight knees, so it begins
+// early.
 inline constexpr float kSinkBeginClosing = 0.15f;
-inline constexpr float kSinkBeginBack = 0.35f;  // as people do who feel for the ground behind them
-// How far the knee of a foot gives way that lands from a height: kYield legs from great heights,
-// half of it from kHalfYield. Chosen so that the knee is bent by 20 to 35 degrees on house stairs.
-// The other leg's knee is bent by kBentBefore of it, for a straight knee cannot yield smoothly.
-inline constexpr float kYield = 0.0255f, kHalfYield = 0.01f, kBentBefore = 0.65f;
+inline constexpr float kSinkBeginBack = 0.35f;  // people feel for the ground behind them early
 
 template <class V>
 struct Sinking {
-  V ticks, share;
+  V ticks, share;  // that it lasts; that is over
 };
 template <class V>
 Sinking<V> sinking(const Change<V>& change, const State<V>& state, const Footing<V>& footing,
@@ -200,11 +209,11 @@ Sinking<V> sinking(const Change<V>& change, const State<V>& state, const Footing
   return {ticks, V(most(V(tick - begin), V{}) / ticks)};
 }
 
-// In so many ticks hips that are off their place come there along a quintic without going far
-// beyond it; metres at the reference leg, seconds.
+// The ticks in which hips come to their place along a quintic without going farther beyond it than
+// kBeyond_m.
 template <class V>
 V settles_within(const Tables& tables, const Off<V>& off) noexcept {
-  constexpr float kBeyond_m = 0.03f, kLeast_s = 0.2f;
+  constexpr float kBeyond_m = 0.03f, kLeast_s = 0.2f;  // at the reference leg
   const V far_m = size(off.x) + kBeyond_m * tables.size,
           by_rate = 2.0f * far_m / most(size(off.v), all<V>(1e-9f)),
           by_bend = root(V(4.0f * far_m / most(size(off.a), all<V>(1e-12f))));
@@ -212,22 +221,28 @@ V settles_within(const Tables& tables, const Off<V>& off) noexcept {
       most(least(by_rate, by_bend), all<V>(kLeast_s * tables.time_scale / tables.tick_s)));
 }
 
-// A quintic from where the hips are to where the landed foot carries them, less what they then sink
-// to the next landing.
+// Moves the ground that the hips go over: along a quintic to its height at the landed foot, and
+// from there down to a lower next landing.
 template <class V>
 void move_hips_ground(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
                       const Change<V>& change, const State<V>& state,
                       Footing<V>& footing) noexcept {
+  // The knee of a foot that lands from a height gives way by up to kYield legs, and by half of that
+  // at a fall of kHalfYield legs. Chosen so that the knee is bent by 20 to 35 degrees on house
+  // stairs. The standing knee bends by kBentBefore of it, for a straight knee cannot yield
+  // smoothly.
+  constexpr float kYield = 0.0255f, kHalfYield = 0.01f, kBentBefore = 0.65f;
+  constexpr float kRiseLasts = 0.9f;  // share of the step
   const auto stands = change.stands != V{}, closes = change.closing != V{},
              strikes = both(no(stands), both(no(time.flies), state.tick == all<V>(1.0f))),
              rests = both(closes, both(time.flies, footing.level_m != V{})),
              anew = either(both(time.flies, footing.is_new != V{}), rests),
              begins = either(strikes, anew);
   const V begun = state.tick + (time.flies ? state.roll_ticks : V{});
-  // How far the next foot lands below the standing one, its heel or its toe.
-  const float left_m = tables.leg[0].foot_m, right_m = tables.leg[1].foot_m, leg_m = tables.leg_m;
-  const V toe_m = chosen<V>(time.right, right_m, left_m),
-          stood_m = footing.stand.z * chosen<V>(time.right, left_m, right_m),
+  // The height by which heel or toe of the next foot lands below that of the standing one.
+  const float leg_m = tables.leg_m;
+  const V toe_m = of_leg<V>(tables, time.right, &LegBones::foot_m),
+          stood_m = footing.stand.z * of_leg<V>(tables, no(time.right), &LegBones::foot_m),
           lands_m = footing.landing_y_m + rise_of(footing.landing, V(landing.way.sine * toe_m),
                                                   V(landing.way.cosine * toe_m)),
           fall_m = most(V(-footing.landing_y_m), V(stood_m - lands_m));
@@ -247,19 +262,19 @@ void move_hips_ground(const Tables& tables, const Time<V>& time, const Landing<V
                 : anew                ? later
                                       : settles)),
       footing.settle_ticks);
-  // A plan that has changed lets them sink from now on.
+  // A plan that has changed lets the hips sink from now on.
   set(anew ? state.tick : V{}, footing.sink_from);
-  // Hips that still move rest before that leads them far beyond.
+  // Hips that still move settle early enough not to go far beyond their place.
   const Off<V> moves{V(hips.x - level_m), hips.v, hips.a};
   footing.settle_ticks =
       begins ? V(least(footing.settle_ticks, V(begun + settles_within(tables, moves))))
              : footing.settle_ticks;
-  // A step that closes may have become shorter: they rest at its end.
+  // A last step may have become shorter: the hips settle at its end.
   footing.settle_ticks = closes ? least(footing.settle_ticks, step_ticks) : footing.settle_ticks;
   set(level_m, footing.level_m);
   set(V(hips.x - level_m), off.x), set(hips.v, off.v), set(hips.a, off.a);
   set(V{}, footing.drop_m), set(V{}, footing.yield_m), set(V{}, footing.early_m);
-  // Upwards, the rear leg of one that closes or walks backward would be too short, for it does not
+  // Upwards, the rear leg of a last step or of a walk backward would be too short, for it does not
   // roll far over its toe: hips that rest wait for its flight.
   const auto still = both(off.x < V{}, both(off.v == V{}, off.a == V{})),
              waits = either(stands, both(no(time.flies), both(takes_all, still)));
@@ -286,29 +301,36 @@ void move_hips_ground(const Tables& tables, const Time<V>& time, const Landing<V
 
 // --- Feet that rise with the hips ----------------------------------------------------------------
 
-// A leg is stretched to this share of its length before its foot has to rise with the hips; the
-// foot rises no further than one on its toe lifts its ankle.
-inline constexpr float kStretch = 0.998f, kSoftStretch_m = 0.02f, kMostOnToe = 0.5f,
-                       kSoftOnToe = 0.3f;
-inline constexpr float kFirstRise = 0.4f;  // of the first flight: a standing foot has risen
-inline constexpr float kMostUpright = 0.99f,
-                       kSoftUpright = 0.12f;  // of a foot on its toe, as a sine
+inline constexpr float kFirstRise = 0.4f;  // share of the first flight after which this fully acts
+// The steepest pitch of a foot on its toe, as a sine, and the width over which it is approached.
+inline constexpr float kMostUpright = 0.99f, kSoftUpright = 0.12f;
 
-// Of a foot over ground of height `base_m`, whose knee is `knee_rad` bent in the tables. One that
-// flies down comes with the hips, and softly: over its ground they are lower by `hover_m` twice.
+template <class V>
+V toe_length_m(const Tables& tables, const Mask<V>& right) noexcept {
+  const auto of = [](const LegBones& leg) {
+    const auto& toe = leg.toe_m;
+    return std::sqrt(toe[0] * toe[0] + toe[1] * toe[1] + toe[2] * toe[2]);
+  };
+  return chosen<V>(right, of(tables.leg[1]), of(tables.leg[0]));
+}
+// The ankle's height over the toe of a flat foot.
+template <class V>
+V ankle_height_m(const Tables& tables, const Mask<V>& right) noexcept {
+  return chosen<V>(right, -tables.leg[1].toe_m[1], -tables.leg[0].toe_m[1]);
+}
+
+// The height by which a foot over ground at `base_m` has to rise with the hips. `knee_rad`: the
+// knee's bend in the tables. A foot that flies down follows the hips softly: its rise begins with
+// hips that are lower than its ground by twice `hover_m`.
 template <class V>
 V rise_with_hips(const Tables& tables, const Mask<V>& right, const V& knee_rad, const V& base_m,
                  const V& hover_m, const Footing<V>& footing) noexcept {
-  const auto of = [&](float LegBones::*bone) {
-    return chosen<V>(right, tables.leg[1].*bone, tables.leg[0].*bone);
-  };
-  const auto on_toe = [](const LegBones& leg) {
-    const auto& toe = leg.toe_m;
-    return std::sqrt(toe[0] * toe[0] + toe[1] * toe[1] + toe[2] * toe[2]) + toe[1];
-  };
-  const V a = of(&LegBones::thigh_m), b = of(&LegBones::shank_m),
-          knee =
-              knee_rad + chosen<V>(right, tables.leg[1].stand_rad[3], tables.leg[0].stand_rad[3]);
+  // A leg stretches to the share kStretch of its length before its foot has to rise. The foot rises
+  // by up to the share kMostOnToe of the ankle's rise from a flat to an upright foot.
+  constexpr float kStretch = 0.998f, kSoftStretch_m = 0.02f, kMostOnToe = 0.5f, kSoftOnToe = 0.3f;
+  const V a = of_leg<V>(tables, right, &LegBones::thigh_m),
+          b = of_leg<V>(tables, right, &LegBones::shank_m),
+          knee = knee_rad + stand_rad<V>(tables, right, 3);
   V sine, cosine;
   sin_cos(knee, sine, cosine);
   const V known_m = root(V(a * a + b * b + 2.0f * a * b * cosine)),
@@ -316,12 +338,12 @@ V rise_with_hips(const Tables& tables, const Mask<V>& right, const V& knee_rad, 
           up_m = most(higher_m, V{}), soft_m = all<V>(kSoftStretch_m * tables.size),
           rise_m = soft_positive(V(higher_m + hover_m - room_m),
                                  V(hover_m + up_m * soft_m / (up_m + soft_m))),
-          most_m = chosen<V>(right, on_toe(tables.leg[1]), on_toe(tables.leg[0]));
+          most_m = toe_length_m<V>(tables, right) - ankle_height_m<V>(tables, right);
   const V bounded_m = soft_least(rise_m, V(kMostOnToe * most_m), V(kSoftOnToe * most_m));
   return higher_m <= -2.0f * hover_m ? V{} : bounded_m;
 }
 
-// Of the swinging foot.
+// The same for the swinging foot.
 template <class V>
 V rise_in_flight(const Tables& tables, const Time<V>& time, const V& knee_rad, const V& base_m,
                  const Footing<V>& footing) noexcept {
@@ -329,20 +351,14 @@ V rise_in_flight(const Tables& tables, const Time<V>& time, const V& knee_rad, c
   return rise_with_hips<V>(tables, time.right, knee_rad, base_m, hover_m, footing);
 }
 
-// The pitch of a foot on its toe whose ankle is higher by `rise_m`.
+// The pitch of a foot on its toe that lifts the ankle by another `rise_m`.
 template <class V>
 V pitch_to_rise(const Tables& tables, const Mask<V>& right, const V& rise_m,
                 const V& pitch_rad) noexcept {
-  constexpr float kUpright_rad = 1.57079633f;
-  const auto length_of = [](const LegBones& leg) {
-    const auto& toe = leg.toe_m;
-    return std::sqrt(toe[0] * toe[0] + toe[1] * toe[1] + toe[2] * toe[2]);
-  };
-  const V length_m = chosen<V>(right, length_of(tables.leg[1]), length_of(tables.leg[0])),
-          down_m = chosen<V>(right, -tables.leg[1].toe_m[1], -tables.leg[0].toe_m[1]),
-          flat_rad = arc_sine(V(down_m / length_m));
+  const V length_m = toe_length_m<V>(tables, right),
+          flat_rad = arc_sine(V(ankle_height_m<V>(tables, right) / length_m));
   V sine, cosine;
-  sin_cos(least(V(flat_rad + pitch_rad), all<V>(kUpright_rad)), sine, cosine);
+  sin_cos(least(V(flat_rad + pitch_rad), all<V>(kRightAngle_rad)), sine, cosine);
   const V higher =
               soft_least(V(sine + rise_m / length_m), all<V>(kMostUpright), all<V>(kSoftUpright)),
           risen_rad = most(pitch_rad, V(arc_sine(higher) - flat_rad));
@@ -351,16 +367,10 @@ V pitch_to_rise(const Tables& tables, const Mask<V>& right, const V& rise_m,
 
 // --- Flights -------------------------------------------------------------------------------------
 
-// A flight shorter than this climbs by time, not by place; metres at the reference leg.
-inline constexpr float kClimbsInPlace_m = 0.1f;
-// A foot that goes far up is lifted less: its way over the riser is lift enough, and the knee folds
-// only so far. Rises in legs.
-inline constexpr float kLiftUp = 0.5f, kHighUp = 0.2f, kHighestUp = 0.345f;
-inline constexpr float kLiftGround =
-    0.5f;  // of the flight: until then the plane left bounds the toe
-inline constexpr float kReplan_m = 0.002f;  // a landing moved by more is planned for anew
+inline constexpr float kLiftGround = 0.5f;  // share of the flight in which the plane left bounds it
+inline constexpr float kReplan_m = 0.002f;  // a landing that moves farther is planned for anew
 
-// The plane that it flies to, or what a change of plan has left of the one before.
+// The plane to which the foot flies, mixed with the plane before a change of plan.
 template <class V>
 Slope<V> plane_in_flight(const Time<V>& time, const Change<V>& change,
                          const Footing<V>& footing) noexcept {
@@ -369,12 +379,17 @@ Slope<V> plane_in_flight(const Time<V>& time, const Change<V>& change,
           V(footing.landing.z + left * footing.gap_plane.z)};
 }
 
-// The height of the ground line below a flying heel: it climbs as the foot has come over the
-// ground; across a riser not at all, for there the splines raise the foot. And the factor on the
-// foot's lift.
+// The height of the ground line below a flying heel, and the factor on the foot's lift. The line
+// climbs with the foot's way from footprint to landing. It stays level in a flight over a riser,
+// for there the splines raise the foot.
 template <class V>
 V ground_line(const Tables& tables, const Landing<V>& landing, const Vec<V>& heel_m, const V& u,
               const State<V>& state, const Footing<V>& footing, V& lift) noexcept {
+  // A shorter flight climbs by its time, a longer one by its place; at the reference leg.
+  constexpr float kClimbsInPlace_m = 0.1f;
+  // A foot that goes up by more than a usual riser is lifted less, down to this share: its way over
+  // the riser is lift enough, and the knee folds only so far.
+  constexpr float kLiftUp = 0.5f;
   const V way_x = landing.x_m - state.print_x_m, way_z = landing.z_m - state.print_z_m,
           gone_x = heel_m.x - state.print_x_m, gone_z = heel_m.z - state.print_z_m,
           in_place = all<V>(kClimbsInPlace_m * kClimbsInPlace_m * tables.size * tables.size),
@@ -383,17 +398,17 @@ V ground_line(const Tables& tables, const Landing<V>& landing, const Vec<V>& hee
                  (square + in_place),
           rise_m = footing.landing_y_m - footing.print_y_m;
   lift = mix(all<V>(1.0f), all<V>(kLiftUp),
-             smooth(kHighUp, kHighestUp, V(rise_m * (1.0f / tables.leg_m))));
+             smooth(kStairRise, static_cast<float>(kMostRise), V(rise_m * (1.0f / tables.leg_m))));
   return footing.print_y_m + (footing.crosses != V{} ? V{} : V(rise_m * gone));
 }
 
-// The climb that the splines have to make: 0 where no riser is crossed.
+// The climb that the splines have to make: 0 in a flight that crosses no riser.
 template <class V>
 V climb_over_risers(const Footing<V>& footing) noexcept {
   return footing.crosses != V{} ? V(footing.landing_y_m - footing.lift_y_m) : V{};
 }
 
-// Moves the splines that are in force to those planned.
+// Brings the splines in force nearer to those planned.
 template <class V>
 void follow_room(const Tables& tables, Footing<V>& footing) noexcept {
   for (int k = 0; k < kRoomKnots; ++k) {
@@ -401,24 +416,25 @@ void follow_room(const Tables& tables, Footing<V>& footing) noexcept {
     follow(footing.shift_m[k], tables.room, footing.shift[k]);
   }
 }
-// What they move a flying heel by.
+// The way by which the splines in force move a flying heel.
 template <class V>
 Vec<V> room_at(const V& u, const State<V>& state, const Footing<V>& footing) noexcept {
   V raise[kRoomKnots], shift[kRoomKnots];
   for (int k = 0; k < kRoomKnots; ++k) raise[k] = footing.raise[k].x, shift[k] = footing.shift[k].x;
-  const V away_m = spline_at(shift, V{}, u), sine = 2.0f * state.frame_sine * state.frame_cosine,
-          cosine = state.frame_cosine * state.frame_cosine - state.frame_sine * state.frame_sine;
-  return {-sine * away_m, spline_at(raise, climb_over_risers(footing), u), cosine * away_m};
+  const V away_m = spline_at(shift, V{}, u);
+  const Way<V> frame = way_of_half(state.frame_sine, state.frame_cosine);
+  return {-frame.sine * away_m, spline_at(raise, climb_over_risers(footing), u),
+          frame.cosine * away_m};
 }
 
-// At a strike the step frame goes to the landing, which is where the foot then stands.
+// Moves the step frame at a strike to the landing, on which the foot then stands.
 template <class V>
 void change_footing(const Landing<V>& landing, const Mask<V>& strikes, const V& flat_toe_y_m,
                     Footing<V>& footing) noexcept {
   const auto set = [&](const V& to, V& number) { number = strikes ? to : number; };
   const auto seen = [&](const Slope<V>& slope) {
-    return Slope<V>{V(landing.way.cosine * slope.x - landing.way.sine * slope.z),
-                    V(landing.way.cosine * slope.z + landing.way.sine * slope.x)};
+    const Vec<V> turned = back(landing.way) * Vec<V>{slope.x, V{}, slope.z};
+    return Slope<V>{turned.x, turned.z};
   };
   const V y_m = footing.landing_y_m;
   footing.print = chosen(strikes, seen(footing.stand), footing.print);

@@ -4,16 +4,15 @@
 // cheapest piece wins; on it the heel goes as near to the wanted place as the room for the sole
 // allows. The foot then gets a plane: the ground's best fit under its sole.
 //
-// Flights. A flight is planned over a ground line from one foothold's height to the other's. Where
+// Flights. A flight is planned over a ground line from one foothold's height to the other's. If
 // ground rises above this line, a B-spline raises it: its control points are the greatest heights
 // of the ground under the sole in their neighbourhood. At a riser close to a foothold a second
 // spline moves the foot along z, away from the riser; down stairs it moves the foot ahead, and the
-// first one is drawn taut over the edges, so that the foot sinks early.
+// first spline is drawn taut over the edges, so that the foot sinks early.
 #include "walk/ground_plan.h"
 
 #include "animation/floor.h"
 #include "walk/feet.h"
-#include "walk/walk.h"
 
 namespace gaitpad {
 namespace {
@@ -30,15 +29,16 @@ struct Frame {
     const SinCos s = gaitpad::sin_cos(wrapped(origin.heading_rad));
     sine = s.sin, cosine = s.cos;
   }
+  // A direction or a place in the step frame, in the walk's own coordinates.
   vec3 way(const vec3& v) const noexcept {
     return vec3(cosine * v.x + sine * v.z, v.y, cosine * v.z - sine * v.x);
   }
   vec3 out(const vec3& place) const noexcept { return at_m + way(place); }
+  // A place or a slope in the walk's own coordinates, in the step frame.
   vec3 in(const vec3& place) const noexcept {
     const vec3 v = place - at_m;
     return vec3(cosine * v.x - sine * v.z, v.y, cosine * v.z + sine * v.x);
   }
-  // Of a slope outside.
   Slope<float> in(double x, double z) const noexcept {
     return {static_cast<float>(cosine * x - sine * z), static_cast<float>(cosine * z + sine * x)};
   }
@@ -46,24 +46,26 @@ struct Frame {
 
 // --- Footholds -----------------------------------------------------------------------------------
 
-constexpr double kSlopeShortens = 1.0;  // a grade g leaves 1 / (1 + g) of a step
 // The sole keeps kEdgeRoom legs away from an edge, but gives up at most kMostEdgeShare of its room.
 constexpr double kEdgeRoom = 0.05, kMostEdgeShare = 0.3;
 constexpr int kMostPieces = 8;  // compared, from the wanted one to the standing foot's
-// How willingly a step is moved across the heading, against along it.
+// Cost of a move along the heading, where one across it costs 1: a foot moves ahead rather than
+// aside.
 constexpr double kSkew = 0.25;
-// What a piece costs: about the logarithm of how much longer or shorter it makes the step (steps
-// shorter than kLeastStep legs count as that long), and further costs of what the step becomes:
-// stuck in place, sideways, high, overhanging, long. Rises are in legs.
+// The cost of a piece: about the logarithm of the factor by which it lengthens or shortens the step
+// (steps shorter than kLeastStep legs count as that long), and costs of a step that is stuck in
+// place, goes sideways, rises, overhangs an edge or becomes long. Rises and lengths are in legs.
 constexpr double kLeastStep = 0.05, kStuck = 0.3, kStuckCosts = 2.0, kAside = 3.0;
-constexpr double kEasyRise = 0.22, kRiseCosts = 10.0, kMostRise = 0.345, kTooHigh = 100.0;
+constexpr double kEasyRise = 0.22, kRiseCosts = 10.0, kTooHigh = 100.0;
 constexpr double kOverhang = 30.0, kLongStep = 0.6, kLongCosts = 10.0;
-constexpr double kCrossStep = 0.5, kCrossWay = 0.85, kLeastCross = 0.25;  // lengths in legs
+// Over a riser, in legs: the longest step, the longest way of the flying foot, and the least that
+// is left of it for the step.
+constexpr double kCrossStep = 0.5, kCrossWay = 0.85, kLeastCross = 0.25;
 constexpr double kStay = 0.1;       // another piece than before has to be cheaper by this
-constexpr double kBeside_m = 1e-6;  // from a riser: on one side of it
-constexpr double kLeast_m = 1e-6;
+constexpr double kBeside_m = 1e-6;  // a place so near to a riser is certainly on one side of it
+constexpr double kLeast_m = 1e-6;   // not to divide by 0
 
-// How far the sole reaches along z from its heel point.
+// The reach of the sole along z from its heel point.
 struct Extent {
   double back_m = 0.0, front_m = 0.0;
   double middle_m() const noexcept { return 0.5 * (back_m + front_m); }
@@ -75,7 +77,8 @@ Extent sole_extent(const LegBones& leg, double yaw_rad) noexcept {
   return {std::min(0.0, tip) - half, std::max(0.0, tip) + half};
 }
 
-// Where the heel may stand on a piece, along z.
+// The places along z at which the heel may stand on a piece, and by how much the piece is too short
+// for the sole.
 struct Room {
   double low_m, high_m, lacks_m;
 };
@@ -86,9 +89,9 @@ Room room_on(const Stretch& piece, const Extent& sole, double leg_m) noexcept {
   return {low + edge, high - edge, 0.0};
 }
 
-// A step whose foothold is looked for.
+// A step for which a foothold is chosen.
 struct Step {
-  vec3 from_m{0.0}, lift_m{0.0};  // heels of the foot that stands and of the one that flies
+  vec3 from_m{0.0}, lift_m{0.0};  // heels of the standing and of the flying foot
   Stretch stands, lifts;          // their pieces
   vec3 forward{0.0, 0.0, 1.0}, wanted_m{0.0};
   double leg_m = 0.0;
@@ -113,7 +116,7 @@ vec3 wanted_on(const Step& step, const Stretch& piece) noexcept {
   return step.wanted_m + step.forward * (std::clamp(wanted, -longest, longest) - wanted);
 }
 
-// A move that shifts a place by `dz_m` along z while it leaves the heading as little as it can.
+// The cheapest move, by kSkew, that shifts a place by `dz_m` along z.
 vec3 shifted(const Step& step, double dz_m) noexcept {
   const vec3& f = step.forward;
   const vec3 left = glm::cross(kUp, f);
@@ -125,7 +128,7 @@ vec3 place_on(const Step& step, const Stretch& piece) noexcept {
   return near + shifted(step, std::clamp(near.z, room.low_m, room.high_m) - near.z);
 }
 
-// A step of this length would hardly leave the place.
+// True if a step of this length would hardly leave its place although a longer one is wanted.
 bool is_stuck(const Step& step, double length_m) noexcept {
   const double wanted = step.length_m(), sign = wanted < 0.0 ? -1.0 : 1.0;
   return sign * wanted > kLeastStep * step.leg_m && sign * length_m < kStuck * sign * wanted;
@@ -151,8 +154,8 @@ double cost_of(const Floor& floor, const Step& step, const Stretch& piece) noexc
          kOverhang * room_on(piece, step.sole, step.leg_m).lacks_m / step.leg_m;
 }
 
-// Tries the pieces from the one that the wanted place is on back to the standing foot's. Where that
-// is the same one, and its edge is in the way, the one behind this edge is tried, too.
+// Tries the pieces from the one of the wanted place back to the standing foot's. If both are the
+// same piece, and its edge stops the step, it also tries the piece beyond this edge.
 Stretch best_piece(const Floor& floor, const Step& step, const Stretch* settled) noexcept {
   const double middle = step.sole.middle_m(), stands = step.from_m.z + middle;
   Stretch piece = piece_at(floor, step.wanted_m.z + middle), best = piece;
@@ -181,14 +184,14 @@ Stretch best_piece(const Floor& floor, const Step& step, const Stretch* settled)
   return best;
 }
 
-// The share of its length that a step keeps on a slope.
+// The share of its length that a step keeps on a slope: 1 / (1 + grade).
 double slope_share(const Floor& floor, const Step& step) noexcept {
   const double length = horizontal_length(step.wanted_m - step.from_m);
   if (length < kLeast_m || step.wanted_m.z < step.stands.from_m ||
       step.wanted_m.z > step.stands.to_m)
     return 1.0;
   const double rise = ground_at(floor, step.wanted_m.x, step.wanted_m.z).height_m - step.from_m.y;
-  return 1.0 / (1.0 + kSlopeShortens * std::abs(rise) / length);
+  return 1.0 / (1.0 + std::abs(rise) / length);
 }
 
 // A plane through a heel's place.
@@ -197,11 +200,11 @@ struct Plane {
   double slope_x = 0.0, slope_z = 0.0;
 };
 
-// A sole's directions on the ground.
+// The directions and points of a sole that stands level.
 struct Track {
   vec3 along, across;  // unit
-  double length_m;     // to the tip
-  vec3 ball_m, tip_m;  // from the heel, level
+  double length_m;     // from the heel to the tip
+  vec3 ball_m, tip_m;  // from the heel
 };
 Track track_of(const LegBones& leg, double yaw_rad) noexcept {
   const quat yaw = rotation_y(yaw_rad);
@@ -222,8 +225,8 @@ Plane plane_of(const vec3& place_m, const Track& track, double grade, double ban
 // ground, and a foot is seen beside it. Across, the plane is the best fit under heel and tip.
 Plane plane_through(const Floor& floor, const LegBones& leg, const vec3& heel_m,
                     double yaw_rad) noexcept {
-  constexpr int kRounds =
-      3;  // the ball moves as the plane tilts; each leaves a tenth of it or less
+  // The ball moves as the plane tilts; each round leaves a tenth of its error or less.
+  constexpr int kRounds = 3;
   Track track = track_of(leg, yaw_rad);
   const double length = horizontal_length(track.ball_m), half = leg.half_width_m;
   track.along = vec3(track.ball_m.x, 0.0, track.ball_m.z) / length;
@@ -242,8 +245,8 @@ Plane plane_through(const Floor& floor, const LegBones& leg, const vec3& heel_m,
   return plane_of(place, track, grade, bank);
 }
 
-// The best fit to the ground under a sole: the ground is as far above the plane as below it. Ground
-// beyond the risers around `piece` does not count.
+// The best fit to the ground under a sole: the ground is as far above the plane as below it. It
+// ignores ground beyond the risers around `piece`.
 Plane plane_under(const Floor& floor, const LegBones& leg, const vec3& heel_m, double yaw_rad,
                   const Stretch& piece) noexcept {
   if (floor.terrain.asked.ask != nullptr) return plane_through(floor, leg, heel_m, yaw_rad);
@@ -273,8 +276,8 @@ Plane plane_under(const Floor& floor, const LegBones& leg, const vec3& heel_m, d
   return plane_of(vec3(heel_m.x, y_m, heel_m.z), track, grade, bank);
 }
 
-// The rise of the step after the landing, in legs: on stairs it takes longer. Of the rise to the
-// next landing and the rest of the flying foot's rise, the greater one.
+// The rise of the step after the landing, in legs, which makes a step on stairs longer in time: the
+// rise to the next landing or the rest of the flying foot's rise, whichever is greater.
 double next_rise(const Tables& tables, const Floor& floor, const Step& landing,
                  const vec3& landing_m, const Stretch& piece, double length_m, const vec3& across_m,
                  double middle_m) noexcept {
@@ -364,20 +367,24 @@ namespace {
 
 // --- Flights over the ground between two footholds -----------------------------------------------
 
-constexpr int kProbes = 48;  // along a flight
-constexpr int kKnotsOfFlight = kRoomKnots + 1;
-constexpr double kRoomAbove_m = 0.025;  // over the ground; metres at the reference leg, as below
-constexpr double kRoomBeside_m = 0.005, kRoomAhead_m = 0.016, kMostShift_m = 0.25, kRiser_m = 0.01;
-constexpr double kLack_m = 0.006, kEasyShift_m = 0.2, kSharper = 1.5;
-// A lift-off stays gentler: there the leg is stretched.
-constexpr double kMostSharp = 0.38;
+constexpr int kProbes = 48;                     // along a flight
+constexpr int kKnotsOfFlight = kRoomKnots + 1;  // intervals between knots
+// Metres at the reference leg. The room that a sole keeps above the ground, beside a riser where it
+// lands and beside one where it lifts off; the height from which on a step of the ground counts.
+constexpr double kRoomAbove_m = 0.025, kRoomBeside_m = 0.005, kRoomAhead_m = 0.016;
+constexpr double kRiser_m = 0.01;
+// The largest shift along z. A plan is sharpened if a shift lacks kLack_m or exceeds kEasyShift_m.
+constexpr double kMostShift_m = 0.25, kLack_m = 0.006, kEasyShift_m = 0.2;
+constexpr double kLeastWanted_m = 0.004;  // smaller shifts and heights are ignored
+// Each of kTries sharpens the ends of a spline by kSharper. The lift-off stays below kMostSharp,
+// for there the leg is stretched.
+constexpr double kSharper = 1.5, kMostSharp = 0.38, kMostGain = 6.0;
 constexpr int kTries = 4;
-// Of the flight: from here on a foot on its way down is over its landing's piece.
-constexpr double kOver = 0.685;
-constexpr int kMostRisers = 4, kTautRounds = 24;
-constexpr double kTautRoom = 0.5;  // of kRoomAbove_m
-constexpr double kLeastWeight = 1e-6, kLeastLeft_m = 1e-6;
-constexpr double kLeastWanted_m = 0.004, kMostGain = 6.0;
+constexpr double kOver = 0.685;  // share of a flight down at which it is over its landing's piece
+constexpr int kMostRisers = 4;   // that a flight down passes
+constexpr int kTautRounds = 24;
+constexpr double kTautRoom = 0.5;      // share of kRoomAbove_m that a taut spline keeps
+constexpr double kLeastWeight = 1e-6;  // not to divide by 0
 
 using Spline = std::array<double, kRoomKnots>;
 double spline_of(const Spline& knots, double end, double u) noexcept {
@@ -417,8 +424,8 @@ Spline envelope(const Wanted& wanted, const Ends& ends) noexcept {
   return knots;
 }
 
-// The same for values of both signs. Where the spline falls short of them, all of it is multiplied
-// by a gain; no knot exceeds `most_m`.
+// The same for values of both signs. If the spline falls short of them, a gain multiplies all of
+// it; no knot exceeds `most_m`.
 Spline wide_envelope(const Wanted& wanted, double most_m) noexcept {
   Wanted positive, negative;
   for (int i = 0; i <= kProbes; ++i) {
@@ -457,14 +464,14 @@ bool sharpen(const Wanted& beside, const Spline& shift, double size, Ends& ends)
   return changed;
 }
 
-// Points of a sole in the walk's own coordinates: heel and tip on both sides, ball.
+// Points of a sole in the walk's own coordinates: the heel's sides, the ball, the tip's sides.
 using SolePoints = std::array<vec3, 5>;
 
 // A flight as planned over its ground line.
 struct PlannedFlight {
   std::array<SolePoints, kProbes + 1> sole;
-  std::array<SolePoints, kProbes + 1> base;  // y: of the line's plane below each of them
-  Wanted left{};                             // the way that is left along z
+  std::array<SolePoints, kProbes + 1> base;  // the ground line's plane below each of them
+  Wanted left{};                             // the way along z that is left to the landing
   Stretch begin, end;
   double begin_room = 0.0, begin_m = 0.0, end_m = 0.0, climb = 0.0;
   // A flight that ends on its own piece goes beside a riser, not over it.
@@ -494,24 +501,12 @@ void set_points(const LegBones& leg, const Frame& frame, const Flight<float>& fl
   }
 }
 
-Time<float> time_in_flight(const Tables& tables, const State<float>& state) noexcept {
-  Time<float> time;
-  time.right = state.right_swings != 0.0f;
-  time.flies = true;
-  time.back = state.backward != 0.0f;
-  const auto& share = tables.stage_share;
-  time.step_phase = time.right ? share[0] + share[1] : 0.0f;
-  time.stage_end =
-      time.step_phase + (time.right ? share[2] : share[0]) + (time.right ? share[3] : share[1]);
-  return time;
-}
-
 PlannedFlight planned_flight(const Tables& tables, const Floor& floor, const Frame& frame,
                              const Block<1>& block) noexcept {
   const State<float>& state = block.state;
   Change<float> change = block.change;
   const Footing<float>& footing = block.footing;
-  Time<float> time = time_in_flight(tables, state);
+  Time<float> time = time_of(tables, state);
   const Way<float> to = way_of(state.landing_rad);
   Landing<float> landing;
   Hips<float> hips;
@@ -531,9 +526,9 @@ PlannedFlight planned_flight(const Tables& tables, const Floor& floor, const Fra
   PlannedFlight flight;
   float seen_tick = state.tick;
   for (int i = 0; i <= kProbes; ++i) {
-    // What is over when a plan changes does not count.
+    // Skip the part of the flight before a change of plan.
     time.u = std::max(static_cast<float>(i) / kProbes, change.gap_begin);
-    // What a change of plan has left of the ratio fades on the way.
+    // The difference of the ratio from before a change of plan fades on the way.
     const float tick = time.u * state.flight_ticks, s = (tick - state.tick) / left,
                 off_ratio = change.off_ratio.x;
     for (; seen_tick < tick && change.off_ratio.x != 0.0f; seen_tick += 1.0f) {
@@ -560,14 +555,15 @@ PlannedFlight planned_flight(const Tables& tables, const Floor& floor, const Fra
   flight.end = piece_at(floor, lands.z);
   flight.begin_m = print.y, flight.end_m = lands.y;
   flight.begin_room = kRoomAhead_m * tables.size;  // generous: the pitch may still change
+  constexpr double kRoomTaken = 0.7;  // of the room that the sole has before its lift-off
   for (const vec3& p : flight.sole.front())
-    flight.begin_room = std::min(
-        {flight.begin_room, 0.7 * (flight.begin.to_m - p.z), 0.7 * (p.z - flight.begin.from_m)});
+    flight.begin_room = std::min({flight.begin_room, kRoomTaken * (flight.begin.to_m - p.z),
+                                  kRoomTaken * (p.z - flight.begin.from_m)});
   flight.climb = climb_over_risers(footing);
   return flight;
 }
 
-// How far to move along z so that no part of the sole is inside a riser that leads up from
+// The move along z with which no part of the sole is inside a riser that leads up from
 // `height_m` at either end of `piece`.
 double way_back(const Floor& floor, const SolePoints& sole, const Stretch& piece, double height_m,
                 double room, double size) noexcept {
@@ -585,8 +581,8 @@ double way_back(const Floor& floor, const SolePoints& sole, const Stretch& piece
   return std::clamp(shift, -kMostShift_m * size, kMostShift_m * size);
 }
 
-// How far the ground line has to rise so that the sole, moved along z by `shift`, clears the
-// ground.
+// The height by which the ground line has to rise so that the sole, moved along z by `shift`,
+// clears the ground.
 Wanted wanted_raise(const Tables& tables, const Floor& floor, const PlannedFlight& flight,
                     bool crosses, const Spline& shift) noexcept {
   const double above_m = kRoomAbove_m * tables.size;
@@ -634,7 +630,7 @@ struct RoomPlan {
   Spline raise_m{}, shift_m{};
 };
 
-// For every flight that does not only lead down.
+// The plan of a flight that stays level or goes up somewhere.
 RoomPlan plan_over(const Tables& tables, const Floor& floor, const PlannedFlight& flight,
                    bool crosses) noexcept {
   const double size = tables.size;
@@ -683,12 +679,12 @@ double way_on(const Tables& tables, const Floor& floor, const PlannedFlight& fli
   return on;
 }
 
-// Lowers the inner knots until the spline is a taut line over what is wanted, less some of its
-// room: the envelope alone holds each height for two knots longer than needed. Where the spline is
-// too low already, it sinks no further.
+// Lowers the inner knots until the spline is a taut line over the wanted heights, less some of
+// their room: the envelope alone holds each height for two knots longer than needed. A spline that
+// is too low already is not lowered.
 void draw_taut(const Wanted& wanted, double room_m, Spline& knots) noexcept {
   Wanted slack;
-  std::array<Wanted, kRoomKnots> weight;  // how much each knot counts at each probe
+  std::array<Wanted, kRoomKnots> weight;  // of each knot at each probe
   for (int i = 0; i <= kProbes; ++i) {
     const double u = static_cast<double>(i) / kProbes;
     const double spare = (1.0 - kTautRoom) * room_m * in_flight(u);
@@ -711,21 +707,20 @@ void draw_taut(const Wanted& wanted, double room_m, Spline& knots) noexcept {
   }
 }
 
-// True for a flight over risers that all lead down.
+// True for a flight over risers that only lead down.
 bool leads_down(const Tables& tables, const Floor& floor, const PlannedFlight& flight) noexcept {
   if (flight.climb > -kRiser_m) return false;
   const Wanted above = wanted_raise(tables, floor, flight, true, Spline{});
   return *std::max_element(above.begin(), above.end()) < kRoomAbove_m * tables.size + kRiser_m;
 }
 
-// Ahead of its own path, by a growing share of the way that is left, the foot sinks as soon as it
-// has passed an edge.
+// The plan of a flight down: a shift by a growing share of the way that is left brings the foot
+// ahead of its path, so that it sinks as soon as it has passed an edge.
 RoomPlan plan_down(const Tables& tables, const Floor& floor, const PlannedFlight& flight) noexcept {
   constexpr int over = static_cast<int>(kOver * kProbes);
   const double left = flight.left[over];
-  const double needed = std::abs(left) < kLeastLeft_m
-                            ? 0.0
-                            : way_on(tables, floor, flight, over, flight.climb) / left;
+  const double needed =
+      std::abs(left) < kLeast_m ? 0.0 : way_on(tables, floor, flight, over, flight.climb) / left;
   const double share = std::clamp(needed, 0.0, 1.0);
   RoomPlan room;
   for (int k = 1; k < kKnotsOfFlight; ++k)

@@ -26,7 +26,7 @@ inline float drawn(std::uint64_t glance, std::uint64_t which) noexcept {
 template <class V>
 V sine_of_cycles(const V& cycles, float begin_rad) noexcept {
   V sine, cosine;
-  sin_cos(V(6.2831853f * (cycles - floored(cycles)) + begin_rad), sine, cosine);
+  sin_cos(V(kTurn_rad * (cycles - floored(cycles)) + begin_rad), sine, cosine);
   return sine;
 }
 
@@ -65,8 +65,8 @@ Idle<V> idle_at(const Tables& tables, const V& ticks, const State<V>& state,
           asked = styled.acts != V{} ? styled.body[kIdle].x : all<V>(1.0f),
           amount = smoother(styled.idle_share) * asked;
   if (!any(amount != V{})) return idle;
-  idle.breath_rad =
-      amount * kBreath_rad * (0.5f - 0.5f * sine_of_cycles(V(kBreath_Hz * time_s), 1.5707963f));
+  idle.breath_rad = amount * kBreath_rad *
+                    (0.5f - 0.5f * sine_of_cycles(V(kBreath_Hz * time_s), kRightAngle_rad));
   // Mirrored walks have mirrored stands: the foot that landed last decides the side.
   const V outwards = state.right_swings != V{} ? all<V>(1.0f) : all<V>(-1.0f);
   glance(time_s, amount, outwards, idle);

@@ -2,6 +2,7 @@
 // walk. Every lane gets the bits that its walk gets alone, because + - * / and square roots are in
 // one order, masks replace branches, and nothing is contracted (see the flags of the build).
 #pragma once
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstring>
@@ -39,6 +40,9 @@ template <class V>
 struct Turn {  // a unit quaternion
   V w{}, x{}, y{}, z{};
 };
+
+inline constexpr float kTurn_rad = 6.2831853f, kRightAngle_rad = 1.5707963f,
+                       kDegree_rad = 0.017453293f;
 
 namespace {
 
@@ -115,11 +119,15 @@ inline V root(const V& x) noexcept {
     return r;
   }
 }
-// To the nearest whole number, for |x| below 2^22.
+// Rounds to the nearest multiple of `unit`, a power of 2, for |x| below 2^22 units.
+template <class V>
+inline V rounded_to(float unit, const V& x) noexcept {
+  const float round = 12582912.0f * unit;  // 1.5 * 2^23: adding it leaves no room for fractions
+  return (x + round) - round;
+}
 template <class V>
 inline V rounded(const V& x) noexcept {
-  constexpr float kRound = 12582912.0f;  // 1.5 * 2^23: adding it leaves no room for fractions
-  return (x + kRound) - kRound;
+  return rounded_to(1.0f, x);
 }
 template <class V>
 inline V floored(const V& x) noexcept {
@@ -180,17 +188,10 @@ inline void transpose(Four (&row)[4]) noexcept {
 }
 #endif
 
-// To the nearest multiple of a power of 2, for |x| below 2^22 of it.
-template <class V>
-inline V rounded_to(float unit, const V& x) noexcept {
-  const float round = 12582912.0f * unit;
-  return (x + round) - round;
-}
-
 // --- Curves --------------------------------------------------------------------------------------
 
-// From 0 at x <= 0 to 1 at x >= 1. smooth() has no slope at both ends, smoother() no curvature
-// either.
+// From 0 at x <= 0 to 1 at x >= 1. smooth() has no slope at both ends; smoother() has no curvature
+// there either. With bounds: from 0 at `from` to 1 at `to`.
 template <class V>
 inline V smooth(const V& x) noexcept {
   const V u = within(x, 0.0f, 1.0f);
@@ -206,10 +207,14 @@ inline V smooth(float from, float to, const V& x) noexcept {
   return smooth(V((x - from) * (1.0f / (to - from))));
 }
 template <class V>
+inline V smoother(float from, float to, const V& x) noexcept {
+  return smoother(V((x - from) * (1.0f / (to - from))));
+}
+template <class V>
 inline V mix(const V& a, const V& b, const V& share) noexcept {
   return a + (b - a) * share;
 }
-// max(x, 0) and min(a, b) with their corner rounded by a parabola over |x| < width.
+// max(x, 0), and min(a, b) with x = a - b; a parabola rounds their corner over |x| < width.
 template <class V>
 inline V soft_positive(const V& x, const V& width) noexcept {
   const V rounded = (x + width) * (x + width) / (4.0f * width), above = x >= width ? x : rounded;
@@ -230,7 +235,7 @@ inline V slope_left(const V& s) noexcept {
   return s * (1.0f - s) * (1.0f - s);
 }
 
-// --- Sines ---------------------------------------------------------------------------------------
+// --- Angles --------------------------------------------------------------------------------------
 
 // Sine and cosine of an angle below pi / 4, to 1e-7: minimax polynomials (Cephes, sinf and cosf).
 template <class V>
@@ -270,8 +275,16 @@ inline V arc_sine(const V& x) noexcept {
                     (1.6666752422e-1f +
                      z * (7.4953002686e-2f +
                           z * (4.5470025998e-2f + z * (2.4181311049e-2f + z * 4.2163199048e-2f)))),
-          angle_rad = wide ? V(1.5707963f - 2.0f * arc) : arc;
+          angle_rad = wide ? V(kRightAngle_rad - 2.0f * arc) : arc;
   return x < V{} ? -angle_rad : angle_rad;
+}
+// The angle with a tangent of at most tan(pi / 8), exact to 1e-7 (Cephes, atanf).
+template <class V>
+inline V arc_tangent_small(const V& x) noexcept {
+  const V z = x * x;
+  return x + x * z *
+                 (-3.33329491539e-1f +
+                  z * (1.99777106478e-1f + z * (-1.38776856032e-1f + z * 8.05374449538e-2f)));
 }
 
 // --- Vectors and rotations -----------------------------------------------------------------------
@@ -300,6 +313,10 @@ template <class V>
 inline Vec<V> chosen(const Mask<V>& mask, const Vec<V>& a, const Vec<V>& b) noexcept {
   if constexpr (kLanes<V> == 1) return mask ? a : b;
   return {mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
+}
+template <class V>
+inline Turn<V> no_turn() noexcept {
+  return {all<V>(1.0f), V{}, V{}, V{}};
 }
 template <class V>
 inline Turn<V> operator*(const Turn<V>& p, const Turn<V>& q) noexcept {
@@ -340,7 +357,7 @@ inline Turn<V> turn_by(const Vec<V>& v) noexcept {
   return unit(Turn<V>{all<V>(1.0f), v.x * k, v.y * k, v.z * k});
 }
 
-// A direction on the ground, counted from straight ahead, to the left positive.
+// A direction on the ground as an angle from straight ahead, positive to the left.
 template <class V>
 struct Way {
   V half_sine{}, half_cosine = all<V>(1.0f), sine{}, cosine = all<V>(1.0f);
@@ -371,6 +388,38 @@ template <class V>
 inline Way<V> chosen(const Mask<V>& mask, const Way<V>& a, const Way<V>& b) noexcept {
   return {mask ? a.half_sine : b.half_sine, mask ? a.half_cosine : b.half_cosine,
           mask ? a.sine : b.sine, mask ? a.cosine : b.cosine};
+}
+// The opposite angle.
+template <class V>
+inline Way<V> back(const Way<V>& way) noexcept {
+  return {-way.half_sine, way.half_cosine, -way.sine, way.cosine};
+}
+
+// --- Limbs packed into full registers ------------------------------------------------------------
+
+// Calls `work` with the legs or arms of a block `where` they ask for it, put side by side in full
+// registers. Limb<V> holds nothing but numbers V: the first kTakes of them go to `work`, those
+// from number kGives on come back.
+template <int kTakes, int kGives, template <class> class Limb, class V, class Work>
+void work_packed(const Mask<V> (&where)[2], Limb<V> (&limbs)[2], const Work& work) noexcept {
+  constexpr int kWidth = kLanes<V>, kTogether = std::max(kWidth, kLeastLanes),
+                kNumbers = sizeof(Limb<float>) / sizeof(float);
+  const V is[2] = {chosen<V>(where[0], 1.0f, 0.0f), chosen<V>(where[1], 1.0f, 0.0f)};
+  float* places[2 * kWidth];
+  int count = 0;
+  for (int w = 0; w < kWidth; ++w)
+    for (int k : {0, 1})
+      if (lane(is[k], w) != 0.0f) places[count++] = reinterpret_cast<float*>(&limbs[k]) + w;
+  for (int begin = 0; begin < count; begin += kTogether) {
+    Limb<Floats<kTogether>> together;
+    float* to = reinterpret_cast<float*>(&together);
+    const int here = std::min(kTogether, count - begin);
+    for (int i = 0; i < here; ++i)
+      for (int n = 0; n < kTakes; ++n) to[n * kTogether + i] = places[begin + i][n * kWidth];
+    work(together);
+    for (int i = 0; i < here; ++i)
+      for (int n = kGives; n < kNumbers; ++n) places[begin + i][n * kWidth] = to[n * kTogether + i];
+  }
 }
 
 }  // namespace

@@ -1,8 +1,7 @@
-// Fifth: the legs. The knee follows from the distance to the ankle. Of the poses that are left,
-// which differ by the knee's swivel about the line from hip to ankle, a leg takes the one nearest
-// to its start: the least sum of squares of its seven angles' changes, which is what the
-// pseudoinverse of the paper's equation (4) gives, to first order. The foot is exactly where it is
-// planned.
+// Fifth: the legs. The knee's angle follows from the distance between hip and ankle. The poses that
+// are left differ by the knee's swivel about the line from hip to ankle; a leg takes the one with
+// the least sum of squares of its seven angles' changes. To first order this is the answer of the
+// pseudoinverse in the paper's equation (4). The foot is exactly where it is planned.
 #pragma once
 #include "walk/feet.h"
 
@@ -12,16 +11,16 @@ namespace {
 template <class V>
 struct Leg {
   Turn<V> hip, knee, ankle;
-  V short_m{};         // by which the ankle is out of the leg's reach
-  V iterations{};      // of the paper's solve
-  Mask<V> failed{};    // it did not converge
-  V more_pitch_rad{};  // by which the weights pitch the foot beyond its plan
+  V short_m{};         // how far the ankle's goal is out of the leg's reach
+  V iterations{};      // of the paper's solver
+  Mask<V> failed{};    // the paper's solver did not converge
+  V more_pitch_rad{};  // the foot's pitch beyond its plan, which weights or the paper's solver add
 };
 
-// What is added to the tables' angles leaks away at this rate.
-inline constexpr float kLeastKnee_rad = 0.017453293f, kLeak_per_s = 4.0f;
+inline constexpr float kLeastKnee_rad = kDegree_rad;  // a straight knee has no side to bend to
+inline constexpr float kLeak_per_s = 4.0f;  // what is added to the tables' angles fades so fast
 inline constexpr float kStraightCosine = 0.99984770f, kFoldedCosine = -0.9f;  // 1 and 154 degrees
-inline constexpr float kMostSwivel_rad = 0.3f;  // in a tick: farther away it is not first order
+inline constexpr float kMostSwivel_rad = 0.3f;  // in a tick: beyond, the first order is not enough
 
 // Turns two axes of a frame about the third; (a, b) in cyclic order.
 template <class V>
@@ -32,8 +31,8 @@ template <class V>
   b = b * cosine - old * sine;
 }
 
-// How much three joint axes have to turn for a rotation vector: x, z and y of Rx Rz Ry. `x` and `y`
-// are the axes before the last turn, `z` is the second one.
+// The changes of a joint's angles x, z and y, of Rx Rz Ry, that turn it by a small rotation vector.
+// `x` and `y` are the axes before the last turn, `z` is the axis of the second one.
 template <class V>
 void turns_xzy(const Vec<V>& vector, const Vec<V>& x, const Vec<V>& y, const Vec<V>& z,
                const V& sine_z, const V& cosine_z, V (&turns)[3]) noexcept {
@@ -42,8 +41,17 @@ void turns_xzy(const Vec<V>& vector, const Vec<V>& x, const Vec<V>& y, const Vec
   turns[2] = dot(vector, y) + sine_z * turns[0];
 }
 
-// `ankle_m`, `foot`: seen from the hip joint in the pelvis' frame. `table_rad`: where it starts,
-// with `off_rad`, to which the turns are added to first order.
+// Rx(x) Rz(z) Ry(y) from the sines and cosines of half the angles x, z, y.
+template <class V>
+Turn<V> turn_of_halves(const V* sine, const V* cosine) noexcept {
+  const V w = cosine[0] * cosine[1], i = sine[0] * cosine[1], j = -sine[0] * sine[1],
+          k = cosine[0] * sine[1];
+  return {w * cosine[2] - j * sine[2], i * cosine[2] - k * sine[2], w * sine[2] + j * cosine[2],
+          k * cosine[2] + i * sine[2]};
+}
+
+// Goals are seen from the hip joint in the pelvis' frame. The leg starts at table_rad + off_rad;
+// the changes of its angles are added to `off_rad`.
 template <class V>
 Leg<V> solve_leg(const V& thigh_m, const V& shank_m, const Vec<V>& ankle_m, const Turn<V>& foot,
                  const V (&table_rad)[kLegAngles], V (&off_rad)[kLegAngles]) noexcept {
@@ -53,7 +61,7 @@ Leg<V> solve_leg(const V& thigh_m, const V& shank_m, const Vec<V>& ankle_m, cons
     s[j] = 2.0f * hs[j] * hc[j];
     c[j] = 1.0f - 2.0f * hs[j] * hs[j];
   }
-  // Axes at the start: of the hip, the thigh, the shank, the ankle and the foot.
+  // Axes at the start, from the hip to the foot.
   const Vec<V> hip_z{V{}, -s[0], c[0]}, hip_x{c[1], s[1] * c[0], s[1] * s[0]},
       hip_y{-s[1], c[1] * c[0], c[1] * s[0]};
   Vec<V> x = hip_x, z = hip_z;
@@ -77,8 +85,8 @@ Leg<V> solve_leg(const V& thigh_m, const V& shank_m, const Vec<V>& ankle_m, cons
   }
   const V knee_hc = root(V(0.5f + 0.5f * knee_c)), knee_hs = root(V(0.5f - 0.5f * knee_c)),
           knee_s = 2.0f * knee_hc * knee_hs, knee_turns = knee_s * c[3] - knee_c * s[3];
-  // The least turn of the hip that brings the ankle to its place, and what is left of the foot's
-  // turn for the ankle.
+  // The hip's least turn brings the ankle to its place; the ankle makes the rest of the foot's
+  // turn.
   const Vec<V> from = hip_y * -(thigh_m + shank_m * knee_c) - z * (shank_m * knee_s),
                axis = cross(from, ankle_m);
   const V w = root(V(dot(from, from) * square)) + dot(from, ankle_m);
@@ -111,27 +119,24 @@ Leg<V> solve_leg(const V& thigh_m, const V& shank_m, const Vec<V>& ankle_m, cons
   }
   off_rad[3] = off_rad[3] + knee_turns;
 
-  const V i0 = hc[0] * hc[1], i1 = hs[0] * hc[1], i2 = -hs[0] * hs[1], i3 = hc[0] * hs[1];
-  const Turn<V> start{i0 * hc[2] - i2 * hs[2], i1 * hc[2] - i3 * hs[2], i0 * hs[2] + i2 * hc[2],
-                      i3 * hc[2] + i1 * hs[2]};
   const Vec<V> half = line * V(0.5f * swivel_rad), vector = axis + half * w + cross(half, axis);
-  leg.hip = unit(Turn<V>{V(w - dot(half, axis)), vector.x, vector.y, vector.z} * start);
+  leg.hip =
+      unit(Turn<V>{V(w - dot(half, axis)), vector.x, vector.y, vector.z} * turn_of_halves(hs, hc));
   leg.knee = {knee_hc, knee_hs, V{}, V{}};
   leg.ankle = back(leg.hip * leg.knee) * foot;
   return leg;
 }
 
-// Of swing (0) or stand (1).
+// The angles in the tables of leg k, 0 for swing and 1 for stand.
 template <class V>
 void set_table_angles(const Tables& tables, const Mask<V>& right, const Stride<V>& stride, int k,
                       V (&table_rad)[kLegAngles]) noexcept {
   for (int j = 0; j < kLegAngles; ++j)
-    table_rad[j] = stride.leg_rad[k][j] +
-                   chosen<V>(right, tables.leg[1].stand_rad[j], tables.leg[0].stand_rad[j]);
+    table_rad[j] = stride.leg_rad[k][j] + stand_rad<V>(tables, right, j);
   table_rad[3] = most(table_rad[3], all<V>(kLeastKnee_rad));
 }
 
-// Where a leg is to be: all of these are numbers of legs side by side.
+// The input of a solve. All of its members are numbers V, of legs side by side.
 template <class V>
 struct LegGoal {
   V thigh_m, shank_m;
@@ -144,7 +149,7 @@ Leg<V> solve_leg(LegGoal<V>& goal) noexcept {
   return solve_leg<V>(goal.thigh_m, goal.shank_m, goal.ankle_m, goal.foot, goal.table_rad,
                       goal.off_rad);
 }
-// Both legs of one walk in one register, twice: what is in its other half is not used.
+// Solves both legs of one walk side by side. The register's other half holds them again.
 inline void solve_both(LegGoal<float> (&goals)[2], Leg<float> (&legs)[2]) noexcept {
   constexpr int kNumbers = sizeof(LegGoal<float>) / sizeof(float);
   LegGoal<Four> both;
@@ -163,21 +168,20 @@ inline void solve_both(LegGoal<float> (&goals)[2], Leg<float> (&legs)[2]) noexce
   }
 }
 
-// Swing and stand. `begun_rad`: what was added to the tables' angles where they started; null where
-// nobody asks.
+// Solves swing and stand. `begun_rad`, unless null: what was added to the tables' angles at the
+// start.
 template <class V>
 void solve_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stride,
                 const Feet<V>& feet, const Pelvis<V>& pelvis, State<V>& state, Leg<V> (&legs)[2],
                 V (*begun_rad)[kLegAngles]) noexcept {
-  // What is added to the tables' angles leaks away, and most of what it had changed by goes on: the
-  // most with which the swivel still returns without swinging, a double root.
+  // The part added to the tables' angles fades, and a share of its last change goes on. `ahead` is
+  // the largest share with which the swivel returns without swinging: a double root.
   const float keep = 1.0f - std::min(1.0f, kLeak_per_s * tables.tick_s),
               square_root = 1.0f - std::sqrt(1.0f - keep), ahead = square_root * square_root;
   const Turn<V> to_pelvis = back(pelvis.turn);
   LegGoal<V> goals[2];
   for (int k : {0, 1}) {
-    const auto right = k == 0 ? time.right : no(time.right);
-    const LegBones &l = tables.leg[0], &r = tables.leg[1];
+    const auto right = is_right(time, k);
     LegGoal<V>& goal = goals[k];
     set_table_angles(tables, right, stride, k, goal.table_rad);
     for (int j = 0; j < kLegAngles; ++j) {
@@ -187,8 +191,8 @@ void solve_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stri
     }
     if (begun_rad != nullptr) std::copy_n(state.leg_rad[k], kLegAngles, begun_rad[k]);
     std::copy_n(state.leg_rad[k], kLegAngles, goal.off_rad);
-    goal.thigh_m = chosen<V>(right, r.thigh_m, l.thigh_m);
-    goal.shank_m = chosen<V>(right, r.shank_m, l.shank_m);
+    goal.thigh_m = of_leg<V>(tables, right, &LegBones::thigh_m);
+    goal.shank_m = of_leg<V>(tables, right, &LegBones::shank_m);
     goal.ankle_m = to_pelvis * (feet.ankle_m[k] - pelvis.place_m - pelvis.hip_m[k]);
     goal.foot = to_pelvis * feet.foot[k].turn;
   }

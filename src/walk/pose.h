@@ -1,4 +1,4 @@
-// Last: the rotations and the root of the pose, in the world.
+// Last: writes the joints of the legs, the pelvis and the root's place into the pose, in the world.
 #pragma once
 #include "walk/pose_places.h"
 #include "walk/upper_body.h"
@@ -12,15 +12,11 @@ void write_joint(const Turn<V>& q, int joint, const Poses& poses) noexcept {
   for (int w = 0; w < poses.walks; ++w) write_joint(q, joint, w, poses);
 }
 
-template <class V>
-Turn<V> same(const std::array<float, 4>& q) noexcept {
-  return {all<V>(q[0]), all<V>(q[1]), all<V>(q[2]), all<V>(q[3])};
-}
-
-// Toes stay level while the heel is the higher end; in the air the change is rounded.
+// The toes' angle in the foot. Toes stay level while the heel is higher than they are; in the air,
+// over the share u of the flight, they begin to bend gradually.
 template <class V>
 V level_toe(const V& pitch_rad, const V& u) noexcept {
-  constexpr float kSoftToe_rad = 0.2617994f;
+  constexpr float kSoftToe_rad = 0.2617994f;  // 15 degrees of pitch around 0
   const V air = smooth(0.0f, 0.2f, u) * (1.0f - smooth(0.85f, 1.0f, u));
   return -soft_positive(pitch_rad, most(V(kSoftToe_rad * air), all<V>(1e-6f)));
 }
@@ -45,7 +41,7 @@ void write_legs(const Tables& tables, const Time<V>& time, const Feet<V>& feet,
       if (bones.joint[j] < 0) continue;
       write_joint(tables.legs_are_plain
                       ? turn[j]
-                      : same<V>(bones.before[j]) * turn[j] * same<V>(bones.after[j]),
+                      : every<V>(bones.before[j]) * turn[j] * every<V>(bones.after[j]),
                   bones.joint[j], poses);
     }
   }
@@ -57,19 +53,17 @@ void write_root(const Tables& tables, const Hips<Floats<kWidth>>& hips,
                 const Poses& poses) noexcept {
   using V = Floats<kWidth>;
   const State<V>& state = block.state;
-  const V sine = 2.0f * state.frame_sine * state.frame_cosine,
-          cosine = state.frame_cosine * state.frame_cosine - state.frame_sine * state.frame_sine;
-  const Vec<V>& p = pelvis.place_m;
-  const V x_m = cosine * p.x + sine * p.z, z_m = cosine * p.z - sine * p.x;
+  const Way<V> way = way_of_half(state.frame_sine, state.frame_cosine);
+  const Vec<V> place_m = way * pelvis.place_m;
   for (int w = 0; w < poses.walks; ++w) {
     const Origin& origin = block.origin[w];
-    *poses.root_m[w] =
-        vec3(origin.x_m + lane(x_m, w), origin.y_m + lane(p.y, w), origin.z_m + lane(z_m, w));
+    *poses.root_m[w] = vec3(origin.x_m + lane(place_m.x, w), origin.y_m + lane(place_m.y, w),
+                            origin.z_m + lane(place_m.z, w));
   }
-  const Turn<V> frame{state.frame_cosine, V{}, state.frame_sine, V{}};
-  Turn<V> turn = frame * pelvis.turn * same<V>(tables.pelvis_standing);
+  const Turn<V> frame = way.turn();
+  Turn<V> turn = frame * pelvis.turn * every<V>(tables.pelvis_standing);
   if (!tables.above_pelvis.empty()) {
-    // Joints between root and pelvis turn with the heading and else move as in the data.
+    // Joints between root and pelvis turn with the heading; beside that they move as in the data.
     Turn<V> above = frame * hips.heading.turn();
     for (std::size_t i = 0; i < tables.above_pelvis.size(); ++i) {
       const int joint = tables.above_pelvis[i].joint;

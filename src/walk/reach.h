@@ -22,13 +22,10 @@ V heel_rise(const Tables& tables, const Mask<V>& right, const V& phase, const Ma
 // The angle with this sine and cosine, to 1e-6 below a right angle.
 template <class V>
 V angle_of(const V& sine, const V& cosine) noexcept {
-  // The tangent of a quarter of it, then its arc (Cephes, atanf).
+  // Tangents of a half and a quarter of the angle.
   const V half = sine / most(V(1.0f + cosine), all<V>(1e-6f)),
-          x = half / (1.0f + root(V(1.0f + half * half))), z = x * x;
-  return 4.0f *
-         (x + x * z *
-                  (-3.33329491539e-1f +
-                   z * (1.99777106478e-1f + z * (-1.38776856032e-1f + z * 8.05374449538e-2f))));
+          quarter = half / (1.0f + root(V(1.0f + half * half)));
+  return 4.0f * arc_tangent_small(quarter);
 }
 
 // Pitch at which the ankle, which turns about the planted toe, is `reach_m` from the hip: the

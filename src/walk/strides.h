@@ -123,14 +123,18 @@ V last_ratio(const Mask<V>& back) noexcept {
   return chosen<V>(back, kBackRatios - 1.0f, kRatios - 1.0f);
 }
 
-// Ratio of the strides whose half is the way of the flying foot, for a first or a last step. A
-// difference that a change of plan leaves in it fades with the change; one that makes the stride
-// shorter than the way fades by kComesUp of the flight.
+// Ratio of the strides whose half is the way of the flying foot, ahead or aside, for a first or a
+// last step. Turning on the spot it may be set down behind where it stood; no stride of these
+// tables leads there. A difference that a change of plan leaves in the ratio fades with the change;
+// one that makes the stride shorter than the way fades by kComesUp of the flight.
 template <class V>
 V short_ratio(const Tables& tables, const Landing<V>& landing, const State<V>& state) noexcept {
   constexpr float kComesUp = 0.3f;
-  const V x = landing.x_m - state.print_x_m, z = landing.z_m - state.print_z_m;
-  const V own = root(V(x * x + z * z)) *
+  const V x = landing.x_m - state.print_x_m, z = landing.z_m - state.print_z_m,
+          goes_m = landing.way.ahead(x, z),
+          ahead_m = most(state.backward != V{} ? -goes_m : goes_m, V{}),
+          aside_m = landing.way.left(x, z);
+  const V own = root(V(ahead_m * ahead_m + aside_m * aside_m)) *
                 (1.0f / (tables.leg[0].own_step_m + tables.leg[1].own_step_m)),
           off = 0.5f * landing.off_ratio,
           flown = state.flies != V{} ? V(state.tick / state.flight_ticks) : V{},

@@ -27,7 +27,7 @@ std::array<float, 4> xyzw(const quat& q) {
 // [1 4 1] / 6, a recursive one with its pole, forwards and backwards (Unser 1993).
 std::array<double, kKnots> knots_through(const std::array<double, kKnots>& samples) {
   constexpr double kPole = -0.26794919243112270;  // sqrt(3) - 2
-  constexpr int kReach = 28;                      // its power is below the rounding of a double
+  constexpr int kReach = 28;                      // pole^kReach is below the rounding of a double
   std::array<double, kKnots> once, knots;
   double sum = 0.0;
   for (int i = -kReach; i < kKnots; ++i) {
@@ -41,7 +41,7 @@ std::array<double, kKnots> knots_through(const std::array<double, kKnots>& sampl
   }
   return knots;
 }
-// Knot k stands at row k + 1; rows wrap round.
+// Knot k stands in row k + 1; rows wrap round.
 constexpr int knot_of_row(int row) { return (row + kKnots - 1) % kKnots; }
 
 std::array<double, kRowNumbers> numbers_of(const StridePlace& place) {
@@ -140,6 +140,7 @@ void fill_legs(const WalkModel& model, BuildTables& tables) {
   }
 }
 
+// UpperJoint::swings of a joint.
 int swing_of(const WalkModel& model, int joint) {
   for (int side : {0, 1}) {
     const ArmBuild& arm = model.body.arm[side];
@@ -150,14 +151,14 @@ int swing_of(const WalkModel& model, int joint) {
   return 0;
 }
 
-// Chest and head turn ahead: the spine's joints share the chest's turn, and neck and head what the
-// head is ahead of the chest, the neck by its share.
-constexpr double kNeckShare = 0.45;  // of what the head turns beside the chest
-// A root is where its pose says.
+// The offset of a joint; 0 for a root, whose place is in the pose.
 std::array<float, 3> offset_of(const std::vector<Joint>& joints, int joint) {
   return joint == 0 ? std::array<float, 3>{} : floats(joints[joint].offset_m);
 }
+// The spine's joints share the turn of the chest equally. Neck and head share the rest of the
+// head's turn.
 void fill_path(const WalkModel& model, BuildTables& tables) {
+  constexpr double kNeckShare = 0.45;  // of the head's turn beside the chest
   const UpperBodyModel& body = model.body;
   const std::vector<Joint>& all = model.cycle.skeleton.joints;
   tables.has_head = !body.head_path.empty();
@@ -207,8 +208,10 @@ void fill_arms(const WalkModel& model, BuildTables& tables) {
     ArmBones& arm = tables.arm[side];
     if (!from.is_there) continue;
     for (const int joint : from.path) {
-      if (joint == model.cycle.pelvis) arm.path.clear();
-      if (joint == model.cycle.pelvis) continue;
+      if (joint == model.cycle.pelvis) {
+        arm.path.clear();
+        continue;
+      }
       if (joint == from.joints.shoulder) arm.shoulder = static_cast<int>(arm.path.size());
       if (joint == from.joints.elbow) arm.elbow = static_cast<int>(arm.path.size());
       arm.path.push_back({joint, offset_of(all, joint)});
@@ -233,7 +236,7 @@ void fill_arms(const WalkModel& model, BuildTables& tables) {
   for (int n = 0; n < kBodyNumbers; ++n) tables.plain_body[n] = static_cast<float>(plain[n]);
 }
 
-// What is between a skeleton's root and its pelvis.
+// The pelvis, and the joints between it and the root.
 void fill_root(const WalkModel& model, BuildTables& tables) {
   const std::vector<Joint>& all = model.cycle.skeleton.joints;
   const int pelvis = model.cycle.pelvis;
@@ -253,7 +256,8 @@ void fill_upper_body(const WalkModel& model, BuildTables& tables) {
     return std::any_of(tables.path.begin(), tables.path.end(),
                        [&](const PathJoint& p) { return p.joint == joint; });
   };
-  // Joints that are still in the data may turn on the path, and a root above the pelvis does.
+  // A joint that keeps still in the data may turn if it is on the path or the root above the
+  // pelvis.
   const auto turns = [&](int joint) {
     return is_on_path(joint) || (joint == 0 && cycle.pelvis != 0);
   };
@@ -294,9 +298,8 @@ void fill_upper_body(const WalkModel& model, BuildTables& tables) {
   tables.joints = static_cast<int>(joints);
 }
 
-// Chest and head turn at most this much harder while a walk changes than in the data at their own
-// pace; and at least as hard as in the built-in walk, for which that is below twice the steady
-// one's.
+// Bounds of the angular acceleration of chest and head while a walk changes: multiples of that in
+// the data at their own pace, and at least those of the built-in walk.
 constexpr double kHarderChest = 1.7, kHarderHead = 1.9, kLeastChest_s2 = 252.0 * kDegree,
                  kLeastHead_s2 = 139.0 * kDegree;
 void fill_hardness(const WalkModel& model, BuildTables& tables) {
@@ -306,7 +309,7 @@ void fill_hardness(const WalkModel& model, BuildTables& tables) {
       static_cast<int>(std::find_if(tables.path.begin(), tables.path.end(),
                                     [](const PathJoint& joint) { return joint.of_look > 0.0f; }) -
                        tables.path.begin());
-  // By phase: turns from standing.
+  // Turns of chest and head by phase.
   std::array<std::array<quat, kKnots>, 2> turn;
   for (int k = 0; k < kKnots; ++k) {
     const double phase = double(k) / kKnots;
@@ -346,8 +349,8 @@ Filter filter(double time_constant_s, double tick_s) {
           static_cast<float>(tick_s)};
 }
 
-// Time constants in seconds at the reference leg: what jumps with the stick is felt as delay beyond
-// these, and seen as a jerk below.
+// Time constants in seconds at the reference leg. Longer ones are felt as a delay behind the stick,
+// shorter ones are seen as a jerk.
 Filters filters_of(double time_scale, double tick_s) noexcept {
   const auto of = [&](double time_constant_s) {
     return filter(time_constant_s * time_scale, tick_s);
@@ -367,18 +370,18 @@ Filters filters_of(double time_scale, double tick_s) noexcept {
   filters.ground = of(0.30);
   filters.slope_lean = of(0.30);
   filters.weights = of(0.15);
-  filters.loosens = of(0.04);  // a foot that stood flat, when a walk begins
+  filters.loosens = of(0.04);
   filters.lowers = of(0.03);
   filters.body = of(0.22);
   filters.speed = of(0.15);
   filters.push = of(0.04);
-  filters.rail = of(0.06);
+  filters.rail = of(kRailSmoothing_s);
   const double mean_s = 0.5 * time_scale;
   filters.mean_pull = static_cast<float>(tick_s / (mean_s + tick_s));
   return filters;
 }
 
-// The last filters that a thread asked for: mostly all walks have one tick and one size.
+// The last filters that a thread asked for, because most walks have the same tick and size.
 const Filters& kept_filters(double time_scale, double tick_s) noexcept {
   struct Kept {
     double time_scale, tick_s;

@@ -1,5 +1,5 @@
-// What does not change while characters of one build walk, in floats: the strides' tables, the body
-// above the legs and the legs' bones. A WalkModel has them.
+// A character's strides, bones and upper body in floats, as ticks read them. They do not change
+// while it walks. A WalkModel holds them.
 #pragma once
 #include <array>
 #include <memory>
@@ -10,9 +10,9 @@
 
 namespace gaitpad {
 
-// A stride at one knot of its periodic cubic B-spline in phase, at one ratio; in the character's
-// metres and radians, 0 when standing (StrideCellOf). Numbers are neighbours so that what is read
-// together is summed together.
+// A stride at one knot of its periodic cubic B-spline in phase, at one ratio: a StrideCell in the
+// character's metres and radians, 0 in the standing pose. Numbers that are read together are
+// neighbours.
 struct StrideRow {
   std::array<std::array<float, 3>, 2> heel_m;  // by Side; travel frame
   std::array<float, 2> pitch_rad;
@@ -21,21 +21,21 @@ struct StrideRow {
   float pelvis_yaw_rad;
   std::array<float, 3> pelvis_tilt_rad;
   std::array<std::array<float, kLegAngles>, 2> leg_rad;
-  std::array<float, 2> pelvis_span_m;  // its lowest and highest place in the stride
-  std::array<float, 5> none;
+  std::array<float, 2> pelvis_span_m;  // the pelvis' lowest and highest place in the stride
+  std::array<float, 5> none;           // makes the row a multiple of 8 numbers
 };
 inline constexpr int kRowNumbers = sizeof(StrideRow) / sizeof(float), kHeelNumbers = 8;
 static_assert(kRowNumbers == 40);
 
-// As many as a StrideFamily has: half of them are off by 0.17 degrees RMS of a knee, at the
-// lift-off.
+// The number of samples of a StrideFamily. Half as many change a knee at the lift-off by 0.17
+// degrees RMS.
 inline constexpr int kKnots = 128, kRatios = 8, kHarmonics = 2;
 template <std::size_t kOf>
 using RowsOf = std::array<std::array<StrideRow, kOf>, kKnots + 3>;  // one before, two after
 using StrideRows = RowsOf<kRatios>;
 using BackRows = RowsOf<kBackRatios>;
 
-// Where strides go: exactly linear in their ratio.
+// Footprints of the strides, which are exactly linear in the ratio.
 struct FootprintLines {
   std::array<std::array<float, 3>, 2> at_zero_m, per_ratio_m;  // by Side
   float stride_at_zero_m, stride_per_ratio_m;
@@ -46,8 +46,9 @@ struct Filter {
   float pull, keep, tick_s;
 };
 
+// The numbers of a LegBuild that ticks read.
 struct LegBones {
-  std::array<float, 3> hip_m, heel_m, toe_m, forward, side, ball_m, tip_m;  // LegBuild
+  std::array<float, 3> hip_m, heel_m, toe_m, forward, side, ball_m, tip_m;
   float thigh_m, shank_m, elevation_rad, foot_m, toe_rest_m, half_width_m, track_m;
   std::array<float, kLegAngles> stand_rad;
   float own_step_m;
@@ -59,23 +60,22 @@ struct LegBones {
 // A joint that the legs do not set.
 struct UpperJoint {
   int joint;
-  int swings;                             // 0 not; 1, 2: left shoulder, elbow; 3, 4: right ones
-  std::array<float, 4> standing, middle;  // x, y, z, w; the middle of an arm's swing
+  int swings;  // 0: it is no arm's joint; 1, 2: left shoulder, elbow; 3, 4: right ones
+  std::array<float, 4> standing, middle;  // x, y, z, w; `middle`: of an arm's swing
 };
 
-// A joint on the way from the pelvis to the head, or to the chest of a skeleton without one, and
-// its share of what chest and head are ahead. Of a trunk that does not hang from the pelvis: from
-// the root, which has no offset.
+// A joint of the path from the pelvis to the head, or to the chest of a skeleton without a head. If
+// the trunk does not hang from the pelvis, the path begins at the root, whose offset is 0.
 struct PathJoint {
-  int joint, upper;  // its place among those that the legs do not set
-  float of_chest, of_head;
-  float bends, of_look;  // shares of the trunk's bend; of the head's turn, with what is below it
-  std::array<float, 3> offset_m;  // Joint
+  int joint, upper;         // index in the skeleton, and in BuildTables::upper
+  float of_chest, of_head;  // its shares of the angles by which chest and head are ahead
+  float bends, of_look;  // its shares of the trunk's bend and, with the joints below it, of a look
+  std::array<float, 3> offset_m;
 };
 
 // A joint of the spine that shares its bend by weight (SpineJoint).
 struct SpineBone {
-  int at;                         // in the path
+  int at;                         // index in the path
   std::array<float, 4> standing;  // w, x, y, z
   float upper;
 };
@@ -87,10 +87,10 @@ struct ArmBones {
     int joint;
     std::array<float, 3> offset_m;
   };
-  std::vector<Link> path;               // none: the skeleton has no such arm
-  int shoulder, elbow;                  // in the path
-  int on_trunk;                         // so many of its first joints are the trunk's, too
-  bool turns_wrist;                     // the last joint is one that turns
+  std::vector<Link> path;               // empty: the skeleton has no such arm
+  int shoulder, elbow;                  // indices in the path
+  int on_trunk;                         // its first joints up to this one are also the trunk's
+  bool turns_wrist;                     // the last joint can turn
   std::array<float, 4> hanging, chest;  // w, x, y, z
   std::array<float, 3> grip_m;
   std::array<float, kArmAngles> min_rad, max_rad, middle_rad;
@@ -102,39 +102,40 @@ struct BuildNumbers {
       source_step_m, own_step_s;
   float leg_m;          // thigh and shank
   bool legs_are_plain;  // no joint of a leg has a turn before or after its own
-  bool has_head;        // it ends the path
+  bool has_head;        // a head ends the path
   bool on_pelvis;       // the path begins at the pelvis; else at the root, beside it
   int joints, pelvis;
   float arm_m, shoulder_height_m;  // UpperBodyModel
-  // How hard chest and head may turn while a walk changes, radians/s^2.
+  // Bounds of the angular acceleration of chest and head while a walk changes, rad/s^2.
   float most_chest_s2, most_head_s2;
 };
 
-// What is the same at all ticks' lengths; a WalkModel has it.
+// The tables of a build, for ticks of any length.
 struct BuildTables : BuildNumbers {
   alignas(64) StrideRows forward;
   alignas(64) BackRows back;
   FootprintLines footprints, back_footprints;
-  // Of the legs' angles over a stride ahead, by Side: mean, then cosine and sine of each harmonic.
+  // Harmonics of the legs' angles over a stride ahead, by ratio, Side and angle: the mean, then
+  // cosine and sine of each harmonic.
   std::array<std::array<std::array<std::array<float, 1 + 2 * kHarmonics>, kLegAngles>, 2>, kRatios>
       leg_harmonics;
   std::array<LegBones, 2> leg;
-  std::array<IkChain, 2> chain;  // of paper mode, by Side
-  std::array<float, 4>
-      stage_share;  // of the phase: roll right, flight left, roll left, flight right
+  std::array<IkChain, 2> chain;  // for IkMode::paper, by Side
+  // The stages' shares of the phase: right roll, left flight, left roll, right flight.
+  std::array<float, 4> stage_share;
 
   std::vector<UpperJoint> upper;
   std::vector<float> upper_rows;  // (kKnots + 3) x upper.size() x 4: x, y, z, w
-  std::vector<PathJoint> path;    // from below the pelvis on, or from the root
-  std::vector<SpineBone> spine;   // none: it does not bend by weights
+  std::vector<PathJoint> path;    // from the pelvis' child on, or from the root
+  std::vector<SpineBone> spine;   // empty: it does not bend by weights
   std::array<ArmBones, 2> arm;
   std::array<float, 4> chest_standing, head_standing, spine_base;  // w, x, y, z
   std::array<float, 3> neck_m;
-  std::array<float, kBodyNumbers> plain_body;  // UpperBodyParams of no style
+  std::array<float, kBodyNumbers> plain_body;  // UpperBodyParams without a style
   std::array<float, 2> most_elbow_swing;
-  std::vector<int> still;                    // always the identity
-  std::vector<std::pair<int, quat>> kept;    // twist joints in the legs
-  std::vector<ArmBones::Link> above_pelvis;  // from the root to its parent; none: it is the root
+  std::vector<int> still;                    // joints that are always the identity
+  std::vector<std::pair<int, quat>> kept;    // twist joints of the legs, which keep their rotation
+  std::vector<ArmBones::Link> above_pelvis;  // root to the pelvis' parent; empty: it is the root
   std::array<float, 3> pelvis_offset_m;
   std::array<float, 4> pelvis_standing;  // w, x, y, z
 };
@@ -145,11 +146,12 @@ struct Filters {
   Filter room, ground, slope_lean;  // of uneven ground
   Filter step, first_step, turn_goal, turn, bounce, lean, posture, chest, head;
   Filter weights, loosens, lowers, body, speed, push, rail;
-  float mean_pull;  // of the two filters that a leg's running mean goes through
+  float mean_pull;  // of the two filters that make a leg's running mean
 };
+inline constexpr double kRailSmoothing_s = 0.06;  // time constant of `rail`, at the reference leg
 
-// All that a tick reads beside the walks: a build, its ground, and the filters of the tick's
-// length.
+// All that a tick reads beside its walks: the tables of a build, the filters of the tick's length,
+// and the ground.
 struct Tables : BuildNumbers, Filters {
   const StrideRows& forward;
   const BackRows& back;
@@ -172,11 +174,11 @@ struct Tables : BuildNumbers, Filters {
   const std::vector<ArmBones::Link>& above_pelvis;
   const std::array<float, 3>& pelvis_offset_m;
   const std::array<float, 4>& pelvis_standing;
-  const Terrain* terrain;  // none where the ground is level
+  const Terrain* terrain;  // null if the ground is level
 };
 
 std::shared_ptr<const BuildTables> build_tables(const WalkModel& model);
-// Of a model with its tables, and of a tick of `tick_s` seconds. No heap.
+// The tables of a model for ticks of `tick_s` seconds; refers to the model. Does not use the heap.
 Tables tables_of(const WalkModel& model, double tick_s) noexcept;
 
 }  // namespace gaitpad

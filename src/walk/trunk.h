@@ -1,6 +1,7 @@
-// Seventh: the trunk from the pelvis to the head, where it does not move as in the data: it leans
-// into a change of speed and as a style asks, chest and head turn ahead, weights share the spine's
-// bend, and the head looks. Where a walk is not steady chest and head turn no harder than in it.
+// Seventh: the trunk from the pelvis to the head, where it moves otherwise than in the data. It
+// leans into a change of speed and as a style asks; chest and head turn ahead; a style's weights
+// share the spine's bend; the head looks at a goal. While a walk changes, bounds keep the angular
+// acceleration of chest and head near that of a steady walk.
 #pragma once
 #include <cstddef>
 
@@ -13,15 +14,13 @@
 namespace gaitpad {
 namespace {
 
-inline constexpr float kRadians = 0.017453293f;  // a degree
-
 // --- Joints of a pose ----------------------------------------------------------------------------
 
 template <class V>
 void write_joint(const Turn<V>& q, int joint, int w, const Poses& poses) noexcept {
   store(Four{lane(q.x, w), lane(q.y, w), lane(q.z, w), lane(q.w, w)}, poses.local[w][joint]);
 }
-// `is`: 1 of the walks that are written, else 0.
+// Writes a joint of the walks for which `is` is 1; it is 0 for the others.
 template <class V>
 void write_where(const Turn<V>& q, int joint, const V& is, const Poses& poses) noexcept {
   for (int w = 0; w < poses.walks; ++w)
@@ -29,7 +28,7 @@ void write_where(const Turn<V>& q, int joint, const V& is, const Poses& poses) n
 }
 template <class V>
 Turn<V> read_joint(int joint, const V& is, const Poses& poses) noexcept {
-  Turn<V> q{all<V>(1.0f), V{}, V{}, V{}};
+  Turn<V> q = no_turn<V>();
   for (int w = 0; w < poses.walks; ++w) {
     if (lane(is, w) == 0.0f) continue;
     const quat& from = poses.local[w][joint];
@@ -41,7 +40,7 @@ Turn<V> read_joint(int joint, const V& is, const Poses& poses) noexcept {
   return q;
 }
 
-// From one rotation to another, the shorter way.
+// The rotation at a share of the shorter way from one to another.
 template <class V>
 Turn<V> between(const Turn<V>& a, const Turn<V>& b, const V& share) noexcept {
   const V along = a.w * b.w + a.x * b.x + a.y * b.y + a.z * b.z;
@@ -76,7 +75,8 @@ Vec<V> every(const std::array<float, 3>& v) noexcept {
 
 // --- The trunk -----------------------------------------------------------------------------------
 
-// Room for the most joints of a path, of which few are used: the others are not set to 0.
+// An array for a path of any length. It is not set to 0, for that would take longer than what is
+// done with the few joints of most paths.
 template <class T>
 class OfPath {
  public:
@@ -87,25 +87,25 @@ class OfPath {
   alignas(T) std::byte bytes_[kMaxBodyPath * sizeof(T)];
 };
 
-// The joints from the pelvis to the head, and how they are turned and where they are in the step
-// frame.
+// The joints of the path from the pelvis to the head, in the step frame.
 template <class V>
 struct Trunk {
-  Turn<V> base;  // the pelvis'
+  Turn<V> base;  // what the path hangs from
   Vec<V> base_m;
-  OfPath<Turn<V>> own, turned;
+  OfPath<Turn<V>> own, turned;  // each joint's rotation in its parent, and in the step frame
   OfPath<Vec<V>> place_m;
 };
 
 inline int joints_of_path(const Tables& tables) noexcept {
   return static_cast<int>(tables.path.size());
 }
-// The first joint of neck and head; without a head none.
+// The index in the path of the first joint of neck and head; behind its end without a head.
 inline int neck_of(const Tables& tables) noexcept {
   int neck = 0;
   while (neck < joints_of_path(tables) && tables.path[neck].of_look == 0.0f) ++neck;
   return neck;
 }
+// The turn of a joint's parent.
 template <class V>
 const Turn<V>& below(const Trunk<V>& trunk, int joint) noexcept {
   return joint > 0 ? trunk.turned[joint - 1] : trunk.base;
@@ -118,12 +118,12 @@ void place_trunk(const Tables& tables, int from, Trunk<V>& trunk) noexcept {
                        below(trunk, i) * every<V>(tables.path[i].offset_m);
 }
 
-// Bends it by `turn(share)` about each joint of the spine, by its share, `where`.
+// Bends the trunk `where`: turns each joint of the spine by `turn` of the joint's share.
 template <class V, class TurnOf>
 void bend(const Tables& tables, const TurnOf& turn, const Mask<V>& where,
           Trunk<V>& trunk) noexcept {
   Turn<V> above = trunk.base, by;
-  float share = 0.0f;  // that `by` is of: joints mostly have the same
+  float share = 0.0f;  // `by` is the turn of this share; most joints have the same
   const bool bends = any(where);
   for (int i = 0; i < joints_of_path(tables); ++i) {
     const PathJoint& joint = tables.path[i];
@@ -137,19 +137,18 @@ void bend(const Tables& tables, const TurnOf& turn, const Mask<V>& where,
   }
 }
 
-// Turns neck and head: the neck by its share, the head by all of it.
+// Turns the joints of the neck by their shares of a turn, and the head by all of it.
 template <class V>
 void turn_head(const Tables& tables, const Turn<V>& turn, Trunk<V>& trunk) noexcept {
-  const Turn<V> none{all<V>(1.0f), V{}, V{}, V{}};
-  const int joints = static_cast<int>(tables.path.size());
-  for (int i = 0; i < joints; ++i) {
+  for (int i = 0; i < joints_of_path(tables); ++i) {
     const float share = tables.path[i].of_look;
-    if (share > 0.0f) trunk.turned[i] = between(none, turn, all<V>(share)) * trunk.turned[i];
+    if (share > 0.0f)
+      trunk.turned[i] = between(no_turn<V>(), turn, all<V>(share)) * trunk.turned[i];
   }
 }
 
-// What the trunk is asked for beside the data, in radians: its lean forwards and to the left; how
-// far the chest is turned ahead; how far the head turns beside it, and nods.
+// The trunk's differences from the data: its lean forwards and to the left, the chest's turn ahead,
+// the head's turn beside the chest's, and its nod upwards.
 template <class V>
 struct Bearing {
   V forward_rad{}, left_rad{}, ahead_rad{}, turns_rad{}, nods_rad{};
@@ -180,23 +179,25 @@ void nod(const Tables& tables, const Turn<V>& heading, const Bearing<V>& bearing
             trunk);
 }
 
-// --- Chest and head where a walk is not steady ---------------------------------------------------
+// --- Chest and head while a walk changes ---------------------------------------------------------
 
-// The trunk leans into a change of speed: forward while the walk is slower than asked, back while
-// it is faster; in part while more than kFirstFrom of the asked speed is missing and fully from
-// kFirstAll on, so that a slow walk leans as well. Times in seconds at the reference leg.
-inline constexpr float kPush_rad = 3.0f * kRadians,  // for a missing metre a second
-    kFirstPush_rad = 2.0f * kRadians, kFirstFrom = 0.4f, kFirstAll = 0.8f;
-inline constexpr float kCalm = 0.25f, kSoftCalm_m_s = 0.1f;
-inline constexpr float kStill_rad = 1e-7f, kTurns_rad_s = 0.02f, kTurns_rad = 0.003f;
-inline constexpr float kSteady_s = 0.3f;  // a walk is steady again so long after its hips have led
-
-// What a tick makes of it. `moves_m`: the pelvis, in this tick. True where chest and head are
-// eased.
+// Advances the mean speed and the lean into a change of it. Returns the walks whose chest and head
+// are to be eased. `is_new`: the plan has changed in this tick.
 template <class V>
 Mask<V> advance_poise(const Tables& tables, const Hips<V>& hips, const Mask<V>& is_new,
                       const Change<V>& change, const State<V>& state, Poise<V>& poise) noexcept {
-  constexpr float kLeastCycle_s = 0.2f;
+  // The trunk leans forward while the walk is slower than asked, back while it is faster: by
+  // kPush_rad for each m/s that is missing beyond the share kCalm of the speed. If the share
+  // kFirstFrom of the asked speed is missing, it leans by up to kFirstPush_rad more, which it
+  // reaches at kFirstAll, so that a slow walk leans as well.
+  constexpr float kPush_rad = 3.0f * kDegree_rad, kFirstPush_rad = 2.0f * kDegree_rad,
+                  kFirstFrom = 0.4f, kFirstAll = 0.8f, kCalm = 0.25f, kSoftCalm_m_s = 0.1f;
+  constexpr float kStill_rad = 1e-7f;  // a smaller lean counts as none
+  // Chest and head are eased while the head's turn ahead changes faster than this, or is farther
+  // from its goal.
+  constexpr float kTurns_rad_s = 0.02f, kTurns_rad = 0.003f;
+  constexpr float kSteady_s =
+      0.3f;  // at the reference leg: a walk is steady so long after a change
   const Asked<V>& a = state.asked;
   const V pace = (a.length_m[0] + a.length_m[1]) /
                  most(V(a.time_s[0] + a.time_s[1]), all<V>(kLeastCycle_s)),
@@ -222,14 +223,14 @@ Mask<V> advance_poise(const Tables& tables, const Hips<V>& hips, const Mask<V>& 
     poise.push_rad.x = still ? V{} : poise.push_rad.x;
     poise.push_rad.v = still ? V{} : poise.push_rad.v;
   }
-  // Below these it is ahead by so little more that its turn is bounded anyway.
   const V ahead_rad = kHeadAhead_s * (is_to_walk(state) ? a.turn_rad_s : V{});
   const auto turns = either(size(state.head_ahead_rad.v) > all<V>(kTurns_rad_s),
                             size(V(ahead_rad - state.head_ahead_rad.x)) > all<V>(kTurns_rad));
   return either(either(poise.unsteady_ticks != V{}, poise.push_rad.x != V{}), turns);
 }
 
-// Twice the axis of a turn by the sine of its half: about its rotation vector, of small turns.
+// The axis of a turn times twice the sine of its half, which is nearly the rotation vector of a
+// small turn; and back.
 template <class V>
 Vec<V> vector_of(const Turn<V>& q) noexcept {
   const V k = q.w < V{} ? all<V>(-2.0f) : all<V>(2.0f);
@@ -239,7 +240,7 @@ template <class V>
 Turn<V> turn_of(const Vec<V>& v) noexcept {
   return {root(most(V(1.0f - 0.25f * dot(v, v)), V{})), 0.5f * v.x, 0.5f * v.y, 0.5f * v.z};
 }
-// The turns of chest and head from standing, in the walker's axes.
+// The turns of chest and head from the standing pose, as such vectors in the walker's axes.
 template <class V>
 Vec<V> chest_turn(const Tables& tables, const Turn<V>& heading, const Trunk<V>& trunk) noexcept {
   return vector_of(back(heading) * below(trunk, neck_of(tables)) *
@@ -251,16 +252,17 @@ Vec<V> head_turn(const Tables& tables, const Turn<V>& heading, const Trunk<V>& t
                    back(every<V>(tables.head_standing)));
 }
 
-// What a turn that `acts` is to be after its second difference was bounded by `most_rad`, where it
-// `eases`. What it is then off its goal fades away in kEases_s or, where it is far off, as much
-// later as a third of the bound asks. `heading_rad`: the heading's own second difference.
+// Follows `goal` with a turn, for walks where it `acts`. Where it also `eases`, the turn's second
+// difference is bounded by `most_rad`; the turn is then off its goal. This difference fades in
+// kEases_s or, if it is large, so slowly that the fade takes a third of the bound. `heading_rad`:
+// second difference of the heading.
 template <class V>
 Vec<V> eased(const Tables& tables, const Vec<V>& goal, const V& most_rad, const V& heading_rad,
              const Mask<V>& acts, const Mask<V>& eases, Eased<V>& turn) noexcept {
   constexpr float kEases_s = 0.25f;
   constexpr int kNumbers = sizeof(Eased<V>) / sizeof(V);
   Eased<V> of = turn;
-  constexpr float kQuintic = 17.0f;  // three times the greatest bend of a quintic over its way
+  constexpr float kQuintic = 17.0f;  // three times the greatest bend of a quintic of length 1
   for (Off<V>& off : of.off) fade(of.ticks, off);
   const Vec<V> bend = goal + Vec<V>{of.off[0].x, of.off[1].x, of.off[2].x} - of.at - of.rate,
                turns{bend.x, V(bend.y + heading_rad), bend.z};
@@ -289,13 +291,12 @@ Vec<V> eased(const Tables& tables, const Vec<V>& goal, const V& most_rad, const 
 
 // --- Spine ---------------------------------------------------------------------------------------
 
-inline constexpr float kEvenSpine = 1e-6f;
-inline constexpr float kNeckLever_m = 0.2f;
-inline constexpr float kMostBend_rad = 60.0f * kRadians;  // of one joint
+inline constexpr float kNeckLever_m = 0.2f;  // makes a length of the neck's turn, for its row
 
-// The spine's joints share the movement that brings the neck and the shoulders to their place in
-// the data: the neck's place sideways and fore-aft, and fore-aft that of a point beside it. In the
-// walker's standing axes, turned with the joint below the spine; angles x, z, y of each joint.
+// The spine's joints share the movement that brings neck and shoulders to their place in the data.
+// Three rows: the neck's place sideways and forward, and forward that of a point beside the neck.
+// Each joint has the angles x, z, y, in the standing walker's axes turned with the joint below the
+// spine.
 template <class N>
 struct SpineChain {
   using V = N;
@@ -351,20 +352,22 @@ struct SpineChain {
 template <class V>
 Mask<V> has_uneven_spine(const Styled<V>& styled) noexcept {
   return size(V(styled.body[kSpineWeight].x - styled.body[kSpineWeight + 1].x)) >=
-         all<V>(kEvenSpine);
+         all<V>(kEvenWeights);
 }
 
-// Pulls joints of small weight towards the standing pose; the others bring the neck back.
+// Pulls joints of small weight towards the standing pose; the others bring the neck back to its
+// place.
 template <class V>
 void share_spine(const Tables& tables, const Styled<V>& styled, const Mask<V>& uneven,
                  Trunk<V>& trunk) noexcept {
+  constexpr float kMostBend_rad = 60.0f * kDegree_rad;  // of one joint
   const int count = static_cast<int>(tables.spine.size());
   SpineChain<V> chain;
   chain.dofs = 3 * count;
   const Turn<V> base = below(trunk, tables.spine[0].at) * back(every<V>(tables.spine_base)),
                 to_base = back(base);
   V angle_rad[SpineChain<V>::kDofs];
-  Turn<V> last{all<V>(1.0f), V{}, V{}, V{}};
+  Turn<V> last = no_turn<V>();
   const V lower = styled.body[kSpineWeight].x, upper = styled.body[kSpineWeight + 1].x,
           over = 1.0f / most(most(lower, upper), all<V>(1e-6f));
   for (int i = 0; i < count; ++i) {
@@ -391,7 +394,7 @@ void share_spine(const Tables& tables, const Styled<V>& styled, const Mask<V>& u
   chain.goal_m = end_m + last * chain.neck_m;
   chain.beside_goal_m = chain.goal_m + last * Vec<V>{all<V>(kNeckLever_m), V{}, V{}};
   solve_chains(chain, uneven, angle_rad);
-  Turn<V> segment{all<V>(1.0f), V{}, V{}, V{}};
+  Turn<V> segment = no_turn<V>();
   int next = 0;
   for (int i = tables.spine[0].at; i < joints_of_path(tables); ++i) {
     const Turn<V>& above = below(trunk, i);
@@ -417,12 +420,12 @@ struct Gaze {
 };
 template <class V>
 Gaze<V> gaze(const Tables& tables, const Turn<V>& chest, const Vec<V>& direction) noexcept {
-  constexpr float kMostYaw_rad = 70 * kRadians, kMostPitch_rad = 40 * kRadians,
-                  kSoftYaw_rad = 6 * kRadians, kSoftHeadPitch_rad = 4 * kRadians;
-  // It does not follow a goal behind it, for turning left and right would be equally far, nor one
-  // straight above or below.
-  constexpr float kBeside_rad = 105 * kRadians, kBehind_rad = 150 * kRadians, kLevelFrom = 0.15f,
-                  kLevelTo = 0.4f;
+  constexpr float kMostYaw_rad = 70 * kDegree_rad, kMostPitch_rad = 40 * kDegree_rad,
+                  kSoftYaw_rad = 6 * kDegree_rad, kSoftHeadPitch_rad = 4 * kDegree_rad;
+  // The head does not follow a goal behind it, for turning left and right would be equally far, nor
+  // one straight above or below.
+  constexpr float kBeside_rad = 105 * kDegree_rad, kBehind_rad = 150 * kDegree_rad,
+                  kLevelFrom = 0.15f, kLevelTo = 0.4f;
   const auto limited = [](const V& x, float most, float soft) {
     const V below = soft_least(x, all<V>(most), all<V>(soft));
     return V(below + soft_positive(V(-most - below), all<V>(soft)));
@@ -437,7 +440,7 @@ Gaze<V> gaze(const Tables& tables, const Turn<V>& chest, const Vec<V>& direction
   sin_cos(limited(yaw, kMostYaw_rad, kSoftYaw_rad), ys, yc);
   sin_cos(limited(pitch, kMostPitch_rad, kSoftHeadPitch_rad), ps, pc);
   const Vec<V> ahead = chest * Vec<V>{pc * ys, ps, pc * yc};
-  // Its left stays level: half angles of its heading, then of its pitch.
+  // The head's sideways axis stays level: half angles of the heading, then of the pitch.
   const V flat = root(V(ahead.x * ahead.x + ahead.z * ahead.z)),
           turns = 1.0f / most(flat, all<V>(1e-6f));
   const auto half = [](const V& sine, const V& cosine, V& half_sine, V& half_cosine) {
@@ -452,7 +455,7 @@ Gaze<V> gaze(const Tables& tables, const Turn<V>& chest, const Vec<V>& direction
   return to;
 }
 
-// Brings the head from `own` to where it looks along `direction`, by a share.
+// Turns the head by a share of the way from `own` to looking along `direction`.
 template <class V>
 void look_along(const Tables& tables, const Vec<V>& direction, const V& share, const Turn<V>& own,
                 const Mask<V>& looks, Trunk<V>& trunk) noexcept {
@@ -484,20 +487,18 @@ Vec<Floats<kWidth>> look_place(const Block<kWidth>& block, const Floats<kWidth>&
     set_lane(static_cast<float>(place_m.y - origin.y_m), w, p.y);
     set_lane(static_cast<float>(place_m.z - origin.z_m), w, p.z);
   }
-  const V sine = 2.0f * state.frame_sine * state.frame_cosine,
-          cosine = state.frame_cosine * state.frame_cosine - state.frame_sine * state.frame_sine;
-  return {V(cosine * p.x - sine * p.z), p.y, V(sine * p.x + cosine * p.z)};
+  return back(way_of_half(state.frame_sine, state.frame_cosine)) * p;
 }
 
-// Where a style has the head look: to where the walk leads, in a direction, at a place. Returns the
-// walks that have such a style.
+// Turns the head as a style asks: to where the walk leads, in a direction, or to a place. Returns
+// the walks whose style asks for it.
 template <int kWidth>
 Mask<Floats<kWidth>> look(const Tables& tables, const Block<kWidth>& block,
                           const Mask<Floats<kWidth>>& is_styled,
                           Trunk<Floats<kWidth>>& trunk) noexcept {
   using V = Floats<kWidth>;
   constexpr float kLead_s = 0.6f;    // how far ahead of the walk a leading head looks
-  constexpr float kNear_m = 0.001f;  // a place within the head is not looked at
+  constexpr float kNear_m = 0.001f;  // nearer places are inside the head and have no direction
   const State<V>& state = block.state;
   const auto of = [&](int number) -> const V& { return block.styled.body[number].x; };
   const int head = joints_of_path(tables) - 1;
@@ -507,8 +508,8 @@ Mask<Floats<kWidth>> look(const Tables& tables, const Block<kWidth>& block,
     turn_head(tables, turn_y(leads ? V(kLead_s * of(kLead) * state.turn_rad_s.x) : V{}), trunk);
   if (any(looks)) {
     V ys, yc, ps, pc;
-    sin_cos(V(state.heading_rad + kRadians * of(kLookYaw_deg)), ys, yc);
-    sin_cos(V(kRadians * of(kLookPitch_deg)), ps, pc);
+    sin_cos(V(state.heading_rad + kDegree_rad * of(kLookYaw_deg)), ys, yc);
+    sin_cos(V(kDegree_rad * of(kLookPitch_deg)), ps, pc);
     look_along(tables, Vec<V>{pc * ys, ps, pc * yc}, of(kLook), trunk.turned[head], looks, trunk);
   }
   const auto some = either(either(leads, looks), looks_at);

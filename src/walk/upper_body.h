@@ -1,5 +1,5 @@
-// Sixth: the joints that the legs do not set, from the data at this phase, and what of them is
-// asked to be otherwise.
+// Sixth: the joints that the legs do not set, from the data at this phase, and the changes that a
+// style or a change of the walk makes to them.
 #pragma once
 #include "walk/arms.h"
 #include "walk/ground_plan.h"
@@ -7,8 +7,9 @@
 namespace gaitpad {
 namespace {
 
-// The factor on the data's arm swing: proportional to speed (Boulic et al. 1990), 1 at the data's
-// own pace, at most 1.4 by pace alone; below half the data's step the whole posture fades instead.
+// The factor on the data's arm swing: proportional to speed (Boulic et al. 1990) and 1 at the
+// data's own pace; the pace alone approaches 1 + kMostExtra. Below kLeastPace of the data's step it
+// stays, for there the whole posture fades.
 template <class V>
 V arm_swing(const Tables& tables, const State<V>& state) noexcept {
   constexpr float kMostExtra = 0.4f, kLeastPace = 0.5f;
@@ -20,13 +21,14 @@ V arm_swing(const Tables& tables, const State<V>& state) noexcept {
 
 // --- What a style asks of the upper body ---------------------------------------------------------
 
-// Brings its numbers nearer to those asked for; those of no style are the data's.
+// Brings the style's numbers in force nearer to those asked for, and without a style to the data's.
 template <class V>
 void smooth_body(const Tables& tables, const Mask<V>& is_styled, Styled<V>& styled) noexcept {
-  // Of a number or of 1: a float of 10 comes to rest, by its rounding, 2e-5 off its goal.
-  constexpr float kSettled = 1e-5f, kStill_per_s = 1e-4f;
+  // A share of the number, or of 1 if it is less: by rounding, a float of 10 comes to rest 2e-5 off
+  // its goal.
+  constexpr float kSettled = 1e-5f;
   const auto asked = styled.asked != V{}, acted = styled.acts != V{};
-  // Mostly all of them have been there for long.
+  // Return early if all numbers have settled, as they have in nearly every tick.
   auto moves = both(is_styled, acted != asked);
   for (int n = 0; n < kBodyNumbers; ++n) {
     const V goal = asked ? styled.goal[n] : all<V>(tables.plain_body[n]);
@@ -50,26 +52,26 @@ void smooth_body(const Tables& tables, const Mask<V>& is_styled, Styled<V>& styl
   styled.acts = moves ? chosen<V>(plain, 0.0f, 1.0f) : styled.acts;
 }
 
-// 1 in the middle of the time that a leg stands alone, 0 in that of the other.
+// 1 in the middle of the time in which this leg stands alone, 0 in the middle of the other's.
 template <class V>
 V stands_alone(const Tables& tables, const V& phase, bool right) noexcept {
   const auto& share = tables.stage_share;
   const float middle =
       right ? share[0] + 0.5f * share[1] : share[0] + share[1] + share[2] + 0.5f * share[3];
   V sine, cosine;
-  sin_cos(V(6.2831853f * (phase - middle)), sine, cosine);
+  sin_cos(V(kTurn_rad * (phase - middle)), sine, cosine);
   const V half = 0.5f + 0.5f * cosine;
   return half * half;
 }
 
-// Moves a rail's height over the step frame. It rises evenly over stairs, so its height is that of
-// the mean ground along the way under the hand. The mean is taken as far ahead as the filter after
-// it lags.
+// Moves the ground under a rail, over the step frame. A rail rises evenly over stairs, so this is
+// the mean of the ground along the way under the hand, taken as far ahead as the filter after it
+// lags.
 template <int kWidth>
 void follow_rails(const Tables& tables, const Vec<Floats<kWidth>>& hips_m,
                   const Mask<Floats<kWidth>>& is_styled, Block<kWidth>& block) noexcept {
   using V = Floats<kWidth>;
-  constexpr float kSmoothing_s = 0.06f, kProbe_m = 0.035f;
+  constexpr float kProbe_m = 0.035f;
   constexpr int kProbes = 15;  // on either side, 1.05 m in all: a mean over two treads rises evenly
   const State<V>& state = block.state;
   Styled<V>& styled = block.styled;
@@ -81,7 +83,8 @@ void follow_rails(const Tables& tables, const Vec<Floats<kWidth>>& hips_m,
     const V is = chosen<V>(follows, 1.0f, 0.0f);
     Smoothed<V>& ground_m = styled.rail_ground_m[side];
     if (tables.terrain == nullptr) continue;
-    const float ahead = 2.0f * kSmoothing_s * tables.time_scale / tables.tick_s,
+    const float ahead =
+                    2.0f * static_cast<float>(kRailSmoothing_s) * tables.time_scale / tables.tick_s,
                 scale = tables.shoulder_height_m / static_cast<float>(kReferenceShoulder_m);
     V mean_m{};
     for (int w = 0; w < kWidth; ++w) {
@@ -109,14 +112,14 @@ void follow_rails(const Tables& tables, const Vec<Floats<kWidth>>& hips_m,
     }
     Smoothed<V> next = ground_m;
     follow(mean_m, tables.rail, next);
-    // A rail that was not held yet has nothing to smooth.
+    // A rail that the hand takes hold of begins at its height.
     const auto begins = held <= V{};
     ground_m.x = follows ? (begins ? mean_m : next.x) : ground_m.x;
     ground_m.v = follows ? (begins ? V{} : next.v) : ground_m.v;
   }
 }
 
-// At a strike: they stay where they are in the world.
+// Keeps rails at their place in the world at a strike, which moves the step frame up by `up_m`.
 template <class V>
 void move_rails(const Mask<V>& strikes, const V& up_m, Styled<V>& styled) noexcept {
   for (Smoothed<V>& ground_m : styled.rail_ground_m)
@@ -125,12 +128,12 @@ void move_rails(const Mask<V>& strikes, const V& up_m, Styled<V>& styled) noexce
 
 // --- Trunk, arms and head ------------------------------------------------------------------------
 
-// The walk's own part of what the trunk does before a change of it.
+// A joint of the path in the data, for walks whose `is` is 1.
 template <class V>
 Turn<V> data_turn(const Tables& tables, const PathJoint& joint, const Knots<V>& knots,
                   const V& shown, const V& is) noexcept {
   const std::size_t count = tables.upper.size();
-  Turn<V> turn{all<V>(1.0f), V{}, V{}, V{}};
+  Turn<V> turn = no_turn<V>();
   for (int w = 0; w < kLanes<V>; ++w) {
     if (lane(is, w) == 0.0f) continue;
     const float* from = tables.upper_rows.data() +
@@ -145,12 +148,12 @@ Turn<V> data_turn(const Tables& tables, const PathJoint& joint, const Knots<V>& 
   return turn;
 }
 
-// How what the trunk hangs from is turned: the pelvis, or else the way.
+// The turn of the trunk's base: the pelvis, or the walk's heading if the trunk hangs from the root.
 template <class V>
 Turn<V> base_turn(const Tables& tables, const Turn<V>& heading, const Turn<V>& pelvis) noexcept {
   return tables.on_pelvis ? pelvis * every<V>(tables.pelvis_standing) : heading;
 }
-// Where it is: the pelvis' joint over the root, as the data turn the joints between; or the root.
+// The place of the base: the pelvis' joint, over the root by the joints between them, or the root.
 template <class V>
 Vec<V> base_place(const Tables& tables, const Turn<V>& heading, const Vec<V>& root_m, const V& is,
                   const Poses& poses) noexcept {
@@ -164,8 +167,8 @@ Vec<V> base_place(const Tables& tables, const Turn<V>& heading, const Vec<V>& ro
   return tables.above_pelvis.empty() ? place_m : place_m + turn * every<V>(tables.pelvis_offset_m);
 }
 
-// Turns the joints from the pelvis to the head about the vertical, where chest and head are ahead:
-// each about its parent's upward axis, which that turn does not change.
+// Turns chest and head ahead of the pelvis, in walks whose upper body is not posed otherwise: each
+// joint of the path turns about the vertical, as seen from its parent.
 template <class V>
 void turn_ahead(const Tables& tables, const Turn<V>& heading, const Turn<V>& pelvis,
                 const State<V>& state, const Mask<V>& is_posed, const Poses& poses) noexcept {
@@ -183,7 +186,7 @@ void turn_ahead(const Tables& tables, const Turn<V>& heading, const Turn<V>& pel
   }
 }
 
-// What a tick knows when it poses the upper body.
+// The parts of a tick that its upper body depends on.
 template <class V>
 struct BodyTick {
   const Time<V>& time;
@@ -192,8 +195,9 @@ struct BodyTick {
   const Stride<V>& stride;
   const Pelvis<V>& pelvis;
   const Idle<V>& idle;
-  V phase, shown;  // that are shown
+  V phase, shown;  // the phase that the pose shows, and how much of the data it shows
 };
+// The phase at which the data are read.
 template <class V>
 V data_phase(const Tables& tables, const Time<V>& time, const V& phase) noexcept {
   // Walking backward is walking forward run back (Thorstensson 1986).
@@ -201,55 +205,21 @@ V data_phase(const Tables& tables, const Time<V>& time, const V& phase) noexcept
   return time.back ? V(share[0] + share[1] + share[2] - phase) : phase;
 }
 
-// How chest and head were turned in the two ticks before they are eased: a walk that is steady, and
-// one that stands, keep no account of it.
-template <class V>
-[[gnu::noinline]] void begin_easing(const Tables& tables, const BodyTick<V>& tick,
-                                    const Bearing<V> (&before)[2], const Mask<V>& begins,
-                                    const Change<V>& change, const State<V>& state,
-                                    Poise<V>& poise) noexcept {
-  const V is = chosen<V>(begins, 1.0f, 0.0f), over = planned_over(tick.time, change),
-          rate = either(change.stands != V{}, change.starting != V{}) ? V{} : state.phase_rate;
-  const Turn<V> heading = tick.hips.heading.turn(),
-                upright = tick.pelvis.turn * back(tilted(tables, tick.stride, state));
-  Vec<V> chest[2], head[2];
-  for (int k : {0, 1}) {
-    const V phase = tick.phase - static_cast<float>(k + 1) * rate;
-    Stride<V> stride =
-        read_stride(tables, tick.time, phase, state.ratio_behind, tick.landing.ratio, over);
-    show(change.shown, stride);
-    Trunk<V> trunk;
-    trunk.base = base_turn(tables, heading, upright * tilted(tables, stride, state));
-    const Knots<V> knots = knots_at(data_phase(tables, tick.time, phase));
-    for (int i = 0; i < joints_of_path(tables); ++i)
-      trunk.own[i] = data_turn(tables, tables.path[i], knots, tick.shown, is);
-    lean_trunk(tables, heading, before[k], trunk);
-    chest[k] = chest_turn(tables, heading, trunk);
-    nod(tables, heading, before[k], trunk);
-    head[k] = head_turn(tables, heading, trunk);
-  }
-  const auto begin = [&](const Vec<V>(&turn)[2], Eased<V>& eased) {
-    eased.at = chosen(begins, turn[0], eased.at);
-    eased.rate = chosen(begins, turn[0] - turn[1], eased.rate);
-    eased.ticks = begins ? V{} : eased.ticks;
-  };
-  begin(chest, poise.chest), begin(head, poise.head);
-}
-
-// What a walk is asked for above its hips, beside the data.
+// The differences of a walk's trunk from the data: its turn ahead, its lean into a change of speed,
+// its style, and a stand's breath and glances.
 template <class V>
 Bearing<V> bearing_of(const Tables& tables, const BodyTick<V>& tick, const Mask<V>& is_styled,
                       const V& chest_rad, const V& head_rad, const V& push_rad,
                       const Styled<V>& styled) noexcept {
-  constexpr float kHeadStays = 0.8f;  // of the trunk's lean: the head stays so upright
+  constexpr float kHeadStays = 0.8f;  // the head makes up for this share of the trunk's lean
   const auto of = [&](int number) -> const V& { return styled.body[number].x; };
   const Idle<V>& idle = tick.idle;
   Bearing<V> to;
   const V phase = data_phase(tables, tick.time, tick.phase);
   to.forward_rad = push_rad - idle.breath_rad;
   if (any(is_styled)) {
-    const V lean_rad = kRadians * of(kLean_deg) + to.forward_rad,
-            left_rad = kRadians * tick.shown *
+    const V lean_rad = kDegree_rad * of(kLean_deg) + to.forward_rad,
+            left_rad = kDegree_rad * tick.shown *
                        (of(kOverLeft_deg) * stands_alone(tables, phase, false) -
                         of(kOverRight_deg) * stands_alone(tables, phase, true));
     to.forward_rad = is_styled ? lean_rad : to.forward_rad;
@@ -261,8 +231,52 @@ Bearing<V> bearing_of(const Tables& tables, const BodyTick<V>& tick, const Mask<
   return to;
 }
 
-// Where `is_posed`: the trunk leans, arms are spread and posed, the head turns. `eases`: chest and
-// head turn no harder than in a steady walk.
+// Computes how chest and head were turned in the two ticks before easing begins, for steady walks
+// do not store it.
+template <class V>
+[[gnu::noinline]] void begin_easing(const Tables& tables, const BodyTick<V>& tick,
+                                    const Mask<V>& is_styled, const Mask<V>& begins,
+                                    const Change<V>& change, const State<V>& state,
+                                    const Styled<V>& styled, Poise<V>& poise) noexcept {
+  const V is = chosen<V>(begins, 1.0f, 0.0f), over = planned_over(tick.time, change),
+          rate = either(change.stands != V{}, change.starting != V{}) ? V{} : state.phase_rate;
+  const Turn<V> heading = tick.hips.heading.turn(),
+                upright = tick.pelvis.turn * back(tilted(tables, tick.stride, state));
+  Vec<V> chest[2], head[2];
+  for (int k : {0, 1}) {
+    const float ago = static_cast<float>(k + 1);
+    const V phase = tick.phase - ago * rate, ago_s = all<V>(tables.tick_s * ago);
+    // The lean was 0 and the turns ahead had settled; breath and glances had their own past.
+    const Idle<V> idle =
+        idle_at(tables, most(V(styled.idle_ticks - (ago + 1.0f)), V{}), state, styled);
+    const BodyTick<V> then{tick.time,   tick.landing, tick.hips,  tick.stride,
+                           tick.pelvis, idle,         tick.phase, tick.shown};
+    const Bearing<V> before = bearing_of(
+        tables, then, is_styled, V(state.chest_ahead_rad.x - ago_s * state.chest_ahead_rad.v),
+        V(state.head_ahead_rad.x - ago_s * state.head_ahead_rad.v), V{}, styled);
+    Stride<V> stride =
+        read_stride(tables, tick.time, phase, state.ratio_behind, tick.landing.ratio, over);
+    show(change.shown, stride);
+    Trunk<V> trunk;
+    trunk.base = base_turn(tables, heading, upright * tilted(tables, stride, state));
+    const Knots<V> knots = knots_at(data_phase(tables, tick.time, phase));
+    for (int i = 0; i < joints_of_path(tables); ++i)
+      trunk.own[i] = data_turn(tables, tables.path[i], knots, tick.shown, is);
+    lean_trunk(tables, heading, before, trunk);
+    chest[k] = chest_turn(tables, heading, trunk);
+    nod(tables, heading, before, trunk);
+    head[k] = head_turn(tables, heading, trunk);
+  }
+  const auto begin = [&](const Vec<V>(&turn)[2], Eased<V>& eased) {
+    eased.at = chosen(begins, turn[0], eased.at);
+    eased.rate = chosen(begins, turn[0] - turn[1], eased.rate);
+    eased.ticks = begins ? V{} : eased.ticks;
+  };
+  begin(chest, poise.chest), begin(head, poise.head);
+}
+
+// Poses the upper body of walks that differ from the data, where `is_posed`: the trunk leans, arms
+// are spread and posed, the head turns. Where it `eases`, chest and head are bounded.
 template <int kWidth, bool kPaper>
 [[gnu::noinline]] void pose_body(const Tables& tables, const BodyTick<Floats<kWidth>>& tick,
                                  const Mask<Floats<kWidth>>& is_posed,
@@ -270,16 +284,17 @@ template <int kWidth, bool kPaper>
                                  const Mask<Floats<kWidth>>& eases, Block<kWidth>& block,
                                  const Poses& poses) noexcept {
   using V = Floats<kWidth>;
-  // Radians a second^2 by the square of the turn's rate, for the body's own turn is a part of
-  // chest's and head's; the head leads.
-  constexpr float kMoreTurning = 110.0f * kRadians, kMostTurning = 260.0f * kRadians,
+  // A turning walk raises the bounds, for its own turn is a part of the chest's and the head's: by
+  // kMoreTurning rad/s^2 times the square of the turn's rate, up to kMostTurning. The chest, which
+  // the head leads, has kChestLess of the head's bound.
+  constexpr float kMoreTurning = 110.0f * kDegree_rad, kMostTurning = 260.0f * kDegree_rad,
                   kChestLess = 0.8f;
   const State<V>& state = block.state;
   Styled<V>& styled = block.styled;
   Poise<V>& poise = block.poise;
   const V is = chosen<V>(is_posed, 1.0f, 0.0f);
   const Turn<V> heading = tick.hips.heading.turn(), from_heading = back(heading),
-                none{all<V>(1.0f), V{}, V{}, V{}};
+                none = no_turn<V>();
   const auto seen = [&](const Turn<V>& turn) { return heading * turn * from_heading; };
   Bearing<V> bearing = bearing_of(tables, tick, is_styled, state.chest_ahead_rad.x,
                                   state.head_ahead_rad.x, poise.push_rad.x, styled);
@@ -290,7 +305,7 @@ template <int kWidth, bool kPaper>
   const int joints = joints_of_path(tables);
   for (int i = 0; i < joints; ++i) trunk.own[i] = read_joint<V>(tables.path[i].joint, is, poses);
   lean_trunk(tables, heading, bearing, trunk);
-  // Arms keep hanging as they did.
+  // Arms keep hanging as in the data while the trunk leans.
   Turn<V> shoulder[2];
   const auto turn_shoulder = [&](int side, const Turn<V>& turn, const Mask<V>& where) {
     if (!any(where)) return;
@@ -302,7 +317,7 @@ template <int kWidth, bool kPaper>
         chosen(where, unit(back(above) * turn * above * shoulder[side]), shoulder[side]);
   };
   const auto tilts = either(bearing.forward_rad != V{}, bearing.left_rad != V{});
-  // Walks whose trunk is not as in the data: the others' keeps its bits.
+  // Only walks whose trunk differs from the data are written: the others keep their bits.
   const auto nods = either(bearing.turns_rad != V{}, bearing.nods_rad != V{});
   auto moves = either(leans(bearing), nods);
   const bool has[2] = {!tables.arm[0].path.empty(), !tables.arm[1].path.empty()};
@@ -312,7 +327,7 @@ template <int kWidth, bool kPaper>
     shoulder[side] = read_joint<V>(bones.path[bones.shoulder].joint, is, poses);
     turn_shoulder(side, seen(turn_x(V(-bearing.forward_rad)) * turn_z(bearing.left_rad)), tilts);
   }
-  // What is not steady does not jump.
+  // Bound the turn of the chest.
   const float dt = tables.tick_s;
   const auto acts = either(eases, either(poise.chest.ticks > V{}, poise.head.ticks > V{}));
   const bool may_ease = !kPaper && tables.has_head && any(acts);
@@ -322,21 +337,8 @@ template <int kWidth, bool kPaper>
           of_chest = most(all<V>(tables.most_chest_s2), V(kChestLess * of_head));
   if (may_ease) {
     const auto begins = both(acts, poise.acts == V{});
-    if (any(begins)) {
-      // Its lean, and what chest and head are ahead, were settled; breath and glances were not.
-      Bearing<V> before[2];
-      for (int k : {0, 1}) {
-        const V ticks = most(V(styled.idle_ticks - static_cast<float>(k + 2)), V{});
-        const Idle<V> idle = idle_at(tables, ticks, state, styled);
-        const BodyTick<V> then{tick.time,   tick.landing, tick.hips,  tick.stride,
-                               tick.pelvis, idle,         tick.phase, tick.shown};
-        const V ago_s = all<V>(dt * static_cast<float>(k + 1));
-        before[k] = bearing_of(
-            tables, then, is_styled, V(state.chest_ahead_rad.x - ago_s * state.chest_ahead_rad.v),
-            V(state.head_ahead_rad.x - ago_s * state.head_ahead_rad.v), V{}, styled);
-      }
-      begin_easing(tables, tick, before, begins, block.change, state, poise);
-    }
+    if (any(begins))
+      begin_easing(tables, tick, is_styled, begins, block.change, state, styled, poise);
     const Vec<V> goal = chest_turn(tables, heading, trunk),
                  to = eased(tables, goal, V(of_chest * (dt * dt)), turns_rad, acts, eases,
                             poise.chest);
@@ -351,13 +353,13 @@ template <int kWidth, bool kPaper>
   poise.acts = chosen<V>(acts, 1.0f, 0.0f);
   auto hangs = tilts;
   for (int side : {0, 1}) {
-    const V out_rad = (side == 0 ? kRadians : -kRadians) * styled.body[kArmOut_deg + side].x;
+    const V out_rad = (side == 0 ? kDegree_rad : -kDegree_rad) * styled.body[kArmOut_deg + side].x;
     const auto spreads = both(is_styled, out_rad != V{});
     if (!has[side] || kPaper) continue;
     turn_shoulder(side, seen(turn_z(spreads ? out_rad : V{})), spreads);
     hangs = either(hangs, spreads);
   }
-  // Arms and spine by their weights.
+  // Pose arms and spine by their weights.
   const Mask<V> arms[2] = {both(is_styled, is_arm_posed(styled, 0)),
                            both(is_styled, is_arm_posed(styled, 1))};
   const auto poses_arms = either(arms[0], arms[1]),
@@ -410,7 +412,8 @@ template <int kWidth, bool kPaper>
                   poses);
 }
 
-// `swing`: the factor on the arms' swing. `eases`: as advance_poise() says.
+// Writes the joints that the legs do not set. `swing`: the factor on the arms' swing. `eases`: the
+// result of advance_poise().
 template <int kWidth, bool kPaper>
 void write_upper_body(const Tables& tables, const BodyTick<Floats<kWidth>>& of,
                       const Floats<kWidth>& swing, const Mask<Floats<kWidth>>& eases,
@@ -422,7 +425,7 @@ void write_upper_body(const Tables& tables, const BodyTick<Floats<kWidth>>& of,
   Poise<V>& poise = block.poise;
   BodyTick<V> tick = of;
   const Knots<V> knots = knots_at(data_phase(tables, tick.time, tick.phase));
-  // Its filter comes near to 1 and no nearer; a joint that is shown wholly is made a unit once.
+  // A filter comes near to 1 but not to it; a joint that the pose shows fully is read faster.
   const V posture = within(state.posture.x, 0.0f, 1.0f),
           shown = tick.shown * (posture > all<V>(kWholly) ? all<V>(1.0f) : posture);
   tick.shown = shown;

@@ -1,9 +1,10 @@
-// Fifth, where a style has weights: equation (5) from the stride's mean pose. The pose of even
-// weights is solved first. A joint of weight w is pulled from it to its running mean by 1 - w, and
-// a weighted step meets the sole's planted point again: the toe in support, the heel in roll and in
-// late flight, a point that moves along the sole in between. The foot gives way where it may turn:
-// its pitch with the heel's rise and in flight, its yaw and roll in flight. The walk itself sees
-// even legs alone, so weights change no footprint and cannot drift.
+// Fifth, for styles whose joints have different weights: equation (5) around the stride's mean
+// pose. The legs are solved with even weights first. A joint of weight w is then pulled by 1 - w
+// from that pose to its running mean, and weighted steps bring the sole's planted point back: the
+// toe in support, the heel in roll and in late flight, a point that moves along the sole in
+// between. The foot gives way where it may turn: its pitch with the heel's rise and in flight, its
+// yaw and roll in flight. The walk itself reads the even legs alone, so weights change no footprint
+// and cannot drift.
 #pragma once
 #include <cstddef>
 
@@ -13,57 +14,36 @@
 namespace gaitpad {
 namespace {
 
-inline constexpr float kLeastW = 0.09f;              // of a locked joint
-inline constexpr float kMostPull_rad = 0.31415927f;  // 18 degrees
-inline constexpr float kHeldPull = 0.3f;  // what acts of the pull where the foot may not turn
-inline constexpr float kFootLever_m = 0.2f;
-// Of the flight: until here the toe is the planted point, from here on the heel; from here on the
-// foot turns back to its plan, and is as good as landed.
-inline constexpr float kToeUntil = 0.15f, kOnHeel = 0.6f, kToLand = 0.4f, kLanded = 0.95f;
-// Until here it becomes free to turn aside, from here on no longer.
-inline constexpr float kAsideFrom = 0.35f, kAsideTo = 0.6f;
-// How far a foot gives way: squared radians that cost as much as one of a joint's.
-inline constexpr float kGiveAside = 0.15f, kGiveFlying = 0.5f, kGiveRolling = 0.05f;
-inline constexpr float kTight_rad = 0.05235988f;  // 3 degrees: with less room it hardly gives way
-inline constexpr float kFloorRoom_m = 0.0003f;
-inline constexpr float kBentKnee = 0.65f, kLeastSoft_rad = 0.0017453293f;
-inline constexpr float kEvenSpread = 1e-6f;  // weights closer to each other than this are even
-// The exact rows are closed in every step, this share of the rest: with all of it some walks swing
-// between two poses.
-inline constexpr float kShareStep = 0.5f, kMostShareStep_rad = 0.6f;
-inline constexpr float kSharedNear_rad = 8.7266463e-4f, kSharedNear_m = 0.001f;
-inline constexpr int kMostShareSteps = 8;
-inline constexpr float kExactRow_m2 = 1e-10f;  // a pivot above the rounding of floats
-inline constexpr float kKneeSpring = 100.0f;
-inline constexpr float kRoomUsed = 0.8f;  // of a foot's pitch: beyond it gives way no further
+inline constexpr float kEvenWeights = 1e-6f;  // weights that differ by less are even
+inline constexpr float kStill_per_s = 1e-4f;  // a smoothed number that changes slower has settled
+inline constexpr float kFootLever_m = 0.2f;   // makes lengths of the foot's angles, for their rows
 
-// A leg to be shared: what its weights ask for, and what comes of it. All of these are numbers of
-// legs side by side.
+// A leg whose movement its joints share by weight: input, then the result. All of its members are
+// numbers V, of legs side by side.
 template <class V>
 struct LegToShare {
-  V thigh_m{}, shank_m{};                               // 0: none
+  V thigh_m{}, shank_m{};                               // 0: there is no leg in this lane
   V weight[kLegAngles]{}, reference_rad[kLegAngles]{};  // W, and the pose that it pulls to
   V give_aside{}, give_pitch{};                         // how far the foot gives way, rad^2
   V room_down_rad{}, room_up_rad{};                     // how far it may pitch away from its plan
   V knee_rad{};                // a knee that is straighter than this is bent
-  Vec<V> point_m, goal_m;      // the planted point: in the foot from the ankle; where it is to be
-  Vec<V> line, side;           // of the foot, in its own frame
-  Turn<V> planned;             // the foot's, in the pelvis' frame
-  V angles_rad[kLegAngles]{};  // from the even pose and what the weights added to it, to theirs
+  Vec<V> point_m, goal_m;      // the planted point, in the foot from the ankle; its goal
+  Vec<V> line, side;           // the foot's directions to the toe and to the left, in its own frame
+  Turn<V> planned;             // the foot's turn by the plan, in the pelvis' frame
+  V angles_rad[kLegAngles]{};  // in: the even pose and what the weights added last; out: the answer
   Turn<V> hip, ankle;
-  V knee_cosine{}, knee_sine{};  // of half of it
-  V more_pitch_rad{};
+  V knee_cosine{}, knee_sine{};  // of half the knee's angle
+  V more_pitch_rad{};            // the foot's pitch beyond its plan
 };
 inline constexpr int kShareTakes = offsetof(LegToShare<float>, hip) / sizeof(float),
-                     kShareGives = offsetof(LegToShare<float>, angles_rad) / sizeof(float),
-                     kShareNumbers = sizeof(LegToShare<float>) / sizeof(float);
+                     kShareGives = offsetof(LegToShare<float>, angles_rad) / sizeof(float);
 
 // One leg in one pose, seen from its hip joint in the pelvis' frame.
 template <class V>
 struct LegPlace {
   V hs[kLegAngles], hc[kLegAngles];  // sines and cosines of half its angles
   Vec<V> axis[kLegAngles], knee_m, ankle_m, point_m, line, side;
-  Vec<V> goal_side, goal_across, goal_along;  // axes of the planned foot: rows' directions
+  Vec<V> goal_side, goal_across, goal_along;  // axes of the planned foot; directions of the rows
   V error[6];
 };
 
@@ -105,7 +85,7 @@ void place_leg(const LegToShare<V>& leg, float lever_m, LegPlace<V>& place) noex
   place.error[5] = -lever_m * dot(across, place.side);
 }
 
-// Of the rows, by angle.
+// The Jacobian of the rows, a column for each angle.
 template <class V>
 void set_columns(float lever_m, const LegPlace<V>& place, V (&column)[kLegAngles][6]) noexcept {
   const Vec<V>* const rows[3] = {&place.goal_side, &place.goal_across, &place.goal_along};
@@ -128,7 +108,7 @@ void set_columns(float lever_m, const LegPlace<V>& place, V (&column)[kLegAngles
   }
 }
 
-// (J W J^T + a diagonal) y = b, by L D L^T; b becomes y.
+// Solves (J W J^T + diag(give)) y = b by L D L^T; b becomes y.
 template <class V>
 void solve_rows(const V (&column)[kLegAngles][6], const V (&weight)[kLegAngles], const V (&give)[6],
                 V (&b)[6]) noexcept {
@@ -157,14 +137,23 @@ void solve_rows(const V (&column)[kLegAngles][6], const V (&weight)[kLegAngles],
     for (int r = 0; r < k; ++r) b[r] = b[r] - m[r][k] * b[k];
 }
 
-// A step towards the least sum of (angle - reference)^2 / W and of the squares of the rows that
-// give way over what they give, under the exact rows.
+// A step that meets the exact rows and reduces the sum of (angle - reference)^2 / W over the angles
+// and of error^2 / give over the rows that give way.
 template <class V>
 void step_of(const LegToShare<V>& leg, float lever_m, const LegPlace<V>& place,
              V (&step_rad)[kLegAngles]) noexcept {
+  // A step closes its exact rows and this share of the others: if it closes all of them, some walks
+  // swing between two poses.
+  constexpr float kShareStep = 0.5f;
+  constexpr float kExactRow_m2 = 1e-10f;  // a pivot above the rounding of floats
+  constexpr float kRoomUsed = 0.8f;       // of the room: the cost of a turn is linear beyond it
+  // Bends a straight knee: its stiffness where that of a free joint is 1, and the least angle over
+  // which it begins softly.
+  constexpr float kKneeSpring = 100.0f, kLeastSoft_rad = 0.0017453293f;
   V column[kLegAngles][6], weight[kLegAngles], first_rad[kLegAngles], b[6], give[6];
   set_columns(lever_m, place, column);
-  // Down positive. Near the floor, and near a toe's, a turn counts more and more.
+  // The foot's pitch beyond its plan, down positive. The nearer it brings toe or heel to the floor,
+  // the more it costs.
   const V down = place.error[4] * (1.0f / lever_m);
   const auto goes_down = down > V{};
   const V room = goes_down ? leg.room_down_rad : leg.room_up_rad, far = size(down),
@@ -185,7 +174,7 @@ void step_of(const LegToShare<V>& leg, float lever_m, const LegPlace<V>& place,
     weight[j] = leg.weight[j];
     first_rad[j] = leg.reference_rad[j] - leg.angles_rad[j];
   }
-  // A straight knee is bent by a spring that does nothing to the knee of even weights.
+  // A straight knee is bent by a spring, which leaves the knee of the even pose alone.
   const V knee = leg.angles_rad[3],
           soft = most(V(leg.knee_rad - kLeastKnee_rad), all<V>(kLeastSoft_rad)),
           bend = most(V(leg.knee_rad - knee), V{}), q = bend + soft,
@@ -206,17 +195,12 @@ void step_of(const LegToShare<V>& leg, float lever_m, const LegPlace<V>& place,
   }
 }
 
-// Rx(x) Rz(z) Ry(y) of the three angles from `x` on.
-template <class V>
-Turn<V> turn_xzy(const LegPlace<V>& at, int x) noexcept {
-  const V xs = at.hs[x], xc = at.hc[x], zs = at.hs[x + 1], zc = at.hc[x + 1], ys = at.hs[x + 2],
-          yc = at.hc[x + 2];
-  const V w = xc * zc, i = xs * zc, j = -xs * zs, k = xc * zs;
-  return {w * yc - j * ys, i * yc - k * ys, w * ys + j * yc, k * yc + i * ys};
-}
-
 template <class V>
 void share_leg(float lever_m, LegToShare<V>& leg) noexcept {
+  constexpr float kMostShareStep_rad = 0.6f;
+  constexpr int kMostShareSteps = 8;
+  // A solve ends after a smaller step, if its point was nearer than this.
+  constexpr float kSharedNear_rad = 8.7266463e-4f, kSharedNear_m = 0.001f;
   LegPlace<V> place;
   place.goal_side = leg.planned * leg.side;
   place.goal_along = leg.planned * leg.line;
@@ -237,7 +221,7 @@ void share_leg(float lever_m, LegToShare<V>& leg) noexcept {
       pitched = pitched - turn * dot(place.axis[j], pitches);
     }
     leg.more_pitch_rad = open ? pitched : leg.more_pitch_rad;
-    // The point was near enough before a step this small.
+    // `place` is the pose before this step.
     const V off_m2 = place.error[0] * place.error[0] + place.error[1] * place.error[1] +
                      place.error[2] * place.error[2];
     const auto settles =
@@ -246,46 +230,19 @@ void share_leg(float lever_m, LegToShare<V>& leg) noexcept {
   }
   for (int j = 0; j < kLegAngles; ++j)
     sin_cos_small(V(0.5f * leg.angles_rad[j]), place.hs[j], place.hc[j]);
-  leg.hip = turn_xzy(place, 0);
+  leg.hip = turn_of_halves(place.hs, place.hc);
   leg.knee_cosine = place.hc[3], leg.knee_sine = place.hs[3];
-  leg.ankle = turn_xzy(place, 4);
+  leg.ankle = turn_of_halves(place.hs + 4, place.hc + 4);
 }
 
-// Only those legs of a block that are uneven, close together in registers.
-template <class V>
-void share_legs(float lever_m, const Mask<V> (&uneven)[2], LegToShare<V> (&legs)[2]) noexcept {
-  constexpr int kWidth = kLanes<V>, kTogether = std::max(kWidth, kLeastLanes);
-  const V is[2] = {chosen<V>(uneven[0], 1.0f, 0.0f), chosen<V>(uneven[1], 1.0f, 0.0f)};
-  float* places[2 * kWidth];
-  int count = 0;
-  for (int w = 0; w < kWidth; ++w) {
-    for (int k : {0, 1})
-      if (lane(is[k], w) != 0.0f) places[count++] = reinterpret_cast<float*>(&legs[k]) + w;
-  }
-  for (int begin = 0; begin < count; begin += kTogether) {
-    LegToShare<Floats<kTogether>> together;
-    float* to = reinterpret_cast<float*>(&together);
-    const int here = std::min(kTogether, count - begin);
-    for (int i = 0; i < here; ++i) {
-      const float* from = places[begin + i];
-      for (int n = 0; n < kShareTakes; ++n) to[n * kTogether + i] = from[n * kWidth];
-    }
-    share_leg(lever_m, together);
-    for (int i = 0; i < here; ++i) {
-      float* from = places[begin + i];
-      for (int n = kShareGives; n < kShareNumbers; ++n) from[n * kWidth] = to[n * kTogether + i];
-    }
-  }
-}
-
-// The running means start as they are in a walk that takes the strides that this one takes now: the
-// filters leave the angles' mean, and little of their first harmonics.
+// Starts the running means with their values in a steady walk of the present strides: the filters
+// pass the mean of an angle, and damp its harmonics by 1 / (1 + i w T).
 template <class V>
 void begin_weights(const Tables& tables, const Mask<V>& begins, const Time<V>& time, const V& phase,
                    const V (&even_rad)[2][kLegAngles], const Change<V>& change,
                    const State<V>& state, Weighted<V>& weighted) noexcept {
-  constexpr float kTurn_rad = 6.2831853f, kLast = kRatios - 1;
-  // Of a harmonic: 1 / (1 + i w T), once and twice, times its turn.
+  constexpr float kLast = kRatios - 1;
+  // Each harmonic at this phase, as cosine and sine, filtered once and twice.
   V once[kHarmonics][2], twice[kHarmonics][2];
   const V lag = state.phase_rate * (kTurn_rad * (1.0f / tables.mean_pull - 1.0f));
   for (int h = 0; h < kHarmonics; ++h) {
@@ -300,7 +257,7 @@ void begin_weights(const Tables& tables, const Mask<V>& begins, const Time<V>& t
   const V y = within(V(state.ratio_behind * float(1.0 / kRatioStep)), 0.0f, kLast),
           first = least(floored(y), all<V>(kLast - 1.0f)), share = y - first;
   for (int k : {0, 1}) {
-    const auto right = k == 0 ? time.right : no(time.right);
+    const auto right = is_right(time, k);
     const V side = chosen<V>(right, 1.0f, 0.0f);
     for (int j = 0; j < kLegAngles; ++j) {
       V of[1 + 2 * kHarmonics];
@@ -315,7 +272,7 @@ void begin_weights(const Tables& tables, const Mask<V>& begins, const Time<V>& t
         lagging = lagging + (of[1 + 2 * h] * once[h][0] + of[2 + 2 * h] * once[h][1]);
         mean = mean + (of[1 + 2 * h] * twice[h][0] + of[2 + 2 * h] * twice[h][1]);
       }
-      const V stands = chosen<V>(right, tables.leg[1].stand_rad[j], tables.leg[0].stand_rad[j]);
+      const V stands = stand_rad<V>(tables, right, j);
       const auto rests = change.stands != V{};
       const auto begin = [&](const V& of_walk, V& number) {
         const V goal = rests ? even_rad[k][j] : V(stands + change.shown * of_walk);
@@ -328,21 +285,22 @@ void begin_weights(const Tables& tables, const Mask<V>& begins, const Time<V>& t
   }
 }
 
-// Brings the weights in force nearer to those asked for. True where any is not 1.
+// Brings the weights in force nearer to those asked for. True for walks with a weight that is
+// not 1.
 template <class V>
 Mask<V> smooth_weights(const Tables& tables, Weighted<V>& weighted) noexcept {
   constexpr float kAsGoodAsEven = 1e-5f;
   const V one = all<V>(1.0f);
   const auto asked = weighted.asked != V{}, acted = weighted.acts != V{};
   auto acts = asked;
-  // Mostly all of them have been there for long.
+  // Return early if all weights have settled, as they have in nearly every tick.
   auto moves = acted != asked;
   for (int side : {0, 1})
     for (int j = 0; j < kLegAngles; ++j)
       moves = either(moves, both(acted, either(weighted.weight[side][j].x != weighted.goal[side][j],
                                                weighted.weight[side][j].v != V{})));
   if (!any(moves)) return acts;
-  constexpr float kThere = 1e-6f, kStill_per_s = 1e-4f;
+  constexpr float kThere = 1e-6f;
   for (int side : {0, 1}) {
     for (int j = 0; j < kLegAngles; ++j) {
       Smoothed<V>& in_force = weighted.weight[side][j];
@@ -360,16 +318,54 @@ Mask<V> smooth_weights(const Tables& tables, Weighted<V>& weighted) noexcept {
   return acts;
 }
 
+// How freely a leg follows its weights: its joints in general, and its foot by pitch and aside.
+// `on_heel`: the planted point on the sole, 0 the toe and 1 the heel.
+template <class V>
+struct Freedom {
+  V joints, pitch, aside, on_heel;
+};
+// `u`, `rolled`: shares of flight and roll that are over. `loose`: 0 after a flat stand, 1 later.
+// `risen`: the share by which a standing foot may raise its heel.
+template <class V>
+Freedom<V> freedom_of(const Mask<V>& flies, const Mask<V>& rolls, const V& u, const V& rolled,
+                      const V& loose, const V& risen) noexcept {
+  // Shares of the flight. The planted point is the toe until kToeUntil and the heel from kOnHeel
+  // on; the foot turns back to its plan from kToLand to kLanded. It becomes free to turn aside
+  // until kAsideFrom, and held again from kAsideTo on.
+  constexpr float kToeUntil = 0.15f, kOnHeel = 0.6f, kToLand = 0.4f, kLanded = 0.95f;
+  constexpr float kAsideFrom = 0.35f, kAsideTo = 0.6f;
+  // The foot's give, rad^2: the weight of its angle, where that of a free joint is 1.
+  constexpr float kGiveAside = 0.15f, kGiveFlying = 0.5f, kGiveRolling = 0.05f;
+  const V none{}, one = all<V>(1.0f), rise = loose * risen, lands = smoother(kToLand, kLanded, u);
+  const auto by_stage = [&](const V& flying, const V& rolling, const V& standing) {
+    const V planted = rolls ? rolling : standing;
+    return V(flies ? flying : planted);
+  };
+  const V aside = smoother(0.0f, kAsideFrom, u) * (1.0f - smoother(kAsideTo, 1.0f, u));
+  return {by_stage(V(loose * (1.0f - lands)), none, rise),
+          by_stage(V(loose * (1.0f - (1.0f - kGiveFlying) * smoother(0.0f, kToLand, u) -
+                              (kGiveFlying - kGiveRolling) * lands)),
+                   V(kGiveRolling * (1.0f - smoother(0.0f, kRollEnd, rolled))), rise),
+          flies ? V(kGiveAside * aside) : none,
+          by_stage(smoother(kToeUntil, kOnHeel, u), one, none)};
+}
+
 template <class V>
 void weigh_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stride,
                 const Feet<V>& feet, const Pelvis<V>& pelvis, const V& phase,
                 const Change<V>& change, const State<V>& state, Weighted<V>& weighted,
                 Leg<V> (&legs)[2]) noexcept {
+  constexpr float kLeastW = 0.09f;  // the weight of a locked joint in the solve
+  // The pull of one joint approaches this; kHeldPull of it acts while the foot may not turn.
+  constexpr float kMostPull_rad = 0.31415927f, kHeldPull = 0.3f;
+  constexpr float kBentKnee = 0.65f;  // a knee straighter than this share of the even one is bent
+  constexpr float kTight_rad = 0.05235988f;  // 3 degrees of room: half of it gives way
+  constexpr float kFloorRoom_m = 0.0003f;    // keeps the room above 0
   if (!any(either(weighted.asked != V{}, weighted.acts != V{}))) return;
   const V one = all<V>(1.0f), zero{};
   V even_rad[2][kLegAngles];
   for (int k : {0, 1}) {
-    set_table_angles(tables, k == 0 ? time.right : no(time.right), stride, k, even_rad[k]);
+    set_table_angles(tables, is_right(time, k), stride, k, even_rad[k]);
     for (int j = 0; j < kLegAngles; ++j) even_rad[k][j] = even_rad[k][j] + state.leg_rad[k][j];
   }
   const auto acted = weighted.acts != zero, acts = smooth_weights(tables, weighted),
@@ -383,7 +379,7 @@ void weigh_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stri
   Mask<V> uneven[2];
   LegToShare<V> shared[2];
   for (int k : {0, 1}) {
-    const auto right = k == 0 ? time.right : no(time.right), flies = k == 0 ? time.flies : none,
+    const auto right = is_right(time, k), flies = k == 0 ? time.flies : none,
                rolls = k == 1 ? no(time.flies) : none;
     const Foot<V>& foot = feet.foot[k];
     const Sole<V>& sole = feet.sole[k];
@@ -394,23 +390,8 @@ void weigh_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stri
     Smoothed<V> loose{begins ? turns : weighted.loose[k].x, begins ? zero : weighted.loose[k].v};
     follow(turns, tables.loosens, loose);
     keep(loose.x, weighted.loose[k].x), keep(loose.v, weighted.loose[k].v);
-    const V u = flies ? flight_share(time.u, change) : zero, rolled = state.tick / state.roll_ticks,
-            lifts = loose.x, rise = lifts * risen;
-    const auto by_mode = [&](const V& flying, const V& rolling, const V& standing) {
-      const V planted = rolls ? rolling : standing;
-      return V(flies ? flying : planted);
-    };
-    const V lands = smoother(V((u - kToLand) * (1.0f / (kLanded - kToLand)))),
-            freely = by_mode(V(lifts * (1.0f - lands)), zero, rise),
-            pitches =
-                by_mode(V(lifts * (1.0f - (1.0f - kGiveFlying) * smoother(V(u * (1.0f / kToLand))) -
-                                   (kGiveFlying - kGiveRolling) * lands)),
-                        V(kGiveRolling * (1.0f - smoother(V(rolled * (1.0f / kRollEnd))))), rise),
-            aside = flies ? V(smoother(V(u * (1.0f / kAsideFrom))) *
-                              (1.0f - smoother(V((u - kAsideTo) * (1.0f / (1.0f - kAsideTo))))))
-                          : zero,
-            on_heel =
-                by_mode(smoother(V((u - kToeUntil) * (1.0f / (kOnHeel - kToeUntil)))), one, zero);
+    const Freedom<V> may = freedom_of<V>(flies, rolls, flies ? flight_share(time.u, change) : zero,
+                                         V(state.tick / state.roll_ticks), loose.x, risen);
     V largest = all<V>(1e-9f), smallest = one, in_force[kLegAngles];
     for (int j = 0; j < kLegAngles; ++j) {
       in_force[j] = right ? weighted.weight[1][j].x : weighted.weight[0][j].x;
@@ -418,7 +399,7 @@ void weigh_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stri
     }
     const V bent = kBentKnee * (even_rad[k][3] - kLeastKnee_rad), over = 1.0f / largest;
     leg.knee_rad = kLeastKnee_rad + bent;
-    const V pull = change.shown * (kHeldPull + (1.0f - kHeldPull) * freely);
+    const V pull = change.shown * (kHeldPull + (1.0f - kHeldPull) * may.joints);
     for (int j = 0; j < kLegAngles; ++j) {
       const V even = even_rad[k][j], w = least(V(in_force[j] * over), one),
               shift = weighted.shift_rad[k][j];
@@ -428,33 +409,36 @@ void weigh_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stri
       const V way = (1.0f - w) * (mean - even), share = way * (1.0f / kMostPull_rad);
       leg.reference_rad[j] = even + pull * way / root(V(1.0f + share * share));
       leg.weight[j] = kLeastW + (1.0f - kLeastW) * w;
-      // What the weights change goes on as it did.
+      // The solve starts where the weights' last change of the even pose leads on evenly.
       leg.angles_rad[j] = even + shift + (shift - weighted.last_shift_rad[k][j]);
       keep(lagging, weighted.lagging_rad[k][j]), keep(mean, weighted.mean_rad[k][j]);
       keep(shift, weighted.last_shift_rad[k][j]);
     }
-    // How far the foot may turn about the planted point, until toe or heel is on its floor.
+    // The angle by which the foot may turn about the planted point until toe or heel is on the
+    // floor.
     const auto room = [](const V& over_m, const V& arm_m) {
       return V((most(over_m, V{}) + kFloorRoom_m) / (arm_m + kFloorRoom_m));
     };
     const V base_m = k == 0 ? feet.base_m : zero;
-    leg.room_down_rad = room(V(foot.toe_m.y - base_m - sole.toe_rest_m), V(sole.foot_m * on_heel));
-    leg.room_up_rad = room(V(foot.heel_m.y - base_m), V(sole.foot_m * (1.0f - on_heel)));
+    leg.room_down_rad =
+        room(V(foot.toe_m.y - base_m - sole.toe_rest_m), V(sole.foot_m * may.on_heel));
+    leg.room_up_rad = room(V(foot.heel_m.y - base_m), V(sole.foot_m * (1.0f - may.on_heel)));
     const V down2 = leg.room_down_rad * leg.room_down_rad;
-    leg.give_aside = kGiveAside * aside;
-    leg.give_pitch = change.shown * pitches * (down2 / (down2 + kTight_rad * kTight_rad));
+    leg.give_aside = may.aside;
+    leg.give_pitch = change.shown * may.pitch * (down2 / (down2 + kTight_rad * kTight_rad));
     leg.line = sole.line_m * V(1.0f / sole.foot_m);
     leg.side = sole.side;
-    leg.point_m = sole.heel_m + sole.line_m * V(1.0f - on_heel);
+    leg.point_m = sole.heel_m + sole.line_m * V(1.0f - may.on_heel);
     leg.planned = to_pelvis * foot.turn;
-    const Vec<V> planted_m = foot.toe_m + (foot.heel_m - foot.toe_m) * on_heel;
+    const Vec<V> planted_m = foot.toe_m + (foot.heel_m - foot.toe_m) * may.on_heel;
     leg.goal_m = to_pelvis * (planted_m - pelvis.place_m - pelvis.hip_m[k]);
-    const LegBones &l = tables.leg[0], &r = tables.leg[1];
-    leg.thigh_m = chosen<V>(right, r.thigh_m, l.thigh_m);
-    leg.shank_m = chosen<V>(right, r.shank_m, l.shank_m);
-    uneven[k] = both(acts, smallest < all<V>(1.0f - kEvenSpread));
+    leg.thigh_m = of_leg<V>(tables, right, &LegBones::thigh_m);
+    leg.shank_m = of_leg<V>(tables, right, &LegBones::shank_m);
+    uneven[k] = both(acts, smallest < all<V>(1.0f - kEvenWeights));
   }
-  share_legs<V>(kFootLever_m * tables.size, uneven, shared);
+  const float lever_m = kFootLever_m * tables.size;
+  work_packed<kShareTakes, kShareGives>(uneven, shared,
+                                        [lever_m](auto& legs) { share_leg(lever_m, legs); });
   for (int k : {0, 1}) {
     const LegToShare<V>& leg = shared[k];
     legs[k].hip = chosen(uneven[k], leg.hip, legs[k].hip);
@@ -467,7 +451,7 @@ void weigh_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stri
   }
 }
 
-// At a strike.
+// Exchanges what is kept of swing and stand at a strike.
 template <class V>
 void change_weighted_legs(const Mask<V>& strikes, Weighted<V>& weighted) noexcept {
   const auto changes = both(strikes, weighted.acts != V{});

@@ -247,7 +247,7 @@ V closing_left(const Time<V>& time, const Change<V>& change) noexcept {
 template <class V>
 V planned_shown(const Time<V>& time, const Change<V>& change) noexcept {
   constexpr float kShownAfter = 0.55f;  // of a first step: from then on all of it
-  const V begins = smoother(V(time.share * (1.0f / kShownAfter))),
+  const V begins = smoother(0.0f, kShownAfter, time.share),
           walks = change.closing != V{} ? closing_left(time, change) : all<V>(1.0f);
   return change.stands != V{} ? V{} : change.starting != V{} ? begins : walks;
 }
@@ -264,7 +264,7 @@ V planned_edge(const Time<V>& time, const Change<V>& change) noexcept {
   constexpr float kEdgeGoes = 0.4f;  // of the flight
   const V lands =
       change.closing != V{} ? V{} : smoother(V((time.u - (1.0f - kEdgeGoes)) * (1.0f / kEdgeGoes)));
-  return smoother(V(time.u * (1.0f / kEdgeGoes))) * (1.0f - lands);
+  return smoother(0.0f, kEdgeGoes, time.u) * (1.0f - lands);
 }
 
 // If the hips lead or have just led: moves them to their place, and reads the stride at their
@@ -535,11 +535,10 @@ void sink(const Tables& tables, const Time<V>& time, const Stride<V>& stride,
   const float grown = tables.size;
   V squares{};
   for (int k : {0, 1}) {
-    const auto right = k == 0 ? time.right : no(time.right);
+    const auto right = is_right(time, k);
     const V a = of_leg<V>(tables, right, &LegBones::thigh_m),
             b = of_leg<V>(tables, right, &LegBones::shank_m),
-            knee = stride.leg_rad[k][3] +
-                   chosen<V>(right, tables.leg[1].stand_rad[3], tables.leg[0].stand_rad[3]);
+            knee = stride.leg_rad[k][3] + stand_rad<V>(tables, right, 3);
     V sine, cosine;
     sin_cos(knee, sine, cosine);
     const V table = root(V(a * a + b * b + 2.0f * a * b * cosine)),

@@ -33,7 +33,7 @@ V angle_of(const V& sine, const V& cosine) noexcept {
 template <class V>
 V pitch_in_reach(const Foot<V>& foot, const Sole<V>& sole, const Vec<V>& hip_m,
                  const V& reach_m) noexcept {
-  constexpr float kMostPitch_rad = 1.4835299f, kSoftPitch_rad = 0.43633231f;  // 85, 25 degrees
+  constexpr float kMostPitch_rad = 1.4835299f, kSoftPitch_rad = 25.0f * kDegree_rad;  // 85 degrees
   const Vec<V> d = back(foot.yaw) * (hip_m - foot.toe_m), c = (sole.heel_m + sole.line_m) * -1.0f;
   const V cf = dot(c, sole.forward), df = dot(d, sole.forward);
   const V p = df * cf + d.y * c.y, q = df * c.y - d.y * cf,
@@ -71,11 +71,10 @@ void keep_heels_low(const Tables& tables, const Time<V>& time, const V& phase,
                     const Stride<V>& stride, const Change<V>& change, const State<V>& state,
                     Styled<V>& styled, Pelvis<V>& pelvis, Feet<V>& feet,
                     V (&asked_rad)[2]) noexcept {
-  constexpr float kLowHips_m = 0.045f;  // most sinking, at the reference leg
-  constexpr float kLowRisen_rad =
-      0.78539816f;                    // 45 degrees: pitch of the foot at which it is whole
-  constexpr float kLowUntil = 0.25f;  // of the flight: the hips have risen again
-  constexpr float kSoftRise_rad = 0.20943951f;      // 12 degrees
+  constexpr float kLowHips_m = 0.045f;                  // most sinking, at the reference leg
+  constexpr float kLowRisen_rad = 45.0f * kDegree_rad;  // pitch of the foot at which it is whole
+  constexpr float kLowUntil = 0.25f;                    // of the flight: the hips have risen again
+  constexpr float kSoftRise_rad = 12.0f * kDegree_rad;
   constexpr float kSame = 1e-5f, kNothing = 1e-6f;  // at which smoothed factors count as 1 and 0
   const auto is_low = least(state.lift[0].x, state.lift[1].x) < all<V>(1.0f - kSame),
              acts = either(is_low, either(styled.low[0].x != V{}, styled.low[1].x != V{}));
@@ -85,8 +84,8 @@ void keep_heels_low(const Tables& tables, const Time<V>& time, const V& phase,
   Mask<V> rolls[2] = {none, no(time.flies)};
   V low[2];
   for (int k : {0, 1}) {
-    const auto right = k == 0 ? time.right : no(time.right), flies = k == 0 ? time.flies : none;
-    const V rises = flies ? V(1.0f - smoother(V(time.u * (1.0f / kLowUntil))))
+    const auto right = is_right(time, k), flies = k == 0 ? time.flies : none;
+    const V rises = flies ? V(1.0f - smoother(0.0f, kLowUntil, time.u))
                           : heel_rise(tables, right, phase, k == 1 ? no(none) : none, change);
     const V goal = rolls[k] ? V{} : V(presence * rises * (1.0f - low_lift<V>(right, state)));
     Smoothed<V> next = styled.low[k];
@@ -101,8 +100,7 @@ void keep_heels_low(const Tables& tables, const Time<V>& time, const V& phase,
     pelvis.place_m.y = acts ? V(pelvis.place_m.y - down_m) : pelvis.place_m.y;
   }
   for (int k : {0, 1}) {
-    const auto right = k == 0 ? time.right : no(time.right),
-               rises = both(no(rolls[k]), low[k] > V{});
+    const auto right = is_right(time, k), rises = both(no(rolls[k]), low[k] > V{});
     Foot<V>& foot = feet.foot[k];
     const V pitch_rad = pitch_in_reach<V>(foot, feet.sole[k], pelvis.place_m + pelvis.hip_m[k],
                                           V(kLowReach * leg_m<V>(tables, right)));
@@ -119,7 +117,7 @@ void reach_with_toe(const Tables& tables, const Time<V>& time, const Change<V>& 
                     const Pelvis<V>& pelvis, Feet<V>& feet) noexcept {
   constexpr float kReachOnToe = 0.99995f;  // over the leg's length
   for (int k : {0, 1}) {
-    const auto right = k == 0 ? time.right : no(time.right),
+    const auto right = is_right(time, k),
                stands = both(change.stands == V{}, k == 0 ? no(time.flies) : time.flies);
     Foot<V>& foot = feet.foot[k];
     const V reach_m = kReachOnToe * leg_m<V>(tables, right);

@@ -138,7 +138,7 @@ V short_ratio(const Tables& tables, const Landing<V>& landing, const State<V>& s
                 (1.0f / (tables.leg[0].own_step_m + tables.leg[1].own_step_m)),
           off = 0.5f * landing.off_ratio,
           flown = state.flies != V{} ? V(state.tick / state.flight_ticks) : V{},
-          low = off * (1.0f - smoother(V(flown * (1.0f / kComesUp))));
+          low = off * (1.0f - smoother(0.0f, kComesUp, flown));
   return most(V(own + (off < V{} ? low : off)), V{});
 }
 

@@ -381,7 +381,7 @@ void change_solver(const Tables& tables, const Time<float>& time, const Stride<f
   change.by_paper = kPaper ? 1.0f : 0.0f;
   for (int k : {0, 1}) {
     float table_rad[kLegAngles];
-    set_table_angles(tables, k == 0 ? time.right : no(time.right), stride, k, table_rad);
+    set_table_angles(tables, is_right(time, k), stride, k, table_rad);
     for (int j = 0; j < kLegAngles; ++j) {
       state.leg_rad[k][j] += kPaper ? table_rad[j] : -table_rad[j];
       state.last_leg_rad[k][j] = state.leg_rad[k][j];

@@ -36,8 +36,8 @@ void glance(const V& time_s, const V& amount, const V& outwards, Idle<V>& idle) 
   constexpr float kEvery_s = 7.0f, kFirst_s = 1.0f,
                   kLast_s = 3.5f;  // begins 1 to 3.5 s into every 7
   constexpr float kTurns_s = 0.6f, kHeldLeast_s = 0.6f, kHeldMost_s = 1.6f, kBack_s = 0.7f;
-  constexpr float kLeast_rad = 0.13962634f, kMost_rad = 0.45378561f;  // 8 and 26 degrees
-  constexpr float kMostNod_rad = 0.10471976f;                         // 6 degrees, 0.7 of it down
+  constexpr float kLeast_rad = 8.0f * kDegree_rad, kMost_rad = 26.0f * kDegree_rad;
+  constexpr float kMostNod_rad = 6.0f * kDegree_rad;  // a nod is from -0.3 to 0.7 of it
   const V number = floored(V(time_s * (1.0f / kEvery_s)));
   V draw[4];
   for (int w = 0; w < kLanes<V>; ++w) {

@@ -33,7 +33,7 @@ V angle_of(const V& sine, const V& cosine) noexcept {
 template <class V>
 V pitch_in_reach(const Foot<V>& foot, const Sole<V>& sole, const Vec<V>& hip_m,
                  const V& reach_m) noexcept {
-  constexpr float kMostPitch_rad = 1.4835299f, kSoftPitch_rad = 0.43633231f;  // 85, 25 degrees
+  constexpr float kMostPitch_rad = 1.4835299f, kSoftPitch_rad = 25.0f * kDegree_rad;  // 85 degrees
   const Vec<V> d = back(foot.yaw) * (hip_m - foot.toe_m), c = (sole.heel_m + sole.line_m) * -1.0f;
   const V cf = dot(c, sole.forward), df = dot(d, sole.forward);
   const V p = df * cf + d.y * c.y, q = df * c.y - d.y * cf,
@@ -71,11 +71,10 @@ void keep_heels_low(const Tables& tables, const Time<V>& time, const V& phase,
                     const Stride<V>& stride, const Change<V>& change, const State<V>& state,
                     Styled<V>& styled, Pelvis<V>& pelvis, Feet<V>& feet,
                     V (&asked_rad)[2]) noexcept {
-  constexpr float kLowHips_m = 0.045f;  // most sinking, at the reference leg
-  constexpr float kLowRisen_rad =
-      0.78539816f;                    // 45 degrees: pitch of the foot at which it is whole
-  constexpr float kLowUntil = 0.25f;  // of the flight: the hips have risen again
-  constexpr float kSoftRise_rad = 0.20943951f;      // 12 degrees
+  constexpr float kLowHips_m = 0.045f;                  // most sinking, at the reference leg
+  constexpr float kLowRisen_rad = 45.0f * kDegree_rad;  // pitch of the foot at which it is whole
+  constexpr float kLowUntil = 0.25f;                    // of the flight: the hips have risen again
+  constexpr float kSoftRise_rad = 12.0f * kDegree_rad;
   constexpr float kSame = 1e-5f, kNothing = 1e-6f;  // at which smoothed factors count as 1 and 0
   const auto is_low = least(state.lift[0].x, state.lift[1].x) < all<V>(1.0f - kSame),
              acts = either(is_low, either(styled.low[0].x != V{}, styled.low[1].x != V{}));

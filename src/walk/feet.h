@@ -87,7 +87,6 @@ V keeps_apart_m(const Tables& tables, const Time<V>& time, const Landing<V>& lan
   constexpr float kTurned_rad = 0.1f;  // acts fully from this sum of footprints' turns on
   constexpr float kApart = 0.65f, kSoft = 0.12f;      // shares of the distance of both tracks
   constexpr float kBeside_m = 0.15f, kPast_m = 0.4f;  // acts fully until, and ends at; in the way
-  constexpr float kEnds = 0.25f;  // share of the flight at both ends in which it comes and goes
   const V turned = size(state.print_rad) + size(landing.rad);
   if (!any(turned != V{})) return V{};
   const LegBones &l = tables.leg[0], &r = tables.leg[1];
@@ -97,7 +96,7 @@ V keeps_apart_m(const Tables& tables, const Time<V>& time, const Landing<V>& lan
           toe = heel + outwards * foot_m * way_of(flying_yaw(time, landing, change, state)).sine,
           soft_m = all<V>(kSoft * tracks_m), near_m = soft_least(heel, toe, soft_m),
           beside = 1.0f - smooth(kBeside_m * tables.size, kPast_m * tables.size, size(heel_m.z)),
-          flies = smoother(0.0f, kEnds, u) * smoother(0.0f, kEnds, V(1.0f - u));
+          flies = smoother(0.0f, 0.25f, u) * smoother(0.0f, 0.25f, V(1.0f - u));
   return outwards * smooth(0.0f, kTurned_rad, turned) * beside * flies *
          soft_positive(V(kApart * tracks_m - near_m), soft_m);
 }
@@ -157,18 +156,16 @@ Vec<V> flight_heel(const Tables& tables, const Time<V>& time, const Landing<V>& 
     p.z = p.z + middle.sine * out;
   }
   p.x = p.x + keeps_apart_m(tables, time, landing, p, u, change, state);
-  // A style's factor above 1 acts while the foot is high, one below 1 from the lift-off on. Shares
-  // of the flight: a factor acts fully from kLiftGrown on, one above 1 ends between the others.
-  constexpr float kLiftGrown = 0.4f, kLiftFalls = 0.5f, kLiftEnds = 0.85f;
+  // A style's factor above 1 acts while the foot is high, one below 1 from the lift-off on.
   const V factor = lift_of<V>(time.right, state), low = least(factor, all<V>(1.0f));
-  V more = 1.0f + (most(factor, all<V>(1.0f)) - 1.0f) * (1.0f - smooth(kLiftFalls, kLiftEnds, u));
+  V more = 1.0f + (most(factor, all<V>(1.0f)) - 1.0f) * (1.0f - smooth(0.5f, 0.85f, u));
   base_m = V{};
   if constexpr (kIsUneven<F>) {
     V up{};
     base_m = ground_line(tables, landing, p, u, state, footing, up);
     more = more * up;
   }
-  p.y = stride.heel_high_m * low * mix(all<V>(1.0f), more, smoother(0.0f, kLiftGrown, u));
+  p.y = stride.heel_high_m * low * mix(all<V>(1.0f), more, smoother(0.0f, 0.4f, u));
   // In a first or last flight the toe leaves the floor at once.
   constexpr float kFirstLift_m = 0.03f;  // at the reference leg
   const V left_u = 1.0f - u, square_u = u * left_u;
@@ -189,9 +186,7 @@ V gap_share(const V& u, const Change<V>& change) noexcept {
 template <class V, class F>
 Vec<V> with_gap(const Tables& tables, const Time<V>& time, const Vec<V>& heel_m, const V& base_m,
                 const Change<V>& change, const State<V>& state, const F& footing) noexcept {
-  // The floor's corner is rounded after a change of plan: fully from kSoftFrom of the fade on,
-  // until kSoftUntil of the flight.
-  constexpr float kSoftFloor_m = 0.02f, kSoftFrom = 0.3f, kSoftUntil = 0.7f;
+  constexpr float kSoftFloor_m = 0.02f;  // rounds the floor's corner after a change of plan
   const V s = gap_share(time.u, change);
   const auto fading = both(time.flies, s < all<V>(1.0f)), changed = change.gap_begin != V{};
   V of_gap = value_left(s), of_slope = slope_left(s), falls = all<V>(1.0f);
@@ -213,8 +208,8 @@ Vec<V> with_gap(const Tables& tables, const Time<V>& time, const Vec<V>& heel_m,
       state.gap_slope_m * of_slope;
   V high_m = most(p.y, base_m);
   if (any(changed)) {
-    const V soft_m = kSoftFloor_m * tables.size * smoother(0.0f, kSoftFrom, s) *
-                     (1.0f - smoother(kSoftUntil, 1.0f, time.u));
+    const V soft_m = kSoftFloor_m * tables.size * smoother(0.0f, 0.3f, s) *
+                     (1.0f - smoother(0.7f, 1.0f, time.u));
     high_m =
         changed ? V(base_m + soft_positive(V(p.y - base_m), most(soft_m, all<V>(1e-6f)))) : high_m;
   }
@@ -275,9 +270,8 @@ V landed_pitch(const Change<V>& change, const State<V>& state) noexcept {
 // it may have risen before. In a first step the foot has not landed; in a last one it stays flat.
 template <class V>
 V planned_pitch(const Time<V>& time, const Change<V>& change, const State<V>& state) noexcept {
-  constexpr float kHeelRises = 0.5f;  // share of the flight in which the heel comes to its pitch
   const V lands = time.flies ? V{} : smoother(roll_over(change, state)),
-          rises = smoother(0.0f, kHeelRises, time.u);
+          rises = smoother(0.0f, 0.5f, time.u);
   const auto starts = change.starting != V{}, later = both(change.led != V{}, time.flies);
   const V share = either(starts, later) ? rises : V(1.0f - change.led * lands);
   return both(change.closing != V{}, time.flies) ? V{} : share;
@@ -411,10 +405,8 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
       fly(tables, time, landing, by_clock, stride, hips, state.phase, sole, change, state, footing);
   feet.table_heel_m = flight.table_heel_m;
   const V off = pitch_off(time, state.tick, change, state);
-  // In a first roll the heel stays down for the share kHeelStays of it, and rises to kFirstPitch of
-  // the tables' pitch.
-  constexpr float kHeelStays = 0.25f, kFirstPitch = 0.8f;
-  const V rolled = state.tick / state.roll_ticks, lifts = smoother(kHeelStays, 1.0f, rolled);
+  constexpr float kFirstPitch = 0.8f;  // share of the tables' pitch to which a first roll comes
+  const V rolled = state.tick / state.roll_ticks, lifts = smoother(0.25f, 1.0f, rolled);
   const V low = low_pitch(low_lift<V>(time.right, state), time.u);
   V planned = first_roll ? V(low * (kFirstPitch * by_clock.foot[0].pitch_rad * lifts))
                          : V(low * stride.foot[0].pitch_rad + off);

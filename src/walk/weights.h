@@ -329,25 +329,20 @@ struct Freedom {
 template <class V>
 Freedom<V> freedom_of(const Mask<V>& flies, const Mask<V>& rolls, const V& u, const V& rolled,
                       const V& loose, const V& risen) noexcept {
-  // Shares of the flight. The planted point is the toe until kToeUntil and the heel from kOnHeel
-  // on; the foot turns back to its plan from kToLand to kLanded. It becomes free to turn aside
-  // until kAsideFrom, and held again from kAsideTo on.
-  constexpr float kToeUntil = 0.15f, kOnHeel = 0.6f, kToLand = 0.4f, kLanded = 0.95f;
-  constexpr float kAsideFrom = 0.35f, kAsideTo = 0.6f;
+  constexpr float kToLand = 0.4f;  // share of the flight: from then on the foot turns to its plan
   // The foot's give, rad^2: the weight of its angle, where that of a free joint is 1.
   constexpr float kGiveAside = 0.15f, kGiveFlying = 0.5f, kGiveRolling = 0.05f;
-  const V none{}, one = all<V>(1.0f), rise = loose * risen, lands = smoother(kToLand, kLanded, u);
+  const V none{}, one = all<V>(1.0f), rise = loose * risen, lands = smoother(kToLand, 0.95f, u);
   const auto by_stage = [&](const V& flying, const V& rolling, const V& standing) {
     const V planted = rolls ? rolling : standing;
     return V(flies ? flying : planted);
   };
-  const V aside = smoother(0.0f, kAsideFrom, u) * (1.0f - smoother(kAsideTo, 1.0f, u));
+  const V aside = smoother(0.0f, 0.35f, u) * (1.0f - smoother(0.6f, 1.0f, u));
   return {by_stage(V(loose * (1.0f - lands)), none, rise),
           by_stage(V(loose * (1.0f - (1.0f - kGiveFlying) * smoother(0.0f, kToLand, u) -
                               (kGiveFlying - kGiveRolling) * lands)),
                    V(kGiveRolling * (1.0f - smoother(0.0f, kRollEnd, rolled))), rise),
-          flies ? V(kGiveAside * aside) : none,
-          by_stage(smoother(kToeUntil, kOnHeel, u), one, none)};
+          flies ? V(kGiveAside * aside) : none, by_stage(smoother(0.15f, 0.6f, u), one, none)};
 }
 
 template <class V>

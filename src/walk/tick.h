@@ -434,8 +434,8 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
   one_by_one<kWidth>(either(change.push_x_m_s != V{}, change.push_z_m_s != V{}), block,
                      [&](Block<1>& one, int) { take_push(tables, one); });
   const auto is_new = both(no(follows), change.is_new != V{}),
-             is_short = either(either(change.starting != V{}, change.stops != V{}),
-                               change.catch_ticks != V{});
+             is_unsteady = either(either(change.starting != V{}, change.stops != V{}),
+                                  change.catch_ticks != V{});
   if constexpr (kUneven && !kPaper) lean_into_slope(tables, state, change, footing);
   if constexpr (kUneven && kPaper) footing.lean_rad = {};
   V left = all<V>(1.0f);
@@ -535,7 +535,7 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
   if (!looks_ahead) return;
   // On uneven ground any change of pace may ask more of a leg than the tables do.
   const auto sinks = either(change.led != V{}, change.sink_ticks != V{}),
-             changes = kUneven ? either(is_short, sinks) : is_short,
+             changes = kUneven ? either(is_unsteady, sinks) : is_unsteady,
              again = kUneven ? either(either(lifts, strikes), is_half_seen(tables, state))
                              : either(lifts, strikes),
              looks = either(either(is_new, both(again, changes)),

@@ -241,8 +241,8 @@ bool has_position(const BvhJoint& joint) {
   return false;
 }
 
-// What a joint's position channels count from: its parent (place), or the place that its OFFSET
-// gives (shift).
+// The origin of a joint's position channels: its parent (place), or the place that its OFFSET gives
+// (shift).
 enum class PositionMeans { place, shift };
 
 PositionMeans position_means(const Bvh& bvh, const BvhJoint& joint) {

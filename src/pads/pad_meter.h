@@ -65,7 +65,8 @@ bool take_report(const Report& report, PadStream& stream, MonitoredPads& pads);
 // Call it when no report has come: a pad that reports only changes is silent while its sticks stand
 // still.
 void take_silence(MonitoredPad& pad);
-// Ends the running window, which is shown from then on. Asks for the battery once a minute.
+// Ends the running interval of measurement; its figures are shown until the next one ends. Asks for
+// the battery once a minute.
 void end_window(MonitoredPad& pad, const DeviceInfo& info, std::int64_t time_ns, double duration_s);
 // Call it when the line with these reports has just been written.
 void note_shown(MonitoredPads& pads);

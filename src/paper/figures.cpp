@@ -15,7 +15,8 @@
 namespace gaitpad {
 namespace {
 
-// One foot's height over the clip; continues into a loop's second round if the flight does.
+// One foot's height over the clip. If a flight crosses the end of a loop, the height goes on until
+// the flight's landing in the second round.
 struct FootHeight {
   std::vector<double> height_m, gradient_m_s;
   std::optional<Swing> literal, robust;

@@ -1,5 +1,5 @@
-// What replays make before their first tick: the files about pads, and the walk with its models and
-// strides. Several recordings share it.
+// The set-up of a replay before its first tick: the files about pads, and the walk with its models
+// and strides. Several recordings share it.
 #pragma once
 #include <memory>
 #include <vector>

@@ -52,7 +52,7 @@ constexpr double kLeastImportedHalfRange = 0.1;  // least half range, raw, as in
 constexpr double kLeastImportedInner = 0.05, kMostInner = 0.9;
 constexpr double kLeastTriggerWay = 0.1;
 
-// What a recording states about one axis of the pad, in counts: its range min..max, its dead zone
+// One axis of the pad as a recording states it, in counts: its range min..max, its dead zone
 // low..high.
 struct AxisRange {
   std::string axis;  // name of the axis in sentences

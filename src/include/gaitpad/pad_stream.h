@@ -122,9 +122,8 @@ struct PadStreamCounts {
 // their reports into a wait-free ring and sets the motors. The reader of the ring waits for
 // neither.
 //
-// What is known of a pad (its device, layout and configuration) travels as a message with the pad's
-// first `added` report: the finder makes it, the I/O thread passes it on, and the reading end owns
-// it from then on.
+// A pad's device, layout and configuration travel as one message with its first `added` report: the
+// finder makes it, the I/O thread passes it on, and the reading end owns it from then on.
 class PadStream {
  public:
   // Starts both threads. Pads that are plugged in already are announced in the same way as those

@@ -80,7 +80,7 @@ struct Trace {
 // valid, and that devices, bytes, ticks and times of events exist and are in order.
 std::optional<Error> check(const Trace& trace);
 
-// What to do with a damaged line: refuse the whole file, or skip the line and count it.
+// The answer to a damaged line: refuse the whole file, or skip the line and count it.
 enum class Damage { refuse, skip };
 
 // Reads a file. Errors: `walk.hid:12: the report length says 64 but 63 bytes follow`.

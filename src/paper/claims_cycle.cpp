@@ -382,7 +382,7 @@ std::vector<Claim> continuity_claims(const Walk& walk, const FootBuild& build, d
   list.add(
       "8 jump of a leg angle's rate at a stage's border, deg per 1/60 s", worst_border(walk, from),
       less_than(3.0),
-      is_paper ? "the targets change from one point of the foot to the other without a fade" : "");
+      is_paper ? "a goal begins where its end of the foot is, but not at that end's rate" : "");
   return list.take_claims();
 }
 

@@ -16,8 +16,42 @@ inline Turn<float> narrow(const quat& q) noexcept {
           static_cast<float>(q.z)};
 }
 
-// In paper mode `leg_rad` of the state are the angles themselves. While heel and toe both stand or
-// land, the other end is a second position goal.
+// In paper mode `leg_rad` of the state are the angles themselves, and `last_leg_rad` is how far the
+// foot was pitched off its plan when one end alone was held: standing on its toe, and flying.
+inline constexpr int kOnToe = 0, kFlying = 1;
+
+// From there it comes over to its plan where the other end becomes a goal: the heel in a first
+// flight, the toe in a roll. The heel would else jump by 5 cm at the lift-off, most of that in the
+// ankle, which is not back before the leg is stretched: the knee would go past straight.
+inline float off_plan_rad(const Time<float>& time, int k, const Change<float>& change,
+                          const State<float>& state) noexcept {
+  const bool starts = change.starting != 0.0f;
+  const float(&off_rad)[kLegAngles] = state.last_leg_rad[k];
+  if (k == 0 && time.flies && starts)
+    return off_rad[kOnToe] * value_left(least(time.u / kLiftFade, 1.0f));
+  if (k == 0 || time.flies || starts || change.stands != 0.0f) return 0.0f;
+  // So early that the toe does not go deeper than flat.
+  return off_rad[kFlying] * (1.0f - smoother(state.tick / (kRollEnd * state.roll_ticks)));
+}
+
+// As far off as the leg reaches: the hips are where the planned foot asks for them.
+inline Foot<float> off_plan(const Foot<float>& planned, const Sole<float>& sole,
+                            const Vec<float>& hip_m, float reach_m, bool on_toe,
+                            float off_rad) noexcept {
+  constexpr float kLeastStep = 1.0f / 4096.0f;
+  Foot<float> foot = planned;
+  float share = off_rad != 0.0f ? 1.0f : 0.0f;
+  for (float step = 0.5f; share > 0.0f && step >= kLeastStep; step *= 0.5f) {
+    set_pitch(sole, planned.yaw, planned.pitch_rad + share * off_rad, on_toe, foot);
+    const Vec<float> way = hip_m - ankle_of(foot, sole);
+    const bool reaches = dot(way, way) <= reach_m * reach_m;
+    if (reaches && share == 1.0f) break;
+    share += reaches ? step : -step;
+  }
+  return foot;
+}
+
+// While heel and toe both stand or land, the other end is a second position goal.
 inline void solve_by_paper(const Tables& tables, const Time<float>& time, float phase,
                            const Change<float>& change, const Feet<float>& feet,
                            const Pelvis<float>& pelvis, State<float>& state,
@@ -29,7 +63,10 @@ inline void solve_by_paper(const Tables& tables, const Time<float>& time, float 
     const bool right = (k == 0) == time.right, flies = k == 0 && time.flies,
                rolls = k == 1 && !time.flies;
     const LegBones& leg = tables.leg[right];
-    const Foot<float>& foot = feet.foot[k];
+    const Foot<float>& planned = feet.foot[k];
+    const Foot<float> foot = off_plan(planned, feet.sole[k], pelvis.place_m + pelvis.hip_m[k],
+                                      kReachOnToe * (leg.thigh_m + leg.shank_m), flies,
+                                      off_plan_rad(time, k, change, state));
     const vec3 heel_m = wide(leg.heel_m), toe_m = wide(leg.toe_m), along_foot = toe_m - heel_m,
                side_of = wide(leg.side);
     const bool on_toe = !flies && !rolls;
@@ -66,7 +103,8 @@ inline void solve_by_paper(const Tables& tables, const Time<float>& time, float 
                       (wide(pelvis.turn * legs[k].hip * legs[k].knee * legs[k].ankle) * along_foot);
     const double pitch_rad =
         leg.elevation_rad - gaitpad::atan2(line.y, glm::dot(line, wide(leg.forward)));
-    legs[k].more_pitch_rad = static_cast<float>(pitch_rad) - foot.pitch_rad;
+    legs[k].more_pitch_rad = static_cast<float>(pitch_rad) - planned.pitch_rad;
+    if (!rolls) state.last_leg_rad[k][flies ? kFlying : kOnToe] = legs[k].more_pitch_rad;
   }
 }
 

@@ -384,7 +384,7 @@ void change_solver(const Tables& tables, const Time<float>& time, const Stride<f
     set_table_angles(tables, is_right(time, k), stride, k, table_rad);
     for (int j = 0; j < kLegAngles; ++j) {
       state.leg_rad[k][j] += kPaper ? table_rad[j] : -table_rad[j];
-      state.last_leg_rad[k][j] = state.leg_rad[k][j];
+      state.last_leg_rad[k][j] = kPaper ? 0.0f : state.leg_rad[k][j];
     }
   }
 }

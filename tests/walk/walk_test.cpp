@@ -207,6 +207,16 @@ TEST(Walk, PaperModeStaysBoundedAndFinite) {
   }
 }
 
+// The solver has no limits: what it is asked for must not bend a knee past straight.
+TEST(Walk, PaperModeKeepsKneesBentForward) {
+  for (const double forward : {0.5, 0.8, 1.0}) {
+    MadeWalker walker(adult(), IkMode::paper);
+    walker.walk(0, forward, 4 * kRate);
+    for (const auto& legs : walker.angles_rad())
+      ASSERT_GT(std::min(legs[0][kKneeX], legs[1][kKneeX]), 0.0) << forward;
+  }
+}
+
 int steps(const MadeWalker& walker) { return walker.last().steps[0] + walker.last().steps[1]; }
 
 TEST(Range, BackwardDeflectionWalksBackwardsFacingAhead) {

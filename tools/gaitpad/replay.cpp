@@ -100,7 +100,8 @@ class JsonResults {
   }
   void print(bool is_one) const {
     if (!is_one) return print_json(results_);
-    if (results_[0].contains("summary")) print_json(results_[0]["summary"]);
+    // Empty: it was interrupted before its first recording began.
+    if (!results_.empty() && results_[0].contains("summary")) print_json(results_[0]["summary"]);
   }
 
  private:

@@ -3,6 +3,7 @@
 #pragma once
 #include "gaitpad/ik.h"
 #include "motion/leg_pose.h"
+#include "walk/reach.h"
 #include "walk/weights.h"
 
 namespace gaitpad {
@@ -65,7 +66,7 @@ inline void solve_by_paper(const Tables& tables, const Time<float>& time, float 
     const LegBones& leg = tables.leg[right];
     const Foot<float>& planned = feet.foot[k];
     const Foot<float> foot = off_plan(planned, feet.sole[k], pelvis.place_m + pelvis.hip_m[k],
-                                      kReachOnToe * (leg.thigh_m + leg.shank_m), flies,
+                                      kLongestReach * (leg.thigh_m + leg.shank_m), flies,
                                       off_plan_rad(time, k, change, state));
     const vec3 heel_m = wide(leg.heel_m), toe_m = wide(leg.toe_m), along_foot = toe_m - heel_m,
                side_of = wide(leg.side);

@@ -58,6 +58,9 @@ void rise_on_toe(const Sole<V>& sole, const V& pitch_rad, const Mask<V>& rises,
   foot.heel_m = chosen(rises, risen.heel_m, foot.heel_m);
 }
 
+// Greatest reach of a leg, over its length: a straight leg has no derivative.
+constexpr float kLongestReach = 0.99995f;
+
 template <class V>
 V leg_m(const Tables& tables, const Mask<V>& right) noexcept {
   return of_leg<V>(tables, right, &LegBones::thigh_m) +
@@ -115,12 +118,11 @@ void keep_heels_low(const Tables& tables, const Time<V>& time, const V& phase,
 template <class V>
 void reach_with_toe(const Tables& tables, const Time<V>& time, const Change<V>& change,
                     const Pelvis<V>& pelvis, Feet<V>& feet) noexcept {
-  constexpr float kReachOnToe = 0.99995f;  // over the leg's length
   for (int k : {0, 1}) {
     const auto right = is_right(time, k),
                stands = both(change.stands == V{}, k == 0 ? no(time.flies) : time.flies);
     Foot<V>& foot = feet.foot[k];
-    const V reach_m = kReachOnToe * leg_m<V>(tables, right);
+    const V reach_m = kLongestReach * leg_m<V>(tables, right);
     const Vec<V> hip_m = pelvis.place_m + pelvis.hip_m[k], way = hip_m - feet.ankle_m[k];
     const auto short_of = both(stands, dot(way, way) > reach_m * reach_m);
     if (!any(short_of)) continue;

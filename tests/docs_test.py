@@ -333,6 +333,20 @@ def test_the_page_on_the_paper_tells_of_each_claim_that_robust_mode_fails():
     assert robust == {int(number) for group in re.findall(r"\(([\d, ]+)\)", told) for number in group.split(",")}
 
 
-def test_the_measured_page_is_what_the_script_writes():
-    assert subprocess.run([sys.executable, ROOT / "tools" / "measured.py", "--check"]).returncode == 0
+@pytest.mark.parametrize("script", ["measured.py", "constants.py"])
+def test_a_page_that_a_script_writes_is_what_it_writes(script):
+    assert subprocess.run([sys.executable, ROOT / "tools" / script, "--check"]).returncode == 0
+
+
+def test_the_page_of_constants_has_what_the_sources_say():
+    """A second reading of some declarations, by hand: beside, above, several in one, in a table."""
+    page = (ROOT / "docs/constants.md").read_text()
+    for row in ("| `kFirstRoll_s` | 0.25 | s | `gait_clock.h` | from the stick to the lift-off |",
+                "| `kHeadAhead_s` | 0.30 | s | `gait_clock.h` | as above |",
+                "| `kStairRise` | 0.2 | - | `ground.h` | The rise of a usual riser, 17 cm for an adult, and the highest one "
+                "that a step can climb; in legs. |",
+                "| `kPhaseTries` | 6 | count | `hips.h` | as above |"):
+        assert row in page, row
+    unitless = subprocess.run([sys.executable, ROOT / "tools/constants.py", "--unitless"], capture_output=True, text=True)
+    assert unitless.returncode == 0 and "kHead" not in unitless.stdout
 

@@ -168,9 +168,9 @@ def test_what_the_pages_on_the_walk_name_is_defined_where_they_say(judge):
 
 
 @pytest.mark.parametrize("page, said, false", [
-    ("walk.md", "`advance_clock()` | `src/walk/gait_clock.h`", "`advance_clock()` | `src/walk/tick.h`"),  # only called there
+    ("path.md", "`src/walk/gait_clock.h`, `src/walk/footholds.h` |", "`src/walk/tick.h` |"),  # only called there
     ("walk.md", "`solve_leg()` in `leg_solve.h`", "`at_moments()`"),  # a test's
-    ("path.md", "`src/walk/feet.h`, `src/walk/reach.h` | `plan_feet()`", "`src/walk/reach.h` | `plan_feet()`"),
+    ("path.md", "`src/walk/feet.h`, `src/walk/reach.h`, `src/walk/idle.h` |", "`src/walk/reach.h`, `src/walk/idle.h` |"),
     ("path.md", "`assign_ticks()`", "`decode()`"),  # another room's
     ("path.md", "`solve_paper()` of `src/animation/ik.cpp`", "`solve_paper()` of `src/walk/paper.h`"),
     ("tick.md", "`plan_rest()` in `rest.h`", "`plan_rest()` in `feet.h`"),

@@ -159,6 +159,29 @@ def test_what_does_not_exist_is_found(judge, page, said, false):
     assert list(judge.faults_of(ROOT / page, text.replace(said, false)))
 
 
+WALK_PAGES = [ROOT / "docs" / name for name in ("walk.md", "path.md", "tick.md")]
+
+
+def test_what_the_pages_on_the_walk_name_is_defined_where_they_say(judge):
+    faults = [f for page in WALK_PAGES for f in judge.misplaced_in(page)]
+    assert not faults, "\n".join(faults)
+
+
+@pytest.mark.parametrize("page, said, false", [
+    ("walk.md", "`advance_clock()` | `src/walk/gait_clock.h`", "`advance_clock()` | `src/walk/tick.h`"),  # only called there
+    ("walk.md", "`solve_leg()` in `leg_solve.h`", "`at_moments()`"),  # a test's
+    ("path.md", "`src/walk/feet.h`, `src/walk/reach.h` | `plan_feet()`", "`src/walk/reach.h` | `plan_feet()`"),
+    ("path.md", "`assign_ticks()`", "`decode()`"),  # another room's
+    ("path.md", "`solve_paper()` of `src/animation/ik.cpp`", "`solve_paper()` of `src/walk/paper.h`"),
+    ("tick.md", "`plan_rest()` in `rest.h`", "`plan_rest()` in `feet.h`"),
+    ("tick.md", "`copy_walk()`", "`kMostWalks`"),
+])
+def test_what_is_defined_elsewhere_is_found(judge, page, said, false):
+    text = (ROOT / "docs" / page).read_text()
+    assert said in text, f"{page} no longer says {said}"
+    assert list(judge.misplaced_in(ROOT / "docs" / page, text.replace(said, false)))
+
+
 # What is not run here, and why.
 NOT_RUN = {
     r"git clone|sudo |cd |blender |systemctl ": "needs the network, root, a real pad, a login or another program",
@@ -310,6 +333,20 @@ def test_the_page_on_the_paper_tells_of_each_claim_that_robust_mode_fails():
     assert robust == {int(number) for group in re.findall(r"\(([\d, ]+)\)", told) for number in group.split(",")}
 
 
-def test_the_measured_page_is_what_the_script_writes():
-    assert subprocess.run([sys.executable, ROOT / "tools" / "measured.py", "--check"]).returncode == 0
+@pytest.mark.parametrize("script", ["measured.py", "constants.py"])
+def test_a_page_that_a_script_writes_is_what_it_writes(script):
+    assert subprocess.run([sys.executable, ROOT / "tools" / script, "--check"]).returncode == 0
+
+
+def test_the_page_of_constants_has_what_the_sources_say():
+    """A second reading of some declarations, by hand: beside, above, several in one, in a table."""
+    page = (ROOT / "docs/constants.md").read_text()
+    for row in ("| `kFirstRoll_s` | 0.25 | s | `gait_clock.h` | from the stick to the lift-off |",
+                "| `kHeadAhead_s` | 0.30 | s | `gait_clock.h` | as above |",
+                "| `kStairRise` | 0.2 | - | `ground.h` | The rise of a usual riser, 17 cm for an adult, and the highest one "
+                "that a step can climb; in legs. |",
+                "| `kPhaseTries` | 6 | count | `hips.h` | as above |"):
+        assert row in page, row
+    unitless = subprocess.run([sys.executable, ROOT / "tools/constants.py", "--unitless"], capture_output=True, text=True)
+    assert unitless.returncode == 0 and "kHead" not in unitless.stdout
 

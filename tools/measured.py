@@ -1,10 +1,12 @@
 #!/usr/bin/python3
-"""Writes docs/measured.md from what the tools themselves measured.
+"""Writes docs/measured.md, and what other pages repeat of it, from what the tools themselves measured.
 
   measured.py SECTION ... | all      measures these sections and writes their tables
   measured.py --from SECTION=FILE    takes a tool's output that is already there
   measured.py                        writes the texts round the tables anew
   measured.py --check                writes nothing; says where the page is not as this script writes it
+
+Figures of the tables that other pages repeat (FIGURES: README.md, docs/embed.md, docs/my-ground.md) are written there.
 
 Sections: walk kept people clips terrain bench window frames pads latency sticks worn claims fuzz soak. A section that is not
 measured in this run keeps the table of the page and its date. `--build` names the build folder (default
@@ -534,7 +536,7 @@ than 40. Capture > walk: the maxima of the left and of the right knee in a strid
 their least angles in degrees (within 3; below 1 counts as 1), and the greatest vertical
 acceleration of the hips in m/s² (12, or 1.5 times the capture's). `d2` is the second difference of
 a leg joint, degrees a tick²: in the steady walk (0.7; built-in 0.5), and where the walk starts,
-stops and changes its stride (1).""", """\
+stops and changes its stride (1.3).""", """\
 A walk keeps neither a knee that a file bends backwards nor the gap of a stride that does not end
 as it began."""),
     "people": (measure_by("tests/session/people.py"), runs_rows, "Beside people", True, """\
@@ -703,7 +705,65 @@ def difference(page):
     for ours, theirs in itertools.zip_longest(page_of(results_of(page)).splitlines(), page.splitlines()):
         if ours != theirs:
             return f"docs/measured.md: {theirs!r} stands where this script writes {ours!r}"
+    for page_name in FIGURES:
+        text = (ROOT / page_name).read_text()
+        if with_figures(page_name, text, results_of(page)) != text:
+            return f"{page_name}: a figure is not that of docs/measured.md; run tools/measured.py"
     return None
+
+
+# ---- figures on other pages --------------------------------------------------------------------
+def figure(results, section, row, column=1):
+    """A number of the first row of a section's table that begins so, without its unit; LookupError if there is none."""
+    cells = next((r for r in results[section][0] if r[0].startswith(row)), None)
+    if cells is None:
+        raise LookupError(row)
+    return float(re.match(r"[\d.e+-]+", cells[column])[0])
+
+
+def rounded(value):
+    return f"{float(f'{value:.2g}'):g}"
+
+
+def kept_text(results, row):
+    return "{:.1f}, {:.1f} and {:.1f}".format(*(figure(results, "kept", row, column) for column in (1, 2, 3)))
+
+
+def us(results, row, times=1):
+    return rounded(times * figure(results, "bench", row) / 1000)
+
+
+def over(results, row, under):
+    return f"{figure(results, 'bench', row) / figure(results, 'bench', under):.1f}"
+
+
+# page: (the words around a figure, where (.+?) stands for it; the figure by the tables)
+FIGURES = {
+    "README.md": (
+        (r"hips, knees and ankles stay within (.+?) degrees", lambda r: kept_text(r, "built-in")),
+        (r"captured walks are (.+?)\.\n", lambda r: kept_text(r, "median of the clips")),
+        (r"with styles takes about (\S+?) µs", lambda r: us(r, "four characters with styles", 4)),
+        (r"takes\s+about (\S+?) µs a character", lambda r: us(r, "crowd of 1,000 in")),
+    ),
+    "docs/embed.md": ((r"takes about (\S+?) µs", lambda r: us(r, "one character, even")),),
+    "docs/my-ground.md": (
+        (r"tick takes about (\S+?) times", lambda r: over(r, "one character, even, on waves", "one character, even")),
+        (r"answers in about (\S+?) ns", lambda r: rounded(figure(r, "bench", "one question"))),
+    ),
+}
+
+
+def with_figures(page, text, results):
+    """The text of that page with the tables' figures; a figure that no table has stays."""
+    for words, of in FIGURES[page]:
+        found = re.search(words, text)
+        if not found:
+            raise SystemExit(f"measured.py: {page} has no text {words!r}")
+        try:
+            text = text[:found.start(1)] + of(results) + text[found.end(1):]
+        except LookupError:
+            continue
+    return text
 
 
 # ---- the command -----------------------------------------------------------------------------
@@ -745,6 +805,9 @@ def main():
             kept = "keeps its table" if name in results else "is not measured"
             print(f"{name} {kept}: {problem}", file=sys.stderr)
     PAGE.write_text(page_of(results))
+    for name in FIGURES:
+        other = ROOT / name
+        other.write_text(with_figures(name, other.read_text(), results_of(PAGE.read_text())))
     return 0
 
 

@@ -326,7 +326,7 @@ template <class V, class F>
 void pitch_in_flight(const Time<V>& time, const Sole<V>& sole, const Flight<V>& flight,
                      const V& planned, const V& off, const Change<V>& change, const F& footing,
                      Foot<V>& foot) noexcept {
-  // The toe may be so much below its height in a stand, for in the tables toes only just leave the
+  // The toe may be kMostSink_m lower than in a stand, for in the tables toes only just leave the
   // floor. The limit of the pitch is rounded over kSoftPitch_rad, and over kWiderPitch of
   // loose_pitch().
   constexpr float kMostSink_m = 0.0015f, kSoftPitch_rad = 0.0069813f, kWiderPitch = 0.25f;
@@ -490,7 +490,7 @@ void lift_off(const Tables& tables, const Time<V>& time, const Mask<V>& lifts,
   }
   state.swing_pitch_rad = lifts ? V(pitch - table_pitch) : state.swing_pitch_rad;
   state.swing_pitch_rate = lifts ? rate : state.swing_pitch_rate;
-  // In a turn the foot pivots on its planted toe as its heel rises.
+  // In a turn the foot lifts off turning at the body's rate.
   state.lift_turn_rad = lifts ? V(state.turn_rad_s.x * tables.tick_s * ticks) : state.lift_turn_rad;
 }
 

@@ -60,6 +60,10 @@ class Sources:
         return [p for p in self.paths if re.search(rf"(?:^|/){pattern.pattern}(?:/|$)", p)]
 
     @functools.lru_cache(maxsize=None)
+    def of_src(self):
+        return [text for path, text in self.text.items() if path.startswith("src/")]
+
+    @functools.lru_cache(maxsize=None)
     def members(self, owner):
         """The words in the braces of that class or namespace, in all files."""
         words = set()
@@ -148,6 +152,26 @@ class Judge:
         texts = [self.sources.text[p] for p in files if p in self.sources.text]
         if texts and not any(re.search(rf"\b{function}\s*(?:<[^<>;(){{}}]*>)?\(", text) for text in texts):
             yield f"no {function}() in the files of its row"
+
+    def misplaced_in(self, page, text=None):
+        """Functions and constants without an owner that no source of src defines, and functions that the file does not
+        define that the page names for them: `name()` in `file`, `name()` of `file`, or the files of the row."""
+        text = page.read_text() if text is None else text
+        for span, block in spans_of(text):
+            for name in re.findall(r"(?<![\w:.])([A-Za-z_]\w*)\(\)", span):
+                own = re.findall(rf"`{name}\(\)` (?:in|of) `([^`]+)`", block)
+                row = re.findall(r"`([^`]+\.(?:cpp|h))`", block) if block.startswith("|") else []
+                yield from self.fault_of_definition(name, own or row)
+            for name in re.findall(r"\bk[A-Z]\w+", span):
+                if not any(re.search(rf"\b{name}\b(?:\[[^\]]*\])* *[={{]", text) for text in self.sources.of_src()):
+                    yield f"no constant {name} in src"
+
+    def fault_of_definition(self, function, files):
+        places = [p for name in files for p in self.sources.files_named(name)]
+        texts = [self.sources.text[p] for p in places if p in self.sources.text] if files else self.sources.of_src()
+        definition = re.compile(rf"^[\w\[](?!.*;$).*\b{function}\(", re.M)
+        if not any(definition.search(text) for text in texts):
+            yield f"{function}() is not defined in {', '.join(files) or 'src'}"
 
     def is_made(self, name):
         """True for files that the program writes or reads: its sources contain their names."""

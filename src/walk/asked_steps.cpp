@@ -58,7 +58,8 @@ Placement seen_in_step(const WalkState& state, const Placement& heel) noexcept {
 }
 
 bool is_finite(const Placement& place) noexcept {
-  return std::isfinite(place.place_m.x + place.place_m.z + place.heading_rad);
+  const vec3& p = place.place_m;
+  return std::isfinite(p.x + p.y + p.z + place.heading_rad);
 }
 
 }  // namespace

@@ -19,6 +19,10 @@ inline constexpr int kStateNumbers = (sizeof(State<V>) + sizeof(Change<V>) + siz
                                      sizeof(V);
 static_assert(sizeof(State<float>) <= 512);
 
+// Functions are local to each source, because those for wider registers must not share one: the
+// linker would keep one of them for all, which an old processor may not know.
+namespace {
+
 // Copies a walk from a lane of one block to a lane of another.
 template <int kFrom, int kTo>
 void copy_walk(const Block<kFrom>& from, int from_lane, Block<kTo>& to, int to_lane) noexcept {
@@ -31,4 +35,5 @@ void copy_walk(const Block<kFrom>& from, int from_lane, Block<kTo>& to, int to_l
   to.piece[to_lane] = from.piece[from_lane];
 }
 
+}  // namespace
 }  // namespace gaitpad

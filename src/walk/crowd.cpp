@@ -38,6 +38,23 @@ template <int kWidth>
 struct RootNumbers {
   Floats<kWidth> heading_rad{}, pelvis_x_m{}, pelvis_z_m{}, beside_x_m{}, beside_z_m{};
   Origin origin[kWidth];
+  void keep(const Block<kWidth>& of) noexcept {
+    heading_rad = of.state.heading_rad;
+    pelvis_x_m = of.state.pelvis_x_m[0], pelvis_z_m = of.state.pelvis_z_m[0];
+    beside_x_m = of.told.pelvis_x_m, beside_z_m = of.told.pelvis_z_m;
+    std::copy_n(of.origin, kWidth, origin);
+  }
+  // Those of one lane alone.
+  void keep(const Block<kWidth>& of, int w) noexcept {
+    RootNumbers all;
+    all.keep(of);
+    set_lane(lane(all.heading_rad, w), w, heading_rad);
+    set_lane(lane(all.pelvis_x_m, w), w, pelvis_x_m);
+    set_lane(lane(all.pelvis_z_m, w), w, pelvis_z_m);
+    set_lane(lane(all.beside_x_m, w), w, beside_x_m);
+    set_lane(lane(all.beside_z_m, w), w, beside_z_m);
+    origin[w] = all.origin[w];
+  }
 };
 
 template <int kWidth>
@@ -48,12 +65,11 @@ class BlockOf final : public WalkBlock {
   std::size_t bytes() const noexcept override { return sizeof *this; }
 
   void put(const WalkState& state, int lane) noexcept override {
-    tick_s = state.tick_s;
     for_lanes(lane, [&](int w) {
       copy_walk(state.walk, 0, block_, w);
       asked_[w] = {};
+      before_.keep(block_, w);
     });
-    keep_root();
   }
   Block<1> walk(int lane) const noexcept override {
     Block<1> one;
@@ -82,15 +98,7 @@ class BlockOf final : public WalkBlock {
   void place(const Placement& placed, int lane) noexcept override {
     for_lanes(lane, [&](int w) { gaitpad::place(placed, w, block_); });
   }
-  void keep_root() noexcept override {
-    const auto& state = block_.state;
-    before_.heading_rad = state.heading_rad;
-    before_.pelvis_x_m = state.pelvis_x_m[0];
-    before_.pelvis_z_m = state.pelvis_z_m[0];
-    before_.beside_x_m = block_.told.pelvis_x_m;
-    before_.beside_z_m = block_.told.pelvis_z_m;
-    std::copy_n(block_.origin, kWidth, before_.origin);
-  }
+  void keep_root() noexcept override { before_.keep(block_); }
   void advance(const Tables& tables, IkMode mode, const Poses& poses) noexcept override {
     if constexpr (kWidth == 1) {
       if (mode == IkMode::paper) {

@@ -18,8 +18,7 @@
 #include "tests/session/made_session.h"
 #include "tests/walk/made_crowd.h"
 
-using namespace gaitpad;
-
+namespace gaitpad {
 namespace {
 
 constexpr int kTicks = 2600;
@@ -86,9 +85,7 @@ void print_family(const char* name, const StrideFamily& family) {
   fmt::print("{} strides {:016x}\n", name, hash.value());
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   if (argc != 2) return fail("usage: pose_hash_main FOLDER");
   ::setenv("GAITPAD_CACHE", "off", 1);
   try {
@@ -112,3 +109,8 @@ int main(int argc, char** argv) {
   walk_crowd();
   return 0;
 }
+
+}  // namespace
+}  // namespace gaitpad
+
+int main(int argc, char** argv) { return gaitpad::run(argc, argv); }

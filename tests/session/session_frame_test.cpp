@@ -91,7 +91,10 @@ TEST_F(SessionFrameTest, ThePhaseStartsAtTheRightHeelStrike) {
     if (strikes) {
       EXPECT_LT(w.phase, 0.02);
     }
-    if (!strikes && tick > 1 && w.phase < before) {
+    // While a walk starts, the phase follows hips that stand between the feet. Until the step has
+    // some length they have no certain phase, so it may fall, but almost none of it is shown.
+    constexpr double kHardlyShown = 0.02;
+    if (!strikes && w.presence > kHardlyShown && w.phase < before) {
       EXPECT_GT(before, 0.98) << tick;
     }
     before = w.phase;

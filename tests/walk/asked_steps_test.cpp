@@ -161,6 +161,9 @@ TEST(AskedSteps, WhoStandsOrAsksForWhatIsNoPlaceIsRefused) {
   AskedWalk walk(adult(), ahead(0.8), 480);
   EXPECT_FALSE(nearest_step(walk.model, {vec3(nan, 0.0, 0.0), 0.0}, walk.state));
   EXPECT_FALSE(step_to(walk.model, {vec3(0.0), nan}, walk.state));
+  Placement heel = walk.planned(vec3(0.0), 0.0);
+  heel.place_m.y = nan;
+  EXPECT_FALSE(step_to(walk.model, heel, walk.state));
   EXPECT_FALSE(push_walk(vec3(nan, 0.0, 0.0), walk.state));
   EXPECT_FALSE(push_walk(vec3(0.0, 0.0, 2.0 * kMostPush_m_s), walk.state));
   EXPECT_EQ(walk.state.walk.change.push_x_m_s, 0.0f);

@@ -18,8 +18,7 @@
 #include "strides/solver_input.h"
 #include "tests/walk/made_crowd.h"
 
-using namespace gaitpad;
-
+namespace gaitpad {
 namespace {
 
 constexpr int kRate_hz = 240;
@@ -136,9 +135,7 @@ GaitCycle cycle_from_text() {
 }
 #endif
 
-}  // namespace
-
-int main() {
+int run() {
   print_numbers();
   walk_everywhere("built-in strides", value_of(with_clean_strides(procedural_gait())));
   walk_crowd();
@@ -148,3 +145,8 @@ int main() {
                                  "[[section]]\nkind = \"flat\"\nlength_m = 2.5\n", "t.toml"))));
 #endif
 }
+
+}  // namespace
+}  // namespace gaitpad
+
+int main() { return gaitpad::run(); }

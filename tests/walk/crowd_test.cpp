@@ -130,6 +130,24 @@ TEST(Crowd, PutsAMemberBack) {
   EXPECT_EQ(made.crowd().root_m(2), other_m);
 }
 
+// All members share a block, and each keeps its own report.
+TEST(Crowd, PuttingAMemberBackLeavesTheReportsOfTheOthers) {
+  const auto model = std::make_shared<const WalkModel>(
+      value_of(walk_model(value_of(with_clean_strides(procedural_gait())), {})));
+  Crowd crowd(std::vector<CrowdMember>(4, CrowdMember{model, vec3(0.0)}));
+  for (GaitParams& params : crowd.params())
+    params = gait_params({.left = vec2(0.3, 0.8)}, StyleValues{}, gait_limits(*model));
+  for (int tick = 0; tick < 3 * kCrowdRate; ++tick) crowd.advance(kCrowdDt);
+  const WalkFrame before = crowd.state(0).frame;
+  crowd.restart(1, vec3(5.0, 0.0, 0.0));
+  const WalkFrame after = crowd.state(0).frame;
+  EXPECT_GT(glm::length(before.root_moved_m), 0.005);
+  EXPECT_EQ(after.root_moved_m, before.root_moved_m);
+  EXPECT_EQ(after.root_turned_rad, before.root_turned_rad);
+  EXPECT_EQ(after.speed_m_s, before.speed_m_s);
+  EXPECT_EQ(crowd.state(1).frame.root_moved_m, vec3(0.0));
+}
+
 TEST(Crowd, OfNobodyDoesNothing) {
   Crowd crowd;
   crowd.advance(kCrowdDt);

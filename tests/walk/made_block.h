@@ -1,6 +1,8 @@
 // Walks that a test moves on tick by tick below the public functions: blocks, and what is seen of
 // their poses.
 #pragma once
+#include <gtest/gtest.h>
+
 #include <cstring>
 #include <string>
 

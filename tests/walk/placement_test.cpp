@@ -42,13 +42,14 @@ TEST(Placement, AMovedWalkHasTheBitsOfOneThatIsNot) {
         << tick;
     ASSERT_EQ(moved_pose.root_m, to_world(moving.placed, pose.root_m)) << tick;
     for (const int side : {0, 1}) {
-      // Through another root's rotation: equal but for the rounding of floats.
+      // Through another root's rotation, whose length is 1 to the rounding of floats.
+      constexpr double kRounding_m = 5e-7;
       ASSERT_LT(glm::distance(moving.frame.heel_m[side],
                               to_world(moving.placed, state.frame.heel_m[side])),
-                1e-6);
+                kRounding_m);
       ASSERT_LT(
           glm::distance(moving.frame.toe_m[side], to_world(moving.placed, state.frame.toe_m[side])),
-          5e-7);
+          kRounding_m);
     }
     ASSERT_EQ(moving.frame.root_moved_m, state.frame.root_moved_m);
   }

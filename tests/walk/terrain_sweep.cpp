@@ -16,8 +16,7 @@
 #include "tests/folders.h"
 #include "tests/walk/terrain_judge.h"
 
-using namespace gaitpad;
-
+namespace gaitpad {
 namespace {
 
 constexpr double kLongest_s = 360.0, kRate = 240.0;
@@ -85,9 +84,7 @@ bool is_sound(const TerrainWorst& w, double most_jump) {
          w.failures == 0 && w.jump_deg <= most_jump;
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   std::vector<std::string> motions;
   std::vector<double> ratios = {0.6, 1.0, 1.6}, sticks = {0.4, 0.7, 1.0};
   std::vector<std::string> styles = shipped_styles();
@@ -147,3 +144,8 @@ int main(int argc, char** argv) {
   fmt::print("{} missed\n", missed);
   return missed == 0 ? 0 : 1;
 }
+
+}  // namespace
+}  // namespace gaitpad
+
+int main(int argc, char** argv) { return gaitpad::run(argc, argv); }

@@ -116,9 +116,9 @@ GaitParams following(const CapsuleMotion& capsule, const WalkState& state, const
 // --- What a program asks of the running step beside its stick ------------------------------------
 
 // The landing place and heading nearest to `heel` that the heel of the running step's foot can
-// still reach, in the world; its height is ignored. Nothing if no step can be changed: the
-// character stands or comes to rest, or the foot has flown more than half of its flight or, over
-// uneven ground, flies at all.
+// still reach, in the world; its height is ignored. Nothing if a number of `heel` is not finite, or
+// if no step can be changed: the character stands or comes to rest, or the foot has flown more than
+// half of its flight or, over uneven ground, flies at all.
 std::optional<Placement> nearest_step(const WalkModel& model, const Placement& heel,
                                       const WalkState& state) noexcept;
 // Asks the foot that flies, or that flies next, to land with its heel at that place, and to point

@@ -21,9 +21,9 @@ ROOMS = {"walk": "The walk", "strides": "Strides that stand", "motion": "From a 
 HEAD = """\
 # Constants of the walk
 
-`tools/constants.py` writes this page from the sources; do not edit it by hand. The unit is the end of the name, or *count* of
-whole numbers; where there is a dash, the reason says what the number is. A constant of one function is written where it is
-used, so a name may occur twice in a file. Reasons are the sources' comments; *as above*: one comment tells of several.
+`tools/constants.py` writes this page from the sources; do not edit it by hand. The unit is the end of the name, *rad* of a
+value in degrees, or *count* of whole numbers; where there is a dash, the reason says what the number is. A constant of one
+function is written where it is used, so a name may occur twice in a file. Reasons are the sources' comments; *as above*: one comment tells of several.
 Lengths *at the reference leg* grow with the character's legs, times with their fourth root. The time constants of the filters
 of a tick have no names: `filters_of()` in `tables.cpp` lists them.
 """
@@ -32,10 +32,11 @@ NAMES = r"(k[A-Z]\w*)((?:\[[^\]]*\])*)\s*"
 UNITS = {"s": "s", "m": "m", "rad": "rad", "deg": "degrees", "m_s": "m/s", "m_s2": "m/s²", "rad_s": "rad/s", "1_s": "1/s",
          "s2": "rad/s²", "per_s": "1/s", "m2": "m²", "hz": "Hz", "Hz": "Hz", "ticks": "ticks", "cycles": "cycles",
          "1_m": "1/m", "min": "1/min", "m_min": "m min", "legs_s": "legs/s", "s_m": "s/m", "m_s3": "m/s³", "rad_s2": "rad/s²", "frames": "frames", "legs": "legs"}
-# Words by which a comment says what a number without a unit in its name is.
+# Words by which a comment says what a number without a unit in its name is. Some names have such a word themselves.
 SAID = re.compile(r"\bshares?\b|\bof (a|the|its|their|what|both|all)\b|^of\b|\blegs\b|\bcycles?\b|\bticks?\b|\bbeats?\b|\bsamples?\b|"
                   r"\bknots?\b|\bframes?\b|\bmetres?\b|\bdegrees?\b|\bseconds?\b|\bcosts?\b|\bweights?\b|\bratios?\b|\bfactors?\b|"
                   r"\btimes\b", re.I)
+NAMED = re.compile(r"Ratio|Grade|Weight|Share|Tolerance|Gain\b|Factor")
 
 
 def joined(comment):
@@ -59,9 +60,9 @@ def end_of(text, start):
 
 
 def comment_above(lines, number):
-    """The comment that ends on the line above `number`. In a function the declarations between them share it."""
+    """The comment that ends on the line above `number`. Declarations between them share it."""
     n = number - 1
-    while n >= 0 and lines[number].startswith(" ") and re.match(r"\s*(?:inline |static )*constexpr .*;", lines[n]) and "//" not in lines[n]:
+    while n >= 0 and re.match(r"\s*(?:inline |static )*constexpr .*;", lines[n]) and "//" not in lines[n]:
         n -= 1
     last = n
     while n >= 0 and lines[n].lstrip().startswith("//"):
@@ -109,10 +110,10 @@ def value_text(value):
     return re.sub(r"\bkDegree(_rad)?\b", "degree", value)
 
 
-def unit_of(name, kind):
+def unit_of(name, value, kind):
     _, _, ending = name.partition("_")
-    if ending:
-        return UNITS.get(ending, ending)
+    if ending or "kDegree" in value:
+        return UNITS.get(ending, ending) or "rad"
     return "count" if kind in ("int", "std::size_t", "std::int64_t") else ""
 
 
@@ -139,7 +140,7 @@ def constants_of(path):
             if not re.search(r"\d", match[4]) or len(match[4]) > 120:
                 continue
             own = reason or (comment_of_function(lines, first, match[1]) if found[1] else "")
-            yield first + 1, match[1], value_text(match[4]), unit_of(match[1], found["type"]), own
+            yield first + 1, match[1], value_text(match[4]), unit_of(match[1], match[4], found["type"]), own
 
 
 def page():
@@ -168,7 +169,7 @@ def main():
         for room in ROOMS:
             for path in sorted((ROOT / "src" / room).glob("*.[hc]*")):
                 for line, name, value, unit, reason in constants_of(path):
-                    if not unit and not SAID.search(reason):
+                    if not unit and not SAID.search(reason) and not NAMED.search(name):
                         print(f"{path.relative_to(ROOT)}:{line}: {name} = {value}")
         return 0
     if options.check:

@@ -93,7 +93,7 @@ Mask<V> is_to_walk(const State<V>& state) noexcept {
 
 // People turn their heads up to 0.3 s before their pelvis, and the chest in between.
 inline constexpr float kChestAhead_s = 0.13f, kHeadAhead_s = 0.30f;
-inline constexpr float kGravity_m_s2 = 9.81f;
+inline constexpr float kGravity_m_s2 = 9.81f;  // standard gravity, rounded
 inline constexpr float kLeastCycle_s =
     0.2f;  // of both steps: a time of 0 would be an endless speed
 

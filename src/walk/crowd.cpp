@@ -52,6 +52,8 @@ class WalkBlock {
   // The numbers of a walk's root before the last tick.
   virtual RootNumbers<1> before(int lane) const noexcept = 0;
   virtual void set_detail(Detail detail, int lane) noexcept = 0;
+  // True if the walk was last asked for these parameters.
+  virtual bool has_asked(const GaitParams& params, int lane) const noexcept = 0;
   virtual void ask(const GaitParams& params, int lane) noexcept = 0;
   virtual void place(const Placement& placed, int lane) noexcept = 0;
   virtual void keep_root() noexcept = 0;
@@ -96,11 +98,14 @@ class BlockOf final : public WalkBlock {
   void set_detail(Detail detail, int lane) noexcept override {
     for_lanes(lane, [&](int w) { gaitpad::set_detail(detail, w, block_); });
   }
-  void ask(const GaitParams& params, int lane) noexcept override {
-    Asked& asked = asked_[lane];
+  bool has_asked(const GaitParams& params, int lane) const noexcept override {
+    const Asked& asked = asked_[lane];
     // Equal bytes are equal parameters; asking again for equal ones of other bytes does no harm.
     // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
-    if (asked.is_known && std::memcmp(&asked.params, &params, sizeof params) == 0) return;
+    return asked.is_known && std::memcmp(&asked.params, &params, sizeof params) == 0;
+  }
+  void ask(const GaitParams& params, int lane) noexcept override {
+    Asked& asked = asked_[lane];
     std::memcpy(&asked.params, &params, sizeof params);
     asked.is_known = true;
     for_lanes(lane, [&](int w) { gaitpad::ask(params, w, block_); });
@@ -366,12 +371,14 @@ void Crowd::advance_block(int number, double dt_s) noexcept {
   std::array<vec3*, kLaneCounts[0]> roots_m;
   for (std::size_t i = 0; i < members.size(); ++i) {
     const int member = members[i], lane = static_cast<int>(i);
-    if (!is_sound(params_[member])) {
-      WalkState in_force = state(member);
-      params_[member] = mended_params(params_[member], in_force);
-      bad_inputs_[member] = in_force.frame.bad_inputs;
+    if (!block.has_asked(params_[member], lane)) {
+      if (!is_sound(params_[member])) {
+        WalkState in_force = state(member);
+        params_[member] = mended_params(params_[member], in_force);
+        bad_inputs_[member] = in_force.frame.bad_inputs;
+      }
+      block.ask(params_[member], lane);
     }
-    block.ask(params_[member], lane);
     block.place(placed_[member], lane);
     locals[i] = local_.data() + first_joint_[member];
     roots_m[i] = &roots_m_[member];

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <functional>
 #include <map>
 
 #include "base/lanes.h"
@@ -13,23 +14,6 @@
 #include "walk/walk_frame.h"
 
 namespace gaitpad {
-
-// A block of any width. Lanes without a walk of their own repeat the last walk.
-class WalkBlock {
- public:
-  virtual ~WalkBlock() = default;
-  virtual std::unique_ptr<WalkBlock> clone() const = 0;
-  virtual std::size_t bytes() const noexcept = 0;
-  virtual void put(const WalkState& state, int lane) noexcept = 0;
-  virtual Block<1> walk(int lane) const noexcept = 0;
-  // Root of a walk before the last tick.
-  virtual Placement root_before(int lane) const noexcept = 0;
-  virtual void ask(const GaitParams& params, int lane) noexcept = 0;
-  virtual void place(const Placement& placed, int lane) noexcept = 0;
-  virtual void keep_root() noexcept = 0;
-  virtual void advance(const Tables& tables, IkMode mode, const Poses& poses) noexcept = 0;
-  double tick_s = 1.0 / 240.0;  // length of the last tick
-};
 
 namespace {
 
@@ -56,6 +40,45 @@ struct RootNumbers {
     origin[w] = all.origin[w];
   }
 };
+template <int kFrom, int kTo>
+void copy_root(const RootNumbers<kFrom>& from, int from_lane, RootNumbers<kTo>& to,
+               int to_lane) noexcept {
+  const auto copy = [&](auto of_from, auto of_to) {
+    set_lane(lane(from.*of_from, from_lane), to_lane, to.*of_to);
+  };
+  using From = RootNumbers<kFrom>;
+  using To = RootNumbers<kTo>;
+  copy(&From::heading_rad, &To::heading_rad);
+  copy(&From::pelvis_x_m, &To::pelvis_x_m), copy(&From::pelvis_z_m, &To::pelvis_z_m);
+  copy(&From::beside_x_m, &To::beside_x_m), copy(&From::beside_z_m, &To::beside_z_m);
+  to.origin[to_lane] = from.origin[from_lane];
+}
+
+}  // namespace
+
+// A block of any width. Lanes without a walk of their own repeat the last walk.
+class WalkBlock {
+ public:
+  virtual ~WalkBlock() = default;
+  virtual std::unique_ptr<WalkBlock> clone() const = 0;
+  virtual std::size_t bytes() const noexcept = 0;
+  virtual void put(const WalkState& state, int lane) noexcept = 0;
+  virtual Block<1> walk(int lane) const noexcept = 0;
+  // Takes a walk over from a lane of another block.
+  virtual void take(const Block<1>& walk, const RootNumbers<1>& before, int lane) noexcept = 0;
+  // The numbers of a walk's root before the last tick.
+  virtual RootNumbers<1> before(int lane) const noexcept = 0;
+  virtual void set_detail(Detail detail, int lane) noexcept = 0;
+  // True if the walk was last asked for these parameters.
+  virtual bool has_asked(const GaitParams& params, int lane) const noexcept = 0;
+  virtual void ask(const GaitParams& params, int lane) noexcept = 0;
+  virtual void place(const Placement& placed, int lane) noexcept = 0;
+  virtual void keep_root() noexcept = 0;
+  virtual void advance(const Tables& tables, IkMode mode, const Poses& poses) noexcept = 0;
+  double tick_s = 1.0 / 240.0;  // length of the last tick
+};
+
+namespace {
 
 template <int kWidth>
 class BlockOf final : public WalkBlock {
@@ -76,21 +99,29 @@ class BlockOf final : public WalkBlock {
     copy_walk(block_, lane, one, 0);
     return one;
   }
-  Placement root_before(int member) const noexcept override {
-    Block<1> one = walk(member);
-    one.state.heading_rad = lane(before_.heading_rad, member);
-    one.state.pelvis_x_m[0] = lane(before_.pelvis_x_m, member);
-    one.state.pelvis_z_m[0] = lane(before_.pelvis_z_m, member);
-    one.told.pelvis_x_m = lane(before_.beside_x_m, member);
-    one.told.pelvis_z_m = lane(before_.beside_z_m, member);
-    one.origin[0] = before_.origin[member];
-    return root_of(one);
+  void take(const Block<1>& walk, const RootNumbers<1>& before, int lane) noexcept override {
+    for_lanes(lane, [&](int w) {
+      copy_walk(walk, 0, block_, w);
+      copy_root(before, 0, before_, w);
+      asked_[w] = {};
+    });
+  }
+  RootNumbers<1> before(int lane) const noexcept override {
+    RootNumbers<1> one;
+    copy_root(before_, lane, one, 0);
+    return one;
+  }
+  void set_detail(Detail detail, int lane) noexcept override {
+    for_lanes(lane, [&](int w) { gaitpad::set_detail(detail, w, block_); });
+  }
+  bool has_asked(const GaitParams& params, int lane) const noexcept override {
+    const Asked& asked = asked_[lane];
+    // Equal bytes are equal parameters; asking again for equal ones of other bytes does no harm.
+    // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
+    return asked.is_known && std::memcmp(&asked.params, &params, sizeof params) == 0;
   }
   void ask(const GaitParams& params, int lane) noexcept override {
     Asked& asked = asked_[lane];
-    // Equal bytes are equal parameters; asking again for equal ones of other bytes does no harm.
-    // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
-    if (asked.is_known && std::memcmp(&asked.params, &params, sizeof params) == 0) return;
     std::memcpy(&asked.params, &params, sizeof params);
     asked.is_known = true;
     for_lanes(lane, [&](int w) { gaitpad::ask(params, w, block_); });
@@ -125,6 +156,19 @@ class BlockOf final : public WalkBlock {
   int walks_;
 };
 
+// Root of a walk before the last tick.
+Placement root_before(const WalkBlock& block, int lane) noexcept {
+  Block<1> one = block.walk(lane);
+  const RootNumbers<1> before = block.before(lane);
+  one.state.heading_rad = before.heading_rad;
+  one.state.pelvis_x_m[0] = before.pelvis_x_m;
+  one.state.pelvis_z_m[0] = before.pelvis_z_m;
+  one.told.pelvis_x_m = before.beside_x_m;
+  one.told.pelvis_z_m = before.beside_z_m;
+  one.origin[0] = before.origin[0];
+  return root_of(one);
+}
+
 template <int kCount = 0>
 std::unique_ptr<WalkBlock> make_block(int width, int walks) {
   constexpr int kWidth = kLaneCounts[kCount];
@@ -154,6 +198,7 @@ Crowd::Crowd(const Crowd& from)
       lane_(from.lane_),
       models_(from.models_),
       params_(from.params_),
+      details_(from.details_),
       placed_(from.placed_),
       bad_inputs_(from.bad_inputs_),
       roots_m_(from.roots_m_),
@@ -170,6 +215,7 @@ Crowd::Crowd(std::span<const CrowdMember> members, IkMode mode)
     : mode_(mode),
       lane_(members.size()),
       params_(members.size()),
+      details_(members.size()),
       placed_(members.size()),
       bad_inputs_(members.size()),
       roots_m_(members.size()) {
@@ -215,12 +261,13 @@ WalkState Crowd::state(int member) const noexcept {
   WalkState state;
   state.walk = blocks_[block]->walk(lane);
   state.placed = placed_[member];
+  state.detail = details_[member];
   state.tick_s = blocks_[block]->tick_s;
   state.root = root_of(state.walk);
   const WalkModel& model = *models_[member];
   place(state.placed, 0, state.walk);
   report(model, tables_of(model, state.tick_s / tick_parts(state.tick_s)), state.walk,
-         blocks_[block]->root_before(lane), roots_m_[member], local(member), state.frame);
+         root_before(*blocks_[block], lane), roots_m_[member], local(member), state.frame);
   state.frame.bad_inputs = bad_inputs_[member];
   return state;
 }
@@ -230,7 +277,9 @@ Placement Crowd::root(int member) const noexcept {
 }
 
 void Crowd::put_state(int member, const WalkState& state) noexcept {
-  blocks_[lane_[member].block]->put(state, lane_[member].lane);
+  const auto [block, lane] = lane_[member];
+  blocks_[block]->put(state, lane);
+  blocks_[block]->set_detail(details_[member], lane);
   placed_[member] = state.placed;
   bad_inputs_[member] = state.frame.bad_inputs;
 }
@@ -240,6 +289,36 @@ void Crowd::restart(int member, const vec3& place_m) noexcept {
   Pose pose;
   put_state(member, standing(*models_[member], place_m, pose));
   store_pose(member, pose);
+}
+
+void Crowd::exchange_lanes(int member, int other) noexcept {
+  if (member == other) return;
+  Lane &a = lane_[member], &b = lane_[other];
+  WalkBlock &of_a = *blocks_[a.block], &of_b = *blocks_[b.block];
+  const Block<1> walk_a = of_a.walk(a.lane), walk_b = of_b.walk(b.lane);
+  const RootNumbers<1> before_a = of_a.before(a.lane), before_b = of_b.before(b.lane);
+  of_a.take(walk_b, before_b, a.lane);
+  of_b.take(walk_a, before_a, b.lane);
+  std::swap(order_[block_begin_[a.block] + a.lane], order_[block_begin_[b.block] + b.lane]);
+  std::swap(a, b);
+}
+
+void Crowd::set_detail(int member, Detail detail) noexcept {
+  if (!has(member) || details_[member] == detail) return;
+  if (!is_sound(detail)) {
+    ++bad_inputs_[member];
+    return;
+  }
+  // The member goes to the border between those of its model that are in full and the others.
+  const auto before = [this](int a, int b) {
+    return std::less<>()(models_[a].get(), models_[b].get());
+  };
+  const auto [begin, end] = std::equal_range(order_.begin(), order_.end(), member, before);
+  const auto border =
+      std::partition_point(begin, end, [this](int of) { return details_[of] == Detail::full; });
+  exchange_lanes(member, detail == Detail::full ? *border : *(border - 1));
+  details_[member] = detail;
+  blocks_[lane_[member].block]->set_detail(detail, lane_[member].lane);
 }
 
 template <class Work>
@@ -300,12 +379,14 @@ void Crowd::advance_block(int number, double dt_s) noexcept {
   std::array<vec3*, kLaneCounts[0]> roots_m;
   for (std::size_t i = 0; i < members.size(); ++i) {
     const int member = members[i], lane = static_cast<int>(i);
-    if (!is_sound(params_[member])) {
-      WalkState in_force = state(member);
-      params_[member] = mended_params(params_[member], in_force);
-      bad_inputs_[member] = in_force.frame.bad_inputs;
+    if (!block.has_asked(params_[member], lane)) {
+      if (!is_sound(params_[member])) {
+        WalkState in_force = state(member);
+        params_[member] = mended_params(params_[member], in_force);
+        bad_inputs_[member] = in_force.frame.bad_inputs;
+      }
+      block.ask(params_[member], lane);
     }
-    block.ask(params_[member], lane);
     block.place(placed_[member], lane);
     locals[i] = local_.data() + first_joint_[member];
     roots_m[i] = &roots_m_[member];

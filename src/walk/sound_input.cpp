@@ -59,6 +59,11 @@ double mended_tick(WalkState& state) noexcept {
   return state.tick_s;
 }
 
+Detail mended_detail(WalkState& state) noexcept {
+  ++state.frame.bad_inputs;
+  return detail_of(state.walk);
+}
+
 double mended_place(double place_m, WalkState& state) noexcept {
   if (std::abs(place_m) <= kFarthest_m) return place_m;
   ++state.frame.bad_inputs;

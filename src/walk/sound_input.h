@@ -9,6 +9,9 @@ bool is_sound(const GaitParams& params) noexcept;
 inline bool is_sound_tick(double dt_s) noexcept {
   return dt_s >= kLeastTick_s && dt_s <= kMostTick_s;
 }
+inline bool is_sound(Detail detail) noexcept {
+  return detail == Detail::full || detail == Detail::tables;
+}
 // A longer tick is walked in equal parts; otherwise a foot would visibly land late.
 constexpr double kLongestPart_s = 1.0 / 60.0;
 inline int tick_parts(double dt_s) noexcept {
@@ -20,6 +23,8 @@ inline int tick_parts(double dt_s) noexcept {
 GaitParams mended_params(const GaitParams& params, WalkState& state) noexcept;
 // The tick's length, or the last tick's if it is not sound; counts that.
 double mended_tick(WalkState& state) noexcept;
+// The walk's detail in force; counts the one that is not sound.
+Detail mended_detail(WalkState& state) noexcept;
 // A coordinate of a place, or 0 if it is not sound; counts that.
 double mended_place(double place_m, WalkState& state) noexcept;
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <cstring>
 
-#include "gaitpad/gait_params.h"
+#include "gaitpad/walk.h"
 #include "walk/block.h"
 
 namespace gaitpad {
@@ -56,6 +56,15 @@ void ask(const GaitParams& params, int walk, Block<kWidth>& block) noexcept {
   set(!is_even, weighted.asked);
 }
 inline void ask(const GaitParams& params, Block<1>& block) noexcept { ask(params, 0, block); }
+
+template <int kWidth>
+void set_detail(Detail detail, int walk, Block<kWidth>& block) noexcept {
+  set_lane(detail == Detail::tables ? 1.0f : 0.0f, walk, block.change.asks_tables);
+}
+
+inline Detail detail_of(const Block<1>& block) noexcept {
+  return block.change.asks_tables != 0.0f ? Detail::tables : Detail::full;
+}
 
 template <int kWidth>
 void place(const Placement& placed, int walk, Block<kWidth>& block) noexcept {

@@ -2,6 +2,7 @@
 #pragma once
 #include "walk/ankle.h"
 #include "walk/asked_steps.h"
+#include "walk/detail.h"
 #include "walk/ground_plan.h"
 #include "walk/paper.h"
 #include "walk/pose.h"
@@ -389,11 +390,13 @@ void change_solver(const Tables& tables, const Time<float>& time, const Stride<f
   }
 }
 
-// Poses legs, upper body and root. `is_new`: the plan has changed in this tick.
+// Solves the legs and writes the upper body.
 template <int kWidth, bool kPaper, class F>
-void pose_walks(const Tables& tables, const BodyTick<Floats<kWidth>>& tick,
-                const Mask<Floats<kWidth>>& is_new, Block<kWidth>& block, const F& footing,
-                Feet<Floats<kWidth>>& feet, const Poses& poses) noexcept {
+void pose_in_full(const Tables& tables, const BodyTick<Floats<kWidth>>& tick,
+                  const Floats<kWidth>& swing, const Mask<Floats<kWidth>>& eases,
+                  const Mask<Floats<kWidth>>& is_styled, Block<kWidth>& block, const F& footing,
+                  Feet<Floats<kWidth>>& feet, Leg<Floats<kWidth>> (&legs)[2],
+                  const Poses& poses) noexcept {
   using V = Floats<kWidth>;
   constexpr bool kUneven = kIsUneven<F>;
   State<V>& state = block.state;
@@ -401,8 +404,6 @@ void pose_walks(const Tables& tables, const BodyTick<Floats<kWidth>>& tick,
   const auto& [time, landing, hips, stride, pelvis, idle, phase, shown] = tick;
   if constexpr (kWidth == 1)
     change_solver<kPaper>(tables, time, stride, state, block.change, block.weighted);
-  Leg<V> legs[2];
-  Mask<V> eases{};
   if constexpr (kPaper) {
     solve_by_paper(tables, time, phase, change, feet, pelvis, state, block.weighted, legs);
   } else {
@@ -412,13 +413,39 @@ void pose_walks(const Tables& tables, const BodyTick<Floats<kWidth>>& tick,
       ease_ankles(tables, time, stride, phase, pelvis, change, footing, state, feet, begun_rad,
                   legs);
     weigh_legs(tables, time, stride, feet, pelvis, phase, change, state, block.weighted, legs);
-    eases = advance_poise(tables, hips, is_new, change, state, block.poise);
   }
+  write_upper_body<kWidth, kPaper>(tables, tick, swing, eases, is_styled, block, poses);
+}
+
+// Poses legs, upper body and root. `is_new`: the plan has changed in this tick.
+template <int kWidth, bool kPaper, class F>
+void pose_walks(const Tables& tables, const BodyTick<Floats<kWidth>>& tick,
+                const Mask<Floats<kWidth>>& is_new, Block<kWidth>& block, const F& footing,
+                Feet<Floats<kWidth>>& feet, const Poses& poses) noexcept {
+  using V = Floats<kWidth>;
+  const State<V>& state = block.state;
+  Change<V>& change = block.change;
+  Mask<V> eases{};
+  if constexpr (!kPaper)
+    eases = advance_poise(tables, tick.hips, is_new, change, state, block.poise);
+  const auto is_styled = has_style(block.styled);
+  if (any(is_styled)) smooth_body(tables, is_styled, block.styled);
   const V swing = kPaper ? all<V>(1.0f) : arm_swing(tables, state);
-  write_upper_body<kWidth, kPaper>(tables, tick, swing, eases, block, poses);
-  write_legs(tables, time, feet, legs, poses);
-  write_root<kWidth>(tables, hips, pelvis, block, poses);
-  keep_solves(time, legs, block.told);
+  Leg<V> legs[2];
+  const auto pose = [&] {
+    pose_in_full<kWidth, kPaper>(tables, tick, swing, eases, is_styled, block, footing, feet, legs,
+                                 poses);
+  };
+  const auto has_tables = either(change.asks_tables != V{}, change.to_tables != V{});
+  if (any(has_tables)) {
+    come_to_tables(tables, change);
+    pose_with_tables<kWidth>(tables, tick, swing, block, feet, legs, poses, pose);
+  } else {
+    pose();
+  }
+  write_legs(tables, tick.time, feet, legs, poses);
+  write_root<kWidth>(tables, tick.hips, tick.pelvis, block, poses);
+  keep_solves(tick.time, legs, block.told);
 }
 
 template <int kWidth, bool kPaper, class F>

@@ -21,6 +21,12 @@ V arm_swing(const Tables& tables, const State<V>& state) noexcept {
 
 // --- What a style asks of the upper body ---------------------------------------------------------
 
+// True if a style, or a stand's breath and glances, change the upper body.
+template <class V>
+Mask<V> has_style(const Styled<V>& styled) noexcept {
+  return either(either(styled.asked != V{}, styled.acts != V{}), styled.idle_share != V{});
+}
+
 // Brings the style's numbers in force nearer to those asked for, and without a style to the data's.
 template <class V>
 void smooth_body(const Tables& tables, const Mask<V>& is_styled, Styled<V>& styled) noexcept {
@@ -412,44 +418,57 @@ template <int kWidth, bool kPaper>
                   poses);
 }
 
-// Writes the joints that the legs do not set. `swing`: the factor on the arms' swing. `eases`: the
-// result of advance_poise().
-template <int kWidth, bool kPaper>
-void write_upper_body(const Tables& tables, const BodyTick<Floats<kWidth>>& of,
-                      const Floats<kWidth>& swing, const Mask<Floats<kWidth>>& eases,
-                      Block<kWidth>& block, const Poses& poses) noexcept {
-  using V = Floats<kWidth>;
-  constexpr float kSoftElbow = 0.1f, kWholly = 0.99999f;
-  State<V>& state = block.state;
-  Styled<V>& styled = block.styled;
-  Poise<V>& poise = block.poise;
-  BodyTick<V> tick = of;
-  const Knots<V> knots = knots_at(data_phase(tables, tick.time, tick.phase));
+// --- The data ------------------------------------------------------------------------------------
+
+// How a tick reads the data: where, the share of the posture that it shows, and the factors on the
+// swing of an arm's shoulder and elbow, by Side.
+template <class V>
+struct DataRead {
+  Knots<V> knots;
+  V shown, shoulder[2], elbow[2];
+};
+template <class V>
+void swing_arm(const Tables& tables, int side, const V& swing, DataRead<V>& data) noexcept {
+  constexpr float kSoftElbow = 0.1f;
+  data.shoulder[side] = swing;
+  data.elbow[side] = soft_least(swing, all<V>(tables.most_elbow_swing[side]), all<V>(kSoftElbow));
+}
+template <class V>
+DataRead<V> data_read(const Tables& tables, const BodyTick<V>& tick, const V& swing,
+                      const State<V>& state) noexcept {
+  constexpr float kWholly = 0.99999f;
+  DataRead<V> data;
+  data.knots = knots_at(data_phase(tables, tick.time, tick.phase));
   // A filter comes near to 1 but not to it; a joint that the pose shows fully is read faster.
-  const V posture = within(state.posture.x, 0.0f, 1.0f),
-          shown = tick.shown * (posture > all<V>(kWholly) ? all<V>(1.0f) : posture);
-  tick.shown = shown;
-  const auto idles = styled.idle_share != V{},
-             is_styled = either(either(styled.asked != V{}, styled.acts != V{}), idles);
-  const bool any_style = any(is_styled);
-  if (any_style) smooth_body(tables, is_styled, styled);
-  V shoulder[2], elbow[2];
-  for (int side : {0, 1}) {
-    shoulder[side] = swing;
-    if (any_style)
-      shoulder[side] = styled.acts != V{} ? V(swing * styled.body[kArmSwing + side].x) : swing;
-    elbow[side] =
-        soft_least(shoulder[side], all<V>(tables.most_elbow_swing[side]), all<V>(kSoftElbow));
-  }
+  const V posture = within(state.posture.x, 0.0f, 1.0f);
+  data.shown = tick.shown * (posture > all<V>(kWholly) ? all<V>(1.0f) : posture);
+  for (int side : {0, 1}) swing_arm(tables, side, swing, data);
+  return data;
+}
+// A share of the way from a joint's rotation in the pose to another one.
+inline Four over(const quat& from, const Four& q, float share) noexcept {
+  const Four was{static_cast<float>(from.x), static_cast<float>(from.y), static_cast<float>(from.z),
+                 static_cast<float>(from.w)};
+  const float along = (was[0] * q[0] + was[1] * q[1]) + (was[2] * q[2] + was[3] * q[3]);
+  return unit(was + (q * (along < 0.0f ? -1.0f : 1.0f) - was) * share);
+}
+// Writes the joints that the legs do not set as the data have them, by that share over what the
+// pose holds.
+template <class V>
+void write_data(const Tables& tables, const DataRead<V>& data, const V& share,
+                const Poses& poses) noexcept {
   const std::size_t count = tables.upper.size();
+  const Knots<V>& knots = data.knots;
   for (int w = 0; w < poses.walks; ++w) {
+    const float part_of = lane(share, w);
+    if (part_of == 0.0f) continue;
     const float* row =
         tables.upper_rows.data() + static_cast<int>(lane(knots.first, w)) * count * 4;
     const float k0 = lane(knots.weight[0], w), k1 = lane(knots.weight[1], w),
                 k2 = lane(knots.weight[2], w), k3 = lane(knots.weight[3], w),
-                shows = lane(shown, w);
-    const float swings[5] = {1.0f, lane(shoulder[0], w), lane(elbow[0], w), lane(shoulder[1], w),
-                             lane(elbow[1], w)};
+                shows = lane(data.shown, w);
+    const float swings[5] = {1.0f, lane(data.shoulder[0], w), lane(data.elbow[0], w),
+                             lane(data.shoulder[1], w), lane(data.elbow[1], w)};
     for (std::size_t i = 0; i < count; ++i) {
       const UpperJoint& joint = tables.upper[i];
       const float* from = row + 4 * i;
@@ -464,11 +483,36 @@ void write_upper_body(const Tables& tables, const BodyTick<Floats<kWidth>>& of,
         const Four stand = part<Four>(joint.standing.data());
         q = unit(stand + (q - stand) * shows);
       }
-      store(q, poses.local[w][joint.joint]);
+      quat& to = poses.local[w][joint.joint];
+      if (part_of < 1.0f) q = over(to, q, part_of);
+      store(q, to);
     }
     for (const int joint : tables.still) poses.local[w][joint] = kIdentity;
     for (const auto& [joint, turn] : tables.kept) poses.local[w][joint] = turn;
   }
+}
+
+// Writes the joints that the legs do not set. `swing`: the factor on the arms' swing. `eases`: the
+// result of advance_poise(). `is_styled`: has_style() before smooth_body().
+template <int kWidth, bool kPaper>
+void write_upper_body(const Tables& tables, const BodyTick<Floats<kWidth>>& of,
+                      const Floats<kWidth>& swing, const Mask<Floats<kWidth>>& eases,
+                      const Mask<Floats<kWidth>>& is_styled, Block<kWidth>& block,
+                      const Poses& poses) noexcept {
+  using V = Floats<kWidth>;
+  State<V>& state = block.state;
+  Styled<V>& styled = block.styled;
+  Poise<V>& poise = block.poise;
+  BodyTick<V> tick = of;
+  DataRead<V> data = data_read(tables, tick, swing, state);
+  tick.shown = data.shown;
+  const bool any_style = any(is_styled);
+  for (int side : {0, 1}) {
+    if (!any_style) continue;
+    const V styled_swing = swing * styled.body[kArmSwing + side].x;
+    swing_arm(tables, side, styled.acts != V{} ? styled_swing : swing, data);
+  }
+  write_data(tables, data, all<V>(1.0f), poses);
   const auto is_posed =
       either(either(is_styled, eases),
              either(poise.acts != V{}, either(poise.chest.ticks > V{}, poise.head.ticks > V{})));

@@ -55,9 +55,11 @@ void advance(const WalkModel& model, const GaitParams& params, IkMode mode, doub
   if (!is_sound_tick(dt_s)) return advance(model, params, mode, mended_tick(state), state, pose);
   if (!is_sound(params))
     return advance(model, mended_params(params, state), mode, dt_s, state, pose);
+  if (!is_sound(state.detail)) state.detail = mended_detail(state);
   state.tick_s = dt_s;
   const int parts = tick_parts(dt_s);
   const Tables tables = tables_of(model, dt_s / parts);
+  set_detail(state.detail, 0, state.walk);
   ask(params, state.walk);
   advance_by(tables, mode, parts, state, pose);
   const Placement before = state.root;

@@ -122,13 +122,24 @@ void measure() {
   std::printf("four styled over four even: alone %.2f, in lanes of 4 %.2f\n",
               new_ns<1>(tables, styled, 4) / new_ns<1>(tables, even, 4),
               new_ns<4>(tables, styled, 4) / new_ns<4>(tables, even, 4));
+  // Crowds in full, and as the tables pose them; even ones, and of those styles.
   const auto model = std::make_shared<const WalkModel>(adult());
   std::vector<CrowdMember> members(kCrowd);
   for (CrowdMember& member : members) member.model = model;
-  Crowd crowd = value_of(Crowd::create(members, IkMode::robust));
-  for (int i = 0; i < kCrowd; ++i) crowd.params()[i] = params_of(i % 4 == 3 ? 0.3 : 0.0, 0.8);
-  for (int i = 0; i < 600; ++i) crowd.advance(kDt);
-  row("Crowd, 1,000 in widest lanes", quickest_ns(20, [&] { crowd.advance(kDt); }) / kCrowd);
+  constexpr const char* kStyles[] = {"even", "stiff_hip", "stiff_knee", "limp_left"};
+  for (const bool is_styled : {false, true}) {
+    Crowd crowd = value_of(Crowd::create(members, IkMode::robust));
+    for (int i = 0; i < kCrowd; ++i)
+      crowd.params()[i] = params_of(i % 4 == 3 ? 0.3 : 0.0, 0.8,
+                                    is_styled ? shipped(kStyles[i / 4 % 4]) : StyleValues{});
+    for (const Detail detail : {Detail::full, Detail::tables}) {
+      for (int i = 0; i < kCrowd; ++i) crowd.set_detail(i, detail);
+      for (int i = 0; i < 600; ++i) crowd.advance(kDt);
+      const std::string name = std::string(is_styled ? "Crowd of styles" : "Crowd, 1,000") +
+                               (detail == Detail::full ? ", widest lanes" : ", by the tables");
+      row(name.c_str(), quickest_ns(20, [&] { crowd.advance(kDt); }) / kCrowd);
+    }
+  }
 }
 
 }  // namespace

@@ -45,6 +45,10 @@ class Crowd {
   int size() const noexcept { return static_cast<int>(models_.size()); }
   // The parameters of each member in the next ticks; at the beginning all stand.
   std::span<GaitParams> params() noexcept { return params_; }
+  // A member's level of detail, at the beginning full. Another number counts as a bad input and
+  // changes nothing. Set it between ticks: members of one detail are put side by side.
+  Detail detail(int member) const noexcept { return details_[member]; }
+  void set_detail(int member, Detail detail) noexcept;
   // Advances all members by one tick of `dt_s` seconds, a constant of the run. No heap, lock or
   // clock.
   void advance(double dt_s) noexcept;
@@ -83,18 +87,20 @@ class Crowd {
   bool has(int member) const noexcept { return member >= 0 && member < size(); }
   void store_pose(int member, const Pose& pose) noexcept;
   void put_state(int member, const WalkState& state) noexcept;
+  void exchange_lanes(int member, int other) noexcept;
   // Lets `work` place the state and the pose of a member.
   template <class Work>
   void place_anew(int member, const Work& work) noexcept;
 
   IkMode mode_ = IkMode::robust;
-  // Members of one model stand in blocks, in their order.
+  // Members of one model stand in blocks: first those that are computed in full, then the others.
   std::vector<std::unique_ptr<WalkBlock>> blocks_;
   std::vector<int> order_;        // members, by block and lane
   std::vector<int> block_begin_;  // index of each block's first entry in `order_`
   std::vector<Lane> lane_;
   std::vector<std::shared_ptr<const WalkModel>> models_;
   std::vector<GaitParams> params_;
+  std::vector<Detail> details_;
   std::vector<Placement> placed_;
   std::vector<int> bad_inputs_;
   std::vector<vec3> roots_m_;

@@ -32,6 +32,13 @@ inline constexpr double kLeastTick_s = 1e-4, kMostTick_s = 0.1;
 // paper: the paper's steps 1-7, followed literally; no joint limits, and the solver may fail.
 // robust: damped, within joint limits, continuous; for characters that people look at.
 enum class IkMode : std::uint8_t { paper, robust };
+// How much of a walk is computed.
+// full: all of it.
+// tables: for a walk that is far away. It goes the same way in the same steps, but legs and upper
+// body are the data's at that phase: feet slide and dip by some centimetres, styles of legs, arms,
+// trunk and head do not show, and ik_error_m tells nothing. A change of the detail takes 0.25 s;
+// then the walk is as if it had always been in full.
+enum class Detail : std::uint8_t { full, tables };
 enum class Stage : std::uint8_t {
   idle,    // both feet planted
   flight,  // Table I (a): one heel flies, the other foot's toe is planted
@@ -79,6 +86,9 @@ struct WalkState {
   // In the walk's own coordinates: the hips' place on the ground, without the data's oscillations,
   // and the heading; whole turns add up.
   Placement root;
+  // The caller writes it between two ticks; another number counts as a bad input and as the detail
+  // in force.
+  Detail detail = Detail::full;
   double tick_s = 1.0 / 240.0;  // length of the last tick
   Block<1> walk;                // what the next tick begins from
 };

@@ -167,6 +167,9 @@ struct Change {
   V slowness = V{} + 1.0f;  // factor on the step's times: steps on stairs take longer
   V by_paper{};             // 1: State::leg_rad are whole angles (IkMode::paper)
 
+  // Detail::tables. 1: is asked for. 0 to 1: the pose comes over to it; 1 to 2: it comes back.
+  V asks_tables{}, to_tables{};
+
   // Landing that a program asks for (1: it does): heel and direction; and the part of a push that
   // the hips have not taken yet.
   V is_aimed{}, aim_x_m{}, aim_z_m{}, aim_rad{}, push_x_m_s{}, push_z_m_s{};

@@ -362,7 +362,8 @@ struct Feet {
   Foot<V> foot[2];  // swing, stand
   Sole<V> sole[2];
   Vec<V> table_heel_m;  // of the swinging foot, in the tables
-  V base_m{};           // the ground line below it
+  V base_m{};           // the line below it that clears the ground
+  V floor_m{};          // the same, but at first the plane that it left
   Vec<V> flat_toe_m;    // of the standing foot, if it stands flat
   Vec<V> ankle_m[2];    // of the feet after all moves
 };
@@ -415,6 +416,7 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
   const V soft = kDegree_rad * smoother(rolled);
   planned = both(stays, soft > V{}) ? soft_positive(planned, most(soft, all<V>(1e-6f))) : planned;
   foot.toe_m = {state.toe_x_m, sole.toe_rest_m, state.toe_z_m};
+  V clear_m = flight.base_m;
   if constexpr (kIsUneven<F>) {
     foot.toe_m.y = footing.toe_y_m;
     follow_room(tables, footing);
@@ -430,6 +432,7 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
     footing.rise_m = first_roll ? V{} : most(V(rise_m + left * footing.gap_rise_m), V{});
     const Vec<V> risen_m{room_m.x, V(room_m.y + footing.rise_m), room_m.z};
     flight.heel_m = flight.heel_m + risen_m;
+    clear_m = base_m;
     flight.base_m = base_m + gap_left(time.u, footing.gap_line_m, change) +
                     gap_left(time.u, footing.gap_room_m, change);
     flight.heel_m.y = change.gap_begin != V{} ? flight.heel_m.y : most(flight.heel_m.y, base_m);
@@ -437,7 +440,15 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
                          : pitch_to_rise<V>(tables, time.right, footing.rise_m, most(planned, V{}));
   }
   pitch_in_flight(time, sole, flight, planned, off, change, footing, foot);
-  feet.base_m = flight.base_m;
+  // A new plan may begin with a foot below the line that clears the ground. What turns the foot
+  // later keeps to that line.
+  feet.base_m = feet.floor_m = most(flight.base_m, clear_m);
+  if constexpr (kIsUneven<F>) {
+    const V left_m = footing.print_y_m + rise_of(footing.print, V(foot.heel_m.x - state.print_x_m),
+                                                 V(foot.heel_m.z - state.print_z_m));
+    feet.floor_m =
+        time.flies ? mix(left_m, feet.base_m, smoother(0.0f, kLiftGround, time.u)) : feet.floor_m;
+  }
   return feet;
 }
 

@@ -106,7 +106,7 @@ Mask<V> goes_on(const State<V>& state, const Change<V>& change) noexcept {
 // it until the flight begins.
 template <class V>
 void follow_ground(const Tables& tables, const Time<V>& time, const AskedStep<V>& asked,
-                   const Change<V>& change, const State<V>& state, Footing<V>& footing,
+                   Change<V>& change, const State<V>& state, Footing<V>& footing,
                    Landing<V>& landing) noexcept {
   // The share that the ground leaves is at least kLeastLeft. It is 1 for steps that are asked to be
   // shorter than kShortStep of the data's.
@@ -125,6 +125,10 @@ void follow_ground(const Tables& tables, const Time<V>& time, const AskedStep<V>
           most_jump = tables.tick_s *
                       chosen<V>(change.starting != V{}, kFirstRatioJump_1_s, kRatioJump_1_s);
   footing.step_ratio = ratio;
+  // A landing that has just changed may move at once; the ratio begins to follow it gently.
+  const auto anew = both(time.flies, both(change.is_new != V{}, change.gap_begin != V{}));
+  change.off_ratio.x = anew ? V(change.off_ratio.x - jump) : change.off_ratio.x;
+  change.off_ratio.v = anew ? V(-jump) : change.off_ratio.v;
   const auto strikes = both(no(time.flies), state.tick == all<V>(1.0f));
   Off<V>& off = footing.off_ratio;
   off.x = strikes ? V{} : V(off.x - (size(jump) > most_jump ? jump : V{}));

@@ -542,7 +542,11 @@ PlannedFlight planned_flight(const Tables& tables, const Floor& floor, const Fra
     const float off = pitch_off(time, tick, change, state);
     Foot<float> foot;
     const float low = low_pitch(low_lift<float>(time.right, state), time.u);
-    pitch_in_flight(time, sole, flies, low * stride.foot[0].pitch_rad + off, off, change, footing,
+    // After a change of plan toes are as free as if the foot were still as high over its old line.
+    Flight<float> over = flies;
+    over.base_m +=
+        gap_left(time.u, footing.gap_line_m, change) + gap_left(time.u, footing.gap_room_m, change);
+    pitch_in_flight(time, sole, over, low * stride.foot[0].pitch_rad + off, off, change, footing,
                     foot);
     set_points(leg, frame, flies, foot, flight.sole[i], flight.base[i]);
     flight.left[i] = lands.z - frame.out(doubles(flies.heel_m)).z;

@@ -337,15 +337,10 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
   swing.pitch_rad = time.flies ? flying.pitch_rad : stood.pitch_rad;
   swing.twist_rad = time.flies ? mix(stood.twist_rad, flying.twist_rad, share) : stood.twist_rad;
   swing.roll_rad = time.flies ? mix(stood.roll_rad, flying.roll_rad, share) : stood.roll_rad;
-  const Vec<V> moved = hips.heading * (read.pelvis_m - by_clock.pelvis_m);
-  hips.x_m = stands ? state.pelvis_x_m[0]
-             : led  ? change.pelvis_x_m.x
-             : runs ? V(hips.x_m + moved.x)
-                    : hips.x_m;
-  hips.z_m = stands ? state.pelvis_z_m[0]
-             : led  ? change.pelvis_z_m.x
-             : runs ? V(hips.z_m + moved.z)
-                    : hips.z_m;
+  // Hips that do not lead stay on the path of the clock's phase: move_hips() has kept their
+  // difference from the tables at that phase, not at the one that is shown.
+  hips.x_m = stands ? state.pelvis_x_m[0] : led ? change.pelvis_x_m.x : hips.x_m;
+  hips.z_m = stands ? state.pelvis_z_m[0] : led ? change.pelvis_z_m.x : hips.z_m;
   return phase;
 }
 

@@ -173,8 +173,15 @@ void change_step(const Tables& tables, bool moves, Block<1>& block, F& footing,
     return landing_over(tables, time, way_at_strike(tables, time, state), change, state, footing)
         .ratio;
   };
+  const auto shown_rate = [&] {
+    State<float> next = state;
+    next.tick += 1.0f;
+    return planned_shown(time_of(tables, next), change) -
+           planned_shown(time_of(tables, state), change);
+  };
   const Flown was = flies ? flown(tables, change, state, footing) : Flown{};
   const Time<float> time = time_of(tables, state);
+  const float shows = shown_rate() + change.off_shown.v;
   const float ratio_was = ratio(), shown = change.shown,
               pitch = planned_pitch(time, change, state) + change.off_pitch.x,
               edge = change.led != 0.0f ? planned_edge(time, change) + change.off_edge.x : 1.0f,
@@ -203,7 +210,7 @@ void change_step(const Tables& tables, bool moves, Block<1>& block, F& footing,
   change.led = change.is_new = 1.0f;
   change.off_ticks = floored(2.0f * kCarry_s * tables.time_scale / tables.tick_s + 0.5f);
   const Time<float> now = time_of(tables, state);
-  change.off_shown = {shown - planned_shown(now, change), 0.0f, 0.0f};
+  change.off_shown = {shown - planned_shown(now, change), shows - shown_rate(), 0.0f};
   change.off_over = {over - planned_over(now, change), 0.0f, 0.0f};
   change.off_pitch = {pitch - planned_pitch(now, change, state), 0.0f, 0.0f};
   change.off_edge = {flies ? edge - planned_edge(now, change) : 0.0f, 0.0f, 0.0f};

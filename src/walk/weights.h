@@ -414,7 +414,7 @@ void weigh_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stri
     const auto room = [](const V& over_m, const V& arm_m) {
       return V((most(over_m, V{}) + kFloorRoom_m) / (arm_m + kFloorRoom_m));
     };
-    const V base_m = k == 0 ? feet.base_m : zero;
+    const V base_m = k == 0 ? feet.floor_m : zero;
     leg.room_down_rad =
         room(V(foot.toe_m.y - base_m - sole.toe_rest_m), V(sole.foot_m * may.on_heel));
     leg.room_up_rad = room(V(foot.heel_m.y - base_m), V(sole.foot_m * (1.0f - may.on_heel)));

@@ -29,8 +29,7 @@ struct Bounds {
   double resumed = 1.5, paced = 1.75, faster = 1.14;
   double shins_m = 0.07, feet_m = 0.06, turning_deg = 0.8, spot_m_s2 = 6.0, spot_deg = 1.0;
 };
-// Of captures, whose knees are straighter and whose hips sway more: what is met. Reversals: 9.3
-// m/s2 where one begins with another foot than it would from a stand, 6.9 elsewhere.
+// Of captures, whose knees are straighter and whose hips sway more: what is met.
 constexpr Bounds kOfCaptures{.worst_m_s2 = 7.0,
                              .off_s = 0.37,
                              .start_deg = 1.7,
@@ -42,7 +41,7 @@ constexpr Bounds kOfCaptures{.worst_m_s2 = 7.0,
                              .resumed_m = 0.03,
                              .way_m = 1.2,
                              .reversal_s = 1.65,
-                             .reversal_m_s2 = 9.4,
+                             .reversal_m_s2 = 7.0,
                              .resumed = 2.5,
                              .paced = 2.5,
                              .faster = 1.35,

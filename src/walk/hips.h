@@ -117,7 +117,8 @@ Hips<V> move_hips(const Tables& tables, const Time<V>& time, const Landing<V>& l
 inline constexpr float kLiftFade = 0.5f;  // of the flight: until then the lift-off's motion fades
 inline constexpr float kCarry_s = 0.15f;  // at the reference leg: a phase of a new plan fades in
 
-// Rate, acceleration and place of a path at the middle of three places, kAimTicks apart.
+// Place and rate of a path at the middle of three places, kAimTicks apart, and half of its
+// acceleration: with all of it a start at a full stick speeds up by 12 % more than the walk itself.
 template <class V>
 Off<V> middle_of(const V (&m)[3]) noexcept {
   return {m[1], V((m[2] - m[0]) * (0.5f / kAimTicks)),
@@ -267,6 +268,17 @@ V planned_edge(const Time<V>& time, const Change<V>& change) noexcept {
   return smoother(0.0f, kEdgeGoes, time.u) * (1.0f - lands);
 }
 
+// Moves the differences that a change of plan has left by one tick. `time`, `state`: of that tick.
+template <class V>
+void fade_differences(const Time<V>& time, const State<V>& state, Change<V>& change) noexcept {
+  for (Off<V>* off : {&change.off_phase, &change.off_shown}) fade(change.off_ticks, *off);
+  // Differences of the step end with it, and that of the standing foot's pitch with its stage.
+  const V step_ticks = least(change.off_ticks, V(time.to_strike + 1.0f));
+  for (Off<V>* off : {&change.off_over, &change.off_ratio, &change.off_edge})
+    fade(step_ticks, *off);
+  fade(least(change.off_ticks, V(ticks_of_stage(state) - state.tick + 1.0f)), change.off_pitch);
+}
+
 // If the hips lead or have just led: moves them to their place, and reads the stride at their
 // phase; the flying foot keeps to the clock. Returns that phase, else the clock's.
 template <class V>
@@ -280,12 +292,7 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
   if (!any(runs)) return state.phase;
   const auto is_new = change.is_new != V{}, was_new = both(no(is_new), change.was_new != V{});
   const V last_found = change.phase - change.off_phase.x;
-  for (Off<V>* off : {&change.off_phase, &change.off_shown}) fade(change.off_ticks, *off);
-  // Differences of the step end with it, and that of the standing foot's pitch with its stage.
-  const V step_ticks = least(change.off_ticks, V(time.to_strike + 1.0f));
-  for (Off<V>* off : {&change.off_over, &change.off_ratio, &change.off_edge})
-    fade(step_ticks, *off);
-  fade(least(change.off_ticks, V(ticks_of_stage(state) - state.tick + 1.0f)), change.off_pitch);
+  fade_differences(time, state, change);
   change.off_ticks = most(V(change.off_ticks - 1.0f), V{});
   change.rest_ticks = most(V(change.rest_ticks - 1.0f), V{});
   change.catch_ticks = most(V(change.catch_ticks - 1.0f), V{});

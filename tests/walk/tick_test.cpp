@@ -51,6 +51,29 @@ TEST(SteadyWalk, RollsForTheShareThatItsStepsAskFor) {
   }
 }
 
+// The share of the tables that a walk shows goes on with its rate where a stop is planned, and
+// where the stick comes back.
+TEST(ChangeOfPlan, ShowsTheTablesWithoutAKink) {
+  constexpr double kMostBend = 0.002;  // per tick^2: a fade of 0.3 s has 0.001
+  double most = 0.0;
+  for (int stops = 0; stops < kRate; stops += kRate / 8) {
+    for (int resumes = kRate / 20; resumes < kRate; resumes += kRate / 20) {
+      Alone walk;
+      double last = 0.0, before = 0.0;
+      const auto go = [&](double y, int ticks) {
+        for (int tick = 0; tick < ticks; ++tick) {
+          walk.step(params_of(0.0, y));
+          const double shown = walk.block.change.shown;
+          most = std::max(most, std::abs(shown - 2.0 * last + before));
+          before = last, last = shown;
+        }
+      };
+      go(0.8, 2 * kRate + stops), go(0.0, resumes), go(0.8, kRate);
+    }
+  }
+  EXPECT_LT(most, kMostBend);
+}
+
 // From the one stick to the other, at ten moments of a step: hips are no lower than in the steady
 // walks.
 class ChangeOfPace : public testing::TestWithParam<std::array<double, 2>> {};

@@ -474,13 +474,14 @@ float catch_ticks(const Tables& tables, const State<float>& state, const Change<
       path_to(landing, footprints_of(tables, time, landing.ratio), time.right ? 1.0f : 0.0f);
   const float sign = time.back ? -1.0f : 1.0f;
   const auto along = [&](float x, float z) { return sign * landing.way.ahead(x, z); };
+  const float aim = aim_ticks(tables);
   float m[3];
   for (int k : {0, 1, 2}) {
-    const float at = strike_phase + static_cast<float>(k - 1) * kAimTicks * rate;
+    const float at = strike_phase + static_cast<float>(k - 1) * aim * rate;
     m[k] = along(path.x_m + path.per_cycle_x_m * at, path.z_m + path.per_cycle_z_m * at) +
            sign * read_pelvis(tables, time, at, landing.ratio, landing.ratio, 0.0f).z;
   }
-  const Off<float> there = middle_of(m);
+  const Off<float> there = middle_of(m, aim);
   const float goes = there.v, bend = there.a, left = time.to_strike;
   const Off<float>&x = change.pelvis_x_m, &z = change.pelvis_z_m;
   const Off<float> begin{along(x.x, z.x) - there.x + left * (goes - 0.5f * left * bend),

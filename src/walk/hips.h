@@ -554,8 +554,7 @@ void sink(const Tables& tables, const Time<V>& time, const Stride<V>& stride,
             knee = stride.leg_rad[k][3] + stand_rad<V>(tables, right, 3);
     V sine, cosine;
     sin_cos(knee, sine, cosine);
-    const V table = root(V(a * a + b * b + 2.0f * a * b * cosine)),
-            low = least(right ? state.lift[1].x : state.lift[0].x, all<V>(1.0f)),
+    const V table = root(V(a * a + b * b + 2.0f * a * b * cosine)), low = low_lift<V>(right, state),
             known = low < all<V>(1.0f) ? mix(V(kLowReach * (a + b)), table, low) : table;
     const Vec<V> way = ankle_m[k] - (pelvis.place_m + pelvis.hip_m[k]);
     const V span = root(dot(way, way)), beyond = (span - known) * (1.0f / grown);

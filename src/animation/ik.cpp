@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "animation/solver_numbers.h"
 #include "base/ranges.h"
 
 namespace gaitpad {
@@ -14,12 +15,7 @@ namespace {
 // l^2 = damping^2 + growth |dX|^2 (after Sugihara 2011, "Solvability-unconcerned inverse kinematics
 // by the Levenberg-Marquardt method"); growth rises where a step makes the error greater.
 constexpr double kLeastDamping_m2 = 1e-20;  // above the rounding of doubles
-constexpr double kGrowth = 0.1, kGrowthUp = 8.0, kGrowthDown = 0.25;
-constexpr double kFarthest_m = 0.5;  // the largest |dX| that one step uses
-// The error counts as constant if kPatience iterations together reduce it by less than the share
-// kLeastGain of itself, or of kGainFrom_m if that is less.
-constexpr int kPatience = 6;
-constexpr double kLeastGain = 0.001, kGainFrom_m = 0.1;
+using Solver = SolverNumbers<double>;
 
 // Turns a frame about its own first axis: (y, z) are the other two, in cyclic order.
 void turn(vec3& y, vec3& z, double sine, double cosine) noexcept {
@@ -504,31 +500,32 @@ struct Try {
 template <int kRows>
 Try one_try(const Problem& p, const IkAngles& start, int max_iterations) noexcept {
   constexpr double kInfinite = std::numeric_limits<double>::infinity(),
-                   kMost_m2 = kFarthest_m * kFarthest_m;
+                   kMost_m2 = Solver::kFarthest_m * Solver::kFarthest_m;
   const int dofs = p.chain.dofs;
   const double enough = p.options.tolerance_m * p.options.tolerance_m;
   IkAngles angles_rad = start, next = start;
   Place place, best;
-  double growth = kGrowth, seen_m = kInfinite;
+  double growth = Solver::kGrowth, seen_m = kInfinite;
   int seen_at = 0;
   for (int k = 0;; ++k) {
     place_chain<kRows>(p, next, k == 0 ? best : place);
     if (k > 0) {
       const bool better = place.squares < best.squares;
-      growth = better ? std::max(growth * kGrowthDown, kGrowth) : growth * kGrowthUp;
+      growth = better ? std::max(growth * Solver::kGrowthDown, Solver::kGrowth)
+                      : growth * Solver::kGrowthUp;
       if (better) angles_rad = next, best = place;
     }
     if (p.trace != nullptr) add_trace_row(p.trace, angles_rad, std::sqrt(best.squares));
     if (best.squares <= enough || k >= max_iterations) return {angles_rad, best.squares, k};
     const double error_m = std::sqrt(best.squares);
-    if (error_m < seen_m - kLeastGain * std::min(error_m, kGainFrom_m))
+    if (error_m < seen_m - Solver::kLeastGain * std::min(error_m, Solver::kGainFrom_m))
       seen_at = k, seen_m = error_m;
-    if (k - seen_at >= kPatience || !(best.squares < kInfinite))
+    if (k - seen_at >= Solver::kPatience || !(best.squares < kInfinite))
       return {angles_rad, best.squares, k};
 
     ColumnsOf<kRows> column;
     set_columns<kRows>(p, best, column);
-    const double share = best.squares > kMost_m2 ? kFarthest_m / error_m : 1.0;
+    const double share = best.squares > kMost_m2 ? Solver::kFarthest_m / error_m : 1.0;
     Step<kRows> step;
     step.weight = p.weight;
     step.damping = std::max(p.options.damping * p.options.damping, kLeastDamping_m2) +

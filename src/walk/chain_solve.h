@@ -2,6 +2,7 @@
 // theta += W J^T (J W J^T + l^2 I)^-1 dX inside joint limits (equation 5), repeated until the
 // chain's point is at its goal.
 #pragma once
+#include "animation/solver_numbers.h"
 #include "walk/lanes.h"
 
 namespace gaitpad {
@@ -9,15 +10,9 @@ namespace {
 
 inline constexpr float kLeastDamping_m2 = 1e-8f;  // above the rounding of floats
 inline constexpr float kSolved_m = 1e-6f;         // an error that ends a solve
-// The greatest turn of an angle, and the greatest error, of one step.
-inline constexpr float kMostTurn_rad = 0.3f, kFarthestStep_m = 0.5f;
-// l^2 is kGrowth of the squared error; this share grows after a step that makes the error greater,
-// and falls again after others.
-inline constexpr float kGrowth = 0.1f, kGrowthUp = 8.0f, kGrowthDown = 0.25f;
-// A solve ends after kMostSolves steps, or if kPatience of them together reduce the error by less
-// than the share kLeastGain of it, or of kGainFrom_m if that is less.
-inline constexpr int kMostSolves = 40, kPatience = 6;
-inline constexpr float kLeastGain = 0.001f, kGainFrom_m = 0.1f;
+inline constexpr float kMostTurn_rad = 0.3f;      // of an angle, in one step
+inline constexpr int kMostSolves = 40;            // steps of a solve
+using Solver = SolverNumbers<float>;
 
 // Solves (J W J^T + damping I) y = b by L D L^T; b becomes y.
 template <class V>
@@ -84,8 +79,8 @@ void step_within(const Chain& chain, const V (&column)[kDofs][3], const V (&angl
 template <class Chain, class V, std::size_t kDofs>
 void solve_chains(const Chain& chain, Mask<V> open, V (&angle_rad)[kDofs]) noexcept {
   typename Chain::Place place{}, best{};
-  V next[kDofs], growth = all<V>(kGrowth), best_m2 = all<V>(1e30f), seen_m = all<V>(1e15f),
-                 patience = all<V>(kPatience);
+  V next[kDofs], growth = all<V>(Solver::kGrowth), best_m2 = all<V>(1e30f), seen_m = all<V>(1e15f),
+                 patience = all<V>(Solver::kPatience);
   for (int j = 0; j < chain.dofs; ++j)
     next[j] = angle_rad[j] = least(most(angle_rad[j], chain.min_rad[j]), chain.max_rad[j]);
   for (int k = 0;; ++k) {
@@ -94,7 +89,8 @@ void solve_chains(const Chain& chain, Mask<V> open, V (&angle_rad)[kDofs]) noexc
     const V m2 = e[0] * e[0] + e[1] * e[1] + e[2] * e[2];
     const auto better = both(open, m2 < best_m2);
     if (k > 0) {
-      const V down = most(V(growth * kGrowthDown), all<V>(kGrowth)), up = growth * kGrowthUp;
+      const V down = most(V(growth * Solver::kGrowthDown), all<V>(Solver::kGrowth)),
+              up = growth * Solver::kGrowthUp;
       growth = better ? down : up;
     }
     for (int j = 0; j < chain.dofs; ++j) angle_rad[j] = better ? next[j] : angle_rad[j];
@@ -102,17 +98,18 @@ void solve_chains(const Chain& chain, Mask<V> open, V (&angle_rad)[kDofs]) noexc
     best_m2 = better ? m2 : best_m2;
     open = both(open, best_m2 > all<V>(kSolved_m * kSolved_m));
     const V error_m = root(best_m2);
-    const auto falls = error_m < seen_m - kLeastGain * least(error_m, all<V>(kGainFrom_m));
-    patience = falls ? all<V>(kPatience) : V(patience - 1.0f);
+    const auto falls =
+        error_m < seen_m - Solver::kLeastGain * least(error_m, all<V>(Solver::kGainFrom_m));
+    patience = falls ? all<V>(Solver::kPatience) : V(patience - 1.0f);
     seen_m = falls ? error_m : seen_m;
     open = both(open, patience > V{});
     if (k >= kMostSolves || !any(open)) return;
     V column[kDofs][3], error[3], turn[kDofs];
     chain.set_columns(best, column);
-    const V share = kFarthestStep_m / most(error_m, all<V>(kFarthestStep_m));
+    const V share = Solver::kFarthest_m / most(error_m, all<V>(Solver::kFarthest_m));
     for (int r = 0; r < 3; ++r) error[r] = share * best.error_m[r];
-    const V damping =
-        kLeastDamping_m2 + growth * least(best_m2, all<V>(kFarthestStep_m * kFarthestStep_m));
+    const V damping = kLeastDamping_m2 +
+                      growth * least(best_m2, all<V>(Solver::kFarthest_m * Solver::kFarthest_m));
     step_within(chain, column, angle_rad, error, damping, open, turn);
     V greatest{};
     for (int j = 0; j < chain.dofs; ++j) greatest = most(greatest, size(turn[j]));

@@ -52,16 +52,6 @@ void set_pitch(const Sole<V>& sole, const Turn<V>& yaw, const V& pitch_rad, cons
   foot.toe_m = chosen(on_toe, foot.toe_m, toe_m);
 }
 
-// The style's factor on the height of the flight.
-template <class V>
-V lift_of(const Mask<V>& right, const State<V>& state) noexcept {
-  return right ? state.lift[1].x : state.lift[0].x;
-}
-// The same, but at most 1: a lame foot stays low.
-template <class V>
-V low_lift(const Mask<V>& right, const State<V>& state) noexcept {
-  return least(lift_of<V>(right, state), all<V>(1.0f));
-}
 // A low foot's factor on the pitch in the tables: `low` at the lift-off, 1 from mid-flight on.
 template <class V>
 V low_pitch(const V& low, const V& u) noexcept {
@@ -534,13 +524,8 @@ void change_feet(const Landing<V>& landing, const Mask<V>& strikes, const Feet<V
   set(landing.ratio, state.ratio_behind);
   set(V(feet.foot[0].pitch_rad - stride.stood_pitch_rad), state.stand_pitch_rad);
   for (int j = 0; j < kLegAngles; ++j) {
-    const auto swap = [&](V(&of)[2][kLegAngles]) {
-      const V swing = of[0][j], stand = of[1][j];
-      of[0][j] = strikes ? stand : swing;
-      of[1][j] = strikes ? swing : stand;
-    };
-    swap(state.leg_rad);
-    swap(state.last_leg_rad);
+    exchange(strikes, state.leg_rad[0][j], state.leg_rad[1][j]);
+    exchange(strikes, state.last_leg_rad[0][j], state.last_leg_rad[1][j]);
   }
 }
 

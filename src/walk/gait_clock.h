@@ -42,6 +42,16 @@ Mask<V> is_right(const Time<V>& time, int k) noexcept {
   return k == 0 ? time.right : no(time.right);
 }
 
+// The style's factor on the height of the flight.
+template <class V>
+V lift_of(const Mask<V>& right, const State<V>& state) noexcept {
+  return right ? state.lift[1].x : state.lift[0].x;
+}
+// The same, but at most 1: a lame foot stays low.
+template <class V>
+V low_lift(const Mask<V>& right, const State<V>& state) noexcept {
+  return least(lift_of<V>(right, state), all<V>(1.0f));
+}
 template <class V>
 void follow(const V& goal, const V& pull, const V& keep, float tick_s,
             Smoothed<V>& value) noexcept {

@@ -135,6 +135,14 @@ inline V floored(const V& x) noexcept {
   return near > x ? near - 1.0f : near;
 }
 
+// Exchanges two numbers where the mask says so.
+template <class V>
+inline void exchange(const Mask<V>& where, V& a, V& b) noexcept {
+  const V was = a;
+  a = where ? b : was;
+  b = where ? was : b;
+}
+
 // --- Four numbers of a row, or of a rotation (x, y, z, w) ----------------------------------------
 
 using Four = Floats<4>;

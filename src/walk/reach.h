@@ -146,11 +146,8 @@ void take_back(const V (&asked_rad)[2], Feet<V>& feet) noexcept {
 // At a strike the feet change their parts.
 template <class V>
 void change_styled_feet(const Mask<V>& strikes, Styled<V>& styled) noexcept {
-  for (V Smoothed<V>::*part : {&Smoothed<V>::x, &Smoothed<V>::v}) {
-    const V swing = styled.low[0].*part, stand = styled.low[1].*part;
-    styled.low[0].*part = strikes ? stand : swing;
-    styled.low[1].*part = strikes ? swing : stand;
-  }
+  exchange(strikes, styled.low[0].x, styled.low[1].x);
+  exchange(strikes, styled.low[0].v, styled.low[1].v);
 }
 
 }  // namespace

@@ -159,6 +159,26 @@ inline void take_time_for_rise(const Tables& tables, Block<1>& block) noexcept {
   }
 }
 
+// The shares that a plan sets, with their differences from it: of the tables that is shown, of the
+// step's own stride, of the standing foot's pitch, and by which the flying foot's edges follow it.
+struct Shares {
+  float shown, over, pitch, edge;
+};
+inline Shares shares_of(const Tables& tables, const Change<float>& change,
+                        const State<float>& state) noexcept {
+  const Time<float> time = time_of(tables, state);
+  return {planned_shown(time, change) + change.off_shown.x,
+          planned_over(time, change) + change.off_over.x,
+          planned_pitch(time, change, state) + change.off_pitch.x,
+          change.led != 0.0f ? planned_edge(time, change) + change.off_edge.x : 1.0f};
+}
+// The same a tick later.
+inline Shares next_shares(const Tables& tables, Change<float> change, State<float> state) noexcept {
+  state.tick += 1.0f;
+  fade_differences(time_of(tables, state), state, change);
+  return shares_of(tables, change, state);
+}
+
 // Changes the plan of the running step: `work` sets the new one. Differences between both plans
 // fade. If the landing `moves`, it is planned again, and a flying foot changes over to its new path
 // until it lands.
@@ -173,20 +193,11 @@ void change_step(const Tables& tables, bool moves, Block<1>& block, F& footing,
     return landing_over(tables, time, way_at_strike(tables, time, state), change, state, footing)
         .ratio;
   };
-  const auto shown_rate = [&] {
-    State<float> next = state;
-    next.tick += 1.0f;
-    return planned_shown(time_of(tables, next), change) -
-           planned_shown(time_of(tables, state), change);
-  };
   const Flown was = flies ? flown(tables, change, state, footing) : Flown{};
   const Time<float> time = time_of(tables, state);
-  const float shows = shown_rate() + change.off_shown.v;
-  const float ratio_was = ratio(), shown = change.shown,
-              pitch = planned_pitch(time, change, state) + change.off_pitch.x,
-              edge = change.led != 0.0f ? planned_edge(time, change) + change.off_edge.x : 1.0f,
-              over = planned_over(time, change) + change.off_over.x,
-              flown_share = flight_share(time.u, change);
+  const Shares share_was = shares_of(tables, change, state),
+               next_was = next_shares(tables, change, state);
+  const float ratio_was = ratio(), flown_share = flight_share(time.u, change);
   if (change.led == 0.0f) {
     go_on_from_here(tables, true, state, change);
     change.phase = state.phase, change.phase_rate = state.phase_rate;
@@ -210,16 +221,25 @@ void change_step(const Tables& tables, bool moves, Block<1>& block, F& footing,
   change.led = change.is_new = 1.0f;
   change.off_ticks = floored(2.0f * kCarry_s * tables.time_scale / tables.tick_s + 0.5f);
   const Time<float> now = time_of(tables, state);
-  change.off_shown = {shown - planned_shown(now, change), shows - shown_rate(), 0.0f};
-  change.off_over = {over - planned_over(now, change), 0.0f, 0.0f};
-  change.off_pitch = {pitch - planned_pitch(now, change, state), 0.0f, 0.0f};
-  change.off_edge = {flies ? edge - planned_edge(now, change) : 0.0f, 0.0f, 0.0f};
+  for (Off<float>* off : {&change.off_shown, &change.off_over, &change.off_pitch, &change.off_edge})
+    *off = {};
+  const Shares share = shares_of(tables, change, state), next = next_shares(tables, change, state);
+  const auto go_on = [&](float Shares::*of) {
+    const float off = share_was.*of - share.*of;
+    return Off<float>{off, next_was.*of - next.*of - off, 0.0f};
+  };
+  change.off_shown = go_on(&Shares::shown), change.off_over = go_on(&Shares::over);
+  // Without its rate, with which it would go on beyond 0, where the foot lies flat.
+  change.off_pitch.x = share_was.pitch - share.pitch;
+  if (flies) change.off_edge = go_on(&Shares::edge);
   if (!moves) return;
   change.limp = 0.0f;  // the hips choose the step's length, see plan_limp()
   if constexpr (kIsUneven<F>) footing.is_new = 1.0f;
   change.gap_begin = now.u, change.gap_share = flown_share;
   plan_landing_anew(tables, now, block, footing);
   change.off_ratio = {};
+  // Without its rate: the hips' place at the strike is that of the ratio now, which would run
+  // ahead.
   change.off_ratio.x = ratio_was - ratio();
   if (!flies) return;
   constexpr float kLow_m = 0.001f;  // least height that a difference is scaled by
@@ -454,13 +474,14 @@ float catch_ticks(const Tables& tables, const State<float>& state, const Change<
       path_to(landing, footprints_of(tables, time, landing.ratio), time.right ? 1.0f : 0.0f);
   const float sign = time.back ? -1.0f : 1.0f;
   const auto along = [&](float x, float z) { return sign * landing.way.ahead(x, z); };
+  const float aim = aim_ticks(tables);
   float m[3];
   for (int k : {0, 1, 2}) {
-    const float at = strike_phase + static_cast<float>(k - 1) * kAimTicks * rate;
+    const float at = strike_phase + static_cast<float>(k - 1) * aim * rate;
     m[k] = along(path.x_m + path.per_cycle_x_m * at, path.z_m + path.per_cycle_z_m * at) +
            sign * read_pelvis(tables, time, at, landing.ratio, landing.ratio, 0.0f).z;
   }
-  const Off<float> there = middle_of(m);
+  const Off<float> there = middle_of(m, aim);
   const float goes = there.v, bend = there.a, left = time.to_strike;
   const Off<float>&x = change.pelvis_x_m, &z = change.pelvis_z_m;
   const Off<float> begin{along(x.x, z.x) - there.x + left * (goes - 0.5f * left * bend),

@@ -259,7 +259,7 @@ template <class V>
 void plan_limp(const Tables& tables, const Time<V>& time, const Mask<V>& lifts,
                const State<V>& state, Change<V>& change) noexcept {
   // The limp begins where the steps' ratios differ by kEvenSteps and is whole from kUnevenSteps on.
-  // kLeastAsked, a ratio, keeps tiny steps from counting as uneven.
+  // kLeastAsked, of the data's step, keeps tiny steps from counting as uneven.
   constexpr float kEvenSteps = 0.03f, kUnevenSteps = 0.2f, kLeastAsked = 0.1f;
   // An even style asks for equal lengths or for equal ratios to the data, whose steps may differ.
   const V &left_m = state.length_m[0].x, &right_m = state.length_m[1].x;
@@ -273,12 +273,12 @@ void plan_limp(const Tables& tables, const Time<V>& time, const Mask<V>& lifts,
              limps = both(walks, longer - shorter > kEvenSteps * (longer + kLeastAsked));
   change.limp = lifts ? V{} : change.limp;
   if (!any(both(lifts, limps))) return;
-  const auto evenness = [](const V& a, const V& b) {
-    return V((least(a, b) + kLeastAsked) / (most(a, b) + kLeastAsked));
+  const auto evenness = [](const V& a, const V& b, float least_asked) {
+    return V((least(a, b) + least_asked) / (most(a, b) + least_asked));
   };
   const auto even_of = [&](const V& of_left_m, const V& of_right_m) {
-    return most(evenness(V(of_left_m * per_left_m), V(of_right_m * per_right_m)),
-                evenness(of_left_m, of_right_m));
+    return most(evenness(V(of_left_m * per_left_m), V(of_right_m * per_right_m), kLeastAsked),
+                evenness(of_left_m, of_right_m, kLeastAsked * tables.source_step_m));
   };
   // Nor is it a limp if steps are still on their way to the even lengths that are asked for.
   const V even = most(even_of(left_m, right_m),

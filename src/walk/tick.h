@@ -157,13 +157,15 @@ template <int kWidth, bool kUneven>
 void change_ends(const Tables& tables, Block<kWidth>& block) noexcept {
   using V = Floats<kWidth>;
   constexpr float kGrows_per_s = 5.0f;  // share of a command: faster is a stick on its way
+  constexpr float kTurn_s = 1.0f;       // a turn of 1 rad/s counts as steps of one leg
   const Asked<V>& asked = block.state.asked;
-  V& asked_m = block.change.asked_m;
-  const V way_m = asked.length_m[0] + asked.length_m[1] + size(asked.turn_rad_s);
-  const auto comes = size(V(way_m - asked_m)) > kGrows_per_s * tables.tick_s * way_m;
+  V& asked_legs = block.change.asked_legs;
+  const V way_legs = (asked.length_m[0] + asked.length_m[1]) * (1.0f / tables.leg_m) +
+                     kTurn_s * size(asked.turn_rad_s);
+  const auto comes = size(V(way_legs - asked_legs)) > kGrows_per_s * tables.tick_s * way_legs;
   const auto walks = is_to_walk(block.state), stops = block.change.stops != V{},
              moves = both(block.change.stands == V{}, either(no(walks), no(comes)));
-  asked_m = asked.walks != V{} ? way_m : V{};
+  asked_legs = asked.walks != V{} ? way_legs : V{};
   const auto ends = [&](bool may_move, Block<1>& one, auto& footing) {
     plan_rest(tables, may_move, one, footing);
   };

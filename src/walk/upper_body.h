@@ -255,8 +255,8 @@ template <class V>
     // The lean was 0 and the turns ahead had settled; breath and glances had their own past.
     const Idle<V> idle =
         idle_at(tables, most(V(styled.idle_ticks - (ago + 1.0f)), V{}), state, styled);
-    const BodyTick<V> then{tick.time,   tick.landing, tick.hips,  tick.stride,
-                           tick.pelvis, idle,         tick.phase, tick.shown};
+    const BodyTick<V> then{tick.time,   tick.landing, tick.hips, tick.stride,
+                           tick.pelvis, idle,         phase,     tick.shown};
     const Bearing<V> before = bearing_of(
         tables, then, is_styled, V(state.chest_ahead_rad.x - ago_s * state.chest_ahead_rad.v),
         V(state.head_ahead_rad.x - ago_s * state.head_ahead_rad.v), V{}, styled);

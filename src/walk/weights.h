@@ -451,16 +451,11 @@ template <class V>
 void change_weighted_legs(const Mask<V>& strikes, Weighted<V>& weighted) noexcept {
   const auto changes = both(strikes, weighted.acts != V{});
   if (!any(changes)) return;
-  const auto swap = [&](V& swing_number, V& stand_number) {
-    const V swing = swing_number, stand = stand_number;
-    swing_number = changes ? stand : swing;
-    stand_number = changes ? swing : stand;
-  };
   for (auto* of :
        {&weighted.lagging_rad, &weighted.mean_rad, &weighted.shift_rad, &weighted.last_shift_rad})
-    for (int j = 0; j < kLegAngles; ++j) swap((*of)[0][j], (*of)[1][j]);
-  swap(weighted.loose[0].x, weighted.loose[1].x);
-  swap(weighted.loose[0].v, weighted.loose[1].v);
+    for (int j = 0; j < kLegAngles; ++j) exchange(changes, (*of)[0][j], (*of)[1][j]);
+  exchange(changes, weighted.loose[0].x, weighted.loose[1].x);
+  exchange(changes, weighted.loose[0].v, weighted.loose[1].v);
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/walk/made_block.h"
+#include "walk/hips.h"
 #include "walk/walk.h"
 
 namespace gaitpad {
@@ -38,6 +39,12 @@ INSTANTIATE_TEST_SUITE_P(Backward, Pace, testing::Values(vec2(0.0, -0.5), vec2(0
 INSTANTIATE_TEST_SUITE_P(Turning, Pace, testing::Values(vec2(-0.3, 0.8), vec2(0.7, 0.7)));
 
 // Slow steps, and those on the spot, too: a change of pace must not lead them without end.
+TEST(SteadyWalk, RollsAsTheStridesWereMade) {
+  for (float ratio = 0.0f; ratio < 2.0f; ratio += 0.05f)
+    for (const float share : {0.03f, 0.12f, 0.25f})
+      EXPECT_NEAR(roll_share(share, ratio), roll_time_share(share, ratio), 1e-7) << ratio;
+}
+
 TEST(SteadyWalk, RollsForTheShareThatItsStepsAskFor) {
   for (const vec2& stick : {vec2(0.0, 0.2), vec2(0.0, 0.8), vec2(0.0, -0.5), vec2(0.9, 0.0)}) {
     const GaitParams params = params_of(stick.x, stick.y);
@@ -48,6 +55,71 @@ TEST(SteadyWalk, RollsForTheShareThatItsStepsAskFor) {
                  share = roll_time_share(walk.tables.stage_share[0], ratio);
     EXPECT_NEAR(walk.block.state.roll_ticks, 2.0 * stride.time_s * share * kRate, 1.0) << stick.x;
     EXPECT_EQ(walk.block.change.led, 0.0f) << stick.x << " " << stick.y;
+  }
+}
+
+// The share of the tables that a walk shows goes on with its rate where a stop is planned, and
+// where the stick comes back.
+TEST(ChangeOfPlan, ShowsTheTablesWithoutAKink) {
+  constexpr double kMostBend = 0.002;  // per tick^2: a fade of 0.3 s has 0.001
+  double most = 0.0;
+  for (int stops = 0; stops < kRate; stops += kRate / 8) {
+    for (int resumes = kRate / 20; resumes < kRate; resumes += kRate / 20) {
+      Alone walk;
+      double last = 0.0, before = 0.0;
+      const auto go = [&](double y, int ticks) {
+        for (int tick = 0; tick < ticks; ++tick) {
+          walk.step(params_of(0.0, y));
+          const double shown = walk.block.change.shown;
+          most = std::max(most, std::abs(shown - 2.0 * last + before));
+          before = last, last = shown;
+        }
+      };
+      go(0.8, 2 * kRate + stops), go(0.0, resumes), go(0.8, kRate);
+    }
+  }
+  EXPECT_LT(most, kMostBend);
+}
+
+// Where the hips of a start, of two changes of pace and of a stop are, every 0.05 s.
+std::vector<double> places_at(int rate_hz, double begin_s) {
+  Pose pose;
+  WalkState state = standing(adult(), vec3(0.0), pose);
+  std::vector<double> places_m;
+  for (int tick = 0; tick < 8 * rate_hz; ++tick) {
+    const double time_s = double(tick) / rate_hz - begin_s, y = time_s < 2.0   ? 0.4
+                                                                : time_s < 4.0 ? 1.0
+                                                                : time_s < 6.0 ? 0.4
+                                                                               : 0.0;
+    advance(adult(), params_of(0.0, y), IkMode::robust, 1.0 / rate_hz, state, pose);
+    if ((tick + 1) % (rate_hz / 20) == 0) places_m.push_back(pose.root_m.z);
+  }
+  return places_m;
+}
+
+TEST(ChangeOfPlan, ReadsTheTablesAroundAStrikeOverTheSameTimeAtAnyRate) {
+  for (const int rate_hz : {20, 60, 240, 1000}) {
+    const Tables tables = tables_of(adult(), 1.0 / rate_hz);
+    EXPECT_NEAR(aim_ticks(tables) / rate_hz, tables.time_scale / 60.0, 1e-6) << rate_hz;
+  }
+}
+
+// Changes that begin just before or after a strike may take another step at another rate, so this
+// is the median over some moments.
+TEST(ChangeOfPlan, LeadsTheHipsAlikeAtAnyRate) {
+  constexpr int kTimes = 9;
+  for (const int rate_hz : {20, 60, 1000}) {
+    std::array<double, kTimes> off_m{};
+    for (int k = 0; k < kTimes; ++k) {
+      const std::vector<double> usual = places_at(240, 0.1 * k),
+                                places = places_at(rate_hz, 0.1 * k);
+      for (std::size_t i = 0; i < usual.size(); ++i)
+        off_m[k] = std::max(off_m[k], std::abs(places[i] - usual[i]));
+    }
+    std::sort(off_m.begin(), off_m.end());
+    std::printf("%d Hz: %.4f m, %.4f to %.4f\n", rate_hz, off_m[kTimes / 2], off_m.front(),
+                off_m.back());
+    EXPECT_LT(off_m[kTimes / 2], 0.04) << rate_hz;
   }
 }
 

@@ -28,6 +28,10 @@ class Turning {
     const vec3 now = turned_by(last_[4], last_[0]), before = turned_by(last_[8], last_[4]);
     most_deg_s2 = std::max(most_deg_s2, glm::length(now - before) * kRate * kRate / 16.0 / kDegree);
   }
+  // The second difference of the last three ticks, degrees/tick^2.
+  double bend_deg() const {
+    return glm::length(turned_by(last_[1], last_[0]) - turned_by(last_[2], last_[1])) / kDegree;
+  }
   double most_deg_s2 = 0.0;
 
  private:
@@ -61,9 +65,11 @@ class Walker {
     ask(params, block);
     quat* local = pose.local.data();
     vec3* root = &pose.root_m;
+    const bool eased = block.poise.acts != 0.0f;
     advance(tables_, block, Poses{&local, &root, 1});
     forward_kinematics(model_.cycle.skeleton, pose, frames_);
     of_chest.add(chest()), of_head.add(head()), of_pelvis.add(pelvis());
+    if (!eased && block.poise.acts != 0.0f) begins_deg = of_chest.bend_deg();
   }
   void forget() {
     for (Turning* turning : {&of_chest, &of_head, &of_pelvis}) turning->most_deg_s2 = 0.0;
@@ -84,6 +90,7 @@ class Walker {
   Pose pose;
   Block<1> block;
   Turning of_chest, of_head, of_pelvis;
+  double begins_deg = 0.0;  // bend_deg() of the chest where easing last began
 
  private:
   const WalkModel& model_;
@@ -173,6 +180,25 @@ TEST(TurnInPlace, TurnsChestAndHeadAtMostTwiceAsHardAsThePelvis) {
       EXPECT_LE(most.head, kMost * most.pelvis);
     }
   }
+}
+
+// Where a turn begins, the chest goes on with the rate at which a style leans it to both sides.
+TEST(Turn, BeginsWithTheRateOfALeaningTrunk) {
+  const StyleValues sways =
+      style_of({{"idle", 0.0}, {"trunk.over_left_deg", 20.0}, {"trunk.over_right_deg", 20.0}});
+  constexpr double kMost_deg = 0.008;  // a tick^2
+  double most_deg = 0.0;
+  for (int moment = 0; moment < 2 * kMoments; ++moment) {
+    Walker walker(sways);
+    walker.push(vec2(0.0, 0.8));
+    walker.hold(4 * kRate + moment * kRate * 11 / 20 / kMoments);
+    ASSERT_EQ(walker.block.poise.acts, 0.0f);
+    walker.push(vec2(0.3, 0.8));
+    ASSERT_NE(walker.block.poise.acts, 0.0f);
+    most_deg = std::max(most_deg, walker.begins_deg);
+  }
+  std::printf("%.4f degrees/tick^2\n", most_deg);
+  EXPECT_LT(most_deg, kMost_deg);
 }
 
 // A walk that begins in the middle of a glance: the head goes on from how it moves.

@@ -326,6 +326,24 @@ TEST(Walk, MirroredSticksHaveExactlyMirroredHeadings) {
   EXPECT_TRUE(other_ticks);
 }
 
+TEST(Walk, MirroredSticksHaveMirroredWalks) {
+  MadeWalker right, left;
+  double most_m = 0.0;
+  for (int tick = 0; tick < 6 * kRate; ++tick) {
+    right.walk(0.5, 0.7, 1), left.walk(-0.5, 0.7, 1);
+    const auto gap = [&](const vec3& a, const vec3& b) {
+      most_m = std::max(most_m, glm::distance(a, vec3(-b.x, b.y, b.z)));
+    };
+    gap(right.last().pelvis_m, left.last().pelvis_m);
+    for (const int side : {0, 1}) {
+      gap(right.last().heel_m[side], left.last().heel_m[1 - side]);
+      gap(right.last().toe_m[side], left.last().toe_m[1 - side]);
+    }
+  }
+  std::printf("%.2e m\n", most_m);
+  EXPECT_LT(most_m, 2e-5);
+}
+
 TEST(Walk, GoesEquallyFarAndLooksAlikeAtAnyRate) {
   for (const vec2 stick : {vec2(0.0, 0.3), vec2(0.4, 0.6), vec2(0.0, 0.8), vec2(0.0, 1.0)}) {
     const RateRun usual = run_at(240, stick);

@@ -149,7 +149,7 @@ struct Change {
   // ticks that are left of it, and the sinking that the legs ask for in this tick.
   V sink_m[kSinkKnots]{}, sink_ticks{}, wants_m{};
   V foreseen_m{};  // sum of both steps' lengths for which that was planned
-  V asked_m{};     // the same sum in the last tick, where 1 rad/s of turn counts as 1 m
+  V asked_legs{};  // sum of both steps' lengths and of the turn asked for in the last tick, in legs
 
   // Flight after a change of plan: the share of the flight at which State::gap_m begins to fade,
   // and the share in which it fades.

@@ -59,7 +59,7 @@ void rise_on_toe(const Sole<V>& sole, const V& pitch_rad, const Mask<V>& rises,
 }
 
 // Greatest reach of a leg, over its length: a straight leg has no derivative.
-constexpr float kLongestReach = 0.99995f;
+inline constexpr float kLongestReach = 0.99995f;
 
 template <class V>
 V leg_m(const Tables& tables, const Mask<V>& right) noexcept {

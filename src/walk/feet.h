@@ -294,9 +294,7 @@ Flight<V> fly(const Tables& tables, const Time<V>& time, const Landing<V>& landi
                     V(smoother(0.0f, 0.5f, over) * (1.0f - smoother(V((over - 0.6f) * 2.5f)))));
   const FootInStride<V>& table = stride.foot[0];
   flight.edge = edge_of(sole, V(low * table.twist_rad), V(low * table.roll_rad));
-  const Way<V> left = way_of(state.print_rad),
-               flown = way_of(flying_yaw(time, landing, change, state));
-  flight.way = chosen(time.flies, flown, left);
+  flight.way = way_of(time.flies ? flying_yaw(time, landing, change, state) : state.print_rad);
   if constexpr (kIsUneven<F>) {
     const Turn<V> from = tilt_of(footing.print),
                   to = tilt_of(plane_in_flight(time, change, footing));
@@ -332,9 +330,13 @@ void pitch_in_flight(const Time<V>& time, const Sole<V>& sole, const Flight<V>& 
   const Vec<V> rolled = foot.edge * sole.line_m;
   const V ahead = dot(rolled, sole.forward), flat_ahead = dot(sole.line_m, sole.forward);
   const V steeper = (rolled.y * flat_ahead - sole.line_m.y * ahead) / (sole.foot_m * sole.foot_m);
-  const V across = (flight.way.turn() * (turn_about(sole.side, planned) * foot.edge) * sole.side).y;
-  const V edge_m =
-      sole.half_width_m * size(across) * smooth(0.0f, 0.25f, u) * (1.0f - smooth(0.9f, 1.0f, u));
+  V edge_m{};
+  if (any(time.flies)) {
+    const V across =
+        (flight.way.turn() * (turn_about(sole.side, planned) * foot.edge) * sole.side).y;
+    edge_m =
+        sole.half_width_m * size(across) * smooth(0.0f, 0.25f, u) * (1.0f - smooth(0.9f, 1.0f, u));
+  }
   const V deep = (sole.toe_rest_m + edge_m - kMostSink_m - height_m) / sole.foot_m;
   // The arc goes on straight beyond kSteep: a heel as high as the foot is long leaves it free.
   constexpr float kSteep = 0.95f, kSteeper = 3.2025631f;  // the slope of the arc at kSteep

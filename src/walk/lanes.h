@@ -254,10 +254,10 @@ inline void sin_cos_small(const V& x, V& sine, V& cosine) noexcept {
       1.0f - 0.5f * z +
       z * z * (4.166664568298827e-2f + z * (-1.388731625493765e-3f + z * 2.443315711809948e-5f));
 }
-// Sine and cosine of any angle below 1e4.
+// Sine and cosine of any angle below 1e4, which is nearest to so many quarter turns.
 template <class V>
-inline void sin_cos(const V& angle_rad, V& sine, V& cosine) noexcept {
-  const V quarters = rounded(V(angle_rad * 0.63661977f));
+[[gnu::noinline]] void sin_cos_far(const V& angle_rad, const V& quarters, V& sine,
+                                   V& cosine) noexcept {
   // pi / 2 in three parts, of which the first two have few digits.
   const V x = ((angle_rad - quarters * 1.5703125f) - quarters * 4.837512969970703125e-4f) -
               quarters * 7.54978995489188216e-8f;
@@ -271,6 +271,12 @@ inline void sin_cos(const V& angle_rad, V& sine, V& cosine) noexcept {
   const V sine_of = odd ? c : s, cosine_of = odd ? s : c;
   sine = back ? -sine_of : sine_of;
   cosine = (odd != back) ? -cosine_of : cosine_of;
+}
+template <class V>
+inline void sin_cos(const V& angle_rad, V& sine, V& cosine) noexcept {
+  const V quarters = rounded(V(angle_rad * 0.63661977f));
+  if (any(quarters != V{})) return sin_cos_far(angle_rad, quarters, sine, cosine);
+  sin_cos_small(angle_rad, sine, cosine);
 }
 // Arc sine to 1e-7 (Cephes, asinf). Above 0.5 it is a right angle less the other acute angle.
 template <class V>

@@ -4,6 +4,10 @@
 namespace gaitpad {
 
 void advance(const Tables& tables, Block<1>& block, const Poses& poses) noexcept {
+#ifndef GAITPAD_NO_VECTORS
+  if (lanes_in_use() == 16) return advance_by_avx512(tables, block, poses);
+  if (lanes_in_use() == 8) return advance_by_avx2(tables, block, poses);
+#endif
   advance_block<1>(tables, block, poses);
 }
 #ifndef GAITPAD_NO_VECTORS

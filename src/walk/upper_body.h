@@ -467,28 +467,28 @@ void write_data(const Tables& tables, const DataRead<V>& data, const V& share,
     const float k0 = lane(knots.weight[0], w), k1 = lane(knots.weight[1], w),
                 k2 = lane(knots.weight[2], w), k3 = lane(knots.weight[3], w),
                 shows = lane(data.shown, w);
+    const UpperJoint* joint = tables.upper.data();
+    quat* const local = poses.local[w];
     const float swings[5] = {1.0f, lane(data.shoulder[0], w), lane(data.elbow[0], w),
                              lane(data.shoulder[1], w), lane(data.elbow[1], w)};
-    for (std::size_t i = 0; i < count; ++i) {
-      const UpperJoint& joint = tables.upper[i];
-      const float* from = row + 4 * i;
+    for (const float* from = row; from < row + 4 * count; from += 4, ++joint) {
       Four q = part<Four>(from) * k0 + part<Four>(from + 4 * count) * k1 +
                part<Four>(from + 8 * count) * k2 + part<Four>(from + 12 * count) * k3;
-      if (joint.swings != 0) {
-        const Four middle = part<Four>(joint.middle.data());
-        q = middle + (q - middle) * swings[joint.swings];
+      if (joint->swings != 0) {
+        const Four middle = part<Four>(joint->middle.data());
+        q = middle + (q - middle) * swings[joint->swings];
       }
       q = unit(q);
       if (shows < 1.0f) {
-        const Four stand = part<Four>(joint.standing.data());
+        const Four stand = part<Four>(joint->standing.data());
         q = unit(stand + (q - stand) * shows);
       }
-      quat& to = poses.local[w][joint.joint];
+      quat& to = local[joint->joint];
       if (part_of < 1.0f) q = over(to, q, part_of);
       store(q, to);
     }
-    for (const int joint : tables.still) poses.local[w][joint] = kIdentity;
-    for (const auto& [joint, turn] : tables.kept) poses.local[w][joint] = turn;
+    for (const int still : tables.still) local[still] = kIdentity;
+    for (const auto& [kept, turn] : tables.kept) local[kept] = turn;
   }
 }
 

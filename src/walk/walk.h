@@ -13,6 +13,10 @@ void advance(const Tables& tables, Block<4>& block, const Poses& poses) noexcept
 void advance(const Tables& tables, Block<8>& block, const Poses& poses) noexcept;
 void advance(const Tables& tables, Block<16>& block, const Poses& poses) noexcept;
 
+// The same of one walk, by wider registers' instructions. advance() chooses by lanes_in_use().
+void advance_by_avx2(const Tables& tables, Block<1>& block, const Poses& poses) noexcept;
+void advance_by_avx512(const Tables& tables, Block<1>& block, const Poses& poses) noexcept;
+
 // The same with the paper's own solver (IkMode::paper).
 void advance_by_paper(const Tables& tables, Block<1>& block, const Poses& poses) noexcept;
 

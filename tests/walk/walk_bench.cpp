@@ -108,6 +108,7 @@ void measure() {
   if (__builtin_cpu_supports("avx512dq")) {
     row("1,000 in lanes of 16", new_ns<16>(tables, moments, kCrowd));
     row("a second later", new_ns<16>(tables, moments, kCrowd, kRate));
+    row("100,000 in lanes of 16", new_ns<16>(tables, moments, 100 * kCrowd));
   }
   row("lanes of 4, a second later", new_ns<4>(tables, moments, kCrowd, kRate));
   // Four walks of the styles of `gaitpad bench`, over four even ones; alone, and side by side.

@@ -149,6 +149,11 @@ Leg<V> solve_leg(LegGoal<V>& goal) noexcept {
   return solve_leg<V>(goal.thigh_m, goal.shank_m, goal.ankle_m, goal.foot, goal.table_rad,
                       goal.off_rad);
 }
+#ifdef GAITPAD_NO_VECTORS
+inline void solve_both(LegGoal<float> (&goals)[2], Leg<float> (&legs)[2]) noexcept {
+  for (int k : {0, 1}) legs[k] = solve_leg(goals[k]);
+}
+#else
 // Solves both legs of one walk side by side. The register's other half holds them again.
 inline void solve_both(LegGoal<float> (&goals)[2], Leg<float> (&legs)[2]) noexcept {
   constexpr int kNumbers = sizeof(LegGoal<float>) / sizeof(float);
@@ -167,6 +172,7 @@ inline void solve_both(LegGoal<float> (&goals)[2], Leg<float> (&legs)[2]) noexce
     for (int j = 0; j < kLegAngles; ++j) goals[k].off_rad[j] = both.off_rad[j][k];
   }
 }
+#endif
 
 // Solves swing and stand. `begun_rad`, unless null: what was added to the tables' angles at the
 // start.

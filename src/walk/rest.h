@@ -370,6 +370,7 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
   // From the landing to the end of a closing step, and of a step between; the share of speed times
   // time that braking hips go in it.
   constexpr float kToClose_s = 0.40f, kNextStep_s = 0.35f, kWayWhileClosing = 0.44f;
+  constexpr float kLurch = 1.35f;       // speed of hips that lurch, over the walk's mean
   constexpr float kFurtherStep = 0.3f;  // shortest step between, over the foot's own step
   constexpr float kTurnsOnSpot = 0.1f;  // steps below this ratio are on the spot
   constexpr float kMostClosingOnSpot = 1.7f;
@@ -379,18 +380,26 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
   const Way<float> way = way_of(state.landing_rad);
   const float sign = time.back ? -1.0f : 1.0f;
   const auto along = [&](float x, float z) { return sign * way.ahead(x, z); };
+  const float planned = along(state.landing_x_m, state.landing_z_m),
+              own_m = own_step_m<float>(tables, right, time.back);
+  const bool on_spot = planned < kTurnsOnSpot * own_m;
+  const float mean_m_s = 0.5f * (state.length_m[0].x + state.length_m[1].x) / state.step_time_s.x;
   Change<float> here = change;
   if (change.led == 0.0f) go_on_from_here(tables, true, state, here);
-  const Off<float>&x = here.pelvis_x_m, &z = here.pelvis_z_m;
+  Off<float>&x = here.pelvis_x_m, &z = here.pelvis_z_m;
+  // The hips of a limp lurch: they are fast for a moment alone. A plan that goes on from there
+  // leads them far beyond their feet. It waits for the end of a roll; in a flight they speed up no
+  // more.
+  if (change.led == 0.0f && !on_spot && along(x.v, z.v) > kLurch * tick_s * mean_m_s) {
+    if (!flies) return;
+    if (along(x.a, z.a) > 0.0f) x.a = z.a = 0.0f;
+  }
   const float speed = along(x.v, z.v) / tick_s, bend = along(x.a, z.a) / (tick_s * tick_s),
               from = sign * tables.rest_lead_m - along(x.x, z.x), need = kNeed * speed * speed,
               left_s = time.to_strike * tick_s,
-              planned = along(state.landing_x_m, state.landing_z_m),
-              own_m = own_step_m<float>(tables, right, time.back),
               next_own_m = own_step_m<float>(tables, !right, time.back),
               foot_m = flies ? along(state.last_heel_m[0].x, state.last_heel_m[0].z)
                              : along(state.print_x_m, state.print_z_m);
-  const bool on_spot = planned < kTurnsOnSpot * own_m;
   const float most_closing = on_spot ? kMostClosingOnSpot : kMostClosing;
   const float longest_s = longest_closing_s(tables, state);
   // `aside_m`: place at which the hips are to rest, to the left of the standing foot.
@@ -402,6 +411,7 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
                                      most(least_s, most_s), landings);
     change.rest_ticks = ticks_of(time_s, tick_s);
     change.stops = 1.0f;
+    change.pelvis_x_m = x, change.pelvis_z_m = z;
   };
   // A walk that is to go the other way is in a hurry.
   const float close_m_s2 = state.asked.walks != 0.0f ? kHastyBrake_m_s2 : kBrake_m_s2;

@@ -356,6 +356,7 @@ void weigh_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stri
   constexpr float kBentKnee = 0.65f;  // a knee straighter than this share of the even one is bent
   constexpr float kTight_rad = 0.05235988f;  // 3 degrees of room: half of it gives way
   constexpr float kFloorRoom_m = 0.0003f;    // keeps the room above 0
+  constexpr float kMostShift_rad = 1.0f;     // what weights add is far below it, or no answer
   if (!any(either(weighted.asked != V{}, weighted.acts != V{}))) return;
   const V one = all<V>(1.0f), zero{};
   V even_rad[2][kLegAngles];
@@ -429,6 +430,13 @@ void weigh_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stri
     leg.goal_m = to_pelvis * (planted_m - pelvis.place_m - pelvis.hip_m[k]);
     leg.thigh_m = of_leg<V>(tables, right, &LegBones::thigh_m);
     leg.shank_m = of_leg<V>(tables, right, &LegBones::shank_m);
+    const auto is_short = legs[k].short_m != zero;
+    if (any(is_short)) {  // the goal comes as near as the even leg, stretched or folded, gets to it
+      const Vec<V> ankle_m = to_pelvis * (feet.ankle_m[k] - pelvis.place_m - pelvis.hip_m[k]);
+      const V way_m = most(root(dot(ankle_m, ankle_m)), all<V>(kFloorRoom_m)),
+              off_m = way_m > leg.thigh_m ? legs[k].short_m : V(-legs[k].short_m);
+      leg.goal_m = chosen(is_short, leg.goal_m - ankle_m * V(off_m / way_m), leg.goal_m);
+    }
     uneven[k] = both(acts, smallest < all<V>(1.0f - kEvenWeights));
   }
   const float lever_m = kFootLever_m * tables.size;
@@ -436,6 +444,9 @@ void weigh_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stri
                                         [lever_m](auto& legs) { share_leg(lever_m, legs); });
   for (int k : {0, 1}) {
     const LegToShare<V>& leg = shared[k];
+    for (int j = 0; j < kLegAngles; ++j)
+      uneven[k] =
+          both(uneven[k], size(V(leg.angles_rad[j] - even_rad[k][j])) < all<V>(kMostShift_rad));
     legs[k].hip = chosen(uneven[k], leg.hip, legs[k].hip);
     legs[k].knee =
         chosen(uneven[k], Turn<V>{leg.knee_cosine, leg.knee_sine, zero, zero}, legs[k].knee);

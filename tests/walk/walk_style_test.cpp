@@ -4,7 +4,9 @@
 #include <filesystem>
 
 #include "gaitpad/config_files.h"
+#include "gaitpad/motion_file.h"
 #include "tests/folders.h"
+#include "tests/shared_data.h"
 #include "tests/walk/made_walker.h"
 
 namespace gaitpad {
@@ -149,6 +151,30 @@ TEST(WalkStyle, ALimpLeansOverTheSoreLegWhileItStands) {
   EXPECT_GT(over_left, 5.0);
   EXPECT_LE(knee_rad, 12.0 * kDegree);
   EXPECT_LE(limping.travel_m(), 0.060);
+}
+
+// A captured limp's hips lurch in short rolls. A stop that begins there still ends between its
+// feet.
+TEST(WalkStyle, ACapturedLimpStopsWithinReachOfItsFeetWheneverTheStickIsLetGo) {
+  GAITPAD_NEEDS(kCapturedMotions);
+  const StyleValues style = shipped("limp_left");
+  constexpr int kSecond = kRate, kBegins = kSecond / 2;
+  for (const auto& [file, first_s] :
+       {std::pair{"cmu_006_01_iclone.bvh", 5.82}, std::pair{"cmu_m21_walk.bvh", 5.22},
+        std::pair{"bvhtoolbox_walk01.bvh", 5.81}}) {
+    const WalkModel model =
+        model_of(value_of(gait_cycle(value_of(load_motion(kCapturedMotions + file)))));
+    for (int let_go = 0; let_go < 14; ++let_go) {
+      MadeWalker walker(model);
+      walker.walk(0.0, 0.0, kBegins, style);
+      walker.walk(0.0, 1.0, static_cast<int>(first_s * kSecond) + let_go - kBegins, style);
+      walker.walk(0.0, 0.0, 3 * kSecond, style);
+      int failures = 0;
+      for (const WalkFrame& frame : walker.frames())
+        failures += frame.ik_failed[0] + frame.ik_failed[1];
+      EXPECT_EQ(failures, 0) << file << ", let go " << let_go << " ticks after " << first_s << " s";
+    }
+  }
 }
 
 }  // namespace

@@ -74,6 +74,29 @@ TEST(WeightsOfAStyle, BeginAndEndWithoutAJump) {
   }
 }
 
+// A leg whose goal is far out of reach points there, stretched; when the goal is back, so is the
+// foot.
+TEST(WeightsOfAStyle, StretchALegThatIsOutOfReachAndFindBackToItsFoot) {
+  const GaitParams go = params_of(0.0, 1.0, shipped("stiff_knee")),
+                   stop = params_of(0.0, 0.0, shipped("stiff_knee"));
+  Alone walk;
+  walk.walk(go, 4 * kRate);
+  walk.walk(stop, kRate / 5);
+  walk.block.change.pelvis_z_m.x += 0.6f;  // the hips jump ahead of their feet
+  double most_m = 0.0;
+  for (int tick = 0; tick < kRate; ++tick) {
+    walk.step(stop);
+    for (const Side side : {kLeftSide, kRightSide})
+      most_m = std::max(most_m, glm::distance(end_of(walk.pose, side, true), walk.pose.root_m));
+  }
+  EXPECT_LT(most_m, 1.3) << "a leg is longer than its bones";
+  walk.walk(stop, 2 * kRate);
+  ASSERT_TRUE(walk.stands());
+  EXPECT_LE(most_slid_m(walk, stop, kRate), kPlanted_m);
+  for (const Side side : {kLeftSide, kRightSide})
+    EXPECT_NEAR(end_of(walk.pose, side, false).y, 0.0, 0.001);
+}
+
 class Shipped : public testing::TestWithParam<const char*> {};
 
 TEST_P(Shipped, StyleKeepsPlantedFeetInTheirPlaces) {

@@ -35,7 +35,9 @@ Leg<V> leg_of_tables(const Tables& tables, const Mask<V>& right, const Stride<V>
 // Sets the numbers V of which T consists back to what they were.
 template <class V, class T>
 void put_back(const Mask<V>& where, const T& was, T& is) noexcept {
-  for (std::size_t n = 0; n < sizeof(T) / sizeof(V); ++n) {
+  constexpr std::size_t kBytes = sizeof(V);
+  static_assert(sizeof(T) % kBytes == 0);
+  for (std::size_t n = 0; n < sizeof(T) / kBytes; ++n) {
     V& number = reinterpret_cast<V*>(&is)[n];
     number = where ? reinterpret_cast<const V*>(&was)[n] : number;
   }

@@ -249,3 +249,10 @@ def test_a_wrong_include_is_found(tmp_path, name, line, said):
 def test_every_include_keeps_to_its_layer():
     found = list(problems(pathlib.Path(__file__).resolve().parents[1]))
     assert not found, "\n".join(found)
+
+
+def test_no_two_sources_of_a_library_share_a_name():
+    """An archive tells its members by their names alone; tests/session/determinism_test.py would compile one of two twice."""
+    for library, rooms in LIBRARIES.items():
+        names = sorted(path.name for room in rooms for path in (ROOT / room).glob("*.cpp"))
+        assert len(set(names)) == len(names), (library, [name for name in names if names.count(name) > 1])

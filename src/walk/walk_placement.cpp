@@ -1,5 +1,5 @@
 // Places a walk in the world, and lets it follow a body that an engine moves.
-#include "walk/placement.h"
+#include "walk/walk_placement.h"
 
 #include <cmath>
 #include <limits>

@@ -1,13 +1,12 @@
 // A walk's place in the world: a walk that is moved at any tick walks on with the bits that it has
 // unmoved.
-#include "gaitpad/placement.h"
-
 #include <gtest/gtest.h>
 
 #include <cmath>
 #include <memory>
 
 #include "gaitpad/crowd.h"
+#include "gaitpad/placement.h"
 #include "tests/walk/made_walker.h"
 
 namespace gaitpad::test {

@@ -508,13 +508,18 @@ inline int sink_knot_ticks(const Tables& tables) noexcept {
 inline int all_sink_ticks(const Tables& tables) noexcept {
   return (kSinkKnots - 3) * sink_knot_ticks(tables);
 }
+// The ticks of a planned sinking that are left: not more than there can be, should the caller have
+// changed the length of the tick since.
+inline int sink_ticks_left(const Tables& tables, float ticks) noexcept {
+  return std::min(static_cast<int>(ticks), all_sink_ticks(tables));
+}
 // The planned sinking in this tick, in metres.
 template <class V>
 V known_sink(const Tables& tables, const Change<V>& change) noexcept {
   const int knot = sink_knot_ticks(tables), all_ticks = all_sink_ticks(tables);
   V sink_m{};
   for (int w = 0; w < kLanes<V>; ++w) {
-    const int left = static_cast<int>(lane(change.sink_ticks, w));
+    const int left = sink_ticks_left(tables, lane(change.sink_ticks, w));
     if (left == 0) continue;
     const int at = all_ticks - left, i = at / knot;
     const Knots<float> knots =

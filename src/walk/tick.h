@@ -308,7 +308,7 @@ template <bool kPaper, bool kUneven>
 void look_ahead(const Tables& tables, Block<1>& block) noexcept {
   Change<float>& change = block.change;
   const int knot = sink_knot_ticks(tables), all_ticks = all_sink_ticks(tables),
-            left = static_cast<int>(change.sink_ticks), at = left > 0 ? all_ticks - left : 0,
+            left = sink_ticks_left(tables, change.sink_ticks), at = left > 0 ? all_ticks - left : 0,
             first = at / knot, gone = at - first * knot;
   std::array<float, kSinkKnots> wants_m{};  // most sinking between two knots
   Block<1> ahead = block;

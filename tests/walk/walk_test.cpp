@@ -355,5 +355,22 @@ TEST(Walk, GoesEquallyFarAndLooksAlikeAtAnyRate) {
   }
 }
 
+// The length of a tick is a constant of a walk. With another one its plans mean nothing, but they
+// end; the sanitizers see what is read beyond them.
+TEST(Walk, StaysFiniteWhereTheTickChangesItsLength) {
+  MadeWalker walker;
+  walker.walk(0, 0.8, 300);
+  const GaitParams rest = gait_params({}, {}, gait_limits(adult()));
+  for (int stop = 0; stop < 40; ++stop) {
+    walker.walk(0, 0, 5);
+    WalkState state = walker.state();
+    Pose pose = walker.pose();
+    for (int tick = 0; tick < 120; ++tick) {
+      advance(adult(), rest, IkMode::robust, 1.0 / 60.0, state, pose);
+      ASSERT_TRUE(is_finite(pose)) << stop << " " << tick;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace gaitpad

@@ -45,6 +45,9 @@ ffmpeg -loglevel error -y -ss 3.6 -t 4 -i "$films/window.mp4" -vf \
 /usr/bin/python3 "$root/tools/contact_sheet.py" "$gaitpad" "$folder/walk.png" --motions "" \
   --styles even,limp_left >/dev/null
 
+# A stop, every 0.1 s.
+/usr/bin/python3 "$root/tools/transition_sheet.py" "$gaitpad" "$folder" --changes stop >/dev/null
+
 # Figure 5a of the paper, in 64 colours.
 figures=$films/figures
 "$gaitpad" figures --out "$figures" >/dev/null

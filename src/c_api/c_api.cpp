@@ -40,7 +40,8 @@ struct gaitpad_walk {
   int bad_numbers = 0;  // sticks and null pointers that were not taken
   WalkState state;
   WalkEvents events;  // events of the last tick
-  Pose pose;
+  Pose before, pose;  // poses of the last tick but one and of the last
+  Pose drawn;         // the pose that the functions give
 };
 
 namespace {
@@ -184,7 +185,26 @@ bool is_missing(const double* place_m, gaitpad_walk& walk) noexcept {
 
 // The number of the first `count` joints that can be written to `out`.
 int32_t joints_for(const gaitpad_walk* walk, const float* out, int32_t count) noexcept {
-  return walk && out ? std::clamp(count, 0, walk->pose.joint_count) : 0;
+  return walk && out ? std::clamp(count, 0, walk->drawn.joint_count) : 0;
+}
+
+void copy_pose(const Pose& from, Pose& to) noexcept {
+  to.root_m = from.root_m;
+  to.joint_count = from.joint_count;
+  std::copy_n(from.local.begin(), from.joint_count, to.local.begin());
+}
+
+// One tick with these parameters.
+void advance_walk(const GaitParams& params, double dt_s, gaitpad_walk& walk) noexcept {
+  const WalkFrame before = walk.state.frame;
+  copy_pose(walk.pose, walk.before);
+  advance(walk.shared->model, params, IkMode::robust, dt_s, walk.state, walk.pose);
+  walk.events = walk_events(before, walk.state);
+  copy_pose(walk.pose, walk.drawn);
+}
+
+Placement placement_of(const double place_m[3], double heading_rad) noexcept {
+  return {vec3(place_m[0], 0.0, place_m[2]), heading_rad};
 }
 
 gaitpad_frame frame_of(const gaitpad_walk& walk) noexcept {
@@ -250,6 +270,8 @@ gaitpad_walk* gaitpad_walk_create(const gaitpad_model* model, const double place
     walk->limits = gait_limits(model->shared->model);
     const vec3 start_m(place_m[0], 0.0, place_m[2]);
     walk->state = standing(model->shared->model, start_m, heading_rad, walk->pose);
+    copy_pose(walk->pose, walk->before);
+    copy_pose(walk->pose, walk->drawn);
     return walk;
   };
   return made_or_null<gaitpad_walk>(make, error, error_size);
@@ -264,19 +286,56 @@ void gaitpad_walk_step(gaitpad_walk* walk, double stick_right, double stick_forw
   if (!walk) return;
   walk->stick.x = sound_axis(stick_right, walk->stick.x, walk->bad_numbers);
   walk->stick.y = sound_axis(stick_forward, walk->stick.y, walk->bad_numbers);
-  const WalkFrame before = walk->state.frame;
-  const GaitParams params = gait_params({.left = walk->stick}, walk->style, walk->limits);
-  advance(walk->shared->model, params, IkMode::robust, dt_s, walk->state, walk->pose);
-  walk->events = walk_events(before, walk->state);
+  advance_walk(gait_params({.left = walk->stick}, walk->style, walk->limits), dt_s, *walk);
+}
+
+int32_t gaitpad_walk_follow(gaitpad_walk* walk, const gaitpad_capsule* capsule, double dt_s) {
+  // The struct of version 2 is the smallest there is.
+  if (!walk || !capsule || capsule->size < sizeof *capsule) return 0;
+  const CapsuleMotion motion = {vector_of(capsule->place_m), capsule->heading_rad,
+                                vector_of(capsule->velocity_m_s), capsule->turn_rate_rad_s};
+  advance_walk(following(motion, walk->state, walk->style, walk->limits), dt_s, *walk);
+  return 1;
 }
 
 void gaitpad_walk_move(gaitpad_walk* walk, const double shift_m[3], double turn_rad) {
   if (!walk || is_missing(shift_m, *walk)) return;
-  move_walk({vector_of(shift_m), turn_rad}, walk->state, walk->pose);
+  const Placement by = {vector_of(shift_m), turn_rad};
+  WalkState state = walk->state;
+  move_walk(by, state, walk->before);
+  move_walk(by, walk->state, walk->pose);
+  copy_pose(walk->pose, walk->drawn);
 }
 void gaitpad_walk_put(gaitpad_walk* walk, const double place_m[3], double heading_rad) {
   if (!walk || is_missing(place_m, *walk)) return;
+  WalkState state = walk->state;
+  put_walk(vector_of(place_m), heading_rad, state, walk->before);
   put_walk(vector_of(place_m), heading_rad, walk->state, walk->pose);
+  copy_pose(walk->pose, walk->drawn);
+}
+
+int32_t gaitpad_walk_step_to(gaitpad_walk* walk, const double place_m[3], double heading_rad) {
+  return walk && place_m &&
+         step_to(walk->shared->model, placement_of(place_m, heading_rad), walk->state);
+}
+int32_t gaitpad_walk_nearest_step(const gaitpad_walk* walk, double place_m[3],
+                                  double* heading_rad) {
+  if (!walk || !place_m || !heading_rad) return 0;
+  const auto near =
+      nearest_step(walk->shared->model, placement_of(place_m, *heading_rad), walk->state);
+  if (!near) return 0;
+  write(near->place_m, place_m);
+  *heading_rad = near->heading_rad;
+  return 1;
+}
+int32_t gaitpad_walk_push(gaitpad_walk* walk, const double velocity_m_s[3]) {
+  return walk && velocity_m_s && push_walk(vector_of(velocity_m_s), walk->state);
+}
+
+int32_t gaitpad_walk_set_detail(gaitpad_walk* walk, int32_t detail) {
+  if (!walk || (detail != GAITPAD_FULL && detail != GAITPAD_TABLES)) return 0;
+  walk->state.detail = detail == GAITPAD_FULL ? Detail::full : Detail::tables;
+  return 1;
 }
 
 int32_t gaitpad_walk_frame(const gaitpad_walk* walk, gaitpad_frame* frame) {
@@ -289,15 +348,31 @@ int32_t gaitpad_walk_frame(const gaitpad_walk* walk, gaitpad_frame* frame) {
   return 1;
 }
 
+int32_t gaitpad_walk_events(const gaitpad_walk* walk, gaitpad_event* events, int32_t count) {
+  if (!walk || !events) return 0;
+  const int32_t written = std::clamp(count, 0, static_cast<int32_t>(walk->events.count));
+  for (int32_t i = 0; i < written; ++i) {
+    const WalkEvent& event = walk->events.event[i];
+    events[i].kind = static_cast<int32_t>(event.kind);
+    events[i].side = event.side;
+    write(event.place_m, events[i].place_m);
+  }
+  return written;
+}
+
+int32_t gaitpad_walk_draw(gaitpad_walk* walk, double share) {
+  return walk && pose_between(walk->shared->model, walk->before, walk->pose, share, walk->drawn);
+}
+
 int32_t gaitpad_pose_local(const gaitpad_walk* walk, float* xyzw, int32_t count, float* root_m) {
   const int32_t joints = joints_for(walk, xyzw, count);
   for (int32_t j = 0; j < joints; ++j) {
-    const quat& q = walk->pose.local[j];
+    const quat& q = walk->drawn.local[j];
     const double parts[] = {q.x, q.y, q.z, q.w};
     for (int i = 0; i < 4; ++i) xyzw[4 * j + i] = static_cast<float>(parts[i]);
   }
   if (walk && root_m) {
-    for (int i = 0; i < 3; ++i) root_m[i] = static_cast<float>(walk->pose.root_m[i]);
+    for (int i = 0; i < 3; ++i) root_m[i] = static_cast<float>(walk->drawn.root_m[i]);
   }
   return joints;
 }
@@ -306,7 +381,7 @@ int32_t gaitpad_pose_world(const gaitpad_walk* walk, float* matrices, int32_t co
   const int32_t joints = joints_for(walk, matrices, count);
   if (joints == 0) return 0;
   JointFrames frames;
-  forward_kinematics(skeleton_of(*walk->shared), walk->pose, frames);
+  forward_kinematics(skeleton_of(*walk->shared), walk->drawn, frames);
   for (int32_t j = 0; j < joints; ++j)
     write_matrix(frames.position_m[j], frames.rotation[j], matrices + 16 * j);
   return joints;

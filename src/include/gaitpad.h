@@ -29,7 +29,7 @@ extern "C" {
 #endif
 
 /* Grows when functions or members are added. */
-#define GAITPAD_API_VERSION 1
+#define GAITPAD_API_VERSION 2
 GAITPAD_API uint32_t gaitpad_api_version(void); /* of the library that runs */
 
 /* ---- A model: a skeleton that can walk. It does not change once it is made. */
@@ -101,6 +101,40 @@ GAITPAD_API void gaitpad_walk_move(gaitpad_walk* walk, const double shift_m[3], 
 /* The same, so that the hips come to be over a place and face a heading. */
 GAITPAD_API void gaitpad_walk_put(gaitpad_walk* walk, const double place_m[3], double heading_rad);
 
+/* The caller fills it: the motion that an engine has given the character's capsule, in the world.
+ */
+typedef struct gaitpad_capsule {
+  size_t size;
+  double place_m[3];      /* of the hips on the ground; place_m[1] does not matter */
+  double heading_rad;     /* that the character shall have when it stands */
+  double velocity_m_s[3]; /* not faster than the walk can be */
+  double turn_rate_rad_s; /* to the left positive */
+} gaitpad_capsule;
+/* In place of gaitpad_walk_step(): follows the capsule in its own steps. Feet stay planted, so the
+ * walk is some centimetres off the capsule. If a number is not finite, the walk goes on as before
+ * and counts it. 0: `size` is too small to be one of this struct's versions; nothing has moved. */
+GAITPAD_API int32_t gaitpad_walk_follow(gaitpad_walk* walk, const gaitpad_capsule* capsule,
+                                        double dt_s);
+
+/* Asks the foot that flies, or that flies next, to land with its heel at a place of the world and
+ * to point to a heading: a stepping stone. The next step is the stick's again. place_m[1] does not
+ * matter. 0: the foot cannot reach it, or no step can be changed; nothing has changed. */
+GAITPAD_API int32_t gaitpad_walk_step_to(gaitpad_walk* walk, const double place_m[3],
+                                         double heading_rad);
+/* Moves a place and a heading to the nearest ones that gaitpad_walk_step_to() takes now. 0: there
+ * are none, or a number is not finite; both stay. */
+GAITPAD_API int32_t gaitpad_walk_nearest_step(const gaitpad_walk* walk, double place_m[3],
+                                              double* heading_rad);
+/* Adds a velocity to that of the hips, at most 3 m/s; the running step or the next one catches the
+ * fall. 0: the character stands or comes to rest, or a number is not finite or too large; nothing
+ * has changed. */
+GAITPAD_API int32_t gaitpad_walk_push(gaitpad_walk* walk, const double velocity_m_s[3]);
+
+enum { GAITPAD_FULL = 0, GAITPAD_TABLES = 1 };
+/* GAITPAD_TABLES: for a walk that is far away; it goes the same way in the same steps, and its legs
+ * and upper body are the motion's. A change takes 0.25 s. 0: there is no such detail. */
+GAITPAD_API int32_t gaitpad_walk_set_detail(gaitpad_walk* walk, int32_t detail);
+
 /* ---- The last tick. */
 
 enum { GAITPAD_STANDS = 0, GAITPAD_FLIGHT = 1, GAITPAD_ROLL = 2 };
@@ -128,6 +162,27 @@ typedef struct gaitpad_frame {
 /* Fills the members that fit into frame->size. 0: `size` is too small to be one of this struct's
  * versions. */
 GAITPAD_API int32_t gaitpad_walk_frame(const gaitpad_walk* walk, gaitpad_frame* frame);
+
+/* GAITPAD_STEP_BEGINS: the other foot has landed or a stand ends, and this foot will fly next. */
+enum { GAITPAD_STEP_BEGINS = 0, GAITPAD_TOE_OFF = 1, GAITPAD_HEEL_STRIKE = 2 };
+typedef struct gaitpad_event {
+  int32_t kind;      /* GAITPAD_STEP_BEGINS, GAITPAD_TOE_OFF or GAITPAD_HEEL_STRIKE */
+  int32_t side;      /* GAITPAD_LEFT or GAITPAD_RIGHT */
+  double place_m[3]; /* of the heel where it stands or stood; GAITPAD_TOE_OFF: of the toe. World */
+} gaitpad_event;
+/* A tick has at most six. */
+enum { GAITPAD_MOST_EVENTS = 6 };
+/* Writes the events of the last tick, in their order in time, at most `count` of them. Returns how
+ * many were written. This struct does not grow. */
+GAITPAD_API int32_t gaitpad_walk_events(const gaitpad_walk* walk, gaitpad_event* events,
+                                        int32_t count);
+
+/* Sets the pose that the functions below give until the next tick: at this share, 0 to 1, of the
+ * way from the last tick but one to the last. A planted foot stays where it stands. For programs
+ * that draw more often than their walks tick. Outside 0 to 1 it counts as 0 or 1. A walk that was
+ * put elsewhere since then is there at all shares. 0: the share is not a number; nothing changes.
+ */
+GAITPAD_API int32_t gaitpad_walk_draw(gaitpad_walk* walk, double share);
 
 /* The pose, for `count` joints from the first on (at most gaitpad_joint_count()). Both return how
  * many were written. Local rotations: of a joint's frame in its parent's; xyzw has 4 * count

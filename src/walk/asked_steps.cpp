@@ -85,7 +85,9 @@ bool step_to(const WalkModel& model, const Placement& heel, WalkState& state) no
 
 bool push_walk(const vec3& velocity_m_s, WalkState& state) noexcept {
   Change<float>& change = state.walk.change;
-  if (!(horizontal_length(velocity_m_s) <= kMostPush_m_s) || rests(change)) return false;
+  if (!(horizontal_length(velocity_m_s) <= kMostPush_m_s) || !std::isfinite(velocity_m_s.y) ||
+      rests(change))
+    return false;
   const vec3 v = from_world({vec3(0.0), step_frame(state).heading_rad}, velocity_m_s);
   change.push_x_m_s += static_cast<float>(v.x);
   change.push_z_m_s += static_cast<float>(v.z);

@@ -342,6 +342,31 @@ void Crowd::put(int member, const vec3& place_m, double heading_rad) noexcept {
              [&](WalkState& moving, Pose& pose) { put_walk(place_m, heading_rad, moving, pose); });
 }
 
+template <class Request>
+bool Crowd::ask_step(int member, const Request& request) noexcept {
+  if (!has(member)) return false;
+  WalkState asked = state(member);
+  if (!request(asked)) return false;
+  const auto [number, lane] = lane_[member];
+  WalkBlock& block = *blocks_[number];
+  block.take(asked.walk, block.before(lane), lane);
+  return true;
+}
+
+std::optional<Placement> Crowd::nearest_step(int member, const Placement& heel) const noexcept {
+  if (!has(member)) return std::nullopt;
+  return gaitpad::nearest_step(*models_[member], heel, state(member));
+}
+
+bool Crowd::step_to(int member, const Placement& heel) noexcept {
+  return ask_step(
+      member, [&](WalkState& asked) { return gaitpad::step_to(*models_[member], heel, asked); });
+}
+
+bool Crowd::push(int member, const vec3& velocity_m_s) noexcept {
+  return ask_step(member, [&](WalkState& asked) { return push_walk(velocity_m_s, asked); });
+}
+
 void Crowd::store_pose(int member, const Pose& pose) noexcept {
   roots_m_[member] = pose.root_m;
   std::copy_n(pose.local.begin(), pose.joint_count,

@@ -69,6 +69,7 @@ class BadValuesInC : public testing::Test {
   void feed_model();
   void feed_start();
   void feed_walk();
+  void feed_asked_steps();
   void feed_counts();
 
   std::array<char, 256> error_ = {};
@@ -143,6 +144,7 @@ void BadValuesInC::feed_walk() {
   }
   gaitpad_walk_move(walk_, nullptr, 0.0);
   expect_counted("gaitpad_walk_move(null)", 1);
+  feed_asked_steps();
   for (const char* key :
        {"hip_sway", "left_leg.weight.knee", "legs.stride_length", "head.yaw_deg"}) {
     for (const double bad : {kNaN, kInfinity, -kInfinity, 1e300, -1e300}) {
@@ -153,6 +155,43 @@ void BadValuesInC::feed_walk() {
   for (const char* key : {"", "hip", "\xff"}) {
     EXPECT_EQ(gaitpad_walk_set(walk_, key, 1.0), 0) << key;
     expect_counted("a key", 0);
+  }
+}
+
+// What a walk is asked for beside its stick is refused, or counted by the tick.
+void BadValuesInC::feed_asked_steps() {
+  for (const double bad : {kNaN, kInfinity, -kInfinity, 1e300}) {
+    for (int i = 0; i < 3; ++i) {
+      double place_m[3] = {1.0, 0.0, 2.0}, heading_rad = i == 1 ? bad : 0.0;
+      if (i != 1) place_m[i] = bad;
+      EXPECT_EQ(gaitpad_walk_step_to(walk_, place_m, heading_rad), 0);
+      expect_counted("gaitpad_walk_step_to()", 0);
+      if (bad != 1e300) {
+        EXPECT_EQ(gaitpad_walk_nearest_step(walk_, place_m, &heading_rad), 0);
+      }
+      expect_counted("gaitpad_walk_nearest_step()", 0);
+      EXPECT_EQ(
+          gaitpad_walk_push(
+              walk_, std::array{i == 0 ? bad : 0.0, i == 1 ? bad : 0.0, i == 2 ? bad : 0.0}.data()),
+          i == 1 && bad == 1e300);
+      expect_counted("gaitpad_walk_push()", 0);
+    }
+  }
+  EXPECT_EQ(gaitpad_walk_draw(walk_, kNaN), 0);
+  expect_counted("gaitpad_walk_draw()", 0);
+  for (const double share : {kInfinity, -kInfinity, -1e300, 2.0}) {
+    EXPECT_EQ(gaitpad_walk_draw(walk_, share), 1);
+    expect_counted("gaitpad_walk_draw()", 0);
+  }
+  for (const int32_t detail : {-1, 2, INT_MIN, INT_MAX}) {
+    EXPECT_EQ(gaitpad_walk_set_detail(walk_, detail), 0);
+    expect_counted("gaitpad_walk_set_detail()", 0);
+  }
+  for (const size_t size : {size_t{0}, size_t{1}, sizeof(gaitpad_capsule) - 1}) {
+    gaitpad_capsule capsule = {};
+    capsule.size = size;
+    EXPECT_EQ(gaitpad_walk_follow(walk_, &capsule, 1.0 / 60.0), 0);
+    expect_counted("gaitpad_capsule::size", 0);
   }
 }
 

@@ -167,6 +167,125 @@ TEST_F(CApi, ATeleportMovesTheWholePoseAndChangesNoStep) {
   EXPECT_NEAR(frame().heading_rad, 2.0, 1e-9);
 }
 
+TEST_F(CApi, AFootStepsToAPlaceInReach) {
+  step(0.0, 0.8, 200);
+  double place_m[3] = {frame().root_m[0] + 20.0, 0.0, frame().root_m[2]}, heading_rad = 0.7;
+  EXPECT_FALSE(gaitpad_walk_step_to(walk_, place_m, heading_rad)) << "it is far away";
+  while (!gaitpad_walk_nearest_step(walk_, place_m, &heading_rad)) step(0.0, 0.8);
+  EXPECT_LT(std::abs(place_m[0] - frame().root_m[0]), 1.5);
+  ASSERT_TRUE(gaitpad_walk_step_to(walk_, place_m, heading_rad));
+  const gaitpad_frame asked = frame();
+  gaitpad_frame f = asked;
+  for (int tick = 0;
+       tick < 60 && f.landings[0] + f.landings[1] == asked.landings[0] + asked.landings[1];
+       ++tick) {
+    step(0.0, 0.8);
+    f = frame();
+  }
+  const int side = f.heel_struck[1];
+  EXPECT_NEAR(f.heel_m[side][0], place_m[0], 1e-4);
+  EXPECT_NEAR(f.heel_m[side][2], place_m[2], 1e-4);
+}
+
+TEST_F(CApi, APushMovesTheHips) {
+  const double push_m_s[3] = {1.0, 0.0, 0.0}, too_hard_m_s[3] = {9.0, 0.0, 0.0};
+  EXPECT_FALSE(gaitpad_walk_push(walk_, push_m_s)) << "it stands";
+  step(0.0, 0.8, 250);
+  const double unpushed_m = frame().root_m[0];
+  destroy();
+  make(defaults());
+  step(0.0, 0.8, 200);
+  EXPECT_FALSE(gaitpad_walk_push(walk_, too_hard_m_s));
+  EXPECT_TRUE(gaitpad_walk_push(walk_, push_m_s));
+  step(0.0, 0.8, 50);
+  EXPECT_GT(frame().root_m[0], unpushed_m + 0.1);
+}
+
+TEST_F(CApi, ADetailChangesThePoseAndNotTheWay) {
+  step(0.3, 0.8, 300);
+  const gaitpad_frame full = frame();
+  destroy();
+  make(defaults());
+  ASSERT_TRUE(gaitpad_walk_set_detail(walk_, GAITPAD_TABLES));
+  EXPECT_FALSE(gaitpad_walk_set_detail(walk_, 2));
+  step(0.3, 0.8, 300);
+  const gaitpad_frame tables = frame();
+  EXPECT_EQ(tables.bad_inputs, 0);
+  EXPECT_EQ(tables.root_m[2], full.root_m[2]);
+  EXPECT_NE(tables.heel_m[0][2], full.heel_m[0][2]);
+}
+
+TEST_F(CApi, EventsAreThoseOfTheFrameWithTheirPlaces) {
+  std::array<gaitpad_event, GAITPAD_MOST_EVENTS> events;
+  int seen[3] = {};
+  for (int tick = 0; tick < 600; ++tick) {
+    step(0.2, 0.8);
+    const gaitpad_frame f = frame();
+    int struck[2] = {}, off[2] = {};
+    const int count = gaitpad_walk_events(walk_, events.data(), GAITPAD_MOST_EVENTS);
+    for (int i = 0; i < count; ++i) {
+      const gaitpad_event& event = events[static_cast<std::size_t>(i)];
+      ++seen[event.kind];
+      struck[event.side] += event.kind == GAITPAD_HEEL_STRIKE;
+      off[event.side] += event.kind == GAITPAD_TOE_OFF;
+      if (event.kind == GAITPAD_HEEL_STRIKE) {
+        EXPECT_NEAR(event.place_m[0], f.heel_m[event.side][0], 1e-3);
+        EXPECT_NEAR(event.place_m[2], f.heel_m[event.side][2], 1e-3);
+      }
+    }
+    for (int side = 0; side < 2; ++side) {
+      EXPECT_EQ(struck[side], f.heel_struck[side]);
+      EXPECT_EQ(off[side], f.toe_off[side]);
+    }
+    EXPECT_EQ(gaitpad_walk_events(walk_, events.data(), 0), 0);
+  }
+  for (const int kind : seen) EXPECT_GT(kind, 12);
+}
+
+TEST_F(CApi, AWalkFollowsTheCapsuleOfAnEngine) {
+  gaitpad_capsule capsule = {};
+  capsule.size = sizeof capsule;
+  capsule.place_m[0] = kStart_m[0], capsule.place_m[2] = kStart_m[2];
+  capsule.velocity_m_s[0] = 0.6, capsule.velocity_m_s[2] = 0.8;
+  for (int tick = 0; tick < 600; ++tick) {
+    for (int i = 0; i < 3; ++i) capsule.place_m[i] += capsule.velocity_m_s[i] * kTick_s;
+    ASSERT_TRUE(gaitpad_walk_follow(walk_, &capsule, kTick_s));
+  }
+  const gaitpad_frame f = frame();
+  EXPECT_LT(std::hypot(f.root_m[0] - capsule.place_m[0], f.root_m[2] - capsule.place_m[2]), 0.15);
+  EXPECT_EQ(f.bad_inputs, 0);
+  capsule.heading_rad = kNan;
+  EXPECT_TRUE(gaitpad_walk_follow(walk_, &capsule, kTick_s));
+  EXPECT_GT(frame().bad_inputs, 0);
+  EXPECT_GT(frame().speed_m_s, 0.5) << "it goes on";
+  capsule.size = 8;
+  EXPECT_FALSE(gaitpad_walk_follow(walk_, &capsule, kTick_s));
+}
+
+TEST_F(CApi, APoseIsDrawnBetweenTheLastTwoTicks) {
+  step(0.0, 0.8, 99);
+  const std::vector<float> before = matrices();
+  step(0.0, 0.8);
+  const std::vector<float> now = matrices();
+  ASSERT_TRUE(gaitpad_walk_draw(walk_, 0.0));
+  EXPECT_EQ(matrices(), before);
+  ASSERT_TRUE(gaitpad_walk_draw(walk_, 0.5));
+  const std::vector<float> between = matrices();
+  for (const std::size_t axis : {12u, 13u, 14u})
+    EXPECT_NEAR(between[axis], 0.5f * (before[axis] + now[axis]), 1e-6) << "the root";
+  EXPECT_FALSE(gaitpad_walk_draw(walk_, kNan));
+  EXPECT_EQ(matrices(), between);
+  ASSERT_TRUE(gaitpad_walk_draw(walk_, 7.0));
+  EXPECT_EQ(matrices(), now);
+  const double place_m[3] = {50.0, 0.0, 0.0};
+  gaitpad_walk_put(walk_, place_m, 0.0);
+  ASSERT_TRUE(gaitpad_walk_draw(walk_, 0.5));
+  EXPECT_NEAR(matrices()[12], 50.0, 0.1) << "a teleport is not drawn halfway";
+  step(0.0, 0.8);
+  ASSERT_TRUE(gaitpad_walk_draw(walk_, 0.5));
+  EXPECT_NEAR(matrices()[12], 50.0, 0.1);
+}
+
 TEST_F(CApi, ASticksNumbersThatAreNoneAreCountedAndTheLastGoodOnesHold) {
   step(0.0, 0.8, 200);
   step(kNan, 3.0, 50);
@@ -227,6 +346,23 @@ TEST_F(CApi, ANullHandleOrPointerIsRefused) {
   gaitpad_walk_step(nullptr, 0.0, 1.0, kTick_s);
   gaitpad_walk_move(nullptr, kStart_m, 0.0);
   gaitpad_walk_put(nullptr, kStart_m, 0.0);
+  EXPECT_FALSE(gaitpad_walk_step_to(nullptr, kStart_m, 0.0));
+  EXPECT_FALSE(gaitpad_walk_step_to(walk_, nullptr, 0.0));
+  double place_m[3] = {}, heading_rad = 0.0;
+  EXPECT_FALSE(gaitpad_walk_nearest_step(nullptr, place_m, &heading_rad));
+  EXPECT_FALSE(gaitpad_walk_nearest_step(walk_, nullptr, &heading_rad));
+  EXPECT_FALSE(gaitpad_walk_nearest_step(walk_, place_m, nullptr));
+  EXPECT_FALSE(gaitpad_walk_push(nullptr, kStart_m));
+  EXPECT_FALSE(gaitpad_walk_push(walk_, nullptr));
+  EXPECT_FALSE(gaitpad_walk_set_detail(nullptr, GAITPAD_FULL));
+  gaitpad_capsule capsule = {};
+  capsule.size = sizeof capsule;
+  EXPECT_FALSE(gaitpad_walk_follow(nullptr, &capsule, kTick_s));
+  EXPECT_FALSE(gaitpad_walk_follow(walk_, nullptr, kTick_s));
+  gaitpad_event event;
+  EXPECT_EQ(gaitpad_walk_events(nullptr, &event, 1), 0);
+  EXPECT_EQ(gaitpad_walk_events(walk_, nullptr, 1), 0);
+  EXPECT_FALSE(gaitpad_walk_draw(nullptr, 0.5));
   EXPECT_EQ(gaitpad_joint_count(nullptr), 0);
   EXPECT_EQ(gaitpad_joint_name(nullptr, 0), nullptr);
   EXPECT_EQ(gaitpad_joint_parent(nullptr, 0), -1);

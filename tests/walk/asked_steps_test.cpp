@@ -165,6 +165,7 @@ TEST(AskedSteps, WhoStandsOrAsksForWhatIsNoPlaceIsRefused) {
   heel.place_m.y = nan;
   EXPECT_FALSE(step_to(walk.model, heel, walk.state));
   EXPECT_FALSE(push_walk(vec3(nan, 0.0, 0.0), walk.state));
+  EXPECT_FALSE(push_walk(vec3(0.1, nan, 0.0), walk.state));
   EXPECT_FALSE(push_walk(vec3(0.0, 0.0, 2.0 * kMostPush_m_s), walk.state));
   EXPECT_EQ(walk.state.walk.change.push_x_m_s, 0.0f);
   EXPECT_EQ(walk.state.walk.change.push_z_m_s, 0.0f);

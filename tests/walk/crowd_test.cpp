@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <limits>
 #include <thread>
 
 #include "base/lanes.h"
@@ -146,6 +147,67 @@ TEST(Crowd, PuttingAMemberBackLeavesTheReportsOfTheOthers) {
   EXPECT_EQ(after.root_turned_rad, before.root_turned_rad);
   EXPECT_EQ(after.speed_m_s, before.speed_m_s);
   EXPECT_EQ(crowd.state(1).frame.root_moved_m, vec3(0.0));
+}
+
+// Pushes and stepping stones at many moments: members answer as they would alone, to the bit.
+TEST(Crowd, PushesAndStepsOfItsMembersAreThoseOfAWalkAlone) {
+  constexpr int kSome = 21;
+  MadeCrowd made(kSome);
+  Crowd& crowd = made.crowd();
+  std::vector<WalkState> states(kSome);
+  std::vector<Pose> poses(kSome);
+  for (int i = 0; i < kSome; ++i)
+    states[i] = standing(crowd.model(i), made.members()[i].place_m, poses[i]);
+  int pushed = 0, stepped = 0;
+  for (int tick = 0; tick < kTicks && !HasFailure(); ++tick) {
+    for (int i = 0; i < kSome; ++i) {
+      if ((tick + 11 * i) % 47 == 0) {
+        const vec3 push_m_s(0.3 * (i % 3 - 1), 0.0, 0.2);
+        const bool is_taken = push_walk(push_m_s, states[i]);
+        EXPECT_EQ(crowd.push(i, push_m_s), is_taken) << i << ", tick " << tick;
+        pushed += is_taken;
+      }
+      if ((tick + 7 * i) % 59 == 0) {
+        const Placement ahead = {
+            states[i].frame.root_m + 0.5 * heading_direction(states[i].frame.heading_rad),
+            states[i].frame.heading_rad + 0.1};
+        const auto alone = nearest_step(crowd.model(i), ahead, states[i]),
+                   heel = crowd.nearest_step(i, ahead);
+        ASSERT_EQ(heel, alone) << i << ", tick " << tick;
+        if (!heel) continue;
+        EXPECT_TRUE(step_to(crowd.model(i), *heel, states[i]));
+        EXPECT_TRUE(crowd.step_to(i, *heel));
+        ++stepped;
+      }
+    }
+    made.step(tick);
+    for (int i = 0; i < kSome; ++i) {
+      advance(crowd.model(i), crowd.params()[i], IkMode::robust, kCrowdDt, states[i], poses[i]);
+      expect_same_pose(poses[i], crowd.local(i), crowd.root_m(i), i, tick);
+    }
+  }
+  EXPECT_GT(pushed, 50);
+  EXPECT_GT(stepped, 50);
+}
+
+TEST(Crowd, RefusesAPushOrAStepThatIsNone) {
+  MadeCrowd made(5);
+  Crowd& crowd = made.crowd();
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const vec3 push_m_s(0.3, 0.0, 0.0);
+  EXPECT_FALSE(crowd.push(1, push_m_s)) << "it stands";
+  EXPECT_FALSE(crowd.step_to(1, {}));
+  for (int tick = 0; tick < 2 * kCrowdRate; ++tick) made.step(tick);
+  ASSERT_TRUE(crowd.push(1, push_m_s));
+  for (const int nobody : {-1, 5}) {
+    EXPECT_FALSE(crowd.push(nobody, push_m_s));
+    EXPECT_FALSE(crowd.nearest_step(nobody, {}));
+    EXPECT_FALSE(crowd.step_to(nobody, {}));
+  }
+  EXPECT_FALSE(crowd.push(1, vec3(nan, 0.0, 0.0)));
+  EXPECT_FALSE(crowd.push(1, vec3(0.0, 0.0, 2.0 * kMostPush_m_s)));
+  EXPECT_FALSE(crowd.nearest_step(1, {vec3(nan, 0.0, 0.0), 0.0}));
+  EXPECT_FALSE(crowd.step_to(1, {crowd.root_m(1) + vec3(0.0, 0.0, 5.0), 0.0}));
 }
 
 TEST(Crowd, OfNobodyDoesNothing) {

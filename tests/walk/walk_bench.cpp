@@ -2,6 +2,7 @@
 #include <ctime>
 
 #include "gaitpad/crowd.h"
+#include "gaitpad/walk_output.h"
 #include "motion/stencil.h"
 #include "tests/walk/made_block.h"
 
@@ -100,6 +101,11 @@ void measure() {
   const auto step = [&] { gaitpad::advance(adult(), params, IkMode::robust, kDt, state, pose); };
   for (int tick = 0; tick < 4 * kRate; ++tick) step();
   row("advance(), alone", quickest_ns(5000, step));
+  const Pose before = pose;
+  step();
+  Pose drawn;
+  row("pose_between()",
+      quickest_ns(5000, [&] { pose_between(adult(), before, pose, 0.3, drawn); }));
   constexpr int kCrowd = 1000;
   row("1,000 in lanes of 1", new_ns<1>(tables, moments, kCrowd));
   row("1,000 in lanes of 4", new_ns<4>(tables, moments, kCrowd));

@@ -31,20 +31,19 @@ int main(void) {
   if (!walk) return puts(error), 1;
   gaitpad_walk_set(walk, "left_leg.weight.knee", 0.3);
 
-  gaitpad_frame frame;
-  frame.size = sizeof frame;
+  gaitpad_event events[GAITPAD_MOST_EVENTS];
   for (int tick = 0; tick < 600; ++tick) { /* ten seconds */
     gaitpad_walk_step(walk, 0.1, 0.9, 1.0 / 60.0);
-    gaitpad_walk_frame(walk, &frame);
-    for (int side = 0; side < 2; ++side)
-      if (frame.heel_struck[side])
+    const int count = gaitpad_walk_events(walk, events, GAITPAD_MOST_EVENTS);
+    for (int i = 0; i < count; ++i)
+      if (events[i].kind == GAITPAD_HEEL_STRIKE)
         printf("%.3f s: %s heel at %.2f %.2f %.2f m\n", (tick + 1) / 60.0,
-               side == GAITPAD_LEFT ? "left" : "right", frame.heel_m[side][0],
-               frame.heel_m[side][1], frame.heel_m[side][2]);
+               events[i].side == GAITPAD_LEFT ? "left" : "right", events[i].place_m[0],
+               events[i].place_m[1], events[i].place_m[2]);
   }
   float matrices[16 * 11]; /* of all joints, to draw the character with */
-  printf("%d joints, the last one at %.2f m\n", (int)gaitpad_pose_world(walk, matrices, 11),
-         matrices[16 * 10 + 14]);
+  const int joints = gaitpad_pose_world(walk, matrices, 11);
+  printf("%d joints, the last one at %.2f m\n", joints, matrices[16 * 10 + 14]);
   gaitpad_walk_destroy(walk);
   gaitpad_model_destroy(model);
   return 0;

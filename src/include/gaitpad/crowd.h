@@ -9,6 +9,7 @@
 #pragma once
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -75,6 +76,11 @@ class Crowd {
   // These are move_walk() and put_walk() of gaitpad/walk.h for a member.
   void move(int member, const Placement& by) noexcept;
   void put(int member, const vec3& place_m, double heading_rad) noexcept;
+  // These are nearest_step(), step_to() and push_walk() for a member. Call the last two between
+  // ticks.
+  std::optional<Placement> nearest_step(int member, const Placement& heel) const noexcept;
+  bool step_to(int member, const Placement& heel) noexcept;
+  bool push(int member, const vec3& velocity_m_s) noexcept;
 
   // Bytes of the members' states, parameters and poses.
   std::size_t bytes() const noexcept;
@@ -91,6 +97,9 @@ class Crowd {
   // Lets `work` place the state and the pose of a member.
   template <class Work>
   void place_anew(int member, const Work& work) noexcept;
+  // Lets `request` change the state of a member. Returns what it returns.
+  template <class Request>
+  bool ask_step(int member, const Request& request) noexcept;
 
   IkMode mode_ = IkMode::robust;
   // Members of one model stand in blocks: first those that are computed in full, then the others.

@@ -54,8 +54,18 @@ std::vector<float> legs_and_pelvis(const WalkModel& model);
 // the root's weight. Joints beyond the shortest of the three lists stay.
 void mix_pose(std::span<const float> weights, const Pose& walk, Pose& own) noexcept;
 
-// Both functions write one entry for each of the caller's bones: that of joint `joints[i]`, or
-// nothing if there is no such joint in the pose. They write as many bones as `out` has room for,
+// The pose at `share` of the way from one tick's pose to the next tick's, for a game that draws
+// more often than its walks tick. Joints are blended along the shorter arc, the pelvis goes
+// straight, and both legs are then ended at their feet: a heel or toe that stands in both poses
+// stays where it stands, a flying foot goes straight from place to place. Shares outside 0 to 1
+// count as 0 and 1, which give the two poses to the bit. Returns false and writes nothing if the
+// share is not a number or a pose does not have the model's joints. `pose` may be one of the two.
+// No heap. A teleport in between is drawn by moving `from` as well, or by share 1.
+bool pose_between(const WalkModel& model, const Pose& from, const Pose& to, double share,
+                  Pose& pose) noexcept;
+
+// Both functions below write one entry for each of the caller's bones: that of joint `joints[i]`,
+// or nothing if there is no such joint in the pose. They write as many bones as `out` has room for,
 // and return the number of entries that they considered. Places in the world are converted to the
 // frame of `model`, the caller's object: {state.frame.root_m, state.frame.heading_rad} for an
 // object that is moved by root motion, {} for the world. If that is not finite nothing is written,

@@ -6,6 +6,7 @@
 #include "base/numeric.h"
 #include "base/text.h"
 #include "gaitpad/limbs.h"
+#include "motion/leg_pose.h"
 #include "motion/sole.h"
 
 namespace gaitpad {
@@ -396,7 +397,7 @@ FeetTracks feet_tracks(const Motion& motion) {
     const auto& at = world->position_m;
     pelvis.push_back(at[motion.pelvis]);
     const vec3 across = at[motion.legs[kLeftSide].hip] - at[motion.legs[kRightSide].hip];
-    const vec3 ahead = heading_direction(heading_of(glm::cross(across, kUp)));
+    const vec3 ahead = heading_direction(hips_heading(across));
     for (int side = 0; side < 2; ++side) {
       const LegJoints& j = motion.legs[side];
       foot[side].ankle_m.push_back(at[j.ankle]);

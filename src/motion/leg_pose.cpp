@@ -86,13 +86,13 @@ std::vector<quat> world_rotations(const Skeleton& skeleton, std::span<const quat
   return {all.begin(), all.begin() + static_cast<std::ptrdiff_t>(skeleton.joints.size())};
 }
 
-namespace {
-
 quat world_rotation(const Skeleton& skeleton, const quat* local, int joint) {
   quat q = kIdentity;
   for (int j = joint; j >= 0; j = skeleton.joints[j].parent) q = local[j] * q;
   return q;
 }
+
+namespace {
 
 void set_local(const Skeleton& skeleton, int joint, const quat& world, quat* local) {
   const int parent = skeleton.joints[joint].parent;

@@ -20,13 +20,6 @@ JointFrames frames_of_sample(const GaitCycle& cycle, int i) {
   return frames;
 }
 
-std::vector<int> path_to(const Skeleton& skeleton, int joint) {
-  std::vector<int> path;
-  for (int j = joint; j >= 0; j = skeleton.joints[j].parent) path.push_back(j);
-  std::reverse(path.begin(), path.end());
-  return path;
-}
-
 quat mean_local(const GaitCycle& cycle, int joint) {
   const std::size_t joints = cycle.skeleton.joints.size();
   const quat& first = cycle.local[joint];
@@ -133,7 +126,7 @@ ArmBuild arm_build(const GaitCycle& cycle, const ArmChain& joints, Side side,
   ArmBuild arm;
   arm.joints = joints;
   if (!joints.is_found() || cycle.skeleton.joints[joints.shoulder].parent < 0) return arm;
-  arm.path = path_to(cycle.skeleton, joints.wrist);
+  arm.path = path_below(cycle.skeleton, -1, joints.wrist);
   if (arm.path.size() > kMaxBodyPath) return arm;
   arm.swing_shoulder = mean_local(cycle, joints.shoulder);
   arm.swing_elbow = mean_local(cycle, joints.elbow);
@@ -152,7 +145,7 @@ ArmBuild arm_build(const GaitCycle& cycle, const ArmChain& joints, Side side,
 void fill_spine(const GaitCycle& cycle, const std::vector<int>& spine, const JointFrames& standing,
                 UpperBodyModel& body) {
   if (spine.size() < 2) return;
-  body.spine_path = path_to(cycle.skeleton, spine.back());
+  body.spine_path = path_below(cycle.skeleton, -1, spine.back());
   if (body.spine_path.size() > kMaxBodyPath) return;
   const int below = cycle.skeleton.joints[spine.front()].parent;
   body.spine_base = standing.rotation[below];
@@ -174,7 +167,7 @@ void fill_spine(const GaitCycle& cycle, const std::vector<int>& spine, const Joi
 void fill_head(const GaitCycle& cycle, const UpperBodyJoints& joints, const JointFrames& standing,
                UpperBodyModel& body) {
   if (joints.head <= 0) return;
-  const std::vector<int> path = path_to(cycle.skeleton, joints.head);
+  const std::vector<int> path = path_below(cycle.skeleton, -1, joints.head);
   if (path.size() > kMaxBodyPath) return;
   const int first = joints.neck.empty() ? joints.head : joints.neck.front();
   body.head_path = path;

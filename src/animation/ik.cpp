@@ -406,41 +406,6 @@ struct Step {
   RowsOf<kRows> error;  // what is left to close
 };
 
-// Solves (J W J^T + damping I) y = b by L D L^T. No pivot is less than the damping, so none is
-// checked.
-template <int kRows>
-void solve_rows(const ColumnsOf<kRows>& column, int dofs, const Step<kRows>& step,
-                RowsOf<kRows>& y) noexcept {
-  constexpr int n = kRows;
-  std::array<RowsOf<n>, n> m;
-  for (int r = 0; r < n; ++r) {
-    for (int s = 0; s <= r; ++s) m[r][s] = (step.weight[0] * column[0][r]) * column[0][s];
-  }
-  for (int j = 1; j < dofs; ++j) {
-    for (int r = 0; r < n; ++r) {
-      const double weighted = step.weight[j] * column[j][r];
-      for (int s = 0; s <= r; ++s) m[r][s] += weighted * column[j][s];
-    }
-  }
-  for (int r = 0; r < n; ++r) m[r][r] += step.damping;
-  RowsOf<n> reciprocal;
-  for (int k = 0; k < n; ++k) {
-    reciprocal[k] = 1.0 / m[k][k];
-    for (int r = k + 1; r < n; ++r) {
-      const double l = m[k][r] = m[r][k] * reciprocal[k];
-      for (int s = k + 1; s <= r; ++s) m[r][s] -= l * m[s][k];
-    }
-  }
-  y = step.error;
-  for (int k = 0; k < n; ++k) {
-    for (int r = k + 1; r < n; ++r) y[r] -= m[k][r] * y[k];
-  }
-  for (int k = 0; k < n; ++k) y[k] *= reciprocal[k];
-  for (int k = n - 1; k > 0; --k) {
-    for (int r = 0; r < k; ++r) y[r] -= m[r][k] * y[k];
-  }
-}
-
 // A column of J^T times y.
 template <std::size_t kRows>
 double product(const std::array<double, kRows>& column,
@@ -458,10 +423,12 @@ template <int kRows>
 void limited_step(const Problem& p, const ColumnsOf<kRows>& column, Step<kRows>& step,
                   const IkAngles& angles_rad, IkDofValues& delta) noexcept {
   const int dofs = p.chain.dofs;
-  RowsOf<kRows> y;
+  RowsOf<kRows> damping;
+  damping.fill(step.damping);
   for (int j = 0; j < dofs; ++j) delta[j] = 0.0;
   for (int round = 0; round <= dofs; ++round) {
-    solve_rows<kRows>(column, dofs, step, y);
+    RowsOf<kRows> y = step.error;
+    solve_rows<kRows>(column, dofs, step.weight, damping, y);
     bool frozen = false;
     for (int j = 0; j < dofs; ++j) {
       if (step.weight[j] == 0.0) continue;

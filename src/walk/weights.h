@@ -8,6 +8,7 @@
 #pragma once
 #include <cstddef>
 
+#include "animation/solver_numbers.h"
 #include "walk/leg_solve.h"
 #include "walk/reach.h"
 
@@ -108,35 +109,6 @@ void set_columns(float lever_m, const LegPlace<V>& place, V (&column)[kLegAngles
   }
 }
 
-// Solves (J W J^T + diag(give)) y = b by L D L^T; b becomes y.
-template <class V>
-void solve_rows(const V (&column)[kLegAngles][6], const V (&weight)[kLegAngles], const V (&give)[6],
-                V (&b)[6]) noexcept {
-  V m[6][6];
-  for (int r = 0; r < 6; ++r)
-    for (int s = 0; s <= r; ++s) m[r][s] = (weight[0] * column[0][r]) * column[0][s];
-  for (int j = 1; j < kLegAngles; ++j) {
-    for (int r = 0; r < 6; ++r) {
-      const V weighted = weight[j] * column[j][r];
-      for (int s = 0; s <= r; ++s) m[r][s] = m[r][s] + weighted * column[j][s];
-    }
-  }
-  for (int r = 0; r < 6; ++r) m[r][r] = m[r][r] + give[r];
-  V reciprocal[6];
-  for (int k = 0; k < 6; ++k) {
-    reciprocal[k] = 1.0f / m[k][k];
-    for (int r = k + 1; r < 6; ++r) {
-      const V l = m[k][r] = m[r][k] * reciprocal[k];
-      for (int s = k + 1; s <= r; ++s) m[r][s] = m[r][s] - l * m[s][k];
-    }
-  }
-  for (int k = 0; k < 6; ++k)
-    for (int r = k + 1; r < 6; ++r) b[r] = b[r] - m[k][r] * b[k];
-  for (int k = 0; k < 6; ++k) b[k] = b[k] * reciprocal[k];
-  for (int k = 5; k > 0; --k)
-    for (int r = 0; r < k; ++r) b[r] = b[r] - m[r][k] * b[k];
-}
-
 // A step that meets the exact rows and reduces the sum of (angle - reference)^2 / W over the angles
 // and of error^2 / give over the rows that give way.
 template <class V>
@@ -187,7 +159,7 @@ void step_of(const LegToShare<V>& leg, float lever_m, const LegPlace<V>& place,
     first_rad[j] = kShareStep * first_rad[j];
     for (int r = 0; r < 6; ++r) b[r] = b[r] - column[j][r] * first_rad[j];
   }
-  solve_rows(column, weight, give, b);
+  solve_rows<6>(column, kLegAngles, weight, give, b);
   for (int j = 0; j < kLegAngles; ++j) {
     V sum = column[j][0] * b[0];
     for (int r = 1; r < 6; ++r) sum = sum + column[j][r] * b[r];

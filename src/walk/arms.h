@@ -52,13 +52,6 @@ struct ArmChain {
       column[j][0] = moves.x, column[j][1] = moves.y * has_height, column[j][2] = moves.z;
     }
   }
-  static void keep(const Mask<V>& where, const Place& from, Place& to) noexcept {
-    for (int j = 0; j < kArmAngles; ++j) to.axis[j] = chosen(where, from.axis[j], to.axis[j]);
-    to.elbow_m = chosen(where, from.elbow_m, to.elbow_m);
-    to.wrist_m = chosen(where, from.wrist_m, to.wrist_m);
-    to.end_m = chosen(where, from.end_m, to.end_m);
-    for (int r = 0; r < 3; ++r) to.error_m[r] = where ? from.error_m[r] : to.error_m[r];
-  }
 };
 
 template <class V>

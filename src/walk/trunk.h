@@ -257,7 +257,6 @@ template <class V>
 Vec<V> eased(const Tables& tables, const Vec<V>& goal, const V& most_rad, const V& heading_rad,
              const Mask<V>& acts, const Mask<V>& eases, Eased<V>& turn) noexcept {
   constexpr float kEases_s = 0.25f;
-  constexpr int kNumbers = sizeof(Eased<V>) / sizeof(V);
   Eased<V> of = turn;
   constexpr float kQuintic = 17.0f;  // three times the greatest bend of a quintic of length 1
   for (Off<V>& off : of.off) fade(of.ticks, off);
@@ -279,10 +278,7 @@ Vec<V> eased(const Tables& tables, const Vec<V>& goal, const V& most_rad, const 
   const Vec<V> value = goal + off;
   of.rate = value - of.at;
   of.at = value;
-  for (int n = 0; n < kNumbers; ++n) {
-    V& number = reinterpret_cast<V*>(&turn)[n];
-    number = acts ? reinterpret_cast<const V*>(&of)[n] : number;
-  }
+  put_where<V>(acts, of, turn);
   return value;
 }
 
@@ -335,14 +331,6 @@ struct SpineChain {
       column[d][0] = neck.x, column[d][1] = neck.z;
       column[d][2] = cross(at.axis[d], at.beside_m - pivot_m).z;
     }
-  }
-  static void keep(const Mask<V>& where, const Place& from, Place& to) noexcept {
-    for (int d = 0; d < kDofs; ++d) to.axis[d] = chosen(where, from.axis[d], to.axis[d]);
-    for (int i = 0; i < kMaxSpineIk; ++i)
-      to.pivot_m[i] = chosen(where, from.pivot_m[i], to.pivot_m[i]);
-    to.neck_m = chosen(where, from.neck_m, to.neck_m);
-    to.beside_m = chosen(where, from.beside_m, to.beside_m);
-    for (int r = 0; r < 3; ++r) to.error_m[r] = where ? from.error_m[r] : to.error_m[r];
   }
 };
 

@@ -304,22 +304,22 @@ struct SpineChain {
   };
   void place(const V (&angle)[kDofs], Place& to) const noexcept {
     const V one = all<V>(1.0f);
-    Vec<V> x{one, V{}, V{}}, y{V{}, one, V{}}, z{V{}, V{}, one}, end_m;
-    const auto turned = [&](const Vec<V>& p) { return x * p.x + y * p.y + z * p.z; };
+    Axes<V> f{{one, V{}, V{}}, {V{}, one, V{}}, {V{}, V{}, one}};
+    Vec<V> end_m;
     for (int d = 0; d < dofs; d += 3) {
       V s[3], c[3];
       for (int k = 0; k < 3; ++k) sin_cos(angle[d + k], s[k], c[k]);
       to.pivot_m[d / 3] = end_m;
-      to.axis[d] = x;
-      turn_axes(y, z, s[0], c[0]);
-      to.axis[d + 1] = z;
-      turn_axes(x, y, s[1], c[1]);
-      to.axis[d + 2] = y;
-      turn_axes(z, x, s[2], c[2]);
-      end_m = end_m + turned(link_m[d / 3]);
+      to.axis[d] = f.x;
+      turn_axes(f.y, f.z, s[0], c[0]);
+      to.axis[d + 1] = f.z;
+      turn_axes(f.x, f.y, s[1], c[1]);
+      to.axis[d + 2] = f.y;
+      turn_axes(f.z, f.x, s[2], c[2]);
+      end_m = end_m + f * link_m[d / 3];
     }
-    to.neck_m = end_m + turned(neck_m);
-    to.beside_m = to.neck_m + x * kNeckLever_m;
+    to.neck_m = end_m + f * neck_m;
+    to.beside_m = to.neck_m + f.x * kNeckLever_m;
     to.error_m[0] = goal_m.x - to.neck_m.x;
     to.error_m[1] = goal_m.z - to.neck_m.z;
     to.error_m[2] = beside_goal_m.z - to.beside_m.z;

@@ -17,9 +17,6 @@
 namespace gaitpad {
 namespace {
 
-vec3 doubles(const std::array<float, 3>& v) noexcept { return vec3(v[0], v[1], v[2]); }
-vec3 doubles(const Vec<float>& v) noexcept { return vec3(v.x, v.y, v.z); }
-
 // The step frame in the walk's own coordinates.
 struct Frame {
   vec3 at_m;
@@ -57,8 +54,8 @@ struct Extent {
 };
 Extent sole_extent(const LegBones& leg, double yaw_rad) noexcept {
   const quat yaw = rotation_y(yaw_rad);
-  const double tip = (yaw * (doubles(leg.tip_m) - doubles(leg.heel_m))).z;
-  const double half = std::abs((yaw * doubles(leg.side)).z) * leg.half_width_m;
+  const double tip = (yaw * (wide(leg.tip_m) - wide(leg.heel_m))).z;
+  const double half = std::abs((yaw * wide(leg.side)).z) * leg.half_width_m;
   return {std::min(0.0, tip) - half, std::max(0.0, tip) + half};
 }
 
@@ -210,9 +207,9 @@ struct Track {
 Track track_of(const LegBones& leg, double yaw_rad) noexcept {
   const quat yaw = rotation_y(yaw_rad);
   Track track;
-  track.ball_m = yaw * (doubles(leg.ball_m) - doubles(leg.heel_m));
-  track.tip_m = yaw * (doubles(leg.tip_m) - doubles(leg.heel_m));
-  track.across = yaw * doubles(leg.side);
+  track.ball_m = yaw * (wide(leg.ball_m) - wide(leg.heel_m));
+  track.tip_m = yaw * (wide(leg.tip_m) - wide(leg.heel_m));
+  track.across = yaw * wide(leg.side);
   track.length_m = horizontal_length(track.tip_m);
   track.along = vec3(track.tip_m.x, 0.0, track.tip_m.z) / track.length_m;
   return track;
@@ -489,7 +486,7 @@ void set_points(const LegBones& leg, const Frame& frame, const Flight<float>& fl
                                            tip + half};
   const Vec<float> n = flight.tilt * Vec<float>{0.0f, 1.0f, 0.0f};
   for (std::size_t k = 0; k < local.size(); ++k) {
-    points[k] = frame.out(doubles(local[k]));
+    points[k] = frame.out(wide(local[k]));
     const float line_m =
         flight.base_m -
         (n.x * (local[k].x - foot.heel_m.x) + n.z * (local[k].z - foot.heel_m.z)) / n.y;
@@ -549,7 +546,7 @@ PlannedFlight planned_flight(const Tables& tables, const Floor& floor, const Fra
     pitch_in_flight(time, sole, over, low * stride.foot[0].pitch_rad + off, off, change, footing,
                     foot);
     set_points(leg, frame, flies, foot, flight.sole[i], flight.base[i]);
-    flight.left[i] = lands.z - frame.out(doubles(flies.heel_m)).z;
+    flight.left[i] = lands.z - frame.out(wide(flies.heel_m)).z;
   }
   flight.begin = piece_at(floor, print.z);
   flight.end = piece_at(floor, lands.z);

@@ -368,6 +368,8 @@ inline Turn<V> chosen(const Mask<V>& mask, const Turn<V>& a, const Turn<V>& b) n
   if constexpr (kLanes<V> == 1) return mask ? a : b;
   return {mask ? a.w : b.w, mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
 }
+inline vec3 wide(const Vec<float>& v) noexcept { return {v.x, v.y, v.z}; }
+inline vec3 wide(const std::array<float, 3>& v) noexcept { return {v[0], v[1], v[2]}; }
 // Rotation about a unit axis by less than a quarter turn.
 template <class V>
 inline Turn<V> turn_about(const Vec<V>& axis, const V& angle_rad) noexcept {

@@ -9,8 +9,6 @@
 namespace gaitpad {
 namespace {
 
-inline vec3 wide(const Vec<float>& v) noexcept { return {v.x, v.y, v.z}; }
-inline vec3 wide(const std::array<float, 3>& v) noexcept { return {v[0], v[1], v[2]}; }
 inline quat wide(const Turn<float>& q) noexcept { return quat(q.w, q.x, q.y, q.z); }
 inline Turn<float> narrow(const quat& q) noexcept {
   return {static_cast<float>(q.w), static_cast<float>(q.x), static_cast<float>(q.y),

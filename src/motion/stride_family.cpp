@@ -8,12 +8,6 @@
 namespace gaitpad {
 namespace {
 
-// Double support takes about a quarter of an adult's cycle at an easy pace, a third at a stroll and
-// a fifth at a brisk one.
-constexpr double kLongerRoll = 0.9;   // relative growth of a roll's share at stride length 0
-constexpr double kShorterRoll = 2.4;  // steepness with which the share falls for longer strides
-constexpr double kLeastRoll = 0.04, kMostRoll = 0.22;
-
 static_assert(sizeof(StrideCell) == 33 * sizeof(double));
 
 // Adds weight * cell. A StrideCell consists of doubles only.
@@ -76,7 +70,8 @@ StridePlace stride_at(const std::vector<StrideTable>& tables, double phase, doub
 double roll_time_share(double data_share, double ratio) noexcept {
   const double share = data_share * (ratio < 1.0 ? 1.0 + kLongerRoll * (1.0 - ratio)
                                                  : 1.0 / (1.0 + kShorterRoll * (ratio - 1.0)));
-  return std::clamp(share, std::min(kLeastRoll, data_share), std::max(kMostRoll, data_share));
+  return std::clamp(share, std::min(kLeastRollShare, data_share),
+                    std::max(kMostRollShare, data_share));
 }
 
 double StageClock::time_at(double phase) const noexcept {

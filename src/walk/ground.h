@@ -175,12 +175,11 @@ V least_flight_s(const Tables& tables, const Footing<V>& footing) noexcept {
 template <class V>
 void take_time_to_tread(const Tables& tables, const Time<V>& time, const Change<V>& change,
                         const Footing<V>& footing, State<V>& state) noexcept {
-  constexpr float kMostChange = 2.0f;  // ticks in a tick
   const auto walks = both(both(change.stands == V{}, change.starting == V{}),
                           both(change.closing == V{}, change.stops == V{})),
              may = both(no(time.flies), walks);
   const V least_ticks = floored(V(least_flight_s(tables, footing) * (1.0f / tables.tick_s))),
-          more = within(V(least_ticks - state.flight_ticks), 0.0f, kMostChange);
+          more = within(V(least_ticks - state.flight_ticks), 0.0f, kLonger_ticks);
   state.flight_ticks = state.flight_ticks + (may ? more : V{});
 }
 

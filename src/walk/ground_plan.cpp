@@ -45,7 +45,7 @@ struct Frame {
 
 constexpr double kLeastStep = 0.05;  // in legs: shorter steps count as this long
 constexpr double kBeside_m = 1e-6;   // a place so near to a riser is certainly on one side of it
-constexpr double kLeast_m = 1e-6;    // not to divide by 0
+constexpr double kLeast = 1e-6;      // metres or weights: not to divide by 0
 
 // The reach of the sole along z from its heel point.
 struct Extent {
@@ -185,8 +185,7 @@ Stretch best_piece(const Floor& floor, const Step& step, const Stretch* settled)
 // The share of its length that a step keeps on a slope: 1 / (1 + grade).
 double slope_share(const Floor& floor, const Step& step) noexcept {
   const double length = horizontal_length(step.wanted_m - step.from_m);
-  if (length < kLeast_m || step.wanted_m.z < step.stands.from_m ||
-      step.wanted_m.z > step.stands.to_m)
+  if (length < kLeast || step.wanted_m.z < step.stands.from_m || step.wanted_m.z > step.stands.to_m)
     return 1.0;
   const double rise = ground_at(floor, step.wanted_m.x, step.wanted_m.z).height_m - step.from_m.y;
   return 1.0 / (1.0 + std::abs(rise) / length);
@@ -684,7 +683,6 @@ double way_on(const Tables& tables, const Floor& floor, const PlannedFlight& fli
 void draw_taut(const Wanted& wanted, double room_m, Spline& knots) noexcept {
   constexpr double kTautRoom = 0.5;  // share of the room that the spline keeps
   constexpr int kTautRounds = 24;
-  constexpr double kLeastWeight = 1e-6;  // not to divide by 0
   Wanted slack;
   std::array<Wanted, kRoomKnots> weight;  // of each knot at each probe
   for (int i = 0; i <= kProbes; ++i) {
@@ -701,7 +699,7 @@ void draw_taut(const Wanted& wanted, double room_m, Spline& knots) noexcept {
     for (int k = kKnotsOfFlight - 3; k > 0; --k) {
       double fall = knots[k] - 0.5 * (knots[k - 1] + knots[k + 1]);
       for (int i = 0; i <= kProbes; ++i) {
-        if (weight[k][i] > kLeastWeight) fall = std::min(fall, slack[i] / weight[k][i]);
+        if (weight[k][i] > kLeast) fall = std::min(fall, slack[i] / weight[k][i]);
       }
       knots[k] -= fall;
       for (int i = 0; i <= kProbes; ++i) slack[i] -= fall * weight[k][i];
@@ -722,7 +720,7 @@ RoomPlan plan_down(const Tables& tables, const Floor& floor, const PlannedFlight
   constexpr int over = static_cast<int>(kOver * kProbes);
   const double left = flight.left[over];
   const double needed =
-      std::abs(left) < kLeast_m ? 0.0 : way_on(tables, floor, flight, over, flight.climb) / left;
+      std::abs(left) < kLeast ? 0.0 : way_on(tables, floor, flight, over, flight.climb) / left;
   const double share = std::clamp(needed, 0.0, 1.0);
   RoomPlan room;
   for (int k = 1; k < kKnotsOfFlight; ++k)

@@ -192,7 +192,6 @@ Mask<V> advance_poise(const Tables& tables, const Hips<V>& hips, const Mask<V>& 
   // reaches at kFirstAll, so that a slow walk leans as well.
   constexpr float kPush_rad = 3.0f * kDegree_rad, kFirstPush_rad = 2.0f * kDegree_rad,
                   kFirstFrom = 0.4f, kFirstAll = 0.8f, kCalm = 0.25f, kSoftCalm_m_s = 0.1f;
-  constexpr float kStill_rad = 1e-7f;  // a smaller lean counts as none
   // Chest and head are eased while the head's turn ahead changes faster than this, or is farther
   // from its goal.
   constexpr float kTurns_rad_s = 0.02f, kTurns_rad = 0.003f;

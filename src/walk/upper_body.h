@@ -30,9 +30,6 @@ Mask<V> has_style(const Styled<V>& styled) noexcept {
 // Brings the style's numbers in force nearer to those asked for, and without a style to the data's.
 template <class V>
 void smooth_body(const Tables& tables, const Mask<V>& is_styled, Styled<V>& styled) noexcept {
-  // A share of the number, or of 1 if it is less: by rounding, a float of 10 comes to rest 2e-5 off
-  // its goal.
-  constexpr float kSettled = 1e-5f;
   const auto asked = styled.asked != V{}, acted = styled.acts != V{};
   // Return early if all numbers have settled, as they have in nearly every tick.
   auto moves = both(is_styled, acted != asked);

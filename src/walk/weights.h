@@ -259,7 +259,6 @@ void begin_weights(const Tables& tables, const Mask<V>& begins, const Time<V>& t
 // not 1.
 template <class V>
 Mask<V> smooth_weights(const Tables& tables, Weighted<V>& weighted) noexcept {
-  constexpr float kAsGoodAsEven = 1e-5f;
   const V one = all<V>(1.0f);
   const auto asked = weighted.asked != V{}, acted = weighted.acts != V{};
   auto acts = asked;
@@ -270,15 +269,14 @@ Mask<V> smooth_weights(const Tables& tables, Weighted<V>& weighted) noexcept {
       moves = either(moves, both(acted, either(weighted.weight[side][j].x != weighted.goal[side][j],
                                                weighted.weight[side][j].v != V{})));
   if (!any(moves)) return acts;
-  constexpr float kThere = 1e-6f;
   for (int side : {0, 1}) {
     for (int j = 0; j < kLegAngles; ++j) {
       Smoothed<V>& in_force = weighted.weight[side][j];
       const V goal = asked ? weighted.goal[side][j] : one;
       Smoothed<V> weight{acted ? in_force.x : one, acted ? in_force.v : V{}};
       follow(goal, tables.weights, weight);
-      const auto even = both(goal == one, size(V(weight.x - one)) < all<V>(kAsGoodAsEven)),
-                 there = either(even, both(size(V(weight.x - goal)) < all<V>(kThere),
+      const auto even = both(goal == one, size(V(weight.x - one)) < all<V>(kSettled)),
+                 there = either(even, both(size(V(weight.x - goal)) < all<V>(kEvenWeights),
                                            size(weight.v) < all<V>(kStill_per_s)));
       const V x = there ? goal : weight.x, v = there ? V{} : weight.v;
       in_force = {moves ? x : in_force.x, moves ? v : in_force.v};

@@ -6,6 +6,7 @@ namespace gaitpad {
 
 // True if all numbers are finite and within their ranges (control/params_range.h).
 bool is_sound(const GaitParams& params) noexcept;
+bool is_finite(const Placement& place) noexcept;
 inline bool is_sound_tick(double dt_s) noexcept {
   return dt_s >= kLeastTick_s && dt_s <= kMostTick_s;
 }

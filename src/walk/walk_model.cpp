@@ -255,7 +255,6 @@ LegBuild leg_build(const LegModel& model) {
   leg.chain = leg_chain(model);
   const vec3 line = model.toe_m - model.heel_m;
   leg.foot_m = glm::length(line);
-  leg.line = line / leg.foot_m;
   leg.elevation_rad = elevation(line);
   leg.forward = foot_forward(model);
   leg.side = glm::cross(kUp, leg.forward);

@@ -222,8 +222,8 @@ void fill_arms(const WalkModel& model, BuildTables& tables) {
 void fill_root(const WalkModel& model, BuildTables& tables) {
   const std::vector<Joint>& all = model.cycle.skeleton.joints;
   const int pelvis = model.cycle.pelvis;
-  for (int j = all[pelvis].parent; j >= 0; j = all[j].parent)
-    tables.above_pelvis.insert(tables.above_pelvis.begin(), {j, floats(all[j].offset_m)});
+  for (const int j : path_below(model.cycle.skeleton, -1, all[pelvis].parent))
+    tables.above_pelvis.push_back({j, floats(all[j].offset_m)});
   tables.pelvis = pelvis;
   tables.pelvis_offset_m = floats(all[pelvis].offset_m);
   tables.pelvis_standing = wxyz(model.cycle.pelvis_standing);

@@ -309,12 +309,8 @@ bool has_overlong_leg(const GaitCycle& cycle) {
     const std::array<int, 5> chain = {cycle.pelvis, leg.joints.hip, leg.joints.knee,
                                       leg.joints.ankle, leg.joints.toe};
     for (std::size_t i = 1; i < chain.size(); ++i) {
-      int between = 0;
-      for (int j = cycle.skeleton.joints[chain[i]].parent; j > chain[i - 1] && j >= 0;
-           j = cycle.skeleton.joints[j].parent) {
-        ++between;
-      }
-      if (between > kMaxBetween) return true;
+      const int above = cycle.skeleton.joints[chain[i]].parent;
+      if (path_below(cycle.skeleton, chain[i - 1], above).size() > kMaxBetween) return true;
     }
   }
   return false;
@@ -471,15 +467,14 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
   model.cycle = cycle;
   const double ratio = character.scale * character.leg_ratio;
   scale_build(model.cycle, character.scale, character.leg_ratio);
-  model.source_leg_length_m = 0.5 * (cycle.leg[0].length_m() + cycle.leg[1].length_m());
+  model.source_leg_length_m = mean_leg_m(cycle);
   model.leg_length_m = model.source_leg_length_m * ratio;
   model.size = model.leg_length_m / kReferenceLeg_m;
   // The fourth root, as gait_limits() scales times.
   model.time_scale = std::sqrt(std::sqrt(model.size));
   for (Side side : {kLeftSide, kRightSide}) {
     model.leg[side] = leg_build(model.cycle.leg[side]);
-    const double lift = cycle.toe_off[side] - cycle.strike[side];
-    model.leg[side].toe_off = lift - std::floor(lift);
+    model.leg[side].toe_off = fraction(cycle.toe_off[side] - cycle.strike[side]);
     model.leg[side].track_m =
         mean_heel(cycle, side).x * ratio + cycle.leg[side].hip_m.x * (character.scale - ratio);
   }

@@ -40,10 +40,14 @@ std::vector<SampleRange> unbroken_ranges(const FeetTracks& tracks,
   return ranges;
 }
 
-double median_of(std::vector<vec3>& v, int axis) {
-  std::vector<double> values;
-  for (const vec3& p : v) values.push_back(p[axis]);
-  return median(std::move(values));
+vec3 median_of(const std::vector<vec3>& places) {
+  vec3 middle;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> values;
+    for (const vec3& p : places) values.push_back(p[axis]);
+    middle[axis] = median(std::move(values));
+  }
+  return middle;
 }
 
 // Tracks of one foot's joints.
@@ -87,10 +91,7 @@ Sole sole_of(const FootJoints& foot, const std::vector<SampleRange>& ranges, dou
     heels.push_back(into_ankle * vec3(-kHeelShare * toe.x, low, -kHeelShare * toe.z));
     toes.push_back(into_ankle * toe);
   }
-  const auto middle = [](std::vector<vec3>& v) {
-    return vec3(median_of(v, 0), median_of(v, 1), median_of(v, 2));
-  };
-  return {middle(heels), middle(toes)};
+  return {median_of(heels), median_of(toes)};
 }
 
 // --- Swings, roughly -----------------------------------------------------------------------------

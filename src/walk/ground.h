@@ -330,14 +330,10 @@ V rise_with_hips(const Tables& tables, const Mask<V>& right, const V& knee_rad, 
   // A leg stretches to the share kStretch of its length before its foot has to rise. The foot rises
   // by up to the share kMostOnToe of the ankle's rise from a flat to an upright foot.
   constexpr float kStretch = 0.998f, kSoftStretch_m = 0.02f, kMostOnToe = 0.5f, kSoftOnToe = 0.3f;
-  const V a = of_leg<V>(tables, right, &LegBones::thigh_m),
-          b = of_leg<V>(tables, right, &LegBones::shank_m),
-          knee = knee_rad + stand_rad<V>(tables, right, 3);
-  V sine, cosine;
-  sin_cos(knee, sine, cosine);
-  const V known_m = root(V(a * a + b * b + 2.0f * a * b * cosine)),
-          room_m = most(V(kStretch * (a + b) - known_m), V{}), higher_m = footing.hips_m.x - base_m,
-          up_m = most(higher_m, V{}), soft_m = all<V>(kSoftStretch_m * tables.size),
+  const V known_m = span_in_tables_m<V>(tables, right, knee_rad),
+          room_m = most(V(kStretch * leg_m<V>(tables, right) - known_m), V{}),
+          higher_m = footing.hips_m.x - base_m, up_m = most(higher_m, V{}),
+          soft_m = all<V>(kSoftStretch_m * tables.size),
           rise_m = soft_positive(V(higher_m + hover_m - room_m),
                                  V(hover_m + up_m * soft_m / (up_m + soft_m))),
           most_m = toe_length_m<V>(tables, right) - ankle_height_m<V>(tables, right);

@@ -64,12 +64,6 @@ inline constexpr float kSettled = 1e-5f, kNothing = 1e-6f;
 // Greatest reach of a leg, over its length: a straight leg has no derivative.
 inline constexpr float kLongestReach = 0.99995f;
 
-template <class V>
-V leg_m(const Tables& tables, const Mask<V>& right) noexcept {
-  return of_leg<V>(tables, right, &LegBones::thigh_m) +
-         of_leg<V>(tables, right, &LegBones::shank_m);
-}
-
 // If a style keeps a heel low, the hips sink while the foot would rise, and the foot rises as far
 // as its leg asks. `asked_rad`: pitch that this adds to swing and stand.
 template <class V>

@@ -13,6 +13,7 @@ namespace {
 // place has two coordinates: x as in the world, and u, the metres from the section's begin. Heights
 // are relative to the height at which the section begins.
 
+// Bounds of a section's length, and of the treads, rises and risers of stairs.
 constexpr double kMinLength_m = 0.1, kMaxLength_m = 1000.0;
 constexpr double kMinTread_m = 0.15, kMaxTread_m = 2.0, kMinRise_m = 0.01, kMaxRise_m = 0.4;
 constexpr int kMaxRisers = 100;
@@ -358,6 +359,7 @@ Ground finite_or_floor(const Ground& ground) noexcept {
   return std::isfinite(ground.height_m) ? ground : Ground{};
 }
 
+// Bounds of a grid: samples of a side (1 GiB in all), and their distance.
 constexpr int kMaxGridSide = 16'384;
 constexpr double kLeastSpacing_m = 0.01, kMostSpacing_m = 100.0;
 
@@ -502,7 +504,7 @@ RoughSection rough_section(double length_m, double amplitude_m, double wavelengt
   // measure, so the sum never repeats.
   constexpr std::array<double, 5> kSquares{1.0, 1.7, 2.6, 3.7, 5.3};
   // Angle between the directions of two waves, so that no two have the same direction.
-  constexpr double kGoldenAngle = 2.399963229728653;
+  constexpr double kGoldenAngle_rad = 2.399963229728653;
   RoughSection rough;
   rough.length_m = length_m, rough.fade_m = fade_m;
   double sum = 0.0;
@@ -510,7 +512,7 @@ RoughSection rough_section(double length_m, double amplitude_m, double wavelengt
   const double turn = 2.0 * kPi * random_share(seed);
   for (std::size_t i = 0; i < kSquares.size(); ++i) {
     const double k = 2.0 * kPi / (wavelength_m * std::sqrt(kSquares[i]));
-    const SinCos direction = sin_cos(turn + kGoldenAngle * static_cast<double>(i));
+    const SinCos direction = sin_cos(turn + kGoldenAngle_rad * static_cast<double>(i));
     // A wave's height grows with the square of its length, so that all waves bend the ground
     // equally.
     rough.wave[i] = {

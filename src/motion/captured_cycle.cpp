@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kPoints = 256;    // samples of the closed stride, before its harmonics are taken
 constexpr double kFade = 0.12;  // longest fade on either side of the seam, a share of the stride
-constexpr double kLeastFade = 0.08;  // if there is less room, the gaps are spread
+constexpr double kLeastFade = 0.08;  // share of the stride: with less room the gaps are spread
 constexpr int kFullHarmonics = 10;   // harmonics above this number fade out to kHarmonics
 
 // Natural cubic spline through values at 0, 1, 2 ...

@@ -8,6 +8,7 @@ namespace gaitpad {
 
 // Axes 0 x, 1 y, 2 z, each once.
 using EulerOrder = std::array<int, 3>;
+// Numbers of axes.
 inline constexpr EulerOrder kEulerZyx = {2, 1, 0};
 inline constexpr EulerOrder kEulerYxz = {1, 0, 2};
 inline constexpr std::array<EulerOrder, 6> kEulerOrders = {

@@ -97,6 +97,7 @@ Sole sole_of(const FootJoints& foot, const std::vector<SampleRange>& ranges, dou
 // --- Swings, roughly -----------------------------------------------------------------------------
 
 constexpr double kSmoothing_s = 0.04;  // half the width of the window over the ankle's track
+// A shorter rest, and a swing that is shorter or longer in time or way, does not count.
 constexpr double kShortestRest_s = 0.06;
 constexpr double kShortestSwing_s = 0.15, kLongestSwing_s = 1.8;
 constexpr double kShortestSwing_legs = 0.15, kLongestSwing_legs = 2.6;

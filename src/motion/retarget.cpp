@@ -275,7 +275,7 @@ class UpperBodyTurn {
 
 // --- The character's build and standing pose -----------------------------------------------------
 
-constexpr double kMostToeOut = 45.0 * kDegree;
+constexpr double kMostToeOut = 45.0 * kDegree;  // of a standing foot; a wider one is turned forward
 
 // The frame with the lowest score.
 template <class Score>

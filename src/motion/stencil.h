@@ -29,7 +29,7 @@ inline double mixed(double a, double b, double share_a, double share_b) noexcept
 template <class T, std::size_t kCount>
 std::array<T, kCount> spline_through(const std::array<T, kCount>& samples) noexcept {
   constexpr int n = static_cast<int>(kCount);
-  constexpr double kPole = -0.26794919243112270;  // sqrt(3) - 2
+  constexpr double kPole = -0.26794919243112270;  // sqrt(3) - 2, a ratio
   constexpr int kReach = 28;                      // pole^kReach is below the rounding of a double
   static_assert(n >= kReach);
   std::array<T, kCount> once, knots;

@@ -116,8 +116,9 @@ double seam(const WalkTrack& track, const SampleRange& range, double start, doub
   return weight > 0.0 ? sum / weight : 1.0;
 }
 
-constexpr double kLongestStride_s = 4.0;
 constexpr double kShortestStride_legs = 0.2;  // least length: a shuffle's two steps
+// A longer, slower or more sharply turning stride is not used.
+constexpr double kLongestStride_s = 4.0;
 constexpr double kSlowest_legs_s = 0.12;
 constexpr double kSharpestTurn_rad = 60.0 * kDegree;
 

@@ -191,9 +191,9 @@ void take_time_to_tread(const Tables& tables, const Time<V>& time, const Change<
 // of the next roll.
 inline constexpr float kSinkBegin = 0.5f, kSinkEnd = 0.25f;
 // The last step sinks to its landing, where both feet stand with straight knees, so it begins
-// early.
+// early, at this share.
 inline constexpr float kSinkBeginClosing = 0.15f;
-inline constexpr float kSinkBeginBack = 0.35f;  // people feel for the ground behind them early
+inline constexpr float kSinkBeginBack = 0.35f;  // share: people feel for the ground behind them
 
 template <class V>
 struct Sinking {

@@ -154,7 +154,7 @@ double cost_of(const Floor& floor, const Step& step, const Stretch& piece) noexc
 // same piece, and its edge stops the step, it also tries the piece beyond this edge.
 Stretch best_piece(const Floor& floor, const Step& step, const Stretch* settled) noexcept {
   constexpr int kMostPieces = 8;  // compared
-  constexpr double kStay = 0.1;   // another piece than `settled` has to be cheaper by this
+  constexpr double kStay = 0.1;   // cost by which another piece than `settled` has to be cheaper
   const double middle = step.sole.middle_m(), stands = step.from_m.z + middle;
   Stretch piece = piece_at(floor, step.wanted_m.z + middle), best = piece;
   if (piece.from_m == step.stands.from_m) {

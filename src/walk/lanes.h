@@ -41,6 +41,7 @@ struct Turn {  // a unit quaternion
   V w{}, x{}, y{}, z{};
 };
 
+// A whole turn, a quarter of it, and a degree.
 inline constexpr float kTurn_rad = 6.2831853f, kRightAngle_rad = 1.5707963f,
                        kDegree_rad = 0.017453293f;
 

@@ -37,7 +37,7 @@ inline float off_plan_rad(const Time<float>& time, int k, const Change<float>& c
 inline Foot<float> off_plan(const Foot<float>& planned, const Sole<float>& sole,
                             const Vec<float>& hip_m, float reach_m, bool on_toe,
                             float off_rad) noexcept {
-  constexpr float kLeastStep = 1.0f / 4096.0f;
+  constexpr float kLeastStep = 1.0f / 4096.0f;  // of the share, which is found by halving
   Foot<float> foot = planned;
   float share = off_rad != 0.0f ? 1.0f : 0.0f;
   for (float step = 0.5f; share > 0.0f && step >= kLeastStep; step *= 0.5f) {

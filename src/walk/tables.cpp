@@ -116,8 +116,7 @@ void fill_legs(const WalkModel& model, BuildTables& tables) {
       to.joint[j] = from.joint[j].joint;
       to.before[j] = wxyz(from.joint[j].before);
       to.after[j] = wxyz(from.joint[j].after);
-      constexpr std::array<float, 4> kNone = {1.0f, 0.0f, 0.0f, 0.0f};
-      tables.legs_are_plain &= to.before[j] == kNone && to.after[j] == kNone;
+      tables.legs_are_plain &= to.before[j] == wxyz(kIdentity) && to.after[j] == wxyz(kIdentity);
     }
   }
 }

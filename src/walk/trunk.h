@@ -404,10 +404,11 @@ struct Gaze {
 };
 template <class V>
 Gaze<V> gaze(const Tables& tables, const Turn<V>& chest, const Vec<V>& direction) noexcept {
+  // Limits of the neck, and the widths over which they are rounded.
   constexpr float kMostYaw_rad = 70 * kDegree_rad, kMostPitch_rad = 40 * kDegree_rad,
                   kSoftYaw_rad = 6 * kDegree_rad, kSoftHeadPitch_rad = 4 * kDegree_rad;
   // The head does not follow a goal behind it, for turning left and right would be equally far, nor
-  // one straight above or below.
+  // one straight above or below: shares of its direction that are level.
   constexpr float kBeside_rad = 105 * kDegree_rad, kBehind_rad = 150 * kDegree_rad,
                   kLevelFrom = 0.15f, kLevelTo = 0.4f;
   const auto limited = [](const V& x, float most, float soft) {

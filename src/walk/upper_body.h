@@ -426,17 +426,17 @@ struct DataRead {
 };
 template <class V>
 void swing_arm(const Tables& tables, int side, const V& swing, DataRead<V>& data) noexcept {
-  constexpr float kSoftElbow = 0.1f;
+  constexpr float kSoftElbow = 0.1f;  // of the factor: rounds the limit that keeps elbows bent
   data.shoulder[side] = swing;
   data.elbow[side] = soft_least(swing, all<V>(tables.most_elbow_swing[side]), all<V>(kSoftElbow));
 }
 template <class V>
 DataRead<V> data_read(const Tables& tables, const BodyTick<V>& tick, const V& swing,
                       const State<V>& state) noexcept {
-  constexpr float kWholly = 0.99999f;
   DataRead<V> data;
   data.knots = knots_at(data_phase(tables, tick.time, tick.phase));
   // A filter comes near to 1 but not to it; a joint that the pose shows fully is read faster.
+  constexpr float kWholly = 0.99999f;  // share of the posture that counts as all of it
   const V posture = within(state.posture.x, 0.0f, 1.0f);
   data.shown = tick.shown * (posture > all<V>(kWholly) ? all<V>(1.0f) : posture);
   for (int side : {0, 1}) swing_arm(tables, side, swing, data);

@@ -440,7 +440,7 @@ void keep_trunk_upright(double roll_rad, GaitCycle& cycle) {
 }  // namespace
 
 std::optional<Error> check(const Character& character) {
-  constexpr double kLeast = 0.05, kMost = 20.0;
+  constexpr double kLeast = 0.05, kMost = 20.0;  // factors of the lengths
   const std::string name = character.name + ": ";
   if (auto problem = range_problem(name + "scale", character.scale, kLeast, kMost)) return problem;
   if (auto problem = range_problem(name + "leg_ratio", character.leg_ratio, kLeast, kMost))

@@ -167,8 +167,8 @@ void step_of(const LegToShare<V>& leg, float lever_m, const LegPlace<V>& place,
 
 template <class V>
 void share_leg(float lever_m, LegToShare<V>& leg) noexcept {
-  constexpr float kMostShareStep_rad = 0.6f;
-  constexpr int kMostShareSteps = 8;
+  constexpr float kMostShareStep_rad = 0.6f;  // of an angle, in one step
+  constexpr int kMostShareSteps = 8;          // of a solve
   // A solve ends after a smaller step, if its point was nearer than this.
   constexpr float kSharedNear_rad = 8.7266463e-4f, kSharedNear_m = 0.001f;
   LegPlace<V> place;
@@ -319,7 +319,8 @@ void weigh_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stri
                 const Change<V>& change, const State<V>& state, Weighted<V>& weighted,
                 Leg<V> (&legs)[2]) noexcept {
   constexpr float kLeastW = 0.09f;  // the weight of a locked joint in the solve
-  // The pull of one joint approaches this; kHeldPull of it acts while the foot may not turn.
+  // The pull of one joint approaches this; the share kHeldPull of it acts while the foot may not
+  // turn.
   constexpr float kMostPull_rad = 0.31415927f, kHeldPull = 0.3f;
   constexpr float kBentKnee = 0.65f;  // a knee straighter than this share of the even one is bent
   constexpr float kTight_rad = 0.05235988f;  // 3 degrees of room: half of it gives way

@@ -106,18 +106,32 @@ bool do_fit(const IkChain& chain, std::span<const IkRow> rows) noexcept {
   return chain.dofs >= 0 && chain.dofs <= kMaxIkDofs && rows.size() <= kMaxIkRows;
 }
 
-// True for a count that check() of the options accepts; makes no sentence.
-bool is_count(int count, int least) noexcept {
-  return count >= least && count <= kMostIkIterations;
+// A number of the options, and the range in which it has to be.
+struct Bounded {
+  const char* name;
+  double value, least, most;
+};
+constexpr double kLongest_m = 1e6;  // beyond any skeleton: squares of it are far from infinite
+std::array<Bounded, 4> bounded(const PaperOptions& o) noexcept {
+  return {{{"PaperOptions: tolerance_m", o.tolerance_m, 0.0, kLongest_m},
+           {"PaperOptions: epsilon_m", o.epsilon_m, 0.0, kLongest_m},
+           {"PaperOptions: max_iterations", double(o.max_iterations), 0.0, kMostIkIterations},
+           {"PaperOptions: max_halvings", double(o.max_halvings), 0.0, kMostIkIterations}}};
 }
-bool is_length(double length_m) noexcept { return length_m >= 0.0 && length_m <= 1e6; }
-bool are_sound(const PaperOptions& o) noexcept {
-  return is_length(o.tolerance_m) && is_length(o.epsilon_m) && is_count(o.max_iterations, 0) &&
-         is_count(o.max_halvings, 0);
+std::array<Bounded, 5> bounded(const RobustOptions& o) noexcept {
+  return {{{"RobustOptions: tolerance_m", o.tolerance_m, 0.0, kLongest_m},
+           {"RobustOptions: damping", o.damping, 0.0, kLongest_m},
+           {"RobustOptions: max_step_rad", o.max_step_rad, 1e-6, kPi},
+           {"RobustOptions: max_iterations", double(o.max_iterations), 0.0, kMostIkIterations},
+           {"RobustOptions: max_tries", double(o.max_tries), 1.0, kMostIkIterations}}};
 }
-bool are_sound(const RobustOptions& o) noexcept {
-  return is_length(o.tolerance_m) && is_length(o.damping) && o.max_step_rad >= 1e-6 &&
-         o.max_step_rad <= kPi && is_count(o.max_iterations, 0) && is_count(o.max_tries, 1);
+// True for options that check() accepts; makes no sentence.
+template <class Options>
+bool are_sound(const Options& options) noexcept {
+  for (const Bounded& b : bounded(options)) {
+    if (!(b.value >= b.least && b.value <= b.most)) return false;
+  }
+  return true;
 }
 
 // Checks that angles and weights are finite, and limits in order (they may be infinite). A bad
@@ -392,41 +406,6 @@ struct Step {
   RowsOf<kRows> error;  // what is left to close
 };
 
-// Solves (J W J^T + damping I) y = b by L D L^T. No pivot is less than the damping, so none is
-// checked.
-template <int kRows>
-void solve_rows(const ColumnsOf<kRows>& column, int dofs, const Step<kRows>& step,
-                RowsOf<kRows>& y) noexcept {
-  constexpr int n = kRows;
-  std::array<RowsOf<n>, n> m;
-  for (int r = 0; r < n; ++r) {
-    for (int s = 0; s <= r; ++s) m[r][s] = (step.weight[0] * column[0][r]) * column[0][s];
-  }
-  for (int j = 1; j < dofs; ++j) {
-    for (int r = 0; r < n; ++r) {
-      const double weighted = step.weight[j] * column[j][r];
-      for (int s = 0; s <= r; ++s) m[r][s] += weighted * column[j][s];
-    }
-  }
-  for (int r = 0; r < n; ++r) m[r][r] += step.damping;
-  RowsOf<n> reciprocal;
-  for (int k = 0; k < n; ++k) {
-    reciprocal[k] = 1.0 / m[k][k];
-    for (int r = k + 1; r < n; ++r) {
-      const double l = m[k][r] = m[r][k] * reciprocal[k];
-      for (int s = k + 1; s <= r; ++s) m[r][s] -= l * m[s][k];
-    }
-  }
-  y = step.error;
-  for (int k = 0; k < n; ++k) {
-    for (int r = k + 1; r < n; ++r) y[r] -= m[k][r] * y[k];
-  }
-  for (int k = 0; k < n; ++k) y[k] *= reciprocal[k];
-  for (int k = n - 1; k > 0; --k) {
-    for (int r = 0; r < k; ++r) y[r] -= m[r][k] * y[k];
-  }
-}
-
 // A column of J^T times y.
 template <std::size_t kRows>
 double product(const std::array<double, kRows>& column,
@@ -444,10 +423,12 @@ template <int kRows>
 void limited_step(const Problem& p, const ColumnsOf<kRows>& column, Step<kRows>& step,
                   const IkAngles& angles_rad, IkDofValues& delta) noexcept {
   const int dofs = p.chain.dofs;
-  RowsOf<kRows> y;
+  RowsOf<kRows> damping;
+  damping.fill(step.damping);
   for (int j = 0; j < dofs; ++j) delta[j] = 0.0;
   for (int round = 0; round <= dofs; ++round) {
-    solve_rows<kRows>(column, dofs, step, y);
+    RowsOf<kRows> y = step.error;
+    solve_rows<kRows>(column, dofs, step.weight, damping, y);
     bool frozen = false;
     for (int j = 0; j < dofs; ++j) {
       if (step.weight[j] == 0.0) continue;
@@ -640,13 +621,20 @@ IkResult solve_robust(const IkChain& chain, std::span<const IkRow> rows,
 
 namespace {
 
-constexpr double kLongest_m = 1e6;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kUnitTolerance = 1e-6;
 
 std::optional<Error> unit_problem(const std::string& what, const vec3& v) {
+  constexpr double kUnitTolerance = 1e-6;  // share of a length of 1
   return range_problem(what + ", its length,", std::sqrt(glm::dot(v, v)), 1.0 - kUnitTolerance,
                        1.0 + kUnitTolerance);
+}
+
+template <class Options>
+std::optional<Error> options_problem(const Options& options) {
+  for (const Bounded& b : bounded(options)) {
+    if (auto problem = range_problem(b.name, b.value, b.least, b.most)) return problem;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
@@ -681,30 +669,7 @@ std::optional<Error> check(std::span<const IkRow> rows) {
   return std::nullopt;
 }
 
-std::optional<Error> check(const PaperOptions& options) {
-  const std::string what = "PaperOptions: ";
-  if (auto problem = range_problem(what + "tolerance_m", options.tolerance_m, 0.0, kLongest_m))
-    return problem;
-  if (auto problem = range_problem(what + "epsilon_m", options.epsilon_m, 0.0, kLongest_m))
-    return problem;
-  if (auto problem =
-          range_problem(what + "max_iterations", options.max_iterations, 0.0, kMostIkIterations))
-    return problem;
-  return range_problem(what + "max_halvings", options.max_halvings, 0.0, kMostIkIterations);
-}
-
-std::optional<Error> check(const RobustOptions& options) {
-  const std::string what = "RobustOptions: ";
-  if (auto problem = range_problem(what + "tolerance_m", options.tolerance_m, 0.0, kLongest_m))
-    return problem;
-  if (auto problem = range_problem(what + "damping", options.damping, 0.0, kLongest_m))
-    return problem;
-  if (auto problem = range_problem(what + "max_step_rad", options.max_step_rad, 1e-6, kPi))
-    return problem;
-  if (auto problem =
-          range_problem(what + "max_iterations", options.max_iterations, 0.0, kMostIkIterations))
-    return problem;
-  return range_problem(what + "max_tries", options.max_tries, 1.0, kMostIkIterations);
-}
+std::optional<Error> check(const PaperOptions& options) { return options_problem(options); }
+std::optional<Error> check(const RobustOptions& options) { return options_problem(options); }
 
 }  // namespace gaitpad

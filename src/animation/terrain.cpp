@@ -13,16 +13,20 @@ namespace {
 // place has two coordinates: x as in the world, and u, the metres from the section's begin. Heights
 // are relative to the height at which the section begins.
 
+// Bounds of a section's length, and of the treads, rises and risers of stairs.
 constexpr double kMinLength_m = 0.1, kMaxLength_m = 1000.0;
 constexpr double kMinTread_m = 0.15, kMaxTread_m = 2.0, kMinRise_m = 0.01, kMaxRise_m = 0.4;
 constexpr int kMaxRisers = 100;
 
 bool is_within(double x, double min, double max) noexcept { return x >= min && x <= max; }
 
+std::optional<Error> metres_problem(const char* what, double is_m, double min_m, double max_m) {
+  if (is_within(is_m, min_m, max_m)) return std::nullopt;
+  return Error{std::string("a ") + what + " of " + short_number(is_m) + " m is not within " +
+               short_number(min_m) + " and " + short_number(max_m) + " m"};
+}
 std::optional<Error> length_problem(double length_m) {
-  if (is_within(length_m, kMinLength_m, kMaxLength_m)) return std::nullopt;
-  return Error{"a length of " + short_number(length_m) + " m is not within " +
-               short_number(kMinLength_m) + " and " + short_number(kMaxLength_m) + " m"};
+  return metres_problem("length", length_m, kMinLength_m, kMaxLength_m);
 }
 
 // The reason why a sole would not lie on a surface with this bend and grade.
@@ -76,6 +80,10 @@ std::optional<Error> faded_problem(double length_m, double fade_m, const MostOfS
   return shape_problem(
       surface.bend_1_m + 2.0 * share.slope_1_m * surface.grade + share.bend_1_m2 * surface.height_m,
       surface.grade + share.slope_1_m * surface.height_m);
+}
+
+vec3 normal_of(double dx, double dz) noexcept {
+  return vec3(-dx, 1.0, -dz) / std::sqrt(1.0 + dx * dx + dz * dz);
 }
 
 // --- Flat ----------------------------------------------------------------------------------------
@@ -132,12 +140,10 @@ ShapePoint point_at(const StairsSection& stairs, double, double u) noexcept {
 }
 
 std::optional<Error> problem_of(const StairsSection& stairs) {
-  if (!is_within(stairs.tread_m, kMinTread_m, kMaxTread_m))
-    return Error{"a tread of " + short_number(stairs.tread_m) + " m is not within " +
-                 short_number(kMinTread_m) + " and " + short_number(kMaxTread_m) + " m"};
-  if (!is_within(std::abs(stairs.rise_m), kMinRise_m, kMaxRise_m))
-    return Error{"a rise of " + short_number(stairs.rise_m) + " m is not within " +
-                 short_number(kMinRise_m) + " and " + short_number(kMaxRise_m) + " m, up or down"};
+  if (auto problem = metres_problem("tread", stairs.tread_m, kMinTread_m, kMaxTread_m))
+    return problem;
+  if (auto problem = metres_problem("rise", std::abs(stairs.rise_m), kMinRise_m, kMaxRise_m))
+    return Error{problem->message + ", up or down"};
   if (stairs.count < 1 || stairs.count > kMaxRisers)
     return Error{std::to_string(stairs.count) + " risers are not 1 to " +
                  std::to_string(kMaxRisers)};
@@ -197,10 +203,16 @@ Spline spline_at(double t) noexcept {
           {-0.5 * s * s, 1.5 * t * t - 2.0 * t, -1.5 * s * s + 2.0 * s, 0.5 * t * t}};
 }
 
+// A sample of a height field or of a game's grid, which lie in rows.
+template <class Heights>
+double height_in(const Heights& heights, int column, int row) noexcept {
+  return heights
+      .height_m[static_cast<std::size_t>(row) * static_cast<std::size_t>(heights.columns) +
+                static_cast<std::size_t>(column)];
+}
 double sample(const HeightField& field, int column, int row) noexcept {
   const int c = std::clamp(column, 0, field.columns - 1), r = std::clamp(row, 0, field.rows - 1);
-  return field.height_m[static_cast<std::size_t>(r) * static_cast<std::size_t>(field.columns) +
-                        static_cast<std::size_t>(c)];
+  return height_in(field, c, r);
 }
 
 // The spline's surface before it is faded. `across` and `along` count samples from column 0, row 0.
@@ -347,13 +359,9 @@ Ground finite_or_floor(const Ground& ground) noexcept {
   return std::isfinite(ground.height_m) ? ground : Ground{};
 }
 
+// Bounds of a grid: samples of a side (1 GiB in all), and their distance.
 constexpr int kMaxGridSide = 16'384;
 constexpr double kLeastSpacing_m = 0.01, kMostSpacing_m = 100.0;
-
-double grid_sample(const GroundGrid& grid, int column, int row) noexcept {
-  return grid.height_m[static_cast<std::size_t>(row) * static_cast<std::size_t>(grid.columns) +
-                       static_cast<std::size_t>(column)];
-}
 
 // A coordinate as the index of the sample before it, and the share of the way to the next sample.
 struct GridPlace {
@@ -380,9 +388,9 @@ void ask_grid_several(const void* grid, std::span<const GroundPlace> places,
 }  // namespace
 
 std::optional<Error> check(const GroundGrid& grid) {
-  if (!is_within(grid.spacing_m, kLeastSpacing_m, kMostSpacing_m))
-    return Error{"GroundGrid: spacing_m is " + short_number(grid.spacing_m) + ", outside [" +
-                 short_number(kLeastSpacing_m) + ", " + short_number(kMostSpacing_m) + "]"};
+  if (auto problem =
+          range_problem("GroundGrid: spacing_m", grid.spacing_m, kLeastSpacing_m, kMostSpacing_m))
+    return problem;
   if (!std::isfinite(grid.x_m) || !std::isfinite(grid.z_m))
     return Error{"GroundGrid: x_m or z_m is not finite"};
   const int columns = grid.columns, rows = grid.rows;
@@ -394,15 +402,15 @@ std::optional<Error> check(const GroundGrid& grid) {
   double step_m = 0.0, bend_m = 0.0;
   for (int r = 0; r < rows; ++r) {
     for (int c = 0; c < columns; ++c) {
-      const double h = grid_sample(grid, c, r);
+      const double h = height_in(grid, c, r);
       if (!std::isfinite(h))
         return Error{"GroundGrid: height_m of column " + std::to_string(c) + ", row " +
                      std::to_string(r) + " is not finite"};
       const auto compare = [&](bool has_before, bool has_next, int dc, int dr) {
-        if (has_next) step_m = std::max(step_m, std::abs(grid_sample(grid, c + dc, r + dr) - h));
+        if (has_next) step_m = std::max(step_m, std::abs(height_in(grid, c + dc, r + dr) - h));
         if (has_next && has_before)
-          bend_m = std::max(bend_m, std::abs(grid_sample(grid, c + dc, r + dr) - 2.0 * h +
-                                             grid_sample(grid, c - dc, r - dr)));
+          bend_m = std::max(bend_m, std::abs(height_in(grid, c + dc, r + dr) - 2.0 * h +
+                                             height_in(grid, c - dc, r - dr)));
       };
       compare(c > 0, c + 1 < columns, 1, 0);
       compare(r > 0, r + 1 < rows, 0, 1);
@@ -417,15 +425,14 @@ std::optional<Error> check(const GroundGrid& grid) {
 Ground ground_at(const GroundGrid& grid, double x_m, double z_m) noexcept {
   const GridPlace x = grid_place(x_m - grid.x_m, grid.spacing_m, grid.columns),
                   z = grid_place(z_m - grid.z_m, grid.spacing_m, grid.rows);
-  const double near = grid_sample(grid, x.cell, z.cell),
-               left = grid_sample(grid, x.cell + 1, z.cell),
-               ahead = grid_sample(grid, x.cell, z.cell + 1),
-               far = grid_sample(grid, x.cell + 1, z.cell + 1);
+  const double near = height_in(grid, x.cell, z.cell), left = height_in(grid, x.cell + 1, z.cell),
+               ahead = height_in(grid, x.cell, z.cell + 1),
+               far = height_in(grid, x.cell + 1, z.cell + 1);
   const double twist = near - left - ahead + far;
   const double dx = (left - near + twist * z.share) / grid.spacing_m,
                dz = (ahead - near + twist * x.share) / grid.spacing_m;
   return {near + (left - near) * x.share + (ahead - near) * z.share + twist * x.share * z.share,
-          vec3(-dx, 1.0, -dz) / std::sqrt(1.0 + dx * dx + dz * dz), 0};
+          normal_of(dx, dz), 0};
 }
 
 AskedGround asked_ground(const GroundGrid& grid) noexcept {
@@ -443,10 +450,7 @@ Ground ground_at(const Terrain& terrain, double x_m, double z_m) noexcept {
   const double x = bounded_place(x_m);
   const ShapePoint at =
       std::visit([&](const auto& shape) { return point_at(shape, x, u); }, s->shape);
-  const vec3 normal =
-      at.dx == 0.0 && at.dz == 0.0
-          ? kUp
-          : vec3(-at.dx, 1.0, -at.dz) / std::sqrt(1.0 + at.dx * at.dx + at.dz * at.dz);
+  const vec3 normal = at.dx == 0.0 && at.dz == 0.0 ? kUp : normal_of(at.dx, at.dz);
   return {s->base_m + at.height_m, normal, s->piece + at.risers};
 }
 
@@ -500,7 +504,7 @@ RoughSection rough_section(double length_m, double amplitude_m, double wavelengt
   // measure, so the sum never repeats.
   constexpr std::array<double, 5> kSquares{1.0, 1.7, 2.6, 3.7, 5.3};
   // Angle between the directions of two waves, so that no two have the same direction.
-  constexpr double kGoldenAngle = 2.399963229728653;
+  constexpr double kGoldenAngle_rad = 2.399963229728653;
   RoughSection rough;
   rough.length_m = length_m, rough.fade_m = fade_m;
   double sum = 0.0;
@@ -508,7 +512,7 @@ RoughSection rough_section(double length_m, double amplitude_m, double wavelengt
   const double turn = 2.0 * kPi * random_share(seed);
   for (std::size_t i = 0; i < kSquares.size(); ++i) {
     const double k = 2.0 * kPi / (wavelength_m * std::sqrt(kSquares[i]));
-    const SinCos direction = sin_cos(turn + kGoldenAngle * static_cast<double>(i));
+    const SinCos direction = sin_cos(turn + kGoldenAngle_rad * static_cast<double>(i));
     // A wave's height grows with the square of its length, so that all waves bend the ground
     // equally.
     rough.wave[i] = {

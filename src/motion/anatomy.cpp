@@ -213,22 +213,6 @@ int named_ancestor(const Skeleton& skeleton, int joint, NamedSide side, NamedPar
   return -1;
 }
 
-std::vector<int> children_of(const Skeleton& skeleton, int joint) {
-  std::vector<int> out;
-  for (std::size_t j = 0; j < skeleton.joints.size(); ++j) {
-    if (skeleton.joints[j].parent == joint) out.push_back(static_cast<int>(j));
-  }
-  return out;
-}
-
-// The chain from the child of `top` down to `joint`, inclusive; empty if they are the same joint.
-std::vector<int> path_below(const Skeleton& skeleton, int top, int joint) {
-  std::vector<int> path;
-  for (int j = joint; j > top && j >= 0; j = skeleton.joints[j].parent) path.push_back(j);
-  std::reverse(path.begin(), path.end());
-  return path;
-}
-
 // --- Legs ----------------------------------------------------------------------------------------
 
 using Legs = std::array<LegJoints, 2>;
@@ -411,6 +395,21 @@ std::vector<JointFrames> spread_frames(const Motion& motion) {
 bool is_ancestor(const Skeleton& skeleton, int ancestor, int joint) {
   while (joint > ancestor) joint = skeleton.joints[joint].parent;
   return joint == ancestor;
+}
+
+std::vector<int> children_of(const Skeleton& skeleton, int joint) {
+  std::vector<int> out;
+  for (std::size_t j = 0; j < skeleton.joints.size(); ++j) {
+    if (skeleton.joints[j].parent == joint) out.push_back(static_cast<int>(j));
+  }
+  return out;
+}
+
+std::vector<int> path_below(const Skeleton& skeleton, int top, int joint) {
+  std::vector<int> path;
+  for (int j = joint; j > top && j >= 0; j = skeleton.joints[j].parent) path.push_back(j);
+  std::reverse(path.begin(), path.end());
+  return path;
 }
 
 int pelvis_of(const Skeleton& skeleton, const std::array<LegJoints, 2>& legs) {

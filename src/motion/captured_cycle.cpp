@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "gaitpad/anatomy.h"
 #include "gaitpad/curve.h"
 #include "gaitpad/motion.h"
 #include "motion/leg_pose.h"
@@ -15,7 +16,7 @@ namespace {
 
 constexpr int kPoints = 256;    // samples of the closed stride, before its harmonics are taken
 constexpr double kFade = 0.12;  // longest fade on either side of the seam, a share of the stride
-constexpr double kLeastFade = 0.08;  // if there is less room, the gaps are spread
+constexpr double kLeastFade = 0.08;  // share of the stride: with less room the gaps are spread
 constexpr int kFullHarmonics = 10;   // harmonics above this number fade out to kHarmonics
 
 // Natural cubic spline through values at 0, 1, 2 ...
@@ -323,7 +324,7 @@ void add_sample(const PeriodicPose& at, JointFrames& world, CapturedCycle& cycle
 // Turns the line of the hips to +x: about the vertical, then about z, so that the hips are level.
 quat turned_to_left(const vec3& hips) {
   return rotation_z(-gaitpad::atan2(hips.y, horizontal_length(hips))) *
-         rotation_y(-heading_of(glm::cross(hips, kUp)));
+         rotation_y(-hips_heading(hips));
 }
 
 }  // namespace
@@ -414,11 +415,7 @@ constexpr double kMostToe = 70.0 * kDegree;
 
 // Joints strictly between `from` and `to`, topmost first.
 std::vector<int> joints_between(const Skeleton& skeleton, int from, int to) {
-  std::vector<int> chain;
-  for (int j = skeleton.joints[to].parent; j >= 0 && j != from; j = skeleton.joints[j].parent) {
-    chain.insert(chain.begin(), j);
-  }
-  return chain;
+  return path_below(skeleton, from, skeleton.joints[to].parent);
 }
 
 // The vector from joint `from` to joint `to`, in the frame of `from`, with the locals given.
@@ -549,10 +546,7 @@ Result<LegModel> leg_bones(const CapturedCycle& c, int side, const GaitCycle& ou
 }
 
 void build_standing_local(const CapturedCycle& c, std::vector<quat> local, GaitCycle& out) {
-  quat above = kIdentity;
-  for (int j = c.skeleton.joints[c.pelvis].parent; j >= 0; j = c.skeleton.joints[j].parent) {
-    above = local[j] * above;
-  }
+  const quat above = world_rotation(c.skeleton, local.data(), c.skeleton.joints[c.pelvis].parent);
   local[c.pelvis] = glm::conjugate(above) * out.pelvis_standing;
   for (const LegModel& leg : out.leg) {
     const LegPose pose = leg_pose(leg, vec3(0.0), kIdentity, LegAngles{}, 0.0);

@@ -10,7 +10,7 @@
 
 namespace gaitpad {
 
-inline constexpr int kHarmonics = 16;
+inline constexpr int kHarmonics = 16;  // harmonics of a periodic stride
 
 // mean + sum of a cos 2 pi k p + b sin 2 pi k p, k = 1 .. kHarmonics, at phase p.
 struct Fourier {

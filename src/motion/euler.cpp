@@ -37,12 +37,6 @@ quat rotation_about_axis(int axis, double angle_rad) noexcept {
                      : rotation_z(angle_rad);
 }
 
-quat from_euler(const EulerOrder& order, const EulerAngles& angles_rad) noexcept {
-  return rotation_about_axis(order[0], angles_rad[0]) *
-         rotation_about_axis(order[1], angles_rad[1]) *
-         rotation_about_axis(order[2], angles_rad[2]);
-}
-
 double pole_closeness(const EulerOrder& order, const quat& rotation) noexcept {
   return std::abs(second_angle(order, glm::mat3_cast(rotation)).sine);
 }

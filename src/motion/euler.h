@@ -8,6 +8,7 @@ namespace gaitpad {
 
 // Axes 0 x, 1 y, 2 z, each once.
 using EulerOrder = std::array<int, 3>;
+// Numbers of axes.
 inline constexpr EulerOrder kEulerZyx = {2, 1, 0};
 inline constexpr EulerOrder kEulerYxz = {1, 0, 2};
 inline constexpr std::array<EulerOrder, 6> kEulerOrders = {
@@ -16,7 +17,6 @@ inline constexpr std::array<EulerOrder, 6> kEulerOrders = {
 using EulerAngles = std::array<double, 3>;  // radians; angle i is about axis i of the order
 
 quat rotation_about_axis(int axis, double angle_rad) noexcept;
-quat from_euler(const EulerOrder& order, const EulerAngles& angles_rad) noexcept;
 
 // The triple nearest to `previous_rad` that gives this rotation; angles may differ by whole turns.
 // At the pole (second angle +-90 degrees) only the sum or the difference of the outer angles is

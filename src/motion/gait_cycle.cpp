@@ -228,7 +228,7 @@ std::string why_no_walk(const CapturedCycle& captured, const GaitCycle& cycle) {
              " m behind the other";
   }
   const vec3 across = cycle.leg[kLeftSide].hip_m - cycle.leg[kRightSide].hip_m;
-  if (heading_direction(heading_of(glm::cross(across, kUp))).z < kBackwards) {
+  if (heading_direction(hips_heading(across)).z < kBackwards) {
     return "does not walk forwards";
   }
   return why_no_pace(cycle);

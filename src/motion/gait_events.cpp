@@ -6,6 +6,7 @@
 #include "base/numeric.h"
 #include "base/text.h"
 #include "gaitpad/limbs.h"
+#include "motion/leg_pose.h"
 #include "motion/sole.h"
 
 namespace gaitpad {
@@ -39,10 +40,14 @@ std::vector<SampleRange> unbroken_ranges(const FeetTracks& tracks,
   return ranges;
 }
 
-double median_of(std::vector<vec3>& v, int axis) {
-  std::vector<double> values;
-  for (const vec3& p : v) values.push_back(p[axis]);
-  return median(std::move(values));
+vec3 median_of(const std::vector<vec3>& places) {
+  vec3 middle;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::vector<double> values;
+    for (const vec3& p : places) values.push_back(p[axis]);
+    middle[axis] = median(std::move(values));
+  }
+  return middle;
 }
 
 // Tracks of one foot's joints.
@@ -86,15 +91,13 @@ Sole sole_of(const FootJoints& foot, const std::vector<SampleRange>& ranges, dou
     heels.push_back(into_ankle * vec3(-kHeelShare * toe.x, low, -kHeelShare * toe.z));
     toes.push_back(into_ankle * toe);
   }
-  const auto middle = [](std::vector<vec3>& v) {
-    return vec3(median_of(v, 0), median_of(v, 1), median_of(v, 2));
-  };
-  return {middle(heels), middle(toes)};
+  return {median_of(heels), median_of(toes)};
 }
 
 // --- Swings, roughly -----------------------------------------------------------------------------
 
 constexpr double kSmoothing_s = 0.04;  // half the width of the window over the ankle's track
+// A shorter rest, and a swing that is shorter or longer in time or way, does not count.
 constexpr double kShortestRest_s = 0.06;
 constexpr double kShortestSwing_s = 0.15, kLongestSwing_s = 1.8;
 constexpr double kShortestSwing_legs = 0.15, kLongestSwing_legs = 2.6;
@@ -396,7 +399,7 @@ FeetTracks feet_tracks(const Motion& motion) {
     const auto& at = world->position_m;
     pelvis.push_back(at[motion.pelvis]);
     const vec3 across = at[motion.legs[kLeftSide].hip] - at[motion.legs[kRightSide].hip];
-    const vec3 ahead = heading_direction(heading_of(glm::cross(across, kUp)));
+    const vec3 ahead = heading_direction(hips_heading(across));
     for (int side = 0; side < 2; ++side) {
       const LegJoints& j = motion.legs[side];
       foot[side].ankle_m.push_back(at[j.ankle]);

@@ -18,7 +18,7 @@
 
 namespace gaitpad {
 
-inline constexpr double kMostSlide = 4.0;  // a heel 20 mm up or at 1.2 m/s does not stand
+inline constexpr double kMostSlide = 4.0;  // factor: a heel 20 mm up or at 1.2 m/s does not stand
 
 struct FootTrack {  // places of a foot's points over the ground, y up
   std::vector<vec3> ankle_m, heel_m, toe_m;

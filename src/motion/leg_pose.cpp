@@ -41,7 +41,7 @@ double knee_at_span(const LegModel& leg, double span_m) noexcept {
 }
 
 Stand standing_legs(const std::array<LegModel, 2>& legs, double knee_rad) noexcept {
-  constexpr double kMostRoll = 10.0 * kDegree;
+  constexpr double kMostRoll = 10.0 * kDegree;  // of the pelvis, as a person's
   Stand stand;
   const vec3 across = legs[0].hip_m - legs[1].hip_m;
   const auto length_m = [&](const LegModel& leg) { return span_m(leg, knee_rad) - leg.heel_m.y; };
@@ -86,13 +86,13 @@ std::vector<quat> world_rotations(const Skeleton& skeleton, std::span<const quat
   return {all.begin(), all.begin() + static_cast<std::ptrdiff_t>(skeleton.joints.size())};
 }
 
-namespace {
-
 quat world_rotation(const Skeleton& skeleton, const quat* local, int joint) {
   quat q = kIdentity;
   for (int j = joint; j >= 0; j = skeleton.joints[j].parent) q = local[j] * q;
   return q;
 }
+
+namespace {
 
 void set_local(const Skeleton& skeleton, int joint, const quat& world, quat* local) {
   const int parent = skeleton.joints[joint].parent;

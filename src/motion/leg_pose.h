@@ -43,12 +43,19 @@ struct Stand {
 // No knee is straighter than `knee_rad`.
 Stand standing_legs(const std::array<LegModel, 2>& legs, double knee_rad) noexcept;
 
+// The direction that hips face, from the line from the right to the left one.
+inline double hips_heading(const vec3& across_m) noexcept {
+  return heading_of(glm::cross(across_m, kUp));
+}
+
 // Mirror images in the walker's middle plane (x -> -x).
 inline vec3 mirrored(const vec3& v) noexcept { return vec3(-v.x, v.y, v.z); }
 inline quat mirrored(const quat& q) noexcept { return quat(q.w, q.x, -q.y, -q.z); }
 
 // World rotation of every joint for the local rotations given.
 std::vector<quat> world_rotations(const Skeleton& skeleton, std::span<const quat> local);
+// The same of one joint; no rotation for -1, above the root.
+quat world_rotation(const Skeleton& skeleton, const quat* local, int joint);
 // Overwrites the locals of hip, knee, ankle and toe so that their world rotations match the
 // segments of `pose`; all other joints keep their locals.
 void set_leg_locals(const Skeleton& skeleton, const LegModel& model, const LegPose& pose,

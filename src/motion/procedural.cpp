@@ -15,7 +15,7 @@ constexpr double kThigh_m = kReferenceLeg_m * 0.245 / 0.491;
 constexpr double kShank_m = kReferenceLeg_m - kThigh_m;
 constexpr double kHipHalf_m = 0.052 * kStature_m;
 constexpr double kHipDrop_m = 0.03 * kStature_m;  // height of the pelvis joint above the hip joints
-constexpr double kAnkleHeight_m = 0.039 * kStature_m;
+constexpr double kAnkleHeight_m = 0.039 * kStature_m;  // above the floor, standing
 // Heel and ball from the ankle, tip from the ball; then the heights of ball and tip of a standing
 // foot.
 constexpr double kHeelBack_m = 0.05, kBallForward_m = 0.13, kToeLength_m = 0.06;
@@ -139,10 +139,10 @@ namespace {
 // replaced by the nearest few harmonics.
 
 constexpr double kSpeed_m_s = 1.25;  // approximately: the stride's time is rounded to whole frames
-constexpr double kFrameRate_hz = 120.0;
-constexpr double kTrack_m = 0.05;  // distance of each foot from the middle line
-constexpr int kHalf = kCycleSamples / 2;
-constexpr int kStridesInMotion = 4;
+constexpr double kFrameRate_hz = 120.0;   // of procedural_motion()
+constexpr double kTrack_m = 0.05;         // distance of each foot from the middle line
+constexpr int kHalf = kCycleSamples / 2;  // samples of half a cycle
+constexpr int kStridesInMotion = 4;       // of procedural_motion()
 
 // a0 + sum of a cos 2 pi k p + b sin 2 pi k p, degrees; rows k = 1..6.
 struct Harmonics {
@@ -157,6 +157,8 @@ struct Harmonics {
     return sum;
   }
 };
+// Flexions of hip, knee and ankle; tilt, obliquity and rotation of the pelvis; over a cycle, in
+// degrees.
 constexpr Harmonics kHip = {
     15.42, {{{22.21, -.64}, {-2.67, -2.64}, {-1.16, 1.49}, {.26, -.07}, {-.33, .20}, {-.01, .20}}}};
 constexpr Harmonics kKnee = {
@@ -323,7 +325,7 @@ double stride_length(const GaitCycle& cycle) {
 }  // namespace
 
 GaitCycle procedural_gait() {
-  constexpr double kToeOff = 0.62;
+  constexpr double kToeOff = 0.62;  // phase at which the foot leaves: a share of the cycle
   GaitCycle cycle = procedural_body();
   cycle.pace = Pace::adult;
   fill_angles(cycle);

@@ -74,26 +74,17 @@ struct BodyPlan {
   }
   // Mean place of a joint's children; its own place if it has none.
   vec3 below(int joint) const {
+    const std::vector<int> children = children_of(cycle.skeleton, joint);
     vec3 sum(0.0);
-    int count = 0;
-    for (std::size_t j = 1; j < at.size(); ++j) {
-      if (cycle.skeleton.joints[j].parent != joint) continue;
-      sum += at[j];
-      ++count;
-    }
-    return count > 0 ? sum / double(count) : at[joint];
+    for (const int child : children) sum += at[child];
+    return children.empty() ? at[joint] : sum / double(children.size());
   }
 };
 
 // The only child of a joint; -1 if there are none or several.
 int only_child(const BodyPlan& part, int joint) {
-  int child = -1;
-  for (std::size_t j = 1; j < part.at.size(); ++j) {
-    if (part.cycle.skeleton.joints[j].parent != joint) continue;
-    if (child >= 0) return -1;
-    child = static_cast<int>(j);
-  }
-  return child;
+  const std::vector<int> children = children_of(part.cycle.skeleton, joint);
+  return children.size() == 1 ? children.front() : -1;
 }
 
 class Matcher {
@@ -214,9 +205,8 @@ class Matcher {
 vec3 bone_of(const GaitCycle& cycle, int joint, int end) {
   if (end == kChildren) {
     vec3 sum(0.0);
-    for (const Joint& child : cycle.skeleton.joints) {
-      if (child.parent == joint) sum += child.offset_m;
-    }
+    for (const int child : children_of(cycle.skeleton, joint))
+      sum += cycle.skeleton.joints[child].offset_m;
     return sum;
   }
   vec3 v(0.0);
@@ -285,7 +275,7 @@ class UpperBodyTurn {
 
 // --- The character's build and standing pose -----------------------------------------------------
 
-constexpr double kMostToeOut = 45.0 * kDegree;
+constexpr double kMostToeOut = 45.0 * kDegree;  // of a standing foot; a wider one is turned forward
 
 // The frame with the lowest score.
 template <class Score>

@@ -9,6 +9,7 @@
 #include "base/numeric.h"
 #include "base/text.h"
 #include "motion/gait_events.h"
+#include "motion/leg_pose.h"
 
 namespace gaitpad {
 namespace {
@@ -28,11 +29,6 @@ struct WalkTrack {
   double leg_m = 0.0;  // length of thigh + shank, mean of both sides
 };
 
-// Heading of the hips: perpendicular to the line from the right to the left hip.
-double hips_heading(const vec3& left_hip, const vec3& right_hip) {
-  return heading_of(glm::cross(left_hip - right_hip, kUp));
-}
-
 WalkTrack walk_track(const Motion& motion) {
   WalkTrack track;
   const auto world = std::make_unique<JointFrames>();
@@ -48,8 +44,7 @@ WalkTrack walk_track(const Motion& motion) {
       leg.ankle_m.push_back(at[joints.ankle]);
       leg.toe_m.push_back(at[joints.toe]);
     }
-    double heading =
-        hips_heading(track.leg[kLeftSide].hip_m.back(), track.leg[kRightSide].hip_m.back());
+    double heading = hips_heading(at[motion.legs[kLeftSide].hip] - at[motion.legs[kRightSide].hip]);
     if (!track.heading_rad.empty()) {
       heading = track.heading_rad.back() + wrapped(heading - track.heading_rad.back());
     }
@@ -121,8 +116,9 @@ double seam(const WalkTrack& track, const SampleRange& range, double start, doub
   return weight > 0.0 ? sum / weight : 1.0;
 }
 
-constexpr double kLongestStride_s = 4.0;
 constexpr double kShortestStride_legs = 0.2;  // least length: a shuffle's two steps
+// A longer, slower or more sharply turning stride is not used.
+constexpr double kLongestStride_s = 4.0;
 constexpr double kSlowest_legs_s = 0.12;
 constexpr double kSharpestTurn_rad = 60.0 * kDegree;
 

@@ -8,12 +8,6 @@
 namespace gaitpad {
 namespace {
 
-// Double support takes about a quarter of an adult's cycle at an easy pace, a third at a stroll and
-// a fifth at a brisk one.
-constexpr double kLongerRoll = 0.9;   // relative growth of a roll's share at stride length 0
-constexpr double kShorterRoll = 2.4;  // steepness with which the share falls for longer strides
-constexpr double kLeastRoll = 0.04, kMostRoll = 0.22;
-
 static_assert(sizeof(StrideCell) == 33 * sizeof(double));
 
 // Adds weight * cell. A StrideCell consists of doubles only.
@@ -39,32 +33,9 @@ StrideCell mixed(const StrideCell& a, const StrideCell& b, double share_a,
   return sum;
 }
 
-// The inverse of the filter [1 4 1] / 6: a recursive filter with its pole, forwards and backwards
-// (Unser 1993). Its response is cut off below the rounding of a double.
 std::array<StrideCell, kCycleSamples> knots_through(
     const std::array<StrideCell, kCycleSamples>& samples) noexcept {
-  // Pole of the cubic B-spline's filter: sqrt(3) - 2.
-  constexpr double kPole = -0.26794919243112270;
-  constexpr int kReach = 28;
-  const auto at = [](int i) { return (i + 2 * kCycleSamples) % kCycleSamples; };
-  const auto filtered = [](const StrideCell& cell, double gain, const StrideCell& before) {
-    StrideCell sum;
-    add(sum, cell, gain);
-    add(sum, before, kPole);
-    return sum;
-  };
-  std::array<StrideCell, kCycleSamples> once, knots;
-  StrideCell sum;
-  for (int i = -kReach; i < kCycleSamples; ++i) {
-    sum = filtered(samples[at(i)], 1.0, sum);
-    if (i >= 0) once[i] = sum;
-  }
-  sum = StrideCell{};
-  for (int i = kCycleSamples - 1 + kReach; i >= 0; --i) {
-    sum = filtered(once[at(i)], -6.0 * kPole, sum);
-    if (i < kCycleSamples) knots[i] = sum;
-  }
-  return knots;
+  return spline_through(samples);
 }
 
 StridePlace stride_at(const std::vector<StrideTable>& tables, double phase, double ratio) noexcept {
@@ -99,7 +70,8 @@ StridePlace stride_at(const std::vector<StrideTable>& tables, double phase, doub
 double roll_time_share(double data_share, double ratio) noexcept {
   const double share = data_share * (ratio < 1.0 ? 1.0 + kLongerRoll * (1.0 - ratio)
                                                  : 1.0 / (1.0 + kShorterRoll * (ratio - 1.0)));
-  return std::clamp(share, std::min(kLeastRoll, data_share), std::max(kMostRoll, data_share));
+  return std::clamp(share, std::min(kLeastRollShare, data_share),
+                    std::max(kMostRollShare, data_share));
 }
 
 double StageClock::time_at(double phase) const noexcept {

@@ -29,7 +29,7 @@ constexpr double kExtrapolation = 0.5;
 // Backward strides: least knee angle (rad), factor on smoothness, weights of the data.
 constexpr double kLeastKneeBack = 8.0 * kDegree, kSmootherBack = 10.0, kHipBack = 0.3,
                  kAnkleBack = 0.17;
-constexpr double kLeastStandingKnee = 5.0 * kDegree;
+constexpr double kLeastStandingKnee = 5.0 * kDegree;  // least bend
 // Share of the data's knee and ankle angles in steps of length 0: the foot still has to leave the
 // floor.
 constexpr double kLeastLift = 0.3;

@@ -26,22 +26,20 @@ struct ArmChain {
   void place(const V (&angle)[kArmAngles], Place& to) const noexcept {
     V s[kArmAngles], c[kArmAngles];
     for (int j = 0; j < kArmAngles; ++j) sin_cos(angle[j], s[j], c[j]);
-    Vec<V> x{c[1], s[1] * c[0], s[1] * s[0]}, y{-s[1], c[1] * c[0], c[1] * s[0]},
-        z{V{}, -s[0], c[0]};
-    const auto turned = [&](const Vec<V>& p) { return x * p.x + y * p.y + z * p.z; };
+    Axes<V> f = axes_xz(s, c);
     to.axis[0] = {all<V>(1.0f), V{}, V{}};
-    to.axis[1] = z;
-    to.axis[2] = y;
-    turn_axes(z, x, s[2], c[2]);
-    to.elbow_m = turned(upper_m);
-    to.axis[3] = x;
-    turn_axes(y, z, s[3], c[3]);
-    to.wrist_m = to.elbow_m + turned(fore_m);
-    to.axis[4] = x;
-    turn_axes(y, z, s[4], c[4]);
-    to.axis[5] = z;
-    turn_axes(x, y, s[5], c[5]);
-    to.end_m = to.wrist_m + turned(grip_m);
+    to.axis[1] = f.z;
+    to.axis[2] = f.y;
+    turn_axes(f.z, f.x, s[2], c[2]);
+    to.elbow_m = f * upper_m;
+    to.axis[3] = f.x;
+    turn_axes(f.y, f.z, s[3], c[3]);
+    to.wrist_m = to.elbow_m + f * fore_m;
+    to.axis[4] = f.x;
+    turn_axes(f.y, f.z, s[4], c[4]);
+    to.axis[5] = f.z;
+    turn_axes(f.x, f.y, s[5], c[5]);
+    to.end_m = to.wrist_m + f * grip_m;
     const Vec<V> off = goal_m - to.end_m;
     to.error_m[0] = off.x, to.error_m[1] = off.y * has_height, to.error_m[2] = off.z;
   }
@@ -51,13 +49,6 @@ struct ArmChain {
                    moves = cross(at.axis[j], arm);
       column[j][0] = moves.x, column[j][1] = moves.y * has_height, column[j][2] = moves.z;
     }
-  }
-  static void keep(const Mask<V>& where, const Place& from, Place& to) noexcept {
-    for (int j = 0; j < kArmAngles; ++j) to.axis[j] = chosen(where, from.axis[j], to.axis[j]);
-    to.elbow_m = chosen(where, from.elbow_m, to.elbow_m);
-    to.wrist_m = chosen(where, from.wrist_m, to.wrist_m);
-    to.end_m = chosen(where, from.end_m, to.end_m);
-    for (int r = 0; r < 3; ++r) to.error_m[r] = where ? from.error_m[r] : to.error_m[r];
   }
 };
 

@@ -6,6 +6,7 @@
 
 #include "gaitpad/walk.h"
 #include "walk/footholds.h"
+#include "walk/sound_input.h"
 
 namespace gaitpad {
 namespace {
@@ -55,11 +56,6 @@ Placement step_frame(const WalkState& state) noexcept {
 Placement seen_in_step(const WalkState& state, const Placement& heel) noexcept {
   const Placement frame = step_frame(state);
   return {from_world(frame, heel.place_m), heel.heading_rad - frame.heading_rad};
-}
-
-bool is_finite(const Placement& place) noexcept {
-  const vec3& p = place.place_m;
-  return std::isfinite(p.x + p.y + p.z + place.heading_rad);
 }
 
 }  // namespace

@@ -75,7 +75,7 @@ void step_within(const Chain& chain, const V (&column)[kDofs][3], const V (&angl
 
 // Solves the chains that are `open` and leaves the best angles found. A Chain has the number type
 // V, kDofs and dofs (the most and its own number of angles), weight (the greatest is 1), min_rad,
-// max_rad, a type Place with error_m (0 in rows that do not count), place(), set_columns(), keep().
+// max_rad, a type Place with error_m (0 in rows that do not count), place(), set_columns().
 template <class Chain, class V, std::size_t kDofs>
 void solve_chains(const Chain& chain, Mask<V> open, V (&angle_rad)[kDofs]) noexcept {
   typename Chain::Place place{}, best{};
@@ -94,7 +94,7 @@ void solve_chains(const Chain& chain, Mask<V> open, V (&angle_rad)[kDofs]) noexc
       growth = better ? down : up;
     }
     for (int j = 0; j < chain.dofs; ++j) angle_rad[j] = better ? next[j] : angle_rad[j];
-    Chain::keep(better, place, best);
+    put_where<V>(better, place, best);
     best_m2 = better ? m2 : best_m2;
     open = both(open, best_m2 > all<V>(kSolved_m * kSolved_m));
     const V error_m = root(best_m2);

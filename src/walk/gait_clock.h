@@ -110,12 +110,15 @@ inline constexpr float kLeastCycle_s =
 // A tick turns by multiples of 2^-24 rad, and a strike turns the step frame by multiples of 2^-21.
 inline constexpr float kTurned_rad = 5.9604645e-8f, kFrameTurned_rad = 8.0f * kTurned_rad;
 
+inline constexpr float kStill_rad = 1e-7f;    // a turn too small to see
+inline constexpr float kLonger_ticks = 2.0f;  // most by which a tick lengthens a planned flight
+
 // `left`: share of the lengths asked for that uneven ground leaves.
 template <class V>
 void smooth_asked(const Tables& tables, const Change<V>& change, const V& left,
                   State<V>& state) noexcept {
-  constexpr float kFirstStep = 0.9f;  // of the length asked for: a first step is shorter
-  constexpr float kStraight_rad_s = 1e-5f, kStill_rad = 1e-7f;  // too small to see
+  constexpr float kFirstStep = 0.9f;        // of the length asked for: a first step is shorter
+  constexpr float kStraight_rad_s = 1e-5f;  // too small to see
   const Asked<V>& asked = state.asked;
   const auto walks = is_to_walk(state);
   for (int side : {0, 1}) {
@@ -156,10 +159,13 @@ void smooth_asked(const Tables& tables, const Change<V>& change, const V& left,
 }
 
 // Share of a cycle that a roll takes in strides of a ratio to the data's: longer in shorter steps.
-// The numbers are those of roll_time_share() (stride_family.h).
+// roll_time_share() of stride_family.h in floats.
 template <class V>
 V roll_share(const V& data_share, const V& ratio) noexcept {
-  constexpr float kLonger = 0.9f, kShorter = 2.4f, kLeast = 0.04f, kMost = 0.22f;
+  constexpr auto kLonger = static_cast<float>(kLongerRoll),
+                 kShorter = static_cast<float>(kShorterRoll),
+                 kLeast = static_cast<float>(kLeastRollShare),
+                 kMost = static_cast<float>(kMostRollShare);
   const V less = 1.0f - ratio, share = data_share * (less > V{} ? 1.0f + kLonger * less
                                                                 : 1.0f / (1.0f - kShorter * less));
   return least(most(share, least(all<V>(kLeast), data_share)), most(all<V>(kMost), data_share));
@@ -220,7 +226,6 @@ void time_first_flight(const Tables& tables, const Mask<V>& where, const V& leas
   constexpr float kFirstRoll_s = 0.25f;  // from the stick to the lift-off
   constexpr float kFirstFlight = 0.9f;   // of a steady flight, within these bounds
   constexpr float kLeastFirstFlight_s = 0.38f, kMostFirstFlight_s = 0.62f;
-  constexpr float kMostChange = 2.0f;  // ticks
   const float tick_s = tables.tick_s, scale = tables.time_scale;
   const Stages<V> here = stages_of(tables, change, state, state.right_swings != V{});
   const V roll_s = whole_beats(all<V>(kFirstRoll_s * scale), 1.0f), roll = ticks_of(roll_s, tick_s),
@@ -229,8 +234,8 @@ void time_first_flight(const Tables& tables, const Mask<V>& where, const V& leas
                                  1.0f),
           step_s = roll_s + flight_s, level = ticks_of(V(step_s - roll * tick_s), tick_s),
           was = state.tick == V{} ? level : state.flight_ticks,
-          slow = least(most(floored(V(least_s * (1.0f / tick_s))), V(was - kMostChange)),
-                       V(was + kMostChange)),
+          slow = least(most(floored(V(least_s * (1.0f / tick_s))), V(was - kLonger_ticks)),
+                       V(was + kLonger_ticks)),
           flight = least_s == V{} ? level : most(level, slow);
   state.step_s = where ? most(step_s, V((roll + flight - 0.5f) * tick_s)) : state.step_s;
   state.roll_ticks = where ? roll : state.roll_ticks;

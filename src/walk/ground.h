@@ -175,12 +175,11 @@ V least_flight_s(const Tables& tables, const Footing<V>& footing) noexcept {
 template <class V>
 void take_time_to_tread(const Tables& tables, const Time<V>& time, const Change<V>& change,
                         const Footing<V>& footing, State<V>& state) noexcept {
-  constexpr float kMostChange = 2.0f;  // ticks in a tick
   const auto walks = both(both(change.stands == V{}, change.starting == V{}),
                           both(change.closing == V{}, change.stops == V{})),
              may = both(no(time.flies), walks);
   const V least_ticks = floored(V(least_flight_s(tables, footing) * (1.0f / tables.tick_s))),
-          more = within(V(least_ticks - state.flight_ticks), 0.0f, kMostChange);
+          more = within(V(least_ticks - state.flight_ticks), 0.0f, kLonger_ticks);
   state.flight_ticks = state.flight_ticks + (may ? more : V{});
 }
 
@@ -192,9 +191,9 @@ void take_time_to_tread(const Tables& tables, const Time<V>& time, const Change<
 // of the next roll.
 inline constexpr float kSinkBegin = 0.5f, kSinkEnd = 0.25f;
 // The last step sinks to its landing, where both feet stand with straight knees, so it begins
-// early.
+// early, at this share.
 inline constexpr float kSinkBeginClosing = 0.15f;
-inline constexpr float kSinkBeginBack = 0.35f;  // people feel for the ground behind them early
+inline constexpr float kSinkBeginBack = 0.35f;  // share: people feel for the ground behind them
 
 template <class V>
 struct Sinking {
@@ -331,14 +330,10 @@ V rise_with_hips(const Tables& tables, const Mask<V>& right, const V& knee_rad, 
   // A leg stretches to the share kStretch of its length before its foot has to rise. The foot rises
   // by up to the share kMostOnToe of the ankle's rise from a flat to an upright foot.
   constexpr float kStretch = 0.998f, kSoftStretch_m = 0.02f, kMostOnToe = 0.5f, kSoftOnToe = 0.3f;
-  const V a = of_leg<V>(tables, right, &LegBones::thigh_m),
-          b = of_leg<V>(tables, right, &LegBones::shank_m),
-          knee = knee_rad + stand_rad<V>(tables, right, 3);
-  V sine, cosine;
-  sin_cos(knee, sine, cosine);
-  const V known_m = root(V(a * a + b * b + 2.0f * a * b * cosine)),
-          room_m = most(V(kStretch * (a + b) - known_m), V{}), higher_m = footing.hips_m.x - base_m,
-          up_m = most(higher_m, V{}), soft_m = all<V>(kSoftStretch_m * tables.size),
+  const V known_m = span_in_tables_m<V>(tables, right, knee_rad),
+          room_m = most(V(kStretch * leg_m<V>(tables, right) - known_m), V{}),
+          higher_m = footing.hips_m.x - base_m, up_m = most(higher_m, V{}),
+          soft_m = all<V>(kSoftStretch_m * tables.size),
           rise_m = soft_positive(V(higher_m + hover_m - room_m),
                                  V(hover_m + up_m * soft_m / (up_m + soft_m))),
           most_m = toe_length_m<V>(tables, right) - ankle_height_m<V>(tables, right);

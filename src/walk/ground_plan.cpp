@@ -17,9 +17,6 @@
 namespace gaitpad {
 namespace {
 
-vec3 doubles(const std::array<float, 3>& v) noexcept { return vec3(v[0], v[1], v[2]); }
-vec3 doubles(const Vec<float>& v) noexcept { return vec3(v.x, v.y, v.z); }
-
 // The step frame in the walk's own coordinates.
 struct Frame {
   vec3 at_m;
@@ -48,7 +45,7 @@ struct Frame {
 
 constexpr double kLeastStep = 0.05;  // in legs: shorter steps count as this long
 constexpr double kBeside_m = 1e-6;   // a place so near to a riser is certainly on one side of it
-constexpr double kLeast_m = 1e-6;    // not to divide by 0
+constexpr double kLeast = 1e-6;      // metres or weights: not to divide by 0
 
 // The reach of the sole along z from its heel point.
 struct Extent {
@@ -57,8 +54,8 @@ struct Extent {
 };
 Extent sole_extent(const LegBones& leg, double yaw_rad) noexcept {
   const quat yaw = rotation_y(yaw_rad);
-  const double tip = (yaw * (doubles(leg.tip_m) - doubles(leg.heel_m))).z;
-  const double half = std::abs((yaw * doubles(leg.side)).z) * leg.half_width_m;
+  const double tip = (yaw * (wide(leg.tip_m) - wide(leg.heel_m))).z;
+  const double half = std::abs((yaw * wide(leg.side)).z) * leg.half_width_m;
   return {std::min(0.0, tip) - half, std::max(0.0, tip) + half};
 }
 
@@ -157,7 +154,7 @@ double cost_of(const Floor& floor, const Step& step, const Stretch& piece) noexc
 // same piece, and its edge stops the step, it also tries the piece beyond this edge.
 Stretch best_piece(const Floor& floor, const Step& step, const Stretch* settled) noexcept {
   constexpr int kMostPieces = 8;  // compared
-  constexpr double kStay = 0.1;   // another piece than `settled` has to be cheaper by this
+  constexpr double kStay = 0.1;   // cost by which another piece than `settled` has to be cheaper
   const double middle = step.sole.middle_m(), stands = step.from_m.z + middle;
   Stretch piece = piece_at(floor, step.wanted_m.z + middle), best = piece;
   if (piece.from_m == step.stands.from_m) {
@@ -188,8 +185,7 @@ Stretch best_piece(const Floor& floor, const Step& step, const Stretch* settled)
 // The share of its length that a step keeps on a slope: 1 / (1 + grade).
 double slope_share(const Floor& floor, const Step& step) noexcept {
   const double length = horizontal_length(step.wanted_m - step.from_m);
-  if (length < kLeast_m || step.wanted_m.z < step.stands.from_m ||
-      step.wanted_m.z > step.stands.to_m)
+  if (length < kLeast || step.wanted_m.z < step.stands.from_m || step.wanted_m.z > step.stands.to_m)
     return 1.0;
   const double rise = ground_at(floor, step.wanted_m.x, step.wanted_m.z).height_m - step.from_m.y;
   return 1.0 / (1.0 + std::abs(rise) / length);
@@ -210,9 +206,9 @@ struct Track {
 Track track_of(const LegBones& leg, double yaw_rad) noexcept {
   const quat yaw = rotation_y(yaw_rad);
   Track track;
-  track.ball_m = yaw * (doubles(leg.ball_m) - doubles(leg.heel_m));
-  track.tip_m = yaw * (doubles(leg.tip_m) - doubles(leg.heel_m));
-  track.across = yaw * doubles(leg.side);
+  track.ball_m = yaw * (wide(leg.ball_m) - wide(leg.heel_m));
+  track.tip_m = yaw * (wide(leg.tip_m) - wide(leg.heel_m));
+  track.across = yaw * wide(leg.side);
   track.length_m = horizontal_length(track.tip_m);
   track.along = vec3(track.tip_m.x, 0.0, track.tip_m.z) / track.length_m;
   return track;
@@ -489,7 +485,7 @@ void set_points(const LegBones& leg, const Frame& frame, const Flight<float>& fl
                                            tip + half};
   const Vec<float> n = flight.tilt * Vec<float>{0.0f, 1.0f, 0.0f};
   for (std::size_t k = 0; k < local.size(); ++k) {
-    points[k] = frame.out(doubles(local[k]));
+    points[k] = frame.out(wide(local[k]));
     const float line_m =
         flight.base_m -
         (n.x * (local[k].x - foot.heel_m.x) + n.z * (local[k].z - foot.heel_m.z)) / n.y;
@@ -549,7 +545,7 @@ PlannedFlight planned_flight(const Tables& tables, const Floor& floor, const Fra
     pitch_in_flight(time, sole, over, low * stride.foot[0].pitch_rad + off, off, change, footing,
                     foot);
     set_points(leg, frame, flies, foot, flight.sole[i], flight.base[i]);
-    flight.left[i] = lands.z - frame.out(doubles(flies.heel_m)).z;
+    flight.left[i] = lands.z - frame.out(wide(flies.heel_m)).z;
   }
   flight.begin = piece_at(floor, print.z);
   flight.end = piece_at(floor, lands.z);
@@ -687,7 +683,6 @@ double way_on(const Tables& tables, const Floor& floor, const PlannedFlight& fli
 void draw_taut(const Wanted& wanted, double room_m, Spline& knots) noexcept {
   constexpr double kTautRoom = 0.5;  // share of the room that the spline keeps
   constexpr int kTautRounds = 24;
-  constexpr double kLeastWeight = 1e-6;  // not to divide by 0
   Wanted slack;
   std::array<Wanted, kRoomKnots> weight;  // of each knot at each probe
   for (int i = 0; i <= kProbes; ++i) {
@@ -704,7 +699,7 @@ void draw_taut(const Wanted& wanted, double room_m, Spline& knots) noexcept {
     for (int k = kKnotsOfFlight - 3; k > 0; --k) {
       double fall = knots[k] - 0.5 * (knots[k - 1] + knots[k + 1]);
       for (int i = 0; i <= kProbes; ++i) {
-        if (weight[k][i] > kLeastWeight) fall = std::min(fall, slack[i] / weight[k][i]);
+        if (weight[k][i] > kLeast) fall = std::min(fall, slack[i] / weight[k][i]);
       }
       knots[k] -= fall;
       for (int i = 0; i <= kProbes; ++i) slack[i] -= fall * weight[k][i];
@@ -725,7 +720,7 @@ RoomPlan plan_down(const Tables& tables, const Floor& floor, const PlannedFlight
   constexpr int over = static_cast<int>(kOver * kProbes);
   const double left = flight.left[over];
   const double needed =
-      std::abs(left) < kLeast_m ? 0.0 : way_on(tables, floor, flight, over, flight.climb) / left;
+      std::abs(left) < kLeast ? 0.0 : way_on(tables, floor, flight, over, flight.climb) / left;
   const double share = std::clamp(needed, 0.0, 1.0);
   RoomPlan room;
   for (int k = 1; k < kKnotsOfFlight; ++k)

@@ -497,6 +497,23 @@ Pelvis<V> pelvis_over(const Tables& tables, const Time<V>& time, const Hips<V>& 
   return pelvis;
 }
 
+template <class V>
+V leg_m(const Tables& tables, const Mask<V>& right) noexcept {
+  return of_leg<V>(tables, right, &LegBones::thigh_m) +
+         of_leg<V>(tables, right, &LegBones::shank_m);
+}
+// The distance from hip to ankle in the tables, where the knee is bent by `knee_rad` more than when
+// standing.
+template <class V>
+V span_in_tables_m(const Tables& tables, const Mask<V>& right, const V& knee_rad) noexcept {
+  const V a = of_leg<V>(tables, right, &LegBones::thigh_m),
+          b = of_leg<V>(tables, right, &LegBones::shank_m),
+          knee = knee_rad + stand_rad<V>(tables, right, 3);
+  V sine, cosine;
+  sin_cos(knee, sine, cosine);
+  return root(V(a * a + b * b + 2.0f * a * b * cosine));
+}
+
 // Reach of a foot whose heel a style keeps low, over the leg's length.
 inline constexpr float kLowReach = 0.985f;
 
@@ -549,18 +566,15 @@ void sink(const Tables& tables, const Time<V>& time, const Stride<V>& stride,
   V squares{};
   for (int k : {0, 1}) {
     const auto right = is_right(time, k);
-    const V a = of_leg<V>(tables, right, &LegBones::thigh_m),
-            b = of_leg<V>(tables, right, &LegBones::shank_m),
-            knee = stride.leg_rad[k][3] + stand_rad<V>(tables, right, 3);
-    V sine, cosine;
-    sin_cos(knee, sine, cosine);
-    const V table = root(V(a * a + b * b + 2.0f * a * b * cosine)), low = low_lift<V>(right, state),
-            known = low < all<V>(1.0f) ? mix(V(kLowReach * (a + b)), table, low) : table;
+    const V stretched = leg_m<V>(tables, right),
+            table = span_in_tables_m<V>(tables, right, stride.leg_rad[k][3]),
+            low = low_lift<V>(right, state),
+            known = low < all<V>(1.0f) ? mix(V(kLowReach * stretched), table, low) : table;
     const Vec<V> way = ankle_m[k] - (pelvis.place_m + pelvis.hip_m[k]);
     const V span = root(dot(way, way)), beyond = (span - known) * (1.0f / grown);
     const V soft = grown * (kSoftReach_m + kWiderReach * least(beyond, all<V>(kWidestReach_m)));
     const V times = beyond * (1.0f / kKnown_m), shows = times * times,
-            excess = soft_positive(V(span - kReach * (a + b)), soft) * shows / (1.0f + shows),
+            excess = soft_positive(V(span - kReach * stretched), soft) * shows / (1.0f + shows),
             upright = most(V(0.3f * span), V(-way.y)) / span, down = excess / upright;
     squares = squares + (beyond > V{} ? V(down * down) : V{});
   }

@@ -41,6 +41,7 @@ struct Turn {  // a unit quaternion
   V w{}, x{}, y{}, z{};
 };
 
+// A whole turn, a quarter of it, and a degree.
 inline constexpr float kTurn_rad = 6.2831853f, kRightAngle_rad = 1.5707963f,
                        kDegree_rad = 0.017453293f;
 
@@ -141,6 +142,17 @@ inline void exchange(const Mask<V>& where, V& a, V& b) noexcept {
   const V was = a;
   a = where ? b : was;
   b = where ? was : b;
+}
+
+// Sets the numbers V of which T consists to those of another T.
+template <class V, class T>
+inline void put_where(const Mask<V>& where, const T& from, T& to) noexcept {
+  constexpr std::size_t kBytes = sizeof(V);
+  static_assert(sizeof(T) % kBytes == 0);
+  for (std::size_t n = 0; n < sizeof(T) / kBytes; ++n) {
+    V& number = reinterpret_cast<V*>(&to)[n];
+    number = where ? reinterpret_cast<const V*>(&from)[n] : number;
+  }
 }
 
 // --- Four numbers of a row, or of a rotation (x, y, z, w) ----------------------------------------
@@ -357,6 +369,8 @@ inline Turn<V> chosen(const Mask<V>& mask, const Turn<V>& a, const Turn<V>& b) n
   if constexpr (kLanes<V> == 1) return mask ? a : b;
   return {mask ? a.w : b.w, mask ? a.x : b.x, mask ? a.y : b.y, mask ? a.z : b.z};
 }
+inline vec3 wide(const Vec<float>& v) noexcept { return {v.x, v.y, v.z}; }
+inline vec3 wide(const std::array<float, 3>& v) noexcept { return {v[0], v[1], v[2]}; }
 // Rotation about a unit axis by less than a quarter turn.
 template <class V>
 inline Turn<V> turn_about(const Vec<V>& axis, const V& angle_rad) noexcept {

@@ -22,6 +22,19 @@ inline constexpr float kLeak_per_s = 4.0f;  // what is added to the tables' angl
 inline constexpr float kStraightCosine = 0.99984770f, kFoldedCosine = -0.9f;  // 1 and 154 degrees
 inline constexpr float kMostSwivel_rad = 0.3f;  // in a tick: beyond, the first order is not enough
 
+// The axes of a frame.
+template <class V>
+struct Axes {
+  Vec<V> x, y, z;
+  Vec<V> operator*(const Vec<V>& p) const noexcept { return x * p.x + y * p.y + z * p.z; }
+};
+// Those after Rx Rz, from the sines and cosines of both angles.
+template <class V>
+[[gnu::always_inline]] inline Axes<V> axes_xz(const V* sine, const V* cosine) noexcept {
+  return {{cosine[1], sine[1] * cosine[0], sine[1] * sine[0]},
+          {-sine[1], cosine[1] * cosine[0], cosine[1] * sine[0]},
+          {V{}, -sine[0], cosine[0]}};
+}
 // Turns two axes of a frame about the third; (a, b) in cyclic order.
 template <class V>
 [[gnu::always_inline]] inline void turn_axes(Vec<V>& a, Vec<V>& b, const V& sine,
@@ -61,12 +74,11 @@ Leg<V> solve_leg(const V& thigh_m, const V& shank_m, const Vec<V>& ankle_m, cons
     s[j] = 2.0f * hs[j] * hc[j];
     c[j] = 1.0f - 2.0f * hs[j] * hs[j];
   }
-  // Axes at the start, from the hip to the foot.
-  const Vec<V> hip_z{V{}, -s[0], c[0]}, hip_x{c[1], s[1] * c[0], s[1] * s[0]},
-      hip_y{-s[1], c[1] * c[0], c[1] * s[0]};
-  Vec<V> x = hip_x, z = hip_z;
+  // Axes at the start: after the hip's first two turns, and on to the foot.
+  const Axes<V> start = axes_xz(s, c);
+  Vec<V> x = start.x, z = start.z;
   turn_axes(z, x, s[2], c[2]);
-  Vec<V> foot_x = x, foot_y = hip_y, ankle_z = z;
+  Vec<V> foot_x = x, foot_y = start.y, ankle_z = z;
   turn_axes(foot_y, ankle_z, s[3], c[3]);
   turn_axes(foot_y, ankle_z, s[4], c[4]);
   turn_axes(foot_x, foot_y, s[5], c[5]);
@@ -87,7 +99,7 @@ Leg<V> solve_leg(const V& thigh_m, const V& shank_m, const Vec<V>& ankle_m, cons
           knee_s = 2.0f * knee_hc * knee_hs, knee_turns = knee_s * c[3] - knee_c * s[3];
   // The hip's least turn brings the ankle to its place; the ankle makes the rest of the foot's
   // turn.
-  const Vec<V> from = hip_y * -(thigh_m + shank_m * knee_c) - z * (shank_m * knee_s),
+  const Vec<V> from = start.y * -(thigh_m + shank_m * knee_c) - z * (shank_m * knee_s),
                axis = cross(from, ankle_m);
   const V w = root(V(dot(from, from) * square)) + dot(from, ankle_m);
   const Vec<V> goal_x{1.0f - 2.0f * (foot.y * foot.y + foot.z * foot.z),
@@ -103,9 +115,9 @@ Leg<V> solve_leg(const V& thigh_m, const V& shank_m, const Vec<V>& ankle_m, cons
                of_ankle = of_foot - of_hip - x * knee_turns,
                line = ankle_m * V(1.0f / root(square));
   V hip[3], ankle[3], hip_swivels[3], ankle_swivels[3];
-  turns_xzy(of_hip, hip_x, hip_y, hip_z, s[1], c[1], hip);
+  turns_xzy(of_hip, start.x, start.y, start.z, s[1], c[1], hip);
   turns_xzy(of_ankle, ankle_x, foot_y, ankle_z, s[5], c[5], ankle);
-  turns_xzy(line, hip_x, hip_y, hip_z, s[1], c[1], hip_swivels);
+  turns_xzy(line, start.x, start.y, start.z, s[1], c[1], hip_swivels);
   turns_xzy(line, ankle_x, foot_y, ankle_z, s[5], c[5], ankle_swivels);
   V along{}, squares{};
   for (int i = 0; i < 3; ++i) {

@@ -9,8 +9,6 @@
 namespace gaitpad {
 namespace {
 
-inline vec3 wide(const Vec<float>& v) noexcept { return {v.x, v.y, v.z}; }
-inline vec3 wide(const std::array<float, 3>& v) noexcept { return {v[0], v[1], v[2]}; }
 inline quat wide(const Turn<float>& q) noexcept { return quat(q.w, q.x, q.y, q.z); }
 inline Turn<float> narrow(const quat& q) noexcept {
   return {static_cast<float>(q.w), static_cast<float>(q.x), static_cast<float>(q.y),
@@ -39,7 +37,7 @@ inline float off_plan_rad(const Time<float>& time, int k, const Change<float>& c
 inline Foot<float> off_plan(const Foot<float>& planned, const Sole<float>& sole,
                             const Vec<float>& hip_m, float reach_m, bool on_toe,
                             float off_rad) noexcept {
-  constexpr float kLeastStep = 1.0f / 4096.0f;
+  constexpr float kLeastStep = 1.0f / 4096.0f;  // of the share, which is found by halving
   Foot<float> foot = planned;
   float share = off_rad != 0.0f ? 1.0f : 0.0f;
   for (float step = 0.5f; share > 0.0f && step >= kLeastStep; step *= 0.5f) {

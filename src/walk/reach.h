@@ -58,14 +58,11 @@ void rise_on_toe(const Sole<V>& sole, const V& pitch_rad, const Mask<V>& rises,
   foot.heel_m = chosen(rises, risen.heel_m, foot.heel_m);
 }
 
+// A smoothed number this near to its goal is there, as a share of the number or of 1 if it is less:
+// by rounding, a float of 10 comes to rest 2e-5 off its goal. One this near to 0 is 0.
+inline constexpr float kSettled = 1e-5f, kNothing = 1e-6f;
 // Greatest reach of a leg, over its length: a straight leg has no derivative.
 inline constexpr float kLongestReach = 0.99995f;
-
-template <class V>
-V leg_m(const Tables& tables, const Mask<V>& right) noexcept {
-  return of_leg<V>(tables, right, &LegBones::thigh_m) +
-         of_leg<V>(tables, right, &LegBones::shank_m);
-}
 
 // If a style keeps a heel low, the hips sink while the foot would rise, and the foot rises as far
 // as its leg asks. `asked_rad`: pitch that this adds to swing and stand.
@@ -78,8 +75,7 @@ void keep_heels_low(const Tables& tables, const Time<V>& time, const V& phase,
   constexpr float kLowRisen_rad = 45.0f * kDegree_rad;  // pitch of the foot at which it is whole
   constexpr float kLowUntil = 0.25f;                    // of the flight: the hips have risen again
   constexpr float kSoftRise_rad = 12.0f * kDegree_rad;
-  constexpr float kSame = 1e-5f, kNothing = 1e-6f;  // at which smoothed factors count as 1 and 0
-  const auto is_low = least(state.lift[0].x, state.lift[1].x) < all<V>(1.0f - kSame),
+  const auto is_low = least(state.lift[0].x, state.lift[1].x) < all<V>(1.0f - kSettled),
              acts = either(is_low, either(styled.low[0].x != V{}, styled.low[1].x != V{}));
   if (!any(acts)) return;
   const Mask<V> none{};

@@ -16,7 +16,7 @@ namespace gaitpad {
 namespace {
 
 // Times are in seconds at the reference leg.
-inline constexpr float kLeastStep = 0.25f;  // shortest landing ahead, over the foot's own step
+inline constexpr float kLeastStep = 0.25f;  // share of the foot's own step: shortest landing ahead
 inline constexpr float kStays = 0.45f;      // share of a flight from which on its landing stays
 inline constexpr float kBehind_m = 0.02f;   // a flying foot is at least so far behind its landing
 inline constexpr float kLandsAhead =
@@ -363,15 +363,16 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
   Change<float>& change = block.change;
   const bool flies = state.flies != 0.0f, right = state.right_swings != 0.0f;
   if (!flies && state.tick == 0.0f) return;  // the step's landing is planned in this tick
-  // A quintic to rest brakes with at most about kNeed v^2 / way. The ends are chosen for a soft
-  // braking, in a hurry for a harder one; above the hardest one, one more step comes between.
+  // A quintic to rest brakes with at most about the factor kNeed times v^2 / way. The ends are
+  // chosen for a soft braking, in a hurry for a harder one; above the hardest one, one more step
+  // comes between.
   constexpr float kNeed = 0.72f;
   constexpr float kBrake_m_s2 = 3.0f, kHastyBrake_m_s2 = 3.3f, kMostBrake_m_s2 = 3.9f;
   // From the landing to the end of a closing step, and of a step between; the share of speed times
   // time that braking hips go in it.
   constexpr float kToClose_s = 0.40f, kNextStep_s = 0.35f, kWayWhileClosing = 0.44f;
-  constexpr float kLurch = 1.35f;       // speed of hips that lurch, over the walk's mean
-  constexpr float kFurtherStep = 0.3f;  // shortest step between, over the foot's own step
+  constexpr float kLurch = 1.35f;       // ratio of the speed of hips that lurch to the walk's mean
+  constexpr float kFurtherStep = 0.3f;  // shortest step between, a share of the foot's own
   constexpr float kTurnsOnSpot = 0.1f;  // steps below this ratio are on the spot
   constexpr float kMostClosingOnSpot = 1.7f;
   constexpr float kAfterLanding_s = 0.15f;  // hips rest at least this long after the landing

@@ -19,6 +19,11 @@ bool is_sound(const GaitParams& params) noexcept {
   return inside == static_cast<int>(kParamsNumbers);
 }
 
+bool is_finite(const Placement& place) noexcept {
+  const vec3& p = place.place_m;
+  return std::isfinite(p.x + p.y + p.z + place.heading_rad);
+}
+
 GaitParams mended_params(const GaitParams& params, WalkState& state) noexcept {
   const State<float>& walk = state.walk.state;
   GaitParams in_force;

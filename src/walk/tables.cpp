@@ -23,24 +23,6 @@ std::array<float, 4> xyzw(const quat& q) {
           static_cast<float>(q.w)};
 }
 
-// The knots of the periodic cubic B-spline through evenly spaced samples: the inverse of the filter
-// [1 4 1] / 6, a recursive one with its pole, forwards and backwards (Unser 1993).
-std::array<double, kKnots> knots_through(const std::array<double, kKnots>& samples) {
-  constexpr double kPole = -0.26794919243112270;  // sqrt(3) - 2
-  constexpr int kReach = 28;                      // pole^kReach is below the rounding of a double
-  std::array<double, kKnots> once, knots;
-  double sum = 0.0;
-  for (int i = -kReach; i < kKnots; ++i) {
-    sum = samples[(i + kKnots) % kKnots] + kPole * sum;
-    if (i >= 0) once[i] = sum;
-  }
-  sum = 0.0;
-  for (int i = kKnots - 1 + kReach; i >= 0; --i) {
-    sum = -6.0 * kPole * once[i % kKnots] + kPole * sum;
-    if (i < kKnots) knots[i] = sum;
-  }
-  return knots;
-}
 // Knot k stands in row k + 1; rows wrap round.
 constexpr int knot_of_row(int row) { return (row + kKnots - 1) % kKnots; }
 
@@ -88,7 +70,7 @@ void fill_strides(const WalkModel& model, bool backward, RowsOf<kOf>& rows) {
     for (int n = 0; n < kRowNumbers; ++n) {
       std::array<double, kKnots> of_number;
       for (int k = 0; k < kKnots; ++k) of_number[k] = sample[k][n];
-      const auto knots = knots_through(of_number);
+      const auto knots = spline_through(of_number);
       for (int row = 0; row < kKnots + 3; ++row)
         reinterpret_cast<float*>(&rows[row][r])[n] = static_cast<float>(knots[knot_of_row(row)]);
     }
@@ -134,8 +116,7 @@ void fill_legs(const WalkModel& model, BuildTables& tables) {
       to.joint[j] = from.joint[j].joint;
       to.before[j] = wxyz(from.joint[j].before);
       to.after[j] = wxyz(from.joint[j].after);
-      constexpr std::array<float, 4> kNone = {1.0f, 0.0f, 0.0f, 0.0f};
-      tables.legs_are_plain &= to.before[j] == kNone && to.after[j] == kNone;
+      tables.legs_are_plain &= to.before[j] == wxyz(kIdentity) && to.after[j] == wxyz(kIdentity);
     }
   }
 }
@@ -240,8 +221,8 @@ void fill_arms(const WalkModel& model, BuildTables& tables) {
 void fill_root(const WalkModel& model, BuildTables& tables) {
   const std::vector<Joint>& all = model.cycle.skeleton.joints;
   const int pelvis = model.cycle.pelvis;
-  for (int j = all[pelvis].parent; j >= 0; j = all[j].parent)
-    tables.above_pelvis.insert(tables.above_pelvis.begin(), {j, floats(all[j].offset_m)});
+  for (const int j : path_below(model.cycle.skeleton, -1, all[pelvis].parent))
+    tables.above_pelvis.push_back({j, floats(all[j].offset_m)});
   tables.pelvis = pelvis;
   tables.pelvis_offset_m = floats(all[pelvis].offset_m);
   tables.pelvis_standing = wxyz(model.cycle.pelvis_standing);
@@ -284,7 +265,7 @@ void fill_upper_body(const WalkModel& model, BuildTables& tables) {
       sample[0][k] = last.x, sample[1][k] = last.y, sample[2][k] = last.z, sample[3][k] = last.w;
     }
     for (int n = 0; n < 4; ++n) {
-      const auto knots = knots_through(sample[n]);
+      const auto knots = spline_through(sample[n]);
       for (int row = 0; row < kKnots + 3; ++row)
         tables.upper_rows[(row * count + i) * 4 + n] = static_cast<float>(knots[knot_of_row(row)]);
     }

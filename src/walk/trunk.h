@@ -192,7 +192,6 @@ Mask<V> advance_poise(const Tables& tables, const Hips<V>& hips, const Mask<V>& 
   // reaches at kFirstAll, so that a slow walk leans as well.
   constexpr float kPush_rad = 3.0f * kDegree_rad, kFirstPush_rad = 2.0f * kDegree_rad,
                   kFirstFrom = 0.4f, kFirstAll = 0.8f, kCalm = 0.25f, kSoftCalm_m_s = 0.1f;
-  constexpr float kStill_rad = 1e-7f;  // a smaller lean counts as none
   // Chest and head are eased while the head's turn ahead changes faster than this, or is farther
   // from its goal.
   constexpr float kTurns_rad_s = 0.02f, kTurns_rad = 0.003f;
@@ -257,7 +256,6 @@ template <class V>
 Vec<V> eased(const Tables& tables, const Vec<V>& goal, const V& most_rad, const V& heading_rad,
              const Mask<V>& acts, const Mask<V>& eases, Eased<V>& turn) noexcept {
   constexpr float kEases_s = 0.25f;
-  constexpr int kNumbers = sizeof(Eased<V>) / sizeof(V);
   Eased<V> of = turn;
   constexpr float kQuintic = 17.0f;  // three times the greatest bend of a quintic of length 1
   for (Off<V>& off : of.off) fade(of.ticks, off);
@@ -279,10 +277,7 @@ Vec<V> eased(const Tables& tables, const Vec<V>& goal, const V& most_rad, const 
   const Vec<V> value = goal + off;
   of.rate = value - of.at;
   of.at = value;
-  for (int n = 0; n < kNumbers; ++n) {
-    V& number = reinterpret_cast<V*>(&turn)[n];
-    number = acts ? reinterpret_cast<const V*>(&of)[n] : number;
-  }
+  put_where<V>(acts, of, turn);
   return value;
 }
 
@@ -308,22 +303,22 @@ struct SpineChain {
   };
   void place(const V (&angle)[kDofs], Place& to) const noexcept {
     const V one = all<V>(1.0f);
-    Vec<V> x{one, V{}, V{}}, y{V{}, one, V{}}, z{V{}, V{}, one}, end_m;
-    const auto turned = [&](const Vec<V>& p) { return x * p.x + y * p.y + z * p.z; };
+    Axes<V> f{{one, V{}, V{}}, {V{}, one, V{}}, {V{}, V{}, one}};
+    Vec<V> end_m;
     for (int d = 0; d < dofs; d += 3) {
       V s[3], c[3];
       for (int k = 0; k < 3; ++k) sin_cos(angle[d + k], s[k], c[k]);
       to.pivot_m[d / 3] = end_m;
-      to.axis[d] = x;
-      turn_axes(y, z, s[0], c[0]);
-      to.axis[d + 1] = z;
-      turn_axes(x, y, s[1], c[1]);
-      to.axis[d + 2] = y;
-      turn_axes(z, x, s[2], c[2]);
-      end_m = end_m + turned(link_m[d / 3]);
+      to.axis[d] = f.x;
+      turn_axes(f.y, f.z, s[0], c[0]);
+      to.axis[d + 1] = f.z;
+      turn_axes(f.x, f.y, s[1], c[1]);
+      to.axis[d + 2] = f.y;
+      turn_axes(f.z, f.x, s[2], c[2]);
+      end_m = end_m + f * link_m[d / 3];
     }
-    to.neck_m = end_m + turned(neck_m);
-    to.beside_m = to.neck_m + x * kNeckLever_m;
+    to.neck_m = end_m + f * neck_m;
+    to.beside_m = to.neck_m + f.x * kNeckLever_m;
     to.error_m[0] = goal_m.x - to.neck_m.x;
     to.error_m[1] = goal_m.z - to.neck_m.z;
     to.error_m[2] = beside_goal_m.z - to.beside_m.z;
@@ -335,14 +330,6 @@ struct SpineChain {
       column[d][0] = neck.x, column[d][1] = neck.z;
       column[d][2] = cross(at.axis[d], at.beside_m - pivot_m).z;
     }
-  }
-  static void keep(const Mask<V>& where, const Place& from, Place& to) noexcept {
-    for (int d = 0; d < kDofs; ++d) to.axis[d] = chosen(where, from.axis[d], to.axis[d]);
-    for (int i = 0; i < kMaxSpineIk; ++i)
-      to.pivot_m[i] = chosen(where, from.pivot_m[i], to.pivot_m[i]);
-    to.neck_m = chosen(where, from.neck_m, to.neck_m);
-    to.beside_m = chosen(where, from.beside_m, to.beside_m);
-    for (int r = 0; r < 3; ++r) to.error_m[r] = where ? from.error_m[r] : to.error_m[r];
   }
 };
 
@@ -417,10 +404,11 @@ struct Gaze {
 };
 template <class V>
 Gaze<V> gaze(const Tables& tables, const Turn<V>& chest, const Vec<V>& direction) noexcept {
+  // Limits of the neck, and the widths over which they are rounded.
   constexpr float kMostYaw_rad = 70 * kDegree_rad, kMostPitch_rad = 40 * kDegree_rad,
                   kSoftYaw_rad = 6 * kDegree_rad, kSoftHeadPitch_rad = 4 * kDegree_rad;
   // The head does not follow a goal behind it, for turning left and right would be equally far, nor
-  // one straight above or below.
+  // one straight above or below: shares of its direction that are level.
   constexpr float kBeside_rad = 105 * kDegree_rad, kBehind_rad = 150 * kDegree_rad,
                   kLevelFrom = 0.15f, kLevelTo = 0.4f;
   const auto limited = [](const V& x, float most, float soft) {

@@ -30,9 +30,6 @@ Mask<V> has_style(const Styled<V>& styled) noexcept {
 // Brings the style's numbers in force nearer to those asked for, and without a style to the data's.
 template <class V>
 void smooth_body(const Tables& tables, const Mask<V>& is_styled, Styled<V>& styled) noexcept {
-  // A share of the number, or of 1 if it is less: by rounding, a float of 10 comes to rest 2e-5 off
-  // its goal.
-  constexpr float kSettled = 1e-5f;
   const auto asked = styled.asked != V{}, acted = styled.acts != V{};
   // Return early if all numbers have settled, as they have in nearly every tick.
   auto moves = both(is_styled, acted != asked);
@@ -429,17 +426,17 @@ struct DataRead {
 };
 template <class V>
 void swing_arm(const Tables& tables, int side, const V& swing, DataRead<V>& data) noexcept {
-  constexpr float kSoftElbow = 0.1f;
+  constexpr float kSoftElbow = 0.1f;  // of the factor: rounds the limit that keeps elbows bent
   data.shoulder[side] = swing;
   data.elbow[side] = soft_least(swing, all<V>(tables.most_elbow_swing[side]), all<V>(kSoftElbow));
 }
 template <class V>
 DataRead<V> data_read(const Tables& tables, const BodyTick<V>& tick, const V& swing,
                       const State<V>& state) noexcept {
-  constexpr float kWholly = 0.99999f;
   DataRead<V> data;
   data.knots = knots_at(data_phase(tables, tick.time, tick.phase));
   // A filter comes near to 1 but not to it; a joint that the pose shows fully is read faster.
+  constexpr float kWholly = 0.99999f;  // share of the posture that counts as all of it
   const V posture = within(state.posture.x, 0.0f, 1.0f);
   data.shown = tick.shown * (posture > all<V>(kWholly) ? all<V>(1.0f) : posture);
   for (int side : {0, 1}) swing_arm(tables, side, swing, data);

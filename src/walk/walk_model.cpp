@@ -20,13 +20,6 @@ JointFrames frames_of_sample(const GaitCycle& cycle, int i) {
   return frames;
 }
 
-std::vector<int> path_to(const Skeleton& skeleton, int joint) {
-  std::vector<int> path;
-  for (int j = joint; j >= 0; j = skeleton.joints[j].parent) path.push_back(j);
-  std::reverse(path.begin(), path.end());
-  return path;
-}
-
 quat mean_local(const GaitCycle& cycle, int joint) {
   const std::size_t joints = cycle.skeleton.joints.size();
   const quat& first = cycle.local[joint];
@@ -133,7 +126,7 @@ ArmBuild arm_build(const GaitCycle& cycle, const ArmChain& joints, Side side,
   ArmBuild arm;
   arm.joints = joints;
   if (!joints.is_found() || cycle.skeleton.joints[joints.shoulder].parent < 0) return arm;
-  arm.path = path_to(cycle.skeleton, joints.wrist);
+  arm.path = path_below(cycle.skeleton, -1, joints.wrist);
   if (arm.path.size() > kMaxBodyPath) return arm;
   arm.swing_shoulder = mean_local(cycle, joints.shoulder);
   arm.swing_elbow = mean_local(cycle, joints.elbow);
@@ -152,7 +145,7 @@ ArmBuild arm_build(const GaitCycle& cycle, const ArmChain& joints, Side side,
 void fill_spine(const GaitCycle& cycle, const std::vector<int>& spine, const JointFrames& standing,
                 UpperBodyModel& body) {
   if (spine.size() < 2) return;
-  body.spine_path = path_to(cycle.skeleton, spine.back());
+  body.spine_path = path_below(cycle.skeleton, -1, spine.back());
   if (body.spine_path.size() > kMaxBodyPath) return;
   const int below = cycle.skeleton.joints[spine.front()].parent;
   body.spine_base = standing.rotation[below];
@@ -174,7 +167,7 @@ void fill_spine(const GaitCycle& cycle, const std::vector<int>& spine, const Joi
 void fill_head(const GaitCycle& cycle, const UpperBodyJoints& joints, const JointFrames& standing,
                UpperBodyModel& body) {
   if (joints.head <= 0) return;
-  const std::vector<int> path = path_to(cycle.skeleton, joints.head);
+  const std::vector<int> path = path_below(cycle.skeleton, -1, joints.head);
   if (path.size() > kMaxBodyPath) return;
   const int first = joints.neck.empty() ? joints.head : joints.neck.front();
   body.head_path = path;
@@ -262,7 +255,6 @@ LegBuild leg_build(const LegModel& model) {
   leg.chain = leg_chain(model);
   const vec3 line = model.toe_m - model.heel_m;
   leg.foot_m = glm::length(line);
-  leg.line = line / leg.foot_m;
   leg.elevation_rad = elevation(line);
   leg.forward = foot_forward(model);
   leg.side = glm::cross(kUp, leg.forward);
@@ -317,12 +309,8 @@ bool has_overlong_leg(const GaitCycle& cycle) {
     const std::array<int, 5> chain = {cycle.pelvis, leg.joints.hip, leg.joints.knee,
                                       leg.joints.ankle, leg.joints.toe};
     for (std::size_t i = 1; i < chain.size(); ++i) {
-      int between = 0;
-      for (int j = cycle.skeleton.joints[chain[i]].parent; j > chain[i - 1] && j >= 0;
-           j = cycle.skeleton.joints[j].parent) {
-        ++between;
-      }
-      if (between > kMaxBetween) return true;
+      const int above = cycle.skeleton.joints[chain[i]].parent;
+      if (path_below(cycle.skeleton, chain[i - 1], above).size() > kMaxBetween) return true;
     }
   }
   return false;
@@ -452,7 +440,7 @@ void keep_trunk_upright(double roll_rad, GaitCycle& cycle) {
 }  // namespace
 
 std::optional<Error> check(const Character& character) {
-  constexpr double kLeast = 0.05, kMost = 20.0;
+  constexpr double kLeast = 0.05, kMost = 20.0;  // factors of the lengths
   const std::string name = character.name + ": ";
   if (auto problem = range_problem(name + "scale", character.scale, kLeast, kMost)) return problem;
   if (auto problem = range_problem(name + "leg_ratio", character.leg_ratio, kLeast, kMost))
@@ -479,15 +467,14 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
   model.cycle = cycle;
   const double ratio = character.scale * character.leg_ratio;
   scale_build(model.cycle, character.scale, character.leg_ratio);
-  model.source_leg_length_m = 0.5 * (cycle.leg[0].length_m() + cycle.leg[1].length_m());
+  model.source_leg_length_m = mean_leg_m(cycle);
   model.leg_length_m = model.source_leg_length_m * ratio;
   model.size = model.leg_length_m / kReferenceLeg_m;
   // The fourth root, as gait_limits() scales times.
   model.time_scale = std::sqrt(std::sqrt(model.size));
   for (Side side : {kLeftSide, kRightSide}) {
     model.leg[side] = leg_build(model.cycle.leg[side]);
-    const double lift = cycle.toe_off[side] - cycle.strike[side];
-    model.leg[side].toe_off = lift - std::floor(lift);
+    model.leg[side].toe_off = fraction(cycle.toe_off[side] - cycle.strike[side]);
     model.leg[side].track_m =
         mean_heel(cycle, side).x * ratio + cycle.leg[side].hip_m.x * (character.scale - ratio);
   }

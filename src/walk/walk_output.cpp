@@ -2,8 +2,9 @@
 #include "gaitpad/walk_output.h"
 
 #include <algorithm>
-#include <cmath>
 #include <optional>
+
+#include "walk/sound_input.h"
 
 namespace gaitpad {
 namespace {
@@ -17,10 +18,6 @@ std::optional<Side> steps_of(Stage stage, Side swing) noexcept {
 
 quat turned_back(const Placement& model, const quat& world) noexcept {
   return glm::conjugate(rotation_y(model.heading_rad)) * world;
-}
-
-bool is_finite(const Placement& p) noexcept {
-  return std::isfinite(p.place_m.x + p.place_m.y + p.place_m.z + p.heading_rad);
 }
 
 int bones_of(std::span<const int> joints, std::span<float> out, std::size_t floats) noexcept {

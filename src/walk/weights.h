@@ -8,6 +8,7 @@
 #pragma once
 #include <cstddef>
 
+#include "animation/solver_numbers.h"
 #include "walk/leg_solve.h"
 #include "walk/reach.h"
 
@@ -56,25 +57,23 @@ void place_leg(const LegToShare<V>& leg, float lever_m, LegPlace<V>& place) noex
     s[j] = 2.0f * hs * hc;
     c[j] = 1.0f - 2.0f * hs * hs;
   }
-  const V one = all<V>(1.0f);
-  Vec<V> x{c[1], s[1] * c[0], s[1] * s[0]}, y{-s[1], c[1] * c[0], c[1] * s[0]}, z{V{}, -s[0], c[0]};
-  place.axis[0] = {one, V{}, V{}};
-  place.axis[1] = z;
-  place.axis[2] = y;
-  turn_axes(z, x, s[2], c[2]);
-  place.knee_m = y * -leg.thigh_m;
-  place.axis[3] = x;
-  turn_axes(y, z, s[3], c[3]);
-  place.ankle_m = place.knee_m - y * leg.shank_m;
-  place.axis[4] = x;
-  turn_axes(y, z, s[4], c[4]);
-  place.axis[5] = z;
-  turn_axes(x, y, s[5], c[5]);
-  place.axis[6] = y;
-  turn_axes(z, x, s[6], c[6]);
-  const auto turned = [&](const Vec<V>& p) { return x * p.x + y * p.y + z * p.z; };
-  place.point_m = place.ankle_m + turned(leg.point_m);
-  place.line = turned(leg.line), place.side = turned(leg.side);
+  Axes<V> f = axes_xz(s, c);
+  place.axis[0] = {all<V>(1.0f), V{}, V{}};
+  place.axis[1] = f.z;
+  place.axis[2] = f.y;
+  turn_axes(f.z, f.x, s[2], c[2]);
+  place.knee_m = f.y * -leg.thigh_m;
+  place.axis[3] = f.x;
+  turn_axes(f.y, f.z, s[3], c[3]);
+  place.ankle_m = place.knee_m - f.y * leg.shank_m;
+  place.axis[4] = f.x;
+  turn_axes(f.y, f.z, s[4], c[4]);
+  place.axis[5] = f.z;
+  turn_axes(f.x, f.y, s[5], c[5]);
+  place.axis[6] = f.y;
+  turn_axes(f.z, f.x, s[6], c[6]);
+  place.point_m = place.ankle_m + f * leg.point_m;
+  place.line = f * leg.line, place.side = f * leg.side;
   const Vec<V> off_m = leg.goal_m - place.point_m;
   const Vec<V>&side = place.goal_side, &across = place.goal_across, &along = place.goal_along;
   place.error[0] = dot(side, off_m);
@@ -106,35 +105,6 @@ void set_columns(float lever_m, const LegPlace<V>& place, V (&column)[kLegAngles
       column[j][3 + r] = dot(place.axis[j], turns[r]);
     }
   }
-}
-
-// Solves (J W J^T + diag(give)) y = b by L D L^T; b becomes y.
-template <class V>
-void solve_rows(const V (&column)[kLegAngles][6], const V (&weight)[kLegAngles], const V (&give)[6],
-                V (&b)[6]) noexcept {
-  V m[6][6];
-  for (int r = 0; r < 6; ++r)
-    for (int s = 0; s <= r; ++s) m[r][s] = (weight[0] * column[0][r]) * column[0][s];
-  for (int j = 1; j < kLegAngles; ++j) {
-    for (int r = 0; r < 6; ++r) {
-      const V weighted = weight[j] * column[j][r];
-      for (int s = 0; s <= r; ++s) m[r][s] = m[r][s] + weighted * column[j][s];
-    }
-  }
-  for (int r = 0; r < 6; ++r) m[r][r] = m[r][r] + give[r];
-  V reciprocal[6];
-  for (int k = 0; k < 6; ++k) {
-    reciprocal[k] = 1.0f / m[k][k];
-    for (int r = k + 1; r < 6; ++r) {
-      const V l = m[k][r] = m[r][k] * reciprocal[k];
-      for (int s = k + 1; s <= r; ++s) m[r][s] = m[r][s] - l * m[s][k];
-    }
-  }
-  for (int k = 0; k < 6; ++k)
-    for (int r = k + 1; r < 6; ++r) b[r] = b[r] - m[k][r] * b[k];
-  for (int k = 0; k < 6; ++k) b[k] = b[k] * reciprocal[k];
-  for (int k = 5; k > 0; --k)
-    for (int r = 0; r < k; ++r) b[r] = b[r] - m[r][k] * b[k];
 }
 
 // A step that meets the exact rows and reduces the sum of (angle - reference)^2 / W over the angles
@@ -187,7 +157,7 @@ void step_of(const LegToShare<V>& leg, float lever_m, const LegPlace<V>& place,
     first_rad[j] = kShareStep * first_rad[j];
     for (int r = 0; r < 6; ++r) b[r] = b[r] - column[j][r] * first_rad[j];
   }
-  solve_rows(column, weight, give, b);
+  solve_rows<6>(column, kLegAngles, weight, give, b);
   for (int j = 0; j < kLegAngles; ++j) {
     V sum = column[j][0] * b[0];
     for (int r = 1; r < 6; ++r) sum = sum + column[j][r] * b[r];
@@ -197,8 +167,8 @@ void step_of(const LegToShare<V>& leg, float lever_m, const LegPlace<V>& place,
 
 template <class V>
 void share_leg(float lever_m, LegToShare<V>& leg) noexcept {
-  constexpr float kMostShareStep_rad = 0.6f;
-  constexpr int kMostShareSteps = 8;
+  constexpr float kMostShareStep_rad = 0.6f;  // of an angle, in one step
+  constexpr int kMostShareSteps = 8;          // of a solve
   // A solve ends after a smaller step, if its point was nearer than this.
   constexpr float kSharedNear_rad = 8.7266463e-4f, kSharedNear_m = 0.001f;
   LegPlace<V> place;
@@ -289,7 +259,6 @@ void begin_weights(const Tables& tables, const Mask<V>& begins, const Time<V>& t
 // not 1.
 template <class V>
 Mask<V> smooth_weights(const Tables& tables, Weighted<V>& weighted) noexcept {
-  constexpr float kAsGoodAsEven = 1e-5f;
   const V one = all<V>(1.0f);
   const auto asked = weighted.asked != V{}, acted = weighted.acts != V{};
   auto acts = asked;
@@ -300,15 +269,14 @@ Mask<V> smooth_weights(const Tables& tables, Weighted<V>& weighted) noexcept {
       moves = either(moves, both(acted, either(weighted.weight[side][j].x != weighted.goal[side][j],
                                                weighted.weight[side][j].v != V{})));
   if (!any(moves)) return acts;
-  constexpr float kThere = 1e-6f;
   for (int side : {0, 1}) {
     for (int j = 0; j < kLegAngles; ++j) {
       Smoothed<V>& in_force = weighted.weight[side][j];
       const V goal = asked ? weighted.goal[side][j] : one;
       Smoothed<V> weight{acted ? in_force.x : one, acted ? in_force.v : V{}};
       follow(goal, tables.weights, weight);
-      const auto even = both(goal == one, size(V(weight.x - one)) < all<V>(kAsGoodAsEven)),
-                 there = either(even, both(size(V(weight.x - goal)) < all<V>(kThere),
+      const auto even = both(goal == one, size(V(weight.x - one)) < all<V>(kSettled)),
+                 there = either(even, both(size(V(weight.x - goal)) < all<V>(kEvenWeights),
                                            size(weight.v) < all<V>(kStill_per_s)));
       const V x = there ? goal : weight.x, v = there ? V{} : weight.v;
       in_force = {moves ? x : in_force.x, moves ? v : in_force.v};
@@ -351,7 +319,8 @@ void weigh_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stri
                 const Change<V>& change, const State<V>& state, Weighted<V>& weighted,
                 Leg<V> (&legs)[2]) noexcept {
   constexpr float kLeastW = 0.09f;  // the weight of a locked joint in the solve
-  // The pull of one joint approaches this; kHeldPull of it acts while the foot may not turn.
+  // The pull of one joint approaches this; the share kHeldPull of it acts while the foot may not
+  // turn.
   constexpr float kMostPull_rad = 0.31415927f, kHeldPull = 0.3f;
   constexpr float kBentKnee = 0.65f;  // a knee straighter than this share of the even one is bent
   constexpr float kTight_rad = 0.05235988f;  // 3 degrees of room: half of it gives way

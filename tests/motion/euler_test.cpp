@@ -7,6 +7,11 @@
 namespace gaitpad {
 namespace {
 
+quat from_euler(const EulerOrder& order, const EulerAngles& angles_rad) {
+  return rotation_about_axis(order[0], angles_rad[0]) *
+         rotation_about_axis(order[1], angles_rad[1]) *
+         rotation_about_axis(order[2], angles_rad[2]);
+}
 double angle_between(const quat& a, const quat& b) {
   return glm::length(rotation_vector(glm::conjugate(a) * b));
 }

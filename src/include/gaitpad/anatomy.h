@@ -60,6 +60,11 @@ int pelvis_of(const Skeleton& skeleton, const std::array<LegJoints, 2>& legs);
 // True if `ancestor` is on the way from `joint` to the root; true also for a joint and itself.
 bool is_ancestor(const Skeleton& skeleton, int ancestor, int joint);
 
+std::vector<int> children_of(const Skeleton& skeleton, int joint);
+// The chain from the child of `top` down to `joint`, inclusive; from the root on if `top` is -1.
+// Empty if they are the same joint.
+std::vector<int> path_below(const Skeleton& skeleton, int top, int joint);
+
 // Joint indices of one arm. Shoulder, elbow and wrist are all set or none is. Further joints may
 // stand between two of them (twist joints).
 struct ArmChain {

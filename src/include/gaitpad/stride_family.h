@@ -98,6 +98,11 @@ StridePlace stride_at(const std::vector<StrideTable>& table, double phase, doubl
 // The share of the cycle's time that the roll of a foot (Table I (b)) takes in strides of this
 // ratio, from its share in the data: double support is longer in short steps.
 double roll_time_share(double data_share, double ratio) noexcept;
+// Double support takes about a quarter of an adult's cycle at an easy pace, a third at a stroll and
+// a fifth at a brisk one: relative growth of a roll's share at stride length 0, steepness with
+// which it falls for longer strides, and the share's bounds.
+inline constexpr double kLongerRoll = 0.9, kShorterRoll = 2.4;
+inline constexpr double kLeastRollShare = 0.04, kMostRollShare = 0.22;
 
 // Converts a phase to the time at which it is reached. Each of the four stages of a cycle has a
 // duration; the rate is smooth: cubic in each stage, and at a border between two the mean of their

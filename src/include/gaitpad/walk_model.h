@@ -100,7 +100,6 @@ struct LegBuild {
   double elevation_rad = 0;  // elevation of the heel-toe line above the floor when standing
   // Level directions along the foot and across it, in its frame.
   vec3 forward{0.0, 0.0, 1.0}, side{1.0, 0.0, 0.0};
-  vec3 line{0.0, 0.0, 1.0};            // unit vector from heel to toe
   std::array<LegJointFrame, 4> joint;  // joints hip, knee, ankle, toe
   // The sole in the foot frame: from the heel under the ball to the tip, on the floor when
   // standing.

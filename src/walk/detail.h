@@ -32,17 +32,6 @@ Leg<V> leg_of_tables(const Tables& tables, const Mask<V>& right, const Stride<V>
   return leg;
 }
 
-// Sets the numbers V of which T consists back to what they were.
-template <class V, class T>
-void put_back(const Mask<V>& where, const T& was, T& is) noexcept {
-  constexpr std::size_t kBytes = sizeof(V);
-  static_assert(sizeof(T) % kBytes == 0);
-  for (std::size_t n = 0; n < sizeof(T) / kBytes; ++n) {
-    V& number = reinterpret_cast<V*>(&is)[n];
-    number = where ? reinterpret_cast<const V*>(&was)[n] : number;
-  }
-}
-
 // A walk that the tables alone pose begins anew with its legs and its upper body, should it come
 // back.
 template <class V>

@@ -143,6 +143,17 @@ inline void exchange(const Mask<V>& where, V& a, V& b) noexcept {
   b = where ? was : b;
 }
 
+// Sets the numbers V of which T consists back to what they were.
+template <class V, class T>
+void put_back(const Mask<V>& where, const T& was, T& is) noexcept {
+  constexpr std::size_t kBytes = sizeof(V);
+  static_assert(sizeof(T) % kBytes == 0);
+  for (std::size_t n = 0; n < sizeof(T) / kBytes; ++n) {
+    V& number = reinterpret_cast<V*>(&is)[n];
+    number = where ? reinterpret_cast<const V*>(&was)[n] : number;
+  }
+}
+
 // --- Four numbers of a row, or of a rotation (x, y, z, w) ----------------------------------------
 
 using Four = Floats<4>;

@@ -464,8 +464,8 @@ void lift_off(const Tables& tables, const Time<V>& time, const Mask<V>& lifts,
               F& footing) noexcept {
   const V ticks = state.flight_ticks, phase = state.phase + state.phase_rate,
           share = (state.tick + 1.0f) / (state.roll_ticks + ticks);
-  const Stride<V> next =
-      read_by_clock(tables, time, landing, phase, share, V(1.0f / ticks), change, state);
+  const Stride<V> next = read_by_clock(tables, time, landing, phase, share, V(1.0f / ticks),
+                                       Reads<V>{lifts, Mask<V>{}}, change, state);
   V base_m{};
   const Vec<V> ahead = flight_heel(tables, time, landing, next, hips, phase, V(1.0f / ticks),
                                    change, state, footing, base_m),

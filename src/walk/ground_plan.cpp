@@ -530,8 +530,8 @@ PlannedFlight planned_flight(const Tables& tables, const Floor& floor, const Fra
     if (change.off_ratio.x != off_ratio) read_ratio();
     const float phase = state.phase + moves.at(s);
     time.share = (state.roll_ticks + tick) / (state.roll_ticks + state.flight_ticks);
-    const Stride<float> stride =
-        read_by_clock(tables, time, landing, phase, time.share, time.u, change, state);
+    const Stride<float> stride = read_by_clock(tables, time, landing, phase, time.share, time.u,
+                                               Reads<float>{true, false}, change, state);
     const Sole<float> sole = sole_of<float>(tables, time.right);
     const Flight<float> flies =
         fly(tables, time, landing, stride, stride, hips, phase, sole, change, state, footing);

@@ -82,11 +82,12 @@ Hips<V> move_hips(const Tables& tables, const Time<V>& time, const Landing<V>& l
     const auto was_led = both(strikes, change.was_led != V{});
     if (any(was_led)) {
       V x_m[3], z_m[3];
+      const StrideMix<V> mix =
+          mix_of_strides(tables, time, state.ratio_behind, state.ratio_behind, V{}, was_led);
       for (int n : {0, 1, 2}) {
         const float k = static_cast<float>(n) * aim;
         const V at = phase_at(k);
-        const Vec<V> pelvis = hips.heading * read_pelvis(tables, time, at, state.ratio_behind,
-                                                         state.ratio_behind, V{});
+        const Vec<V> pelvis = hips.heading * read_pelvis(mix, at);
         const auto goes = [&](const Off<V>& of) { return V(of.x + k * (of.v + 0.5f * k * of.a)); };
         x_m[n] = goes(change.pelvis_x_m) - pelvis.x - (to.x_m + to.per_cycle_x_m * at);
         z_m[n] = goes(change.pelvis_z_m) - pelvis.z - (to.z_m + to.per_cycle_z_m * at);
@@ -137,15 +138,15 @@ void move_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& la
                  const V& strike_phase, const V& strike_rate, const State<V>& state,
                  Change<V>& change) noexcept {
   const float aim = aim_ticks(tables);
+  const auto led = change.led != V{}, closes = change.closing != V{}, stops = change.stops != V{};
+  const StrideMix<V> mix = mix_of_strides(tables, time, landing.ratio, landing.ratio, V{}, led);
   V x_m[3], z_m[3];
   for (int k : {0, 1, 2}) {
     const V at = strike_phase + (static_cast<float>(k - 1) * aim) * strike_rate;
-    const Vec<V> pelvis =
-        landing.way * read_pelvis(tables, time, at, landing.ratio, landing.ratio, V{});
+    const Vec<V> pelvis = landing.way * read_pelvis(mix, at);
     x_m[k] = state.path.x_m + state.path.per_cycle_x_m * at + pelvis.x;
     z_m[k] = state.path.z_m + state.path.per_cycle_z_m * at + pelvis.z;
   }
-  const auto led = change.led != V{}, closes = change.closing != V{}, stops = change.stops != V{};
   const V left = stops ? change.rest_ticks : time.to_strike, ticks = left + 1.0f;
   // In a stop it comes to rest between the feet as the last step leaves them.
   if (any(stops)) {
@@ -179,8 +180,7 @@ void move_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& la
 template <class V>
 V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
                   const Hips<V>& hips, const V& strike_phase, const V& strike_rate, const V& share,
-                  const Mask<V>& is_new, const State<V>& state, const Change<V>& change,
-                  V& rate) noexcept {
+                  const State<V>& state, const Change<V>& change, V& rate) noexcept {
   // A phase that is a cycle off the clock counts as much as hips that are kInTime_m off their
   // place. That keeps the hips' height in time with the landing. In first and last steps that go
   // farther than kGoesSomewhere of the data's stride the hips alone tell the phase; kLeastWay_m2
@@ -196,9 +196,10 @@ V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& l
                         way.ahead(path.x_m, path.z_m), share),
           per_cycle = mix(way.ahead(V{}, hips.behind.stride_m),
                           way.ahead(path.per_cycle_x_m, path.per_cycle_z_m), share);
+  const auto led = change.led != V{}, is_new = both(led, change.is_new != V{});
+  StrideMix<V> mix = mix_of_strides(tables, time, state.ratio_behind, landing.ratio, share, led);
   const auto by_tables = [&](const V& p) {
-    return V(at_zero + per_cycle * p +
-             read_pelvis(tables, time, p, state.ratio_behind, landing.ratio, share).z);
+    return V(at_zero + per_cycle * p + read_pelvis(mix, p).z);
   };
   const V wanted = way.ahead(change.pelvis_x_m.x, change.pelvis_z_m.x),
           goes = way.ahead(change.pelvis_x_m.v, change.pelvis_z_m.v);
@@ -212,6 +213,7 @@ V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& l
   phase = least(most(phase, low), high);
   const V last = phase;
   for (int n = 0; n < (any(is_new) ? kPhaseTries : kFewTries); ++n) {
+    if (n == kFewTries) mix.keep(is_new);
     const V here = by_tables(phase),
             slope = (by_tables(V(phase + kPhaseStep)) - here) * (1.0f / kPhaseStep),
             weight = 1.0f / (slope * slope + (in_time + least_m2));
@@ -285,15 +287,21 @@ void fade_differences(const Time<V>& time, const State<V>& state, Change<V>& cha
   fade(least(change.off_ticks, V(ticks_of_stage(state) - state.tick + 1.0f)), change.off_pitch);
 }
 
+// True where the hips lead, have just led, or stand: the pose then shows a phase of its own, not
+// the clock's.
+template <class V>
+Mask<V> has_own_phase(const Change<V>& change) noexcept {
+  return either(either(either(change.led != V{}, change.was_led != V{}), change.off_ticks != V{}),
+                change.stands != V{});
+}
+
 // If the hips lead or have just led: moves them to their place, and reads the stride at their
 // phase; the flying foot keeps to the clock. Returns that phase, else the clock's.
 template <class V>
 V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
             const Stride<V>& by_clock, State<V>& state, Change<V>& change, Hips<V>& hips,
             Stride<V>& stride) noexcept {
-  const auto led = change.led != V{}, stands = change.stands != V{},
-             runs = either(either(either(led, change.was_led != V{}), change.off_ticks != V{}),
-                           stands);
+  const auto led = change.led != V{}, stands = change.stands != V{}, runs = has_own_phase(change);
   stride = by_clock;
   if (!any(runs)) return state.phase;
   const auto is_new = change.is_new != V{}, was_new = both(no(is_new), change.was_new != V{});
@@ -314,7 +322,7 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
     move_pelvis(tables, time, landing, strike_phase, strike_rate, state, change);
     V moves{};
     const V found = phase_of_pelvis(tables, time, landing, hips, strike_phase, strike_rate, over,
-                                    is_new, state, change, moves);
+                                    state, change, moves);
     phase = led ? found : phase;
     rate = led ? moves : rate;
   }
@@ -335,8 +343,10 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
   change.phase = runs ? phase : change.phase;
   change.phase_rate = runs ? goes : change.phase_rate;
   phase = runs ? phase : state.phase;
-  Stride<V> read = read_stride(tables, time, phase, state.ratio_behind, landing.ratio, over);
+  Stride<V> read = read_stride(tables, time, phase, state.ratio_behind, landing.ratio, over,
+                               Reads<V>{runs, runs});
   if (any(change.shown != all<V>(1.0f))) show(change.shown, read);
+  put_where<V>(no(runs), by_clock, read);
   stride = read;
   stride.heel_behind_m = by_clock.heel_behind_m, stride.heel_ahead_m = by_clock.heel_ahead_m;
   stride.heel_high_m = by_clock.heel_high_m;

@@ -85,8 +85,8 @@ Flown flown(const Tables& tables, const Change<float>& change, const State<float
     const Time<float> time = time_of(tables, at);
     const Landing<float> landing =
         landing_over(tables, time, way_at_strike(tables, time, at), change, at, footing);
-    const Stride<float> stride =
-        read_by_clock(tables, time, landing, at.phase, time.share, time.u, change, at);
+    const Stride<float> stride = read_by_clock(tables, time, landing, at.phase, time.share, time.u,
+                                               Reads<float>{true, false}, change, at);
     Hips<float> hips;
     hips.behind = footprints_of(tables, time, at.ratio_behind);
     hips.ahead = footprints_of(tables, time, landing.ratio);
@@ -300,9 +300,8 @@ inline float ticks_to_lift_off(const Tables& tables, const State<float>& state,
   const Time<float> time = time_of(tables, state);
   const float phase = time.step_phase + roll_cycles<float>(tables, time.right);
   const FootprintsIn<float> prints = footprints_of(tables, time, state.ratio_behind);
-  const float place_m =
-      prints.stride_m * phase - prints.stand_m.z +
-      read_pelvis(tables, time, phase, state.ratio_behind, state.ratio_behind, 0.0f).z;
+  const float place_m = prints.stride_m * phase - prints.stand_m.z +
+                        read_pelvis(tables, time, phase, state.ratio_behind).z;
   Off<float> off = change.pelvis_z_m;
   off.x -= tables.rest_lead_m;
   float ticks = 1.0f;
@@ -490,7 +489,7 @@ float catch_ticks(const Tables& tables, const State<float>& state, const Change<
   for (int k : {0, 1, 2}) {
     const float at = strike_phase + static_cast<float>(k - 1) * aim * rate;
     m[k] = along(path.x_m + path.per_cycle_x_m * at, path.z_m + path.per_cycle_z_m * at) +
-           sign * read_pelvis(tables, time, at, landing.ratio, landing.ratio, 0.0f).z;
+           sign * read_pelvis(tables, time, at, landing.ratio).z;
   }
   const Off<float> there = middle_of(m, aim);
   const float goes = there.v, bend = there.a, left = time.to_strike;

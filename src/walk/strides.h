@@ -142,19 +142,34 @@ V short_ratio(const Tables& tables, const Landing<V>& landing, const State<V>& s
   return most(V(own + (off < V{} ? low : off)), V{});
 }
 
-// Reads all numbers of a stride. `change`: share by which the last step's stride, of ratio
+// Walks for which a stride is read: only its plan, which is the flying foot and the pelvis' place,
+// or the whole of it, legs and turn of the pelvis as well. What is not read is 0.
+template <class V>
+struct Reads {
+  Mask<V> plan, whole;
+};
+
+// Reads the numbers of a stride. `change`: share by which the last step's stride, of ratio
 // `behind`, has changed into this step's, of ratio `ahead`.
 template <class V>
 Stride<V> read_stride(const Tables& tables, const Time<V>& time, const V& phase, const V& behind,
-                      const V& ahead, const V& change) noexcept {
-  constexpr int kWidth = kLanes<V>, kPart = kLanes<RowPart>, kParts = kRowNumbers / kPart;
+                      const V& ahead, const V& change, const Reads<V>& reads) noexcept {
+  constexpr int kWidth = kLanes<V>, kPart = kLanes<RowPart>, kParts = kRowNumbers / kPart,
+                kPlanParts = kPlanNumbers / kPart;
   constexpr int kHeelParts = kHeelNumbers <= kPart ? 1 : kHeelNumbers / kPart,
                 kHeelRoom = kHeelParts * kPart, kNumbers = kRowNumbers + 2 * kHeelNumbers;
-  const V last = last_ratio<V>(time.back), back = chosen<V>(time.back, 1.0f, 0.0f);
+  const V last = last_ratio<V>(time.back), back = chosen<V>(time.back, 1.0f, 0.0f),
+          is_read = chosen<V>(either(reads.plan, reads.whole), 1.0f, 0.0f),
+          is_whole = chosen<V>(reads.whole, 1.0f, 0.0f);
   const Knots<V> knots = knots_at(phase), old = ratios_at(behind, last),
                  next = ratios_at(ahead, last);
   alignas(64) float row[kWidth][kNumbers];
   for (int w = 0; w < kWidth; ++w) {
+    if (lane(is_read, w) == 0.0f) {
+      std::memset(row[w], 0, sizeof row[w]);
+      continue;
+    }
+    const bool whole = lane(is_whole, w) != 0.0f;
     const int i = static_cast<int>(lane(knots.first, w));
     const int first[2] = {static_cast<int>(lane(old.first, w)),
                           static_cast<int>(lane(next.first, w))};
@@ -174,17 +189,23 @@ Stride<V> read_stride(const Tables& tables, const Time<V>& time, const V& phase,
       const float a = of_old[r + 1], b = of_next[r + 1], mixed = a * left + b * share;
       const float *p0 = rows.at(i, r), *p1 = rows.at(i + 1, r), *p2 = rows.at(i + 2, r),
                   *p3 = rows.at(i + 3, r);
-#pragma GCC unroll 10
-      for (int n = 0; n < kParts; ++n) {
+      const auto here = [&](int n) {
         const int o = n * kPart;
-        const RowPart here = part<RowPart>(p0 + o) * k0 + part<RowPart>(p1 + o) * k1 +
-                             part<RowPart>(p2 + o) * k2 + part<RowPart>(p3 + o) * k3;
-        sum[n] += here * mixed;
+        return RowPart(part<RowPart>(p0 + o) * k0 + part<RowPart>(p1 + o) * k1 +
+                       part<RowPart>(p2 + o) * k2 + part<RowPart>(p3 + o) * k3);
+      };
+#pragma GCC unroll 4
+      for (int n = 0; n < kPlanParts; ++n) {
+        const RowPart of = here(n);
+        sum[n] += of * mixed;
         if (n < kHeelParts) {
-          heel_old[n] += here * a;
-          heel_next[n] += here * b;
+          heel_old[n] += of * a;
+          heel_next[n] += of * b;
         }
       }
+      if (!whole) continue;
+#pragma GCC unroll 10
+      for (int n = kPlanParts; n < kParts; ++n) sum[n] += here(n) * mixed;
     }
     float heels[2][kHeelRoom];
     std::memcpy(heels[0], heel_old, sizeof heel_old);
@@ -219,32 +240,64 @@ Stride<V> read_stride(const Tables& tables, const Time<V>& time, const V& phase,
   return stride;
 }
 
-// Reads four neighbouring numbers of a row, from number `at` on.
+// The rows that a mix of two strides reads at each knot, and the weight of each. Reads at several
+// phases share it.
 template <class V>
-void read_four(const Tables& tables, const Time<V>& time, int at, const V& phase, const V& behind,
-               const V& ahead, const V& change, V (&to)[4]) noexcept {
-  constexpr int kWidth = kLanes<V>;
-  const V last = last_ratio<V>(time.back), back = chosen<V>(time.back, 1.0f, 0.0f);
-  const Knots<V> knots = knots_at(phase), old = ratios_at(behind, last),
-                 next = ratios_at(ahead, last);
-  alignas(64) float row[kWidth][4];
-  for (int w = 0; w < kWidth; ++w) {
-    const int i = static_cast<int>(lane(knots.first, w));
+struct StrideMix {
+  struct OfWalk {
+    Rows rows{};  // none: this walk is not read
+    int begin = 0, end = 0;
+    float weight[kRatios + 4]{};  // by ratio + 1
+  };
+  OfWalk walk[kLanes<V>];
+  // Leaves out all walks but these.
+  void keep(const Mask<V>& where) noexcept {
+    const V is = chosen<V>(where, 1.0f, 0.0f);
+    for (int w = 0; w < kLanes<V>; ++w)
+      if (lane(is, w) == 0.0f) walk[w].rows.first = nullptr;
+  }
+};
+// The mix of the strides of ratios `behind` and `ahead`, for walks `where` it is asked for.
+template <class V>
+StrideMix<V> mix_of_strides(const Tables& tables, const Time<V>& time, const V& behind,
+                            const V& ahead, const V& change, const Mask<V>& where) noexcept {
+  const V last = last_ratio<V>(time.back), back = chosen<V>(time.back, 1.0f, 0.0f),
+          is = chosen<V>(where, 1.0f, 0.0f);
+  const Knots<V> old = ratios_at(behind, last), next = ratios_at(ahead, last);
+  StrideMix<V> mix;
+  for (int w = 0; w < kLanes<V>; ++w) {
+    if (lane(is, w) == 0.0f) continue;
+    auto& of = mix.walk[w];
     const int first[2] = {static_cast<int>(lane(old.first, w)),
                           static_cast<int>(lane(next.first, w))};
     const float share = lane(change, w), left = 1.0f - share;
-    float weight[kRatios + 4] = {};  // by ratio + 1
-    for (int k = 0; k < 4; ++k) weight[first[0] + 1 + k] = lane(old.weight[k], w) * left;
-    for (int k = 0; k < 4; ++k) weight[first[1] + 1 + k] += lane(next.weight[k], w) * share;
+    for (int k = 0; k < 4; ++k) of.weight[first[0] + 1 + k] = lane(old.weight[k], w) * left;
+    for (int k = 0; k < 4; ++k) of.weight[first[1] + 1 + k] += lane(next.weight[k], w) * share;
+    of.begin = std::max(0, std::min(first[0], first[1]));
+    of.end = std::min(static_cast<int>(lane(last, w)), std::max(first[0], first[1]) + 3);
+    of.rows = rows_of(tables, lane(back, w) != 0.0f);
+  }
+  return mix;
+}
+
+// Reads four neighbouring numbers of a row, from number `at` on; 0 for walks that the mix leaves
+// out.
+template <class V>
+void read_four(const StrideMix<V>& mix, int at, const V& phase, V (&to)[4]) noexcept {
+  const Knots<V> knots = knots_at(phase);
+  alignas(64) float row[kLanes<V>][4];
+  for (int w = 0; w < kLanes<V>; ++w) {
+    const auto& of = mix.walk[w];
     Four sum{};
-    const int begin = std::max(0, std::min(first[0], first[1])),
-              end = std::min(static_cast<int>(lane(last, w)), std::max(first[0], first[1]) + 3);
-    const Rows rows = rows_of(tables, lane(back, w) != 0.0f);
-    for (int r = begin; r <= end; ++r) {
-      Four here{};
-      for (int k = 0; k < 4; ++k)
-        here += part<Four>(rows.at(i + k, r) + at) * lane(knots.weight[k], w);
-      sum += here * weight[r + 1];
+    if (of.rows.first != nullptr) {
+      const float* const first = of.rows.at(static_cast<int>(lane(knots.first, w)), 0) + at;
+      for (int r = of.begin; r <= of.end; ++r) {
+        Four here{};
+        for (int k = 0; k < 4; ++k)
+          here +=
+              part<Four>(first + k * of.rows.of_knot + r * kRowNumbers) * lane(knots.weight[k], w);
+        sum += here * of.weight[r + 1];
+      }
     }
     std::memcpy(row[w], &sum, sizeof sum);
   }
@@ -297,7 +350,7 @@ void raise_limping_heel(const Tables& tables, const Time<V>& time, const V& phas
   const V shows = change.limp * smoother(V(u * 5.0f)) * (1.0f - smoother(V((u - 0.5f) * 2.5f))),
           as_far = ratio * change.limp_far;
   V heel_m[4];  // 0: height of the left heel, 3: of the right one
-  read_four(tables, time, 1, phase, as_far, as_far, V{}, heel_m);
+  read_four(mix_of_strides(tables, time, as_far, as_far, V{}, limps), 1, phase, heel_m);
   const V high_m = most(stride.heel_high_m, time.right ? heel_m[3] : heel_m[0]);
   stride.heel_high_m = limps ? mix(stride.heel_high_m, high_m, shows) : stride.heel_high_m;
 }
@@ -307,19 +360,19 @@ void raise_limping_heel(const Tables& tables, const Time<V>& time, const V& phas
 // lift-off. In the last step it lands flat.
 template <class V>
 Stride<V> read_by_clock(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
-                        const V& phase, const V& share, const V& u, const Change<V>& change,
-                        const State<V>& state) noexcept {
+                        const V& phase, const V& share, const V& u, const Reads<V>& reads,
+                        const Change<V>& change, const State<V>& state) noexcept {
   const auto closes = change.closing != V{}, is_short = either(change.starting != V{}, closes);
   if (!any(is_short)) {
     Stride<V> stride =
-        read_stride(tables, time, phase, state.ratio_behind, landing.ratio, smoother(share));
+        read_stride(tables, time, phase, state.ratio_behind, landing.ratio, smoother(share), reads);
     raise_limping_heel(tables, time, phase, landing.ratio, u, change, stride);
     return stride;
   }
   Stride<V> stride = read_stride(
       tables, time, both(is_short, no(time.flies)) ? most(phase, time.stage_end) : phase,
       is_short ? short_ratio(tables, landing, state) : state.ratio_behind, landing.ratio,
-      closes ? V{} : smoother(is_short ? u : share));
+      closes ? V{} : smoother(is_short ? u : share), reads);
   const V flat = closes ? V(1.0f - smoother(u)) : all<V>(1.0f);
   FootInStride<V>& flies = stride.foot[0];
   flies.pitch_rad = flat * flies.pitch_rad;
@@ -346,12 +399,15 @@ V flight_share(const V& u, const Change<V>& change) noexcept {
 
 // Reads the place of the pelvis alone.
 template <class V>
-Vec<V> read_pelvis(const Tables& tables, const Time<V>& time, const V& phase, const V& behind,
-                   const V& ahead, const V& change) noexcept {
+Vec<V> read_pelvis(const StrideMix<V>& mix, const V& phase) noexcept {
   V n[4];
-  read_four(tables, time, offsetof(StrideRow, pelvis_m) / sizeof(float), phase, behind, ahead,
-            change, n);
+  read_four(mix, offsetof(StrideRow, pelvis_m) / sizeof(float), phase, n);
   return {n[0], n[1], n[2]};
+}
+template <class V>
+Vec<V> read_pelvis(const Tables& tables, const Time<V>& time, const V& phase,
+                   const V& ratio) noexcept {
+  return read_pelvis(mix_of_strides(tables, time, ratio, ratio, V{}, V{} == V{}), phase);
 }
 
 // The footprints of a stride, in its travel frame: its length, and the heels of swing and stand.

@@ -2,6 +2,7 @@
 // while it walks. A WalkModel holds them.
 #pragma once
 #include <array>
+#include <cstddef>
 #include <memory>
 #include <vector>
 
@@ -24,8 +25,9 @@ struct StrideRow {
   std::array<float, 2> pelvis_span_m;  // the pelvis' lowest and highest place in the stride
   std::array<float, 5> none;           // makes the row a multiple of 8 numbers
 };
-inline constexpr int kRowNumbers = sizeof(StrideRow) / sizeof(float), kHeelNumbers = 8;
-static_assert(kRowNumbers == 40);
+inline constexpr int kRowNumbers = sizeof(StrideRow) / sizeof(float), kHeelNumbers = 8,
+                     kPlanNumbers = 16;  // up to the pelvis' yaw
+static_assert(kRowNumbers == 40 && offsetof(StrideRow, pelvis_tilt_rad) == 4 * kPlanNumbers);
 
 // The number of samples of a StrideFamily. Half as many change a knee at the lift-off by 0.17
 // degrees RMS.

@@ -489,8 +489,9 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
     move_hips_ground(tables, time, landing, change, state, footing);
     if (looks_ahead) plan_rooms<kWidth>(tables, Mask<V>{}, block);
   }
+  const Reads<V> reads{V{} == V{}, no(has_own_phase(change))};  // lead_hips() reads the others
   const Stride<V> by_clock =
-      read_by_clock(tables, time, landing, state.phase, time.share, time.u, change, state);
+      read_by_clock(tables, time, landing, state.phase, time.share, time.u, reads, change, state);
   Hips<V> hips = move_hips(tables, time, landing, by_clock, change, state);
   Stride<V> stride;
   const V phase = lead_hips(tables, time, landing, by_clock, state, change, hips, stride);

@@ -257,8 +257,8 @@ template <class V>
     const Bearing<V> before = bearing_of(
         tables, then, is_styled, V(state.chest_ahead_rad.x - ago_s * state.chest_ahead_rad.v),
         V(state.head_ahead_rad.x - ago_s * state.head_ahead_rad.v), V{}, styled);
-    Stride<V> stride =
-        read_stride(tables, tick.time, phase, state.ratio_behind, tick.landing.ratio, over);
+    Stride<V> stride = read_stride(tables, tick.time, phase, state.ratio_behind, tick.landing.ratio,
+                                   over, Reads<V>{begins, begins});
     show(change.shown, stride);
     Trunk<V> trunk;
     trunk.base = base_turn(tables, heading, upright * tilted(tables, stride, state));

@@ -81,5 +81,15 @@ TEST(WalkTerrainEnds, HeelsStayClearOfTheEdgesTheyPassOnTheWayDown) {
 
 // A captured foot may roll far onto its edge as it leaves the ground. In a first step it would be
 // in the ground with it, for both feet still stand flat.
+TEST(WalkTerrainEnds, TheEdgeOfAFootThatStartsStaysOutOfTheGround) {
+  GAITPAD_NEEDS(kCapturedMotions);
+  for (const double ratio : {1.0, 1.6}) {
+    const WalkModel model = captured("cmu_m21_walk.bvh", ratio, 0.17);
+    Judged walker(model);
+    walker.walk_to(0.6, 1.0);
+    EXPECT_LT(walker.worst().sunk_mm, 5.0) << ratio;
+  }
+}
+
 }  // namespace
 }  // namespace gaitpad

@@ -68,6 +68,28 @@ class Judged : public MadeWalker {
   std::vector<double> hips_z_m_;
 };
 
+TEST(WalkTerrainEnds, HipsSpeedUpEvenlyWhereStairsEnd) {
+  for (const double rise_m : {0.17, -0.17}) {
+    for (const double ratio : {0.6, 1.0}) {
+      const WalkModel model = built_in(ratio, rise_m);
+      Judged walker(model);
+      walker.walk_to(kStairs_m + 1.5, 1.0);
+      EXPECT_LT(walker.hips_m_s2(kStairs_m - 0.4), 9.0) << ratio << " " << rise_m;
+      EXPECT_LT(walker.worst().jump_deg, 0.85) << ratio << " " << rise_m;
+    }
+  }
+}
+
+// The knees of a walk that has come up slowly are nearly straight: the hips sink before the first
+// quick step, not in it.
+TEST(WalkTerrainEnds, HipsSinkBeforeTheQuickStepAfterStairs) {
+  GAITPAD_NEEDS(kCapturedMotions);
+  const WalkModel model = captured("cmu_m21_walk.bvh", 0.6, 0.17);
+  Judged walker(model);
+  walker.walk_to(kStairs_m + 1.5, 1.0);
+  EXPECT_LT(walker.worst().jump_deg, 1.0) << "at z " << walker.worst().jump_z_m;
+}
+
 TEST(WalkTerrainEnds, HeelsStayClearOfTheEdgesTheyPassOnTheWayDown) {
   for (const double ratio : {1.0, 1.6}) {
     for (const StyleValues& style : {StyleValues{}, shipped_limp()}) {

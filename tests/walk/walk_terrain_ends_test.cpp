@@ -68,6 +68,8 @@ class Judged : public MadeWalker {
   std::vector<double> hips_z_m_;
 };
 
+// Level steps are three times as fast as those on stairs. Between them the hips lead, as where a
+// stick changes the pace.
 TEST(WalkTerrainEnds, HipsSpeedUpEvenlyWhereStairsEnd) {
   for (const double rise_m : {0.17, -0.17}) {
     for (const double ratio : {0.6, 1.0}) {
@@ -90,6 +92,20 @@ TEST(WalkTerrainEnds, HipsSinkBeforeTheQuickStepAfterStairs) {
   EXPECT_LT(walker.worst().jump_deg, 1.0) << "at z " << walker.worst().jump_z_m;
 }
 
+TEST(WalkTerrainEnds, LimpsReachTheirFeetOverStairs) {
+  GAITPAD_NEEDS(kCapturedMotions);
+  for (const char* file : {"bvhtoolbox_walk01.bvh", "cmu_m21_walk.bvh"}) {
+    for (const double rise_m : {0.17, -0.17}) {
+      const WalkModel model = captured(file, 0.6, rise_m);
+      Judged walker(model);
+      walker.walk_to(kStairs_m + 1.5, 1.0, shipped_limp());
+      EXPECT_EQ(walker.worst().failures, 0) << file << " " << rise_m;
+      EXPECT_LT(walker.worst().slide_mm, 0.01) << file << " " << rise_m;
+    }
+  }
+}
+
+// A foot that goes down passes each edge ahead of its path, and does not come back to it.
 TEST(WalkTerrainEnds, HeelsStayClearOfTheEdgesTheyPassOnTheWayDown) {
   for (const double ratio : {1.0, 1.6}) {
     for (const StyleValues& style : {StyleValues{}, shipped_limp()}) {

@@ -274,6 +274,7 @@ struct Flight {
   V base_m{},
       lifted_m{};  // height of the ground line; by how much the plane that it left is higher
   Way<V> way;      // the foot's direction
+  V twist_rad{}, roll_rad{};  // of the edge on which the foot rolls
   Turn<V> tilt = no_turn<V>(), edge;
 };
 
@@ -293,7 +294,8 @@ Flight<V> fly(const Tables& tables, const Time<V>& time, const Landing<V>& landi
   const V low = mix(all<V>(1.0f), low_lift<V>(time.right, state),
                     V(smoother(0.0f, 0.5f, over) * (1.0f - smoother(V((over - 0.6f) * 2.5f)))));
   const FootInStride<V>& table = stride.foot[0];
-  flight.edge = edge_of(sole, V(low * table.twist_rad), V(low * table.roll_rad));
+  flight.twist_rad = low * table.twist_rad, flight.roll_rad = low * table.roll_rad;
+  flight.edge = edge_of(sole, flight.twist_rad, flight.roll_rad);
   flight.way = way_of(time.flies ? flying_yaw(time, landing, change, state) : state.print_rad);
   if constexpr (kIsUneven<F>) {
     const Turn<V> from = tilt_of(footing.print),
@@ -307,6 +309,25 @@ Flight<V> fly(const Tables& tables, const Time<V>& time, const Landing<V>& landi
                                mix(from.y, to.y, goes), mix(from.z, to.z, goes)});
   }
   return flight;
+}
+
+// A foot that leaves its stand rolls onto its edge only until this is kMostEdge_m in the ground:
+// the feet of some captures roll farther. From there to mid-flight it comes over to its own roll.
+template <class V>
+Turn<V> first_edge(const Sole<V>& sole, const Flight<V>& flight, const V& planned, const V& u,
+                   const Change<V>& change) noexcept {
+  // Below the 5 mm at which a sole is judged to be in the ground.
+  constexpr float kMostEdge_m = 0.0045f, kSoftEdge_m = 0.0003f;
+  const auto starts = change.starting != V{};
+  if (!any(starts)) return flight.edge;
+  const V across = (turn_about(sole.side, planned) * flight.edge * sole.side).y,
+          edge_m = sole.half_width_m * size(across),
+          bound_m = soft_least(edge_m, all<V>(kMostEdge_m), all<V>(kSoftEdge_m)),
+          share =
+              mix(V(bound_m / most(edge_m, all<V>(1e-6f))), all<V>(1.0f), smoother(0.0f, 0.5f, u));
+  return chosen(both(starts, bound_m < edge_m),
+                edge_of(sole, V(share * flight.twist_rad), V(share * flight.roll_rad)),
+                flight.edge);
 }
 
 // Turns the flying foot to its planned pitch, as far as toe and edges stay off the ground.
@@ -326,7 +347,7 @@ void pitch_in_flight(const Time<V>& time, const Sole<V>& sole, const Flight<V>& 
     const V lifted_m = flight.lifted_m * (1.0f - smoother(0.0f, kLiftGround, u));
     height_m = (height_m - (flight.base_m + lifted_m)) * upright(footing.print);
   }
-  foot.edge = flight.edge;
+  foot.edge = first_edge(sole, flight, planned, u, change);
   const Vec<V> rolled = foot.edge * sole.line_m;
   const V ahead = dot(rolled, sole.forward), flat_ahead = dot(sole.line_m, sole.forward);
   const V steeper = (rolled.y * flat_ahead - sole.line_m.y * ahead) / (sole.foot_m * sole.foot_m);
@@ -334,8 +355,10 @@ void pitch_in_flight(const Time<V>& time, const Sole<V>& sole, const Flight<V>& 
   if (any(time.flies)) {
     const V across =
         (flight.way.turn() * (turn_about(sole.side, planned) * foot.edge) * sole.side).y;
-    edge_m =
-        sole.half_width_m * size(across) * smooth(0.0f, 0.25f, u) * (1.0f - smooth(0.9f, 1.0f, u));
+    V clears = smooth(0.0f, 0.25f, u);
+    // Hips that lead from the end of stairs are fast, and the edge of their foot is low.
+    if constexpr (kIsUneven<F>) clears = change.led != V{} ? smooth(0.0f, 0.1f, u) : clears;
+    edge_m = sole.half_width_m * size(across) * clears * (1.0f - smooth(0.9f, 1.0f, u));
   }
   const V deep = (sole.toe_rest_m + edge_m - kMostSink_m - height_m) / sole.foot_m;
   // The arc goes on straight beyond kSteep: a heel as high as the foot is long leaves it free.

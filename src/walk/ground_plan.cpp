@@ -714,6 +714,25 @@ bool leads_down(const Tables& tables, const Floor& floor, const PlannedFlight& f
   return *std::max_element(above.begin(), above.end()) < kRoomAbove_m * tables.size + kRiser_m;
 }
 
+// Moves the knots of a shift on where a sole that has sunk as far as at the next probe would be on
+// an edge that it passes: between two probes a foot sinks by more than its room. The shift's spline
+// comes to its end earlier than the way that is left.
+void reach_on(const Tables& tables, const Floor& floor, const PlannedFlight& flight, int first,
+              const Spline& raise, Spline& shift) noexcept {
+  constexpr double kPeak = 2.0 / 3.0;  // of a knot's weight
+  Spline lacks{};
+  for (int i = first; i < kProbes; ++i) {
+    const double u = static_cast<double>(i) / kProbes, next = static_cast<double>(i + 1) / kProbes,
+                 on = way_on(tables, floor, flight, i, spline_of(raise, flight.climb, next)),
+                 left = flight.left[i], got = spline_of(shift, 0.0, u),
+                 lack = std::clamp(on, std::min(0.0, left), std::max(0.0, left)) - got;
+    if (on * lack <= 0.0) continue;
+    const int k = std::clamp((i * kKnotsOfFlight + kProbes / 2) / kProbes, 1, kRoomKnots);
+    if (std::abs(lack) > std::abs(lacks[k - 1])) lacks[k - 1] = lack;
+  }
+  for (int k = 0; k < kRoomKnots; ++k) shift[k] += lacks[k] / kPeak;
+}
+
 // The plan of a flight down: a shift by a growing share of the way that is left brings the foot
 // ahead of its path, so that it sinks as soon as it has passed an edge.
 RoomPlan plan_down(const Tables& tables, const Floor& floor, const PlannedFlight& flight) noexcept {
@@ -730,6 +749,7 @@ RoomPlan plan_down(const Tables& tables, const Floor& floor, const PlannedFlight
   const Wanted above = wanted_raise(tables, floor, flight, true, room.shift_m);
   room.raise_m = envelope(above, Ends{});
   draw_taut(above, kRoomAbove_m * tables.size, room.raise_m);
+  reach_on(tables, floor, flight, over, room.raise_m, room.shift_m);
   return room;
 }
 

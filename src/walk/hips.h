@@ -571,6 +571,9 @@ void sink(const Tables& tables, const Time<V>& time, const Stride<V>& stride,
   constexpr float kReach = 0.9994f, kSoftReach_m = 0.006f, kWiderReach = 0.6f,
                   kWidestReach_m = 0.06f, kKnown_m = 0.0015f, kMostSunk_m = 0.34f,
                   kSoftSunk_m = 0.12f;
+  // From kLittle_m to kFar_m of excess the sinking comes over from the first order to its whole
+  // length. kLeastBelow: of the leg's way, how far the ankle stays below the hip at least.
+  constexpr float kLittle_m = 0.01f, kFar_m = 0.02f, kLeastBelow = 0.3f;
   constexpr float kSoftSink_m = 0.007f, kSoftSinkOnGround_m = 0.012f;  // of the planned sinking
   const float grown = tables.size;
   V squares{};
@@ -585,7 +588,14 @@ void sink(const Tables& tables, const Time<V>& time, const Stride<V>& stride,
     const V soft = grown * (kSoftReach_m + kWiderReach * least(beyond, all<V>(kWidestReach_m)));
     const V times = beyond * (1.0f / kKnown_m), shows = times * times,
             excess = soft_positive(V(span - kReach * stretched), soft) * shows / (1.0f + shows),
-            upright = most(V(0.3f * span), V(-way.y)) / span, down = excess / upright;
+            upright = most(V(0.3f * span), V(-way.y)) / span, little = excess / upright;
+    // As far down as the ankle's way gets shorter by the excess. A little way is in proportion.
+    const V reach = span - excess, aside = span * span - way.y * way.y,
+            below =
+                root(most(V(reach * reach - aside), V(kLeastBelow * kLeastBelow * span * span))),
+            far =
+                tables.terrain != nullptr ? smooth(kLittle_m * grown, kFar_m * grown, excess) : V{},
+            down = far > V{} ? mix(little, V(-way.y - below), far) : little;
     squares = squares + (beyond > V{} ? V(down * down) : V{});
   }
   const V down_m = root(squares);

@@ -207,6 +207,18 @@ Mask<V> is_half_seen(const Tables& tables, const State<V>& state) noexcept {
   return both(state.tick != V{}, part == floored(part));
 }
 
+// True if the step after this one does not rise, but for rounding.
+template <class V>
+Mask<V> next_is_level(const Footing<V>& footing) noexcept {
+  constexpr float kLevel = 1e-5f;  // legs
+  return footing.next_rise < all<V>(kLevel);
+}
+// True in a step whose landing is the end of stairs: the hips lead the step from there.
+template <class V>
+Mask<V> leaves_stairs(const Change<V>& change, const Footing<V>& footing) noexcept {
+  return both(change.slowness > all<V>(1.0f), next_is_level(footing));
+}
+
 // Chooses a foothold where the landing on level ground has moved.
 template <int kWidth>
 void choose_footholds(const Tables& tables, const Time<Floats<kWidth>>& time,
@@ -237,7 +249,8 @@ void choose_footholds(const Tables& tables, const Time<Floats<kWidth>>& time,
 }
 
 // Stands for choose_footholds() in a look ahead, which does not ask the ground. The running step
-// lands on its plane, and the next steps rise like the last one, in proportion to their length.
+// lands on its plane, and the next steps rise like the last one, in proportion to their length;
+// none rises where the next one does not.
 template <class V>
 void assume_foothold(const Time<V>& time, const AskedStep<V>& asked, State<V>& state,
                      Footing<V>& footing) noexcept {
@@ -254,7 +267,7 @@ void assume_foothold(const Time<V>& time, const AskedStep<V>& asked, State<V>& s
   const auto far = [](const V& x, const V& z) { return root(V(x * x + z * z)); };
   const V longer = far(state.landing_x_m, state.landing_z_m) /
                    most(far(state.print_x_m, state.print_z_m), all<V>(1e-3f)),
-          rise_m = asked.length_m == V{}
+          rise_m = either(asked.length_m == V{}, next_is_level(footing))
                        ? V{}
                        : V(-footing.print_y_m * least(longer, all<V>(kMostSteeper)));
   footing.landing_y_m =
@@ -535,7 +548,7 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
       change_footing(landing, strikes, feet.flat_toe_m.y, footing);
       const V slow = slowness_of(tables, no(time.right), state, footing);
       change.slowness = strikes ? slow : change.slowness;
-      is_level = both(is_level, slow == all<V>(1.0f));
+      is_level = slow == all<V>(1.0f);
     }
     // After a late change of plan the step has not yet changed over to its own stride.
     landing.ratio = change.off_over.x != V{}
@@ -564,8 +577,10 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
   }
   if (!looks_ahead) return;
   // On uneven ground any change of pace may ask more of a leg than the tables do.
+  Mask<V> leaves{};
+  if constexpr (kUneven) leaves = leaves_stairs(change, footing);
   const auto sinks = either(change.led != V{}, change.sink_ticks != V{}),
-             changes = kUneven ? either(is_unsteady, sinks) : is_unsteady,
+             changes = kUneven ? either(either(is_unsteady, sinks), leaves) : is_unsteady,
              again = kUneven ? either(either(lifts, strikes), is_half_seen(tables, state))
                              : either(lifts, strikes),
              looks = either(either(is_new, both(again, changes)),

@@ -186,10 +186,10 @@ V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& l
   // farther than kGoesSomewhere of the data's stride the hips alone tell the phase; kLeastWay_m2
   // bounds the Newton step there.
   constexpr float kInTime_m = 1.2f, kLeastWay_m2 = 0.02f, kGoesSomewhere = 0.2f;
-  constexpr float kPhaseStep = 1e-3f;                      // cycles, of the slope
-  constexpr float kBeforeStep = 0.1f, kAfterStep = 0.14f;  // cycles around the step's own
-  constexpr float kFastestPhase = 2.5f;                    // of the clock's rate
-  constexpr int kFewTries = 2, kPhaseTries = 6;            // iterations: usually, and of a new plan
+  constexpr float kPhaseStep = 1e-3f;                         // cycles, of the slope
+  constexpr float kBeforeStep = 0.1f, kAfterStep = 0.14f;     // cycles around the step's own
+  constexpr float kFastestPhase = 2.5f, kFastestStop = 1.5f;  // of the clock's rate
+  constexpr int kFewTries = 2, kPhaseTries = 6;  // iterations: usually, and of a new plan
   const Way<V>& way = landing.way;
   const Path<V>& path = state.path;
   const V at_zero = mix(way.ahead(V(-hips.behind.stand_m.x), V(-hips.behind.stand_m.z)),
@@ -224,7 +224,8 @@ V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& l
     phase = tries ? next : phase;
     rate = tries ? moves : rate;
   }
-  const V fastest = kFastestPhase * strike_rate;
+  const auto stops = tables.terrain != nullptr ? change.stops != V{} : Mask<V>{};
+  const V fastest = chosen<V>(stops, kFastestStop, kFastestPhase) * strike_rate;
   return is_new ? phase : least(most(phase, V(last - fastest)), V(last + fastest));
 }
 

@@ -181,8 +181,6 @@ struct Builder {
     p.stride_m = ratio * cycle.stride_m;
     // People who walk backwards land on their toes and leave on their heels; Table I has the
     // opposite. So the data weigh less there, the ankles' above all, and the change is smoother.
-    // Their hips need not keep the data's speed either: it would cost the knees 2 degrees.
-    if (cycle.stride_m > 0.0) p.own_stride_m = cycle.stride_m;
     if (cycle.stride_m < 0.0) {
       p.least_knee_rad = kLeastKneeBack;
       p.soft_toe *= kSmootherBack;

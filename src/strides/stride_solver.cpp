@@ -19,16 +19,9 @@ constexpr int kPelvis = 3, kUnknowns = kPelvis + 2 * kLegDofs;  // numbers of un
 constexpr double kDegreeCosts_m = 0.04;  // an error of the pelvis that costs as much as 1 degree
 constexpr double kPelvisWeight = (kDegree / kDegreeCosts_m) * (kDegree / kDegreeCosts_m);
 constexpr double kHipWeight = 1.8, kAnkleWeight = 1.8;
-// Of second differences between samples. With 20, hips that keep their speed make the knees of a
-// quick walk jerk by a fifth more.
-constexpr double kSmoothWeight = 40.0;
+constexpr double kSmoothWeight = 20.0;  // of second differences between samples
 // Factors on kSmoothWeight for the pelvis.
-constexpr double kPelvisSmooth = 2500.0, kPelvisSmoothUp = 2000.0;
-// A change of the pelvis' forward speed, as a share of the data's mean speed, that costs as much as
-// 1 degree. Of 27 captures 25 then keep their speed's curve within 4 % (without this cost, none);
-// their knees change by half a degree more.
-constexpr double kDegreeCostsSpeed = 0.01;
-constexpr double kSpeedWeight = (kDegree / kDegreeCostsSpeed) * (kDegree / kDegreeCostsSpeed);
+constexpr double kPelvisSmooth = 5000.0, kPelvisSmoothUp = 4000.0;
 // Weights of a planted point's error, of a point's depth in the floor (both per square metre) and
 // of a knee's lack of bend (per square radian).
 constexpr double kPlantedWeight = 3e5, kFloorWeight = 3e6, kKneeWeight = 1e4;
@@ -275,17 +268,6 @@ struct StrideSolver::System {
     }
   }
 
-  // Adds the square of the change of the pelvis' forward speed between a sample and the next one.
-  void add_speed(int sample, const std::vector<StrideSample>& x, const StrideProblem& problem) {
-    const int next = (sample + 1) % samples;
-    const double begin = problem.time[sample], end = problem.time[next] + (next == 0 ? 1.0 : 0.0),
-                 slope = 1.0 / ((end - begin) * problem.own_stride_m);
-    const auto change = [&](int i) { return x[i].pelvis_m.z - problem.wanted[i].pelvis_m.z; };
-    const std::array<double, 2> row = {-slope, slope};
-    const std::array<int, 2> where = {place_of(sample, 2).unknown, place_of(sample + 1, 2).unknown};
-    add_square(row, where, slope * (change(next) - change(sample)), kSpeedWeight);
-  }
-
   // Softly limits the pelvis' acceleration along an axis; in metres per sample^2, for samples that
   // are evenly spaced in time.
   void add_surge(int sample, int axis, const std::vector<StrideSample>& x,
@@ -405,7 +387,6 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
       }
     }
   }
-  for (int i = 0; i < solved && problem.own_stride_m > 0.0; ++i) s.add_speed(i, x, problem);
   std::vector<double> path_m(n);
   for (int i = 0; i < n; ++i) path_m[i] = problem.stride_m * problem.time[i];
   const double tick2 = problem.duration_s * problem.duration_s / (double(n) * n);

@@ -20,6 +20,8 @@ struct Leg {
 inline constexpr float kLeastKnee_rad = kDegree_rad;  // a straight knee has no side to bend to
 inline constexpr float kLeak_per_s = 4.0f;  // what is added to the tables' angles fades so fast
 inline constexpr float kStraightCosine = 0.99984770f, kFoldedCosine = -0.9f;  // 1 and 154 degrees
+inline constexpr float kLeast_m2 = 1e-8f;       // squares of lengths below are no direction
+inline constexpr float kMostOff_rad = 2.5f;     // no joint of a leg turns so far off the tables
 inline constexpr float kMostSwivel_rad = 0.3f;  // in a tick: beyond, the first order is not enough
 
 // The axes of a frame.
@@ -86,7 +88,7 @@ Leg<V> solve_leg(const V& thigh_m, const V& shank_m, const Vec<V>& ankle_m, cons
   Vec<V> foot_z = ankle_z;
   turn_axes(foot_z, foot_x, s[6], c[6]);
 
-  const V square = dot(ankle_m, ankle_m),
+  const V square = most(dot(ankle_m, ankle_m), all<V>(kLeast_m2)),
           bends = (square - (thigh_m * thigh_m + shank_m * shank_m)) / (2.0f * thigh_m * shank_m);
   Leg<V> leg;
   const V knee_c = within(bends, kFoldedCosine, kStraightCosine);
@@ -101,7 +103,7 @@ Leg<V> solve_leg(const V& thigh_m, const V& shank_m, const Vec<V>& ankle_m, cons
   // turn.
   const Vec<V> from = start.y * -(thigh_m + shank_m * knee_c) - z * (shank_m * knee_s),
                axis = cross(from, ankle_m);
-  const V w = root(V(dot(from, from) * square)) + dot(from, ankle_m);
+  const V w = most(V(root(V(dot(from, from) * square)) + dot(from, ankle_m)), all<V>(kLeast_m2));
   const Vec<V> goal_x{1.0f - 2.0f * (foot.y * foot.y + foot.z * foot.z),
                       2.0f * (foot.x * foot.y + foot.w * foot.z),
                       2.0f * (foot.x * foot.z - foot.w * foot.y)},
@@ -130,6 +132,8 @@ Leg<V> solve_leg(const V& thigh_m, const V& shank_m, const Vec<V>& ankle_m, cons
     off_rad[4 + i] = off_rad[4 + i] + (ankle[i] - swivel_rad * ankle_swivels[i]);
   }
   off_rad[3] = off_rad[3] + knee_turns;
+  // Over a cliff a foot may pass its hip; there the first order is far off and would add up.
+  for (int j = 0; j < kLegAngles; ++j) off_rad[j] = within(off_rad[j], -kMostOff_rad, kMostOff_rad);
 
   const Vec<V> half = line * V(0.5f * swivel_rad), vector = axis + half * w + cross(half, axis);
   leg.hip =

@@ -3,6 +3,7 @@
 
 #include <random>
 
+#include "tests/finite_pose.h"
 #include "tests/walk/grounds.h"
 
 namespace gaitpad {
@@ -149,6 +150,43 @@ INSTANTIATE_TEST_SUITE_P(
         Country{"stairs_down", {FlatSection{0.5}, StairsSection{-0.17, 0.28, 60}}, 0.0, 0.045, 3.8},
         Country{"terraces", kTerraces, 0.0, 0.03, 3.5}, Country{"waves", {}, 0.12, 0.004, 3.0}),
     [](const auto& info) { return std::string(info.param.name); });
+
+// Cliffs, and a ground that jumps under a walk: no foot can follow them, but nothing grows without
+// bound.
+TEST(OutOfReach, AGroundLeavesTheWalkFinite) {
+  struct Wild {
+    double high_m, saw_m;
+  };
+  for (const double high_m : {-50.0, -3.0, -1.2, 1.2, 3.0, 50.0}) {
+    for (const double saw_m : {0.0, 0.9}) {
+      for (const double rate_hz : {60.0, 240.0}) {
+        Wild wild{high_m, saw_m};
+        WalkModel model = adult();
+        auto terrain = std::make_shared<Terrain>();
+        terrain->asked = {[](const void* of, double x_m, double z_m) noexcept {
+                            const Wild& ground = *static_cast<const Wild*>(of);
+                            return Ground{(z_m > 2.0 ? ground.high_m : 0.0) +
+                                          ground.saw_m * (fraction(x_m + z_m) - 0.5)};
+                          },
+                          &wild};
+        model.terrain = terrain;
+        Pose pose;
+        WalkState state = standing(model, vec3(0.0), pose);
+        for (int tick = 0; tick < 15 * rate_hz; ++tick) {
+          const double time_s = tick / rate_hz;
+          if (time_s > 8.0) wild.high_m = -high_m;
+          const vec2 stick(time_s < 5.0 ? 0.0 : 0.4, time_s < 13.0 ? 0.8 : 0.0);
+          advance(model, gait_params({.left = stick}, {}, gait_limits(model)), IkMode::robust,
+                  1.0 / rate_hz, state, pose);
+          ASSERT_TRUE(is_finite(pose)) << high_m << " m, at " << time_s << " s";
+          for (const int side : {0, 1})
+            ASSERT_LT(glm::distance(state.frame.heel_m[side], pose.root_m), 1.2)
+                << high_m << " m, at " << time_s << " s";
+        }
+      }
+    }
+  }
+}
 
 }  // namespace
 }  // namespace gaitpad

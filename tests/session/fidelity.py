@@ -18,6 +18,9 @@ What is measured:
 - Least knee: data below 1 degree count as 1, the least that support/judge.py allows.
 - Vertical acceleration of the hips: of the point between the hip joints (some captures keep the pelvis' joint level), by
   the least-squares parabola over 1/30 s to either side (at least two frames of the source), in source and walk alike.
+- Hips' speed: the forward speed of the same point within the stride, over its mean, by the same parabola: RMS of the
+  difference from the source's, and how far the fastest moment of a step (the mean of both) is from the source's. Both are
+  told, not judged.
 - Slide of the source's own feet: while heel and toe are both within 4 % of the leg of their lowest, how far the toe
   strays from its mean place. Beyond 40 mm a clip may be 4 degrees off, for that reason.
 - Second difference, planted points, floor, steps, speed, drift and repetition: as in support/judge.py.
@@ -145,13 +148,39 @@ def closed(curve):
     return curve - np.linspace(0, 1, len(curve)) * (curve[-1] - curve[0])
 
 
-def vertical_acceleration(height, rate_hz, half_s, first, last):
-    """The (least, greatest) m/s^2 of the parabola through all heights within half_s, about the samples first..last."""
+def parabolas(track, rate_hz, half_s, first, last, power):
+    """A coefficient of the parabolas through all values within half_s, about the samples first..last that have them, and
+    the first of those samples."""
     half = max(1, round(half_s * rate_hz))
     t = np.arange(-half, half + 1) / rate_hz
-    weights = 2 * np.linalg.pinv(np.stack([np.ones_like(t), t, t * t], -1))[2]
-    found = np.convolve(height, weights[::-1], "valid")[max(0, first - half):max(1, last + 1 - half)]
+    weights = np.linalg.pinv(np.stack([np.ones_like(t), t, t * t], -1))[power]
+    return np.convolve(track, weights[::-1], "valid")[max(0, first - half):max(1, last + 1 - half)], max(first, half)
+
+
+def vertical_acceleration(height, rate_hz, half_s, first, last):
+    """The (least, greatest) m/s^2 of these heights about the samples first..last."""
+    found = 2 * parabolas(height, rate_hz, half_s, first, last, 2)[0]
     return float(found.min()), float(found.max())
+
+
+def forward_speed(place, up, phase, rate_hz, half_s, first, last):
+    """The (phases, speeds over their mean) along the way from sample `first` to `last` of a place (F, 3); one phase for
+    each sample."""
+    way = place[last] - place[first]
+    found, start = parabolas(place @ unit(way - (way @ up) * up), rate_hz, half_s, first, last, 1)
+    return phase[start:start + len(found)], found / found.mean()
+
+
+def speed_off(source, walk, shift):
+    """Differences of two forward_speed(), the walk's read `shift` later: RMS in % of the mean speed, and of the fastest
+    moment in % of a step."""
+    at = lambda curve, phase: around(curve[0], curve[1][:, None], phase)[:, 0]
+    rms = np.sqrt(np.mean((at(walk, source[0] + shift) - source[1]) ** 2))
+    even = np.arange(200) / 400
+    ours, theirs = (int(np.argmax(at(curve, even + by) + at(curve, even + by + 0.5)))
+                    for curve, by in ((walk, shift), (source, 0.0)))
+    apart = abs(ours - theirs) / 200
+    return 100 * float(rms), 100 * min(apart, 1 - apart)
 
 
 def foot_slide_mm(s):
@@ -276,6 +305,11 @@ def judge_clip(options, folder, path=None):
     hips_m = 0.5 * (w.position[:, w.hip[0], 1] + w.position[:, w.hip[1], 1])
     row["fall_m_s2"] = [vertical_acceleration(wide.height(), track.rate_hz, half_s, a, b),
                         vertical_acceleration(hips_m, w.rate, half_s, at, at + len(walk.phase) - 1)]
+    hips = lambda position, legs: 0.5 * (position[:, legs[0]] + position[:, legs[1]])
+    theirs = forward_speed(hips(wide.position, [leg[0] for leg in legs]), wide.up, wide.phase, track.rate_hz, half_s, a, b)
+    ours = forward_speed(hips(w.position, w.hip), np.eye(3)[1], (np.arange(w.ticks) - at) * walk.phase[1], w.rate, half_s, at,
+                         at + len(walk.phase) - 1)
+    row["speed_off"] = speed_off(theirs, ours, row["shift"])
     row["d2_deg"], row["d2_joint"] = sharpest_leg_joint(w, np.nonzero(w.steady)[0])
     row["walk_stride_s"], row["walk_speed_m_s"] = walk.seconds, float(w.col["speed_m_s"][at])
     replay(options, folder / "changes", path, CHANGES, CHANGES_S)
@@ -321,6 +355,8 @@ def judge_row(row, w, walk, gait, is_built_in):
     checks += [check("knee maxima beyond the data's", max(extra), 0),
                check("least knee off the data's", max(apart), LEAST_KNEE_DEG, unit="deg"),
                check("vertical acceleration of the hips", ours, max(FALL_M_S2, FALL_RATIO * data), unit="m/s2"),
+               check("hips' speed in the stride off the data's", row["speed_off"][0], unit="%"),
+               check("hips' fastest moment off the data's", row["speed_off"][1], unit="% of a step"),
                check("second difference", row["d2_deg"], BUILT_IN_D2_DEG if is_built_in else D2_DEG, unit="deg/tick2",
                      note=row["d2_joint"])]
     checks += contacts(w)
@@ -346,7 +382,7 @@ def pace_checks(row, w, walk, gait, is_built_in):
 
 # ---- the table -----------------------------------------------------------------------------------
 HEAD = (f"{'clip':28s} {'s':>5s} {'m/s':>5s} {'slide':>5s} {'hip':>10s} {'knee':>10s} {'ankle':>10s} {'maxima':>9s} "
-        f"{'least knee':>13s} {'fall m/s2':>9s} {'d2':>5s} {'moves':>6s} {'time':>5s}  broken")
+        f"{'least knee':>13s} {'fall m/s2':>9s} {'speed %':>8s} {'d2':>5s} {'moves':>6s} {'time':>5s}  broken")
 
 
 def short(row):
@@ -354,10 +390,11 @@ def short(row):
     count = " ".join(f"{a}>{b}" for a, b in row["knee_maxima"])
     least = " ".join(f"{a:.0f}>{b:.0f}" for a, b in row["least_knee_deg"])
     falls = ">".join(f"{max(-low, high):.0f}" for low, high in row["fall_m_s2"])
+    speed = "{:.1f} ({:.0f})".format(*row["speed_off"])
     moves = max(c.value for c in row["checks"] if c.name.endswith("moves"))
     broken = ", ".join(c.name for c in row["broken"])
     return (f"{row['clip'][:28]:28s} {row['stride_s']:5.2f} {row['speed_m_s']:5.2f} {row['slide_mm']:5.0f}  {pairs} {count:>9s} "
-            f"{least:>13s} {falls:>9s} {row['d2_deg']:5.2f} {moves:6.3f} {row['seconds']:5.1f}  {broken or 'none'}")
+            f"{least:>13s} {falls:>9s} {speed:>8s} {row['d2_deg']:5.2f} {moves:6.3f} {row['seconds']:5.1f}  {broken or 'none'}")
 
 
 def medians(rows):

@@ -89,6 +89,29 @@ def test_free_fall_is_free_fall_at_any_rate(rate_hz):
     assert low == pytest.approx(-9.81) and high == pytest.approx(-9.81)
 
 
+def swinging(swing, fastest, rate_hz=120, up=1):
+    """forward_speed() of a stride of 1 s, a third of one more at either end, whose speed swings by `swing` of its mean."""
+    phase = np.arange(-40, 161) / 120
+    place = np.zeros((len(phase), 3))
+    place[:, 2] = 1.3 * (phase + swing / (4 * np.pi) * np.sin(4 * np.pi * (phase - fastest)))
+    return fidelity.forward_speed(place, np.eye(3)[up], phase, rate_hz, 1 / 30, 40, 160)
+
+
+def test_hips_that_keep_their_speed_are_not_off():
+    phase, speed = swinging(0.2, 0.05)
+    assert phase[0] == 0 and phase[-1] == 1 and np.ptp(speed) == pytest.approx(0.4, abs=0.02)
+    assert max(fidelity.speed_off((phase, speed), (phase, speed), 0.0)) < 1e-9
+    rms, late = fidelity.speed_off((phase, speed), swinging(0.2, 0.15), 0.1)
+    assert rms < 0.5 and late <= 1  # a shift of all phases is none
+
+
+def test_hips_that_swing_less_or_later_are_off():
+    rms, late = fidelity.speed_off(swinging(0.2, 0.05), swinging(0.1, 0.05), 0.0)
+    assert rms == pytest.approx(100 * 0.1 / np.sqrt(2), abs=0.5) and late <= 1
+    rms, late = fidelity.speed_off(swinging(0.2, 0.05), swinging(0.2, 0.15), 0.0)
+    assert late == pytest.approx(20, abs=1) and rms > 10
+
+
 def test_a_sliding_source_is_named(exact):
     sliding = exact.position.copy()
     sliding[:, :, 0] += np.linspace(0, 0.6, len(sliding))[:, None]
@@ -119,7 +142,7 @@ def test_a_stride_between_frames_is_cut_out():
 
 def row_of(walk, source, **figures):
     return {**fidelity.compare(source, fidelity.stride_of_walk(walk)[0]), "slide_mm": 0.0, "d2_deg": 0.1, "d2_joint": "knee",
-            "fall_m_s2": [(-4, 4), (-4, 4)], "stride_s": 2.0, "speed_m_s": 0.32, **figures}
+            "fall_m_s2": [(-4, 4), (-4, 4)], "speed_off": (1.0, 2.0), "stride_s": 2.0, "speed_m_s": 0.32, **figures}
 
 
 GAIT = {"stride_s": 2.0, "step_left_m": 0.32, "step_right_m": 0.32, "speed_m_s": 0.32}
@@ -129,6 +152,7 @@ BOUNDS = [({}, {}, []), ({"slide_mm": 41.0, "rms_deg": [3.9, 3.9, 3.9]}, {}, [])
           ({"least_knee_deg": [(-7.0, 3.9), (5.0, 1.9)]}, {}, ["least knee off the data's"]),
           ({"fall_m_s2": [(-7, 9), (-13, 13.4)]}, {}, []),
           ({"fall_m_s2": [(-7, 8), (-13, 7)]}, {}, ["vertical acceleration of the hips"]),
+          ({"speed_off": (40.0, 40.0)}, {}, []),
           ({"d2_deg": 0.71}, {}, ["second difference"]),
           ({}, {"step_left_m": 0.33}, ["left step off the clip's"]),
           ({}, {"stride_s": 2.1}, ["stride's time off the clip's", "told stride's time off the clip's"]),

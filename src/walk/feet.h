@@ -255,15 +255,29 @@ V landed_pitch(const Change<V>& change, const State<V>& state) noexcept {
                           : V{};
 }
 
-// The share of the tables' pitch that the standing foot has by the plan. If the hips lead, its toe
-// is down when the other foot lifts off, and its heel begins to rise only then, for by the tables
-// it may have risen before. In a first step the foot has not landed; in a last one it stays flat.
+// Lets the standing foot roll down from a pitch and its rate per tick, without the tables, where
+// `begins`: evenly until the end of the roll, or sooner where it would go on beyond flat.
+template <class V>
+void roll_on(const Mask<V>& begins, const V& pitch_rad, const V& rate_rad, Change<V>& change,
+             State<V>& state) noexcept {
+  constexpr float kMostSlope = 2.5f;  // of a cubic to 0, over its way: from 3 on it goes beyond
+  const V pitch = least(pitch_rad, V{}), until = least(state.roll_ticks, change.led_until),
+          sooner = state.tick - (kMostSlope / kRollEnd) * pitch / most(rate_rad, all<V>(1e-6f));
+  change.led_until = begins ? least(until, sooner) : change.led_until;
+  change.led_from = begins ? state.tick : change.led_from;
+  change.led_rate_rad = begins ? rate_rad : change.led_rate_rad;
+  state.stand_pitch_rad = begins ? pitch : state.stand_pitch_rad;
+}
+
+// The share of the tables' pitch that the standing foot has by the plan. If the hips lead, it rolls
+// down without the tables (roll_on()): its toe is down when the other foot lifts off, and its heel
+// begins to rise only then, for by the tables it may have risen before. In a first step the foot
+// has not landed; in a last one it stays flat.
 template <class V>
 V planned_pitch(const Time<V>& time, const Change<V>& change, const State<V>& state) noexcept {
-  const V lands = time.flies ? V{} : smoother(roll_over(change, state)),
-          rises = smoother(0.0f, 0.5f, time.u);
+  const V rises = smoother(0.0f, 0.5f, time.u);
   const auto starts = change.starting != V{}, later = both(change.led != V{}, time.flies);
-  const V share = either(starts, later) ? rises : V(1.0f - change.led * lands);
+  const V share = either(starts, later) ? rises : time.flies ? all<V>(1.0f) : V(1.0f - change.led);
   return both(change.closing != V{}, time.flies) ? V{} : share;
 }
 

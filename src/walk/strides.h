@@ -219,6 +219,8 @@ Stride<V> read_stride(const Tables& tables, const Time<V>& time, const V& phase,
   return stride;
 }
 
+inline constexpr int kPitchAt = 6;  // index in a row: pitch of the left foot, then of the right one
+
 // Reads four neighbouring numbers of a row, from number `at` on.
 template <class V>
 void read_four(const Tables& tables, const Time<V>& time, int at, const V& phase, const V& behind,

@@ -518,6 +518,7 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
              strikes = both(time.flies, state.tick >= state.flight_ticks);
   if (any(lifts))
     lift_off(tables, time, lifts, landing, hips, feet, by_clock, change, state, footing);
+  const V before_rad = state.last_pitch_rad[1];
   keep_swing(feet.foot[0], state);
   if constexpr (kUneven)
     footing.last_rise_m[1] = footing.last_rise_m[0], footing.last_rise_m[0] = footing.rise_m;
@@ -548,6 +549,8 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
     const V rate = keeps ? change.phase_rate : state.phase_rate;
     begin_lead(tables, strikes, phase, rate, is_level, state, change);
     begin_step(tables, time, strikes, change, state);
+    roll_on(both(strikes, change.led != V{}), feet.foot[0].pitch_rad,
+            slope_of(feet.foot[0].pitch_rad, state.last_pitch_rad[1], before_rad), change, state);
     one_by_one<kWidth>(both(strikes, change.closing != V{}), block, [&](Block<1>& one, int) {
       if constexpr (kUneven) time_rest(tables, one.state, one.change);
       time_closing_step(tables, one.state, one.change);

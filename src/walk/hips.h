@@ -285,6 +285,33 @@ void fade_differences(const Time<V>& time, const State<V>& state, Change<V>& cha
   fade(least(change.off_ticks, V(ticks_of_stage(state) - state.tick + 1.0f)), change.off_pitch);
 }
 
+// Smooths the pitch of the foot that lifts off next where the hips lead: the tables' pitch turns a
+// corner at its lift-off, which a phase that runs ahead of the clock goes around fast. The pitch is
+// a mean over phases, the wider the farther the phase is from the clock's.
+template <class V>
+void round_lift_off(const Tables& tables, const Time<V>& time, const V& phase,
+                    const Landing<V>& landing, const V& over, const State<V>& state,
+                    const Change<V>& change, Stride<V>& stride) noexcept {
+  constexpr float kWide = 0.6f;     // of the distance from the clock's phase, to either side
+  constexpr float kWidest = 0.03f;  // cycles
+  constexpr float kOfMean[] = {0.375f, 0.25f, 0.0625f};  // in the middle, half-way, at the ends
+  const V wide = least(V(kWide * size(V(phase - state.phase))), all<V>(kWidest));
+  const auto leads = both(change.led != V{}, change.stands == V{});
+  if (!any(leads)) return;
+  V mean_rad{};
+  const auto right = time.flies ? no(time.right) : time.right;
+  for (int k : {-2, -1, 0, 1, 2}) {
+    V n[4];
+    read_four(tables, time, kPitchAt, V(phase + (0.5f * static_cast<float>(k)) * wide),
+              state.ratio_behind, landing.ratio, over, n);
+    mean_rad = mean_rad + kOfMean[std::abs(k)] * (right ? n[1] : n[0]);
+  }
+  const V pitch_rad = change.shown * mean_rad;
+  const auto stands = both(leads, time.flies), rolls = both(leads, no(time.flies));
+  stride.foot[0].pitch_rad = rolls ? pitch_rad : stride.foot[0].pitch_rad;
+  stride.foot[1].pitch_rad = stands ? pitch_rad : stride.foot[1].pitch_rad;
+}
+
 // If the hips lead or have just led: moves them to their place, and reads the stride at their
 // phase; the flying foot keeps to the clock. Returns that phase, else the clock's.
 template <class V>
@@ -337,6 +364,7 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
   phase = runs ? phase : state.phase;
   Stride<V> read = read_stride(tables, time, phase, state.ratio_behind, landing.ratio, over);
   if (any(change.shown != all<V>(1.0f))) show(change.shown, read);
+  round_lift_off(tables, time, phase, landing, over, state, change, read);
   stride = read;
   stride.heel_behind_m = by_clock.heel_behind_m, stride.heel_ahead_m = by_clock.heel_ahead_m;
   stride.heel_high_m = by_clock.heel_high_m;

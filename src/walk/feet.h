@@ -323,15 +323,27 @@ Flight<V> fly(const Tables& tables, const Time<V>& time, const Landing<V>& landi
   return flight;
 }
 
+// The share by which a flight is one in which the hips lead: all of it, or from a change of plan
+// on.
+template <class V>
+V lead_in_flight(const V& u, const Change<V>& change, const State<V>& state) noexcept {
+  constexpr float kLeads = 0.25f;  // of a flight
+  const V since = u + change.led_from / state.flight_ticks;
+  return change.led * (change.led_from < V{} ? smoother(0.0f, kLeads, since) : all<V>(1.0f));
+}
+
 // Turns the flying foot to its planned pitch, as far as toe and edges stay off the ground.
 template <class V, class F>
 void pitch_in_flight(const Time<V>& time, const Sole<V>& sole, const Flight<V>& flight,
-                     const V& planned, const V& off, const Change<V>& change, const F& footing,
-                     Foot<V>& foot) noexcept {
+                     const V& planned, const V& off, const Change<V>& change, const State<V>& state,
+                     const F& footing, Foot<V>& foot) noexcept {
   // The toe may be kMostSink_m lower than in a stand, for in the tables toes only just leave the
   // floor. The limit of the pitch is rounded over kSoftPitch_rad, and over kWiderPitch of
   // loose_pitch().
   constexpr float kMostSink_m = 0.0015f, kSoftPitch_rad = 0.0069813f, kWiderPitch = 0.25f;
+  // More where the hips lead, because pitch and limit cross at other rates there than in the
+  // tables.
+  constexpr float kWideLead_rad = 0.2f;
   const V u = time.u;
   V height_m = flight.heel_m.y;
   if constexpr (kIsUneven<F>) {
@@ -351,12 +363,20 @@ void pitch_in_flight(const Time<V>& time, const Sole<V>& sole, const Flight<V>& 
     edge_m =
         sole.half_width_m * size(across) * smooth(0.0f, 0.25f, u) * (1.0f - smooth(0.9f, 1.0f, u));
   }
-  const V deep = (sole.toe_rest_m + edge_m - kMostSink_m - height_m) / sole.foot_m;
+  V foot_m = sole.foot_m, wide{};
+  if (any(change.led != V{})) {
+    // A foot on its edge is shorter. The steady walk's flights are solved without that.
+    const V leads = lead_in_flight(u, change, state), over = flight_share(u, change);
+    foot_m = mix(foot_m, root(V(rolled.y * rolled.y + ahead * ahead)), leads);
+    wide = kWideLead_rad * leads * smoother(0.0f, 0.2f, over) * (1.0f - smoother(0.6f, 0.9f, over));
+  }
+  const V deep = (sole.toe_rest_m + edge_m - kMostSink_m - height_m) / foot_m;
   // The arc goes on straight beyond kSteep: a heel as high as the foot is long leaves it free.
   constexpr float kSteep = 0.95f, kSteeper = 3.2025631f;  // the slope of the arc at kSteep
   const V arc = arc_sine(within(deep, -kSteep, kSteep)) + kSteeper * least(V(deep + kSteep), V{});
   const V limit = sole.elevation_rad - arc + arc_sine(steeper);
-  const V soft = kSoftPitch_rad + kWiderPitch * loose_pitch(u, off, change) + edge_m / sole.foot_m;
+  const V soft =
+      kSoftPitch_rad + kWiderPitch * loose_pitch(u, off, change) + edge_m / foot_m + wide;
   const V pitch = time.flies ? soft_least(planned, limit, soft) : most(planned, V{});
   foot.heel_m = flight.heel_m;
   const Turn<V> level = flight.way.turn();
@@ -445,7 +465,7 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
     planned = time.flies ? planned
                          : pitch_to_rise<V>(tables, time.right, footing.rise_m, most(planned, V{}));
   }
-  pitch_in_flight(time, sole, flight, planned, off, change, footing, foot);
+  pitch_in_flight(time, sole, flight, planned, off, change, state, footing, foot);
   // A new plan may begin with a foot below the line that clears the ground. What turns the foot
   // later keeps to that line.
   feet.base_m = feet.floor_m = most(flight.base_m, clear_m);

@@ -414,19 +414,34 @@ void go_on_from_here(const Tables& tables, const Mask<V>& begins, const State<V>
   begin(state.pelvis_z_m[0], m_z, b_z, bend_z, change.pelvis_z_m);
 }
 
+// Differences that make the hips lead: of a step's length over the data's, and of its flight's
+// time.
+inline constexpr float kOtherPace = 0.02f, kOtherTime = 0.06f;
+
+// True if a step is asked for with another length, or with another time of its flight, than the
+// last one of the same foot, `right`.
+template <class V>
+Mask<V> has_other_pace(const Tables& tables, const Mask<V>& right, const V& own_m,
+                       const State<V>& state, const Change<V>& change) noexcept {
+  // A led step takes time from its roll for its flight. That alone does not lead another step.
+  const Stages<V> own = stages_of(tables, change, state, right);
+  const V rolls = change.led != V{} ? V(own.roll_s - state.roll_ticks * tables.tick_s) : V{},
+          flight_ticks = (own.flight_s + rolls) * (1.0f / tables.tick_s);
+  return either(
+      size(V(by_side<V>(right, state.asked.length_m) - change.stepped_m)) > kOtherPace * own_m,
+      size(V(state.flight_ticks - flight_ticks)) > kOtherTime * state.flight_ticks);
+}
+
 // At a strike: decides whether the hips lead the step that begins, which they do if its length or
 // its time is another than the last one's. In it, and in the step after it, the pelvis goes on from
 // its place, in the new step frame. `phase`, `rate`: as shown at the strike.
 template <class V>
 void begin_lead(const Tables& tables, const Mask<V>& strikes, const V& phase, const V& rate,
                 const Mask<V>& is_level, const State<V>& state, Change<V>& change) noexcept {
-  // Differences that lead: of a step's length over the data's, and of its flight's time.
-  constexpr float kOtherPace = 0.02f, kOtherTime = 0.06f;
   const auto right = state.right_swings == V{};  // it swings in the step that begins
   const V own_m = own_step_m<V>(tables, right, state.backward != V{}),
           asked_m = by_side<V>(right, state.asked.length_m),
-          smoothed_m = right ? state.length_m[1].x : state.length_m[0].x,
-          landed_m = by_side<V>(no(right), state.asked.length_m);
+          smoothed_m = right ? state.length_m[1].x : state.length_m[0].x;
   // In the last step of a stop the foot closes beside the other one.
   const auto stops = change.stops != V{}, rests = both(strikes, change.closing != V{}),
              closes = both(both(strikes, no(rests)), both(stops, change.further == V{}));
@@ -436,13 +451,7 @@ void begin_lead(const Tables& tables, const Mask<V>& strikes, const V& phase, co
   change.closing = closes ? all<V>(1.0f) : strikes ? V{} : change.closing;
   auto changes = size(V(asked_m - smoothed_m)) > kOtherPace * own_m;
   if (any(is_level)) {  // on slopes and stairs the ground itself makes steps shorter and slower
-    // A led step takes time from its roll for its flight. That alone does not lead another step.
-    const Stages<V> own = stages_of(tables, change, state, no(right));
-    const V rolls = change.led != V{} ? V(own.roll_s - state.roll_ticks * tables.tick_s) : V{},
-            flight_ticks = (own.flight_s + rolls) * (1.0f / tables.tick_s);
-    const auto paces =
-        either(size(V(landed_m - change.stepped_m)) > kOtherPace * own_m,
-               size(V(state.flight_ticks - flight_ticks)) > kOtherTime * state.flight_ticks);
+    const auto paces = has_other_pace(tables, no(right), own_m, state, change);
     changes = either(changes, both(is_level, paces));
   }
   const auto leads = both(no(rests), either(either(stops, changes), change.catch_ticks != V{}));

@@ -565,12 +565,18 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
     if (kUneven && looks_ahead) plan_rooms<kWidth>(tables, lifts, block);
   }
   if (!looks_ahead) return;
+  const auto half = is_half_seen(tables, state), begins = either(lifts, strikes);
+  // On level ground hips must have begun to sink when a step of another pace begins.
+  auto paces = kUneven ? Mask<V>{} : either(lifts, half);
+  if (any(paces))
+    paces =
+        both(paces, has_other_pace(tables, time.right, own_step_m<V>(tables, time.right, time.back),
+                                   state, change));
   // On uneven ground any change of pace may ask more of a leg than the tables do.
   const auto sinks = either(change.led != V{}, change.sink_ticks != V{}),
              changes = kUneven ? either(is_unsteady, sinks) : is_unsteady,
-             again = kUneven ? either(either(lifts, strikes), is_half_seen(tables, state))
-                             : either(lifts, strikes),
-             looks = either(either(is_new, both(again, changes)),
+             again = kUneven ? either(begins, half) : begins,
+             looks = either(either(is_new, either(both(again, changes), paces)),
                             both(is_to_walk(state), is_unforeseen(tables, state, change)));
   one_by_one<kWidth>(looks, block,
                      [&](Block<1>& one, int) { look_ahead<kPaper, kUneven>(tables, one); });

@@ -255,15 +255,29 @@ V landed_pitch(const Change<V>& change, const State<V>& state) noexcept {
                           : V{};
 }
 
-// The share of the tables' pitch that the standing foot has by the plan. If the hips lead, its toe
-// is down when the other foot lifts off, and its heel begins to rise only then, for by the tables
-// it may have risen before. In a first step the foot has not landed; in a last one it stays flat.
+// Lets the standing foot roll down from a pitch and its rate per tick, without the tables, where
+// `begins`: evenly until the end of the roll, or sooner where it would go on beyond flat.
+template <class V>
+void roll_on(const Mask<V>& begins, const V& pitch_rad, const V& rate_rad, Change<V>& change,
+             State<V>& state) noexcept {
+  constexpr float kMostSlope = 2.5f;  // of a cubic to 0, over its way: from 3 on it goes beyond
+  const V pitch = least(pitch_rad, V{}), until = least(state.roll_ticks, change.led_until),
+          sooner = state.tick - (kMostSlope / kRollEnd) * pitch / most(rate_rad, all<V>(1e-6f));
+  change.led_until = begins ? least(until, sooner) : change.led_until;
+  change.led_from = begins ? state.tick : change.led_from;
+  change.led_rate_rad = begins ? rate_rad : change.led_rate_rad;
+  state.stand_pitch_rad = begins ? pitch : state.stand_pitch_rad;
+}
+
+// The share of the tables' pitch that the standing foot has by the plan. If the hips lead, it rolls
+// down without the tables (roll_on()): its toe is down when the other foot lifts off, and its heel
+// begins to rise only then, for by the tables it may have risen before. In a first step the foot
+// has not landed; in a last one it stays flat.
 template <class V>
 V planned_pitch(const Time<V>& time, const Change<V>& change, const State<V>& state) noexcept {
-  const V lands = time.flies ? V{} : smoother(roll_over(change, state)),
-          rises = smoother(0.0f, 0.5f, time.u);
+  const V rises = smoother(0.0f, 0.5f, time.u);
   const auto starts = change.starting != V{}, later = both(change.led != V{}, time.flies);
-  const V share = either(starts, later) ? rises : V(1.0f - change.led * lands);
+  const V share = either(starts, later) ? rises : time.flies ? all<V>(1.0f) : V(1.0f - change.led);
   return both(change.closing != V{}, time.flies) ? V{} : share;
 }
 
@@ -330,15 +344,27 @@ Turn<V> first_edge(const Sole<V>& sole, const Flight<V>& flight, const V& planne
                 flight.edge);
 }
 
+// The share by which a flight is one in which the hips lead: all of it, or from a change of plan
+// on.
+template <class V>
+V lead_in_flight(const V& u, const Change<V>& change, const State<V>& state) noexcept {
+  constexpr float kLeads = 0.25f;  // of a flight
+  const V since = u + change.led_from / state.flight_ticks;
+  return change.led * (change.led_from < V{} ? smoother(0.0f, kLeads, since) : all<V>(1.0f));
+}
+
 // Turns the flying foot to its planned pitch, as far as toe and edges stay off the ground.
 template <class V, class F>
 void pitch_in_flight(const Time<V>& time, const Sole<V>& sole, const Flight<V>& flight,
-                     const V& planned, const V& off, const Change<V>& change, const F& footing,
-                     Foot<V>& foot) noexcept {
+                     const V& planned, const V& off, const Change<V>& change, const State<V>& state,
+                     const F& footing, Foot<V>& foot) noexcept {
   // The toe may be kMostSink_m lower than in a stand, for in the tables toes only just leave the
   // floor. The limit of the pitch is rounded over kSoftPitch_rad, and over kWiderPitch of
   // loose_pitch().
   constexpr float kMostSink_m = 0.0015f, kSoftPitch_rad = 0.0069813f, kWiderPitch = 0.25f;
+  // More where the hips lead, because pitch and limit cross at other rates there than in the
+  // tables.
+  constexpr float kWideLead_rad = 0.2f;
   const V u = time.u;
   V height_m = flight.heel_m.y;
   if constexpr (kIsUneven<F>) {
@@ -360,12 +386,20 @@ void pitch_in_flight(const Time<V>& time, const Sole<V>& sole, const Flight<V>& 
     if constexpr (kIsUneven<F>) clears = change.led != V{} ? smooth(0.0f, 0.1f, u) : clears;
     edge_m = sole.half_width_m * size(across) * clears * (1.0f - smooth(0.9f, 1.0f, u));
   }
-  const V deep = (sole.toe_rest_m + edge_m - kMostSink_m - height_m) / sole.foot_m;
+  V foot_m = sole.foot_m, wide{};
+  if (any(change.led != V{})) {
+    // A foot on its edge is shorter. The steady walk's flights are solved without that.
+    const V leads = lead_in_flight(u, change, state), over = flight_share(u, change);
+    foot_m = mix(foot_m, root(V(rolled.y * rolled.y + ahead * ahead)), leads);
+    wide = kWideLead_rad * leads * smoother(0.0f, 0.2f, over) * (1.0f - smoother(0.6f, 0.9f, over));
+  }
+  const V deep = (sole.toe_rest_m + edge_m - kMostSink_m - height_m) / foot_m;
   // The arc goes on straight beyond kSteep: a heel as high as the foot is long leaves it free.
   constexpr float kSteep = 0.95f, kSteeper = 3.2025631f;  // the slope of the arc at kSteep
   const V arc = arc_sine(within(deep, -kSteep, kSteep)) + kSteeper * least(V(deep + kSteep), V{});
   const V limit = sole.elevation_rad - arc + arc_sine(steeper);
-  const V soft = kSoftPitch_rad + kWiderPitch * loose_pitch(u, off, change) + edge_m / sole.foot_m;
+  const V soft =
+      kSoftPitch_rad + kWiderPitch * loose_pitch(u, off, change) + edge_m / foot_m + wide;
   const V pitch = time.flies ? soft_least(planned, limit, soft) : most(planned, V{});
   foot.heel_m = flight.heel_m;
   const Turn<V> level = flight.way.turn();
@@ -454,7 +488,7 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
     planned = time.flies ? planned
                          : pitch_to_rise<V>(tables, time.right, footing.rise_m, most(planned, V{}));
   }
-  pitch_in_flight(time, sole, flight, planned, off, change, footing, foot);
+  pitch_in_flight(time, sole, flight, planned, off, change, state, footing, foot);
   // A new plan may begin with a foot below the line that clears the ground. What turns the foot
   // later keeps to that line.
   feet.base_m = feet.floor_m = most(flight.base_m, clear_m);

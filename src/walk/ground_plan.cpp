@@ -542,8 +542,8 @@ PlannedFlight planned_flight(const Tables& tables, const Floor& floor, const Fra
     Flight<float> over = flies;
     over.base_m +=
         gap_left(time.u, footing.gap_line_m, change) + gap_left(time.u, footing.gap_room_m, change);
-    pitch_in_flight(time, sole, over, low * stride.foot[0].pitch_rad + off, off, change, footing,
-                    foot);
+    pitch_in_flight(time, sole, over, low * stride.foot[0].pitch_rad + off, off, change, state,
+                    footing, foot);
     set_points(leg, frame, flies, foot, flight.sole[i], flight.base[i]);
     flight.left[i] = lands.z - frame.out(wide(flies.heel_m)).z;
   }

@@ -296,6 +296,34 @@ Mask<V> has_own_phase(const Change<V>& change) noexcept {
                 change.stands != V{});
 }
 
+// Smooths the pitch of the foot that lifts off next where the hips lead: the tables' pitch turns a
+// corner at its lift-off, which a phase that runs ahead of the clock goes around fast. The pitch is
+// a mean over phases, the wider the farther the phase is from the clock's.
+template <class V>
+void round_lift_off(const Tables& tables, const Time<V>& time, const V& phase,
+                    const Landing<V>& landing, const V& over, const State<V>& state,
+                    const Change<V>& change, Stride<V>& stride) noexcept {
+  constexpr float kWide = 0.6f;     // of the distance from the clock's phase, to either side
+  constexpr float kWidest = 0.03f;  // cycles
+  constexpr float kOfMean[] = {0.375f, 0.25f, 0.0625f};  // in the middle, half-way, at the ends
+  const V wide = least(V(kWide * size(V(phase - state.phase))), all<V>(kWidest));
+  const auto leads = both(change.led != V{}, change.stands == V{});
+  if (!any(leads)) return;
+  const StrideMix<V> mix =
+      mix_of_strides(tables, time, state.ratio_behind, landing.ratio, over, leads);
+  V mean_rad{};
+  const auto right = time.flies ? no(time.right) : time.right;
+  for (int k : {-2, -1, 0, 1, 2}) {
+    V n[4];
+    read_four(mix, kPitchAt, V(phase + (0.5f * static_cast<float>(k)) * wide), n);
+    mean_rad = mean_rad + kOfMean[std::abs(k)] * (right ? n[1] : n[0]);
+  }
+  const V pitch_rad = change.shown * mean_rad;
+  const auto stands = both(leads, time.flies), rolls = both(leads, no(time.flies));
+  stride.foot[0].pitch_rad = rolls ? pitch_rad : stride.foot[0].pitch_rad;
+  stride.foot[1].pitch_rad = stands ? pitch_rad : stride.foot[1].pitch_rad;
+}
+
 // If the hips lead or have just led: moves them to their place, and reads the stride at their
 // phase; the flying foot keeps to the clock. Returns that phase, else the clock's.
 template <class V>
@@ -348,6 +376,7 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
                                Reads<V>{runs, runs});
   if (any(change.shown != all<V>(1.0f))) show(change.shown, read);
   put_where<V>(no(runs), by_clock, read);
+  round_lift_off(tables, time, phase, landing, over, state, change, read);
   stride = read;
   stride.heel_behind_m = by_clock.heel_behind_m, stride.heel_ahead_m = by_clock.heel_ahead_m;
   stride.heel_high_m = by_clock.heel_high_m;
@@ -397,19 +426,34 @@ void go_on_from_here(const Tables& tables, const Mask<V>& begins, const State<V>
   begin(state.pelvis_z_m[0], m_z, b_z, bend_z, change.pelvis_z_m);
 }
 
+// Differences that make the hips lead: of a step's length over the data's, and of its flight's
+// time.
+inline constexpr float kOtherPace = 0.02f, kOtherTime = 0.06f;
+
+// True if a step is asked for with another length, or with another time of its flight, than the
+// last one of the same foot, `right`.
+template <class V>
+Mask<V> has_other_pace(const Tables& tables, const Mask<V>& right, const V& own_m,
+                       const State<V>& state, const Change<V>& change) noexcept {
+  // A led step takes time from its roll for its flight. That alone does not lead another step.
+  const Stages<V> own = stages_of(tables, change, state, right);
+  const V rolls = change.led != V{} ? V(own.roll_s - state.roll_ticks * tables.tick_s) : V{},
+          flight_ticks = (own.flight_s + rolls) * (1.0f / tables.tick_s);
+  return either(
+      size(V(by_side<V>(right, state.asked.length_m) - change.stepped_m)) > kOtherPace * own_m,
+      size(V(state.flight_ticks - flight_ticks)) > kOtherTime * state.flight_ticks);
+}
+
 // At a strike: decides whether the hips lead the step that begins, which they do if its length or
 // its time is another than the last one's. In it, and in the step after it, the pelvis goes on from
 // its place, in the new step frame. `phase`, `rate`: as shown at the strike.
 template <class V>
 void begin_lead(const Tables& tables, const Mask<V>& strikes, const V& phase, const V& rate,
                 const Mask<V>& is_level, const State<V>& state, Change<V>& change) noexcept {
-  // Differences that lead: of a step's length over the data's, and of its flight's time.
-  constexpr float kOtherPace = 0.02f, kOtherTime = 0.06f;
   const auto right = state.right_swings == V{};  // it swings in the step that begins
   const V own_m = own_step_m<V>(tables, right, state.backward != V{}),
           asked_m = by_side<V>(right, state.asked.length_m),
-          smoothed_m = right ? state.length_m[1].x : state.length_m[0].x,
-          landed_m = by_side<V>(no(right), state.asked.length_m);
+          smoothed_m = right ? state.length_m[1].x : state.length_m[0].x;
   // In the last step of a stop the foot closes beside the other one.
   const auto stops = change.stops != V{}, rests = both(strikes, change.closing != V{}),
              closes = both(both(strikes, no(rests)), both(stops, change.further == V{}));
@@ -419,13 +463,7 @@ void begin_lead(const Tables& tables, const Mask<V>& strikes, const V& phase, co
   change.closing = closes ? all<V>(1.0f) : strikes ? V{} : change.closing;
   auto changes = size(V(asked_m - smoothed_m)) > kOtherPace * own_m;
   if (any(is_level)) {  // on slopes and stairs the ground itself makes steps shorter and slower
-    // A led step takes time from its roll for its flight. That alone does not lead another step.
-    const Stages<V> own = stages_of(tables, change, state, no(right));
-    const V rolls = change.led != V{} ? V(own.roll_s - state.roll_ticks * tables.tick_s) : V{},
-            flight_ticks = (own.flight_s + rolls) * (1.0f / tables.tick_s);
-    const auto paces =
-        either(size(V(landed_m - change.stepped_m)) > kOtherPace * own_m,
-               size(V(state.flight_ticks - flight_ticks)) > kOtherTime * state.flight_ticks);
+    const auto paces = has_other_pace(tables, no(right), own_m, state, change);
     changes = either(changes, both(is_level, paces));
   }
   const auto leads = both(no(rests), either(either(stops, changes), change.catch_ticks != V{}));

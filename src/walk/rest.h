@@ -200,19 +200,25 @@ void change_step(const Tables& tables, bool moves, Block<1>& block, F& footing,
   const float ratio_was = ratio(), flown_share = flight_share(time.u, change);
   if (change.led == 0.0f) {
     go_on_from_here(tables, true, state, change);
-    change.phase = state.phase, change.phase_rate = state.phase_rate;
+    if (change.was_led == 0.0f && change.off_ticks == 0.0f)
+      change.phase = state.phase, change.phase_rate = state.phase_rate;
   }
-  // A foot that rolls down goes on from its pitch, unless its roll is nearly over.
-  if (!flies && (change.led == 0.0f || roll_over(change, state) < 0.8f)) {
+  // A foot that rolls down goes on from its pitch, without the tables.
+  if (!flies) {
     State<float> next = state;
     next.tick += 1.0f;
-    const float pitch_rad = landed_pitch(change, state);
-    change.led_rate_rad = landed_pitch(change, next) - pitch_rad;
-    state.stand_pitch_rad = pitch_rad;
-    change.led_from = state.tick;
+    const auto pitch = [&](const State<float>& at, const Shares& share, float phase) {
+      float n[4];
+      read_four(mix_of_strides(tables, time, state.ratio_behind, ratio_was, share.over, true),
+                kPitchAt, phase, n);
+      const float table_rad = share.shown * share.pitch * (time.right ? n[0] : n[1]);
+      return table_rad + landed_pitch(change, at);
+    };
+    const float pitch_rad = pitch(state, share_was, change.phase),
+                rate_rad = pitch(next, next_was, change.phase + change.phase_rate) - pitch_rad;
+    roll_on(true, pitch_rad, rate_rad, change, state);
   }
-  if (change.led == 0.0f && flies) change.led_from = -1.0f;
-  if (!flies) change.led_until = least(change.led_until, state.roll_ticks);
+  if (change.led == 0.0f && flies) change.led_from = least(-state.tick, -1.0f);
   Slope<float> lands{};
   if constexpr (kIsUneven<F>) lands = plane_in_flight(time, change, footing);
   work();
@@ -230,7 +236,7 @@ void change_step(const Tables& tables, bool moves, Block<1>& block, F& footing,
   };
   change.off_shown = go_on(&Shares::shown), change.off_over = go_on(&Shares::over);
   // Without its rate, with which it would go on beyond 0, where the foot lies flat.
-  change.off_pitch.x = share_was.pitch - share.pitch;
+  if (flies) change.off_pitch.x = share_was.pitch - share.pitch;
   if (flies) change.off_edge = go_on(&Shares::edge);
   if (!moves) return;
   change.limp = 0.0f;  // the hips choose the step's length, see plan_limp()

@@ -240,6 +240,9 @@ Stride<V> read_stride(const Tables& tables, const Time<V>& time, const V& phase,
   return stride;
 }
 
+// Index in a row: pitch of the left foot, then of the right one.
+inline constexpr int kPitchAt = offsetof(StrideRow, pitch_rad) / sizeof(float);
+
 // The rows that a mix of two strides reads at each knot, and the weight of each. Reads at several
 // phases share it.
 template <class V>

@@ -532,6 +532,7 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
              strikes = both(time.flies, state.tick >= state.flight_ticks);
   if (any(lifts))
     lift_off(tables, time, lifts, landing, hips, feet, by_clock, change, state, footing);
+  const V before_rad = state.last_pitch_rad[1];
   keep_swing(feet.foot[0], state);
   if constexpr (kUneven)
     footing.last_rise_m[1] = footing.last_rise_m[0], footing.last_rise_m[0] = footing.rise_m;
@@ -562,6 +563,8 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
     const V rate = keeps ? change.phase_rate : state.phase_rate;
     begin_lead(tables, strikes, phase, rate, is_level, state, change);
     begin_step(tables, time, strikes, change, state);
+    roll_on(both(strikes, change.led != V{}), feet.foot[0].pitch_rad,
+            slope_of(feet.foot[0].pitch_rad, state.last_pitch_rad[1], before_rad), change, state);
     one_by_one<kWidth>(both(strikes, change.closing != V{}), block, [&](Block<1>& one, int) {
       if constexpr (kUneven) time_rest(tables, one.state, one.change);
       time_closing_step(tables, one.state, one.change);
@@ -576,14 +579,20 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
     if (kUneven && looks_ahead) plan_rooms<kWidth>(tables, lifts, block);
   }
   if (!looks_ahead) return;
+  const auto half = is_half_seen(tables, state), begins = either(lifts, strikes);
+  // On level ground hips must have begun to sink when a step of another pace begins.
+  auto paces = kUneven ? Mask<V>{} : either(lifts, half);
+  if (any(paces))
+    paces =
+        both(paces, has_other_pace(tables, time.right, own_step_m<V>(tables, time.right, time.back),
+                                   state, change));
   // On uneven ground any change of pace may ask more of a leg than the tables do.
   Mask<V> leaves{};
   if constexpr (kUneven) leaves = leaves_stairs(change, footing);
   const auto sinks = either(change.led != V{}, change.sink_ticks != V{}),
              changes = kUneven ? either(either(is_unsteady, sinks), leaves) : is_unsteady,
-             again = kUneven ? either(either(lifts, strikes), is_half_seen(tables, state))
-                             : either(lifts, strikes),
-             looks = either(either(is_new, both(again, changes)),
+             again = kUneven ? either(begins, half) : begins,
+             looks = either(either(is_new, either(both(again, changes), paces)),
                             both(is_to_walk(state), is_unforeseen(tables, state, change)));
   one_by_one<kWidth>(looks, block,
                      [&](Block<1>& one, int) { look_ahead<kPaper, kUneven>(tables, one); });

@@ -23,7 +23,7 @@ constexpr std::array kSticks = {0.3, 0.8, 1.0};
 // most 6, and 0.8 degrees, of captures 1.2, are asked; 1 cm; 0.9 s and 0.9 m; 1.2 s; 70 and 60 mm.
 struct Bounds {
   double median_m_s2 = 4.0, worst_m_s2 = 6.0, off_s = 0.35;
-  double start_deg = 1.0, stop_deg = 1.25, resumed_deg = 1.3, paced_deg = 1.1, tap_deg = 1.1;
+  double start_deg = 0.8, stop_deg = 0.8, resumed_deg = 0.8, paced_deg = 0.8, tap_deg = 0.8;
   double lower_m = 0.0105, resumed_m = 0.0105;
   double stop_s = 0.9, way_m = 0.9, reversal_s = 1.2, reversal_m_s2 = 6.0;
   double resumed = 1.5, paced = 1.75, faster = 1.14;
@@ -32,11 +32,11 @@ struct Bounds {
 // Of captures, whose knees are straighter and whose hips sway more: what is met.
 constexpr Bounds kOfCaptures{.worst_m_s2 = 7.0,
                              .off_s = 0.37,
-                             .start_deg = 1.7,
-                             .stop_deg = 3.7,
-                             .resumed_deg = 4.2,
-                             .paced_deg = 4.1,
-                             .tap_deg = 3.8,
+                             .start_deg = 1.45,
+                             .stop_deg = 1.45,
+                             .resumed_deg = 1.55,
+                             .paced_deg = 1.5,
+                             .tap_deg = 1.35,
                              .lower_m = 0.03,
                              .resumed_m = 0.03,
                              .way_m = 1.2,
@@ -47,9 +47,9 @@ constexpr Bounds kOfCaptures{.worst_m_s2 = 7.0,
                              .faster = 1.35,
                              .shins_m = 0.05,
                              .feet_m = 0.05,
-                             .turning_deg = 2.2,
+                             .turning_deg = 1.55,
                              .spot_m_s2 = 7.5,
-                             .spot_deg = 3.7};
+                             .spot_deg = 1.85};
 struct Of {
   const char *name, *file;  // file: of a capture
   Bounds bounds;

@@ -123,8 +123,9 @@ struct Change {
   V is_new{}, was_new{};          // 1: the plan has changed since the last tick; since that before
   Off<V> pelvis_x_m, pelvis_z_m;  // place of the leading pelvis, its rate and acceleration
   V phase{}, phase_rate{};        // that are shown
-  // Roll of the standing foot after a change of plan: tick at which the hips began to lead (-1: in
-  // the flight), duration in ticks by the old plan, and the pitch's rate then, per tick.
+  // Roll of the standing foot where the hips lead: the tick at which it began, the one at which it
+  // ends unless the roll ends before, and the pitch's rate at its beginning, per tick. In a flight
+  // in which the hips began to lead, `led_from` is less than 0: that tick.
   V led_from{}, led_until = V{} + kNever, led_rate_rad{};
 
   // Differences that a change of plan leaves and that fade in `off_ticks`: of the phase and of

@@ -151,10 +151,10 @@ def test_a_filter_of_the_calibration_is_in_the_recording(run, tmp_path, trace, o
 
 
 def test_monitor_warns_of_a_stick_that_moves_untouched(run, tmp_path):
-    creeping = ramp(1.5, 3.0, (0.0, 0.15), (0.0, 0.21))  # a drift of 0.04 a second
+    creeping = ramp(1.5, 3.0, (0.0, 0.15), (0.0, 0.21)) + [(4.5, 0.0, 0.21)]  # a drift of 0.04 a second
     untouched = write_trace(tmp_path / "untouched.hid", creeping)
     pushed = write_trace(tmp_path / "pushed.hid", ramp(1.5, 2.0, (0.0, 0.0), (0.0, 1.0)) + [(3.0, 0.0, 1.0)])
-    done = run("monitor", untouched, "--seconds", "3.2", "--json")
+    done = run("monitor", untouched, "--seconds", "4.5", "--json")
     assert done.stderr.splitlines()[-1] == ("gaitpad monitor: gaitpad test pad (recording): a stick began to "
                                             "move untouched; this measures it: gaitpad calibrate")
     assert json.loads(done.stdout.splitlines()[-1])["untouched"] == 1

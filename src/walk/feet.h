@@ -274,7 +274,7 @@ void roll_on(const Mask<V>& begins, const V& pitch_rad, const V& rate_rad, Chang
 // begins to rise only then, for by the tables it may have risen before. In a first step the foot
 // has not landed; in a last one it stays flat.
 template <class V>
-V planned_pitch(const Time<V>& time, const Change<V>& change, const State<V>& state) noexcept {
+V planned_pitch(const Time<V>& time, const Change<V>& change) noexcept {
   const V rises = smoother(0.0f, 0.5f, time.u);
   const auto starts = change.starting != V{}, later = both(change.led != V{}, time.flies);
   const V share = either(starts, later) ? rises : time.flies ? all<V>(1.0f) : V(1.0f - change.led);
@@ -430,7 +430,7 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
     const Sole<V>& sole = feet.sole[1] = sole_of<V>(tables, right);
     const FootInStride<V>& table = stride.foot[1];
     const V off = landed_pitch(change, state),
-            shows = planned_pitch(time, change, state) + change.off_pitch.x;
+            shows = planned_pitch(time, change) + change.off_pitch.x;
     const V low = time.flies ? low_lift<V>(right, state) : one;
     const V pitch = low * table.pitch_rad * shows + (time.flies ? V{} : off);
     V planted = time.flies ? most(pitch, V{}) : least(pitch, V{});

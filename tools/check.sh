@@ -1,13 +1,14 @@
 #!/usr/bin/env bash
-# check.sh [--all | --since COMMIT | --recent | --slice N | FILE.cpp ...]: checks the layout of every C++ file
+# check.sh [--all | --since COMMIT | --recent | --slice N | --most N | FILE.cpp ...]: checks the layout of every C++ file
 # (clang-format 14) and runs clang-tidy 14 with the checks of .clang-tidy over the sources that changed since COMMIT,
 # default: since main. --recent: since the newest commit that is a day older than the last one. --slice N: also over
-# every N-th source; the commit chooses the first one (slice.sh). --all, or GAITPAD_ALL=1: over all sources, half an
-# hour of processor time. --format: only the layout.
+# every N-th source; the commit chooses the first one (slice.sh). --most N: where these are more than N, over every
+# second or third ... of them, so that a day that changes a whole folder does not fill its run. --all, or
+# GAITPAD_ALL=1: over all sources, half an hour of processor time. --format: only the layout.
 set -euo pipefail
 root=$(cd "$(dirname "$0")/.." && pwd)
 cd "$root"
-all=${GAITPAD_ALL:-0} tidy=1 since= slice=0 files=()
+all=${GAITPAD_ALL:-0} tidy=1 since= slice=0 most=0 files=()
 while [ $# -gt 0 ]; do
   case $1 in
     --all) all=1 ;;
@@ -19,6 +20,10 @@ while [ $# -gt 0 ]; do
     --recent) since=$(git rev-list -1 --before="$(($(git log -1 --format=%ct) - 86400))" HEAD) ;;
     --slice)
       slice=${2:?check.sh: --slice needs a number}
+      shift
+      ;;
+    --most)
+      most=${2:?check.sh: --most needs a number}
       shift
       ;;
     -*)
@@ -68,6 +73,11 @@ elif [ ${#files[@]} -eq 0 ]; then
     [ "$slice" -eq 0 ] || sources | awk -v n="$slice" -v first=$((GAITPAD_SLICE % slice)) 'NR % n == first'
   }
   mapfile -t files < <({ changed_sources "$since"; sliced; } | sort -u | grep -Fxf <(sources) || true)
+  if [ "$most" -gt 0 ] && [ ${#files[@]} -gt "$most" ]; then
+    every=$(((${#files[@]} + most - 1) / most))
+    echo "clang-tidy: ${#files[@]} sources changed, of which the commit chooses one in $every" >&2
+    mapfile -t files < <(printf '%s\n' "${files[@]}" | awk -v n=$every -v first=$((GAITPAD_SLICE % every)) 'NR % n == first')
+  fi
 fi
 if [ ${#files[@]} -eq 0 ]; then
   echo "clang-tidy: no source changed"

@@ -25,9 +25,6 @@ class History {
     std::size_t begin = 0, end = 0;
   };
   Span newest_cycles(int walker, int cycles) const noexcept;
-  std::size_t cycle_begin(int walker, int cycles) const noexcept {
-    return newest_cycles(walker, cycles).begin;
-  }
 
  private:
   std::vector<TickSample> samples_;

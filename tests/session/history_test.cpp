@@ -70,9 +70,9 @@ TEST(History, CyclesRunFromOneLandingOfTheRightFootToAnother) {
   const History::Span two = history.newest_cycles(0, 2);
   EXPECT_EQ(two.begin, 50u);
   EXPECT_EQ(two.end, 130u);
-  EXPECT_EQ(history.cycle_begin(0, 2), 50u);
-  EXPECT_EQ(history.cycle_begin(0, 3), 10u);
-  EXPECT_EQ(history.cycle_begin(0, 4), history.size());
+  EXPECT_EQ(history.newest_cycles(0, 2).begin, 50u);
+  EXPECT_EQ(history.newest_cycles(0, 3).begin, 10u);
+  EXPECT_EQ(history.newest_cycles(0, 4).begin, history.size());
 }
 
 TEST(History, ARestIsInNoCycle) {
@@ -87,12 +87,12 @@ TEST(History, ARestIsInNoCycle) {
 
 TEST(History, WhoIsNotThereHasNoCycles) {
   History history;
-  EXPECT_EQ(history.cycle_begin(0, 1), 0u);
+  EXPECT_EQ(history.newest_cycles(0, 1).begin, 0u);
   add_cycles(history, 0, 4);
   for (const int walker : {-1, 1, 99}) {
-    EXPECT_EQ(history.cycle_begin(walker, 1), history.size());
+    EXPECT_EQ(history.newest_cycles(walker, 1).begin, history.size());
   }
-  EXPECT_EQ(history.cycle_begin(0, 0), history.size());
+  EXPECT_EQ(history.newest_cycles(0, 0).begin, history.size());
 }
 
 }  // namespace

@@ -2,20 +2,18 @@
 
 #include <gtest/gtest.h>
 
-#include <algorithm>
 #include <cstdint>
 #include <limits>
+
+#include "tests/minimum_jerk.h"
 
 namespace gaitpad {
 namespace {
 
 constexpr std::int64_t kMs = 1'000'000;
 
-// Deflection of a stick that is pushed forward in 100 ms by minimum jerk, like people's movements.
-double pushed(double time_s) {
-  const double u = std::clamp(time_s / 0.1, 0.0, 1.0);
-  return u * u * u * (10.0 + u * (6.0 * u - 15.0));
-}
+// Deflection of a stick that is pushed forward in 100 ms.
+double pushed(double time_s) { return minimum_jerk(time_s / 0.1); }
 
 // Counts for one second of a pad that reports every `report_ms` and measures its stick every
 // `value_ms`; the stick is pushed twice and held in between.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <vector>
 
+#include "tests/minimum_jerk.h"
 #include "tests/walk/made_walker.h"
 #include "walk/steer.h"
 #include "walk/walk.h"
@@ -40,9 +41,7 @@ class ThumbWalk {
     const vec2 to(x, y);
     if (to != to_) from_ = at_, to_ = to, moves_ = 0;
     for (int tick = 0; tick < ticks; ++tick) {
-      const double u = std::min(1.0, ++moves_ / double(kThumbTicks)),
-                   s = u * u * u * (10.0 - 15.0 * u + 6.0 * u * u);  // minimum jerk
-      at_ = from_ + (to_ - from_) * s;
+      at_ = from_ + (to_ - from_) * minimum_jerk(++moves_ / double(kThumbTicks));
       Stick stick;
       stick.left = at_;
       step(gait_params(stick, StyleValues{}, limits_));

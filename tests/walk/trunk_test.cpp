@@ -1,6 +1,7 @@
 // Chest, head and arms where a walk changes, and which joints a tick writes. Thumbs take 60 ms.
 #include <gtest/gtest.h>
 
+#include "tests/minimum_jerk.h"
 #include "tests/walk/made_block.h"
 
 namespace gaitpad {
@@ -51,7 +52,7 @@ class Walker {
   void push(const vec2& to) {
     const vec2 from = stick_;
     for (int tick = 1; tick <= kThumb; ++tick) {
-      stick_ = from + (to - from) * smootherstep(double(tick) / kThumb);
+      stick_ = from + (to - from) * minimum_jerk(double(tick) / kThumb);
       step();
     }
   }

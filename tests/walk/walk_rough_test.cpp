@@ -4,19 +4,19 @@
 #include <random>
 
 #include "tests/finite_pose.h"
+#include "tests/minimum_jerk.h"
 #include "tests/walk/grounds.h"
 
 namespace gaitpad {
 namespace {
 
-// A thumb that pushes, holds, lets go and turns round, each within 30 to 150 ms (minimum jerk).
+// A thumb that pushes, holds, lets go and turns round, each within 30 to 150 ms.
 class Thumb {
  public:
   explicit Thumb(int seed) : random_(static_cast<unsigned>(seed)) {}
   vec2 at(int tick) {
     if (tick >= until_) next(tick);
-    const double u = std::clamp((tick - begin_) / lasts_, 0.0, 1.0);
-    return from_ + (to_ - from_) * (u * u * u * (10.0 - 15.0 * u + 6.0 * u * u));
+    return from_ + (to_ - from_) * minimum_jerk((tick - begin_) / lasts_);
   }
   void rest(int tick) {
     from_ = at(tick), to_ = vec2(0.0), begin_ = tick, lasts_ = 0.06 * kRate, until_ = 1 << 30;

@@ -83,12 +83,6 @@ auto smoothstep(double a, double b, const V& x) noexcept {
   const auto u = within((x - a) / (b - a), 0.0, 1.0);
   return u * u * (3.0 - 2.0 * u);
 }
-// A quintic from 0 at x <= 0 to 1 at x >= 1, with zero slope and curvature at both ends.
-template <class V>
-auto smootherstep(const V& x) noexcept {
-  const auto u = within(1.0 * x, 0.0, 1.0);
-  return u * u * u * (10.0 + u * (6.0 * u - 15.0));
-}
 template <class A, class B, class V>
 auto mix(const A& a, const B& b, const V& t) noexcept {
   return a + (b - a) * t;

@@ -188,7 +188,7 @@ int width_for(int walks, int widest) noexcept {
 enum class StyleKind { even, upper_body, both, legs };
 StyleKind style_kind(const GaitParams& params) noexcept {
   const bool legs = params.weight != GaitParams{}.weight;
-  if (params.body == UpperBodyParams{}) return legs ? StyleKind::legs : StyleKind::even;
+  if (is_plain(params.body)) return legs ? StyleKind::legs : StyleKind::even;
   return legs ? StyleKind::both : StyleKind::upper_body;
 }
 int widest_block(IkMode mode) noexcept { return mode == IkMode::paper ? 1 : lanes_in_use(); }
@@ -275,7 +275,8 @@ WalkState Crowd::state(int member) const noexcept {
   const WalkModel& model = *models_[member];
   place(state.placed, 0, state.walk);
   report(model, tables_of(model, state.tick_s / tick_parts(state.tick_s)), state.walk,
-         root_before(*blocks_[block], lane), roots_m_[member], local(member), state.frame);
+         root_before(*blocks_[block], lane), state.root, roots_m_[member], local(member),
+         state.frame);
   state.frame.bad_inputs = bad_inputs_[member];
   return state;
 }

@@ -345,7 +345,7 @@ void Crowd::group_by_style() {
     for (std::size_t i = begin; i < order_.size() && models_[order_[i]] == models_[order_[begin]];
          ++i)
       sorted.push_back(order_[i]);
-    std::ranges::stable_sort(sorted, is_before);
+    std::stable_sort(sorted.begin(), sorted.end(), is_before);
     for (const int member : sorted) exchange_lanes(order_[begin++], member);
   }
 }

@@ -1,6 +1,7 @@
 #include "walk/sound_input.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cmath>
 #include <cstring>
 

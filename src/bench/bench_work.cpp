@@ -472,6 +472,8 @@ class LedCrowd {
     const double before = heap_bytes();
     crowd_ = Crowd(members);
     bytes_each_ = (heap_bytes() - before) / size;
+    for (int i = 0; i < size; ++i) ask(i, Stick{});
+    crowd_.group_by_style();
   }
   double bytes_each() const { return bytes_each_; }
 
@@ -513,10 +515,14 @@ class LedCrowd {
       if (tick_ < part.start) continue;
       const std::size_t at =
           static_cast<std::size_t>(part.stick + tick_ * cast_->stick_step) % cast_->sticks.size();
-      crowd_.params()[i] =
-          gait_params(cast_->sticks[at], cast_->styles[part.style], cast_->limits[part.model]);
+      ask(i, cast_->sticks[at]);
     }
     ++tick_;
+  }
+  void ask(int member, const Stick& stick) {
+    const Part& part = parts_[member];
+    crowd_.params()[member] =
+        gait_params(stick, cast_->styles[part.style], cast_->limits[part.model]);
   }
 
   std::shared_ptr<const CrowdCast> cast_;

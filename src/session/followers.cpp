@@ -141,6 +141,11 @@ Followers::Followers(const Options& options,
     members.push_back({builds[static_cast<std::size_t>(build)], start_m_.back()});
   }
   crowd_ = Crowd(members, options.ik);
+  for (int i = 0; i < size(); ++i) {
+    const Kind& kind = kinds_[kind_[static_cast<std::size_t>(i)]];
+    crowd_.params()[static_cast<std::size_t>(i)] = gait_params(Stick{}, kind.values, kind.limits);
+  }
+  crowd_.group_by_style();
   if (options.threads > 1) workers_ = std::make_shared<Workers>(options.threads);
 
   const int shown = std::min(options.count, options.shown);

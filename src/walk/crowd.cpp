@@ -183,6 +183,14 @@ int width_for(int walks, int widest) noexcept {
     if (narrower < width && narrower >= walks) width = narrower;
   return width;
 }
+
+// What of a tick a style asks for, in an order in which neighbours share one part.
+enum class StyleKind { even, upper_body, both, legs };
+StyleKind style_kind(const GaitParams& params) noexcept {
+  const bool legs = params.weight != GaitParams{}.weight;
+  if (is_plain(params.body)) return legs ? StyleKind::legs : StyleKind::even;
+  return legs ? StyleKind::both : StyleKind::upper_body;
+}
 int widest_block(IkMode mode) noexcept { return mode == IkMode::paper ? 1 : lanes_in_use(); }
 
 }  // namespace
@@ -267,7 +275,8 @@ WalkState Crowd::state(int member) const noexcept {
   const WalkModel& model = *models_[member];
   place(state.placed, 0, state.walk);
   report(model, tables_of(model, state.tick_s / tick_parts(state.tick_s)), state.walk,
-         root_before(*blocks_[block], lane), roots_m_[member], local(member), state.frame);
+         root_before(*blocks_[block], lane), state.root, roots_m_[member], local(member),
+         state.frame);
   state.frame.bad_inputs = bad_inputs_[member];
   return state;
 }
@@ -319,6 +328,26 @@ void Crowd::set_detail(int member, Detail detail) noexcept {
   exchange_lanes(member, detail == Detail::full ? *border : *(border - 1));
   details_[member] = detail;
   blocks_[lane_[member].block]->set_detail(detail, lane_[member].lane);
+}
+
+void Crowd::group_by_style() {
+  const auto is_before = [this](int a, int b) {
+    if (details_[a] != details_[b]) return details_[a] == Detail::full;
+    const GaitParams &of_a = params_[a], &of_b = params_[b];
+    const StyleKind kind_a = style_kind(of_a), kind_b = style_kind(of_b);
+    if (kind_a != kind_b) return kind_a < kind_b;
+    // Any order will do that puts equal styles together. Bytes have one, even of bad numbers.
+    const int weights = std::memcmp(&of_a.weight, &of_b.weight, sizeof of_a.weight);
+    return (weights != 0 ? weights : std::memcmp(&of_a.body, &of_b.body, sizeof of_a.body)) < 0;
+  };
+  for (std::size_t begin = 0; begin < order_.size();) {
+    std::vector<int> sorted;
+    for (std::size_t i = begin; i < order_.size() && models_[order_[i]] == models_[order_[begin]];
+         ++i)
+      sorted.push_back(order_[i]);
+    std::stable_sort(sorted.begin(), sorted.end(), is_before);
+    for (const int member : sorted) exchange_lanes(order_[begin++], member);
+  }
 }
 
 template <class Work>

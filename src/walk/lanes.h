@@ -180,6 +180,10 @@ inline Four unit(const Four& q) noexcept {
 inline void store(const Four& q, quat& to) noexcept {
   to.x = q[0], to.y = q[1], to.z = q[2], to.w = q[3];
 }
+inline Four load(const quat& q) noexcept {
+  return {{static_cast<float>(q.x), static_cast<float>(q.y), static_cast<float>(q.z),
+           static_cast<float>(q.w)}};
+}
 // Rows to columns.
 inline void transpose(Four (&row)[4]) noexcept {
   for (int i = 0; i < 4; ++i)
@@ -195,6 +199,12 @@ inline void store(const Four& q, quat& to) noexcept {
   using Doubles __attribute__((vector_size(32))) = double;
   const Doubles wide = __builtin_convertvector(q, Doubles);
   std::memcpy(&to, &wide, sizeof wide);
+}
+inline Four load(const quat& q) noexcept {
+  using Doubles __attribute__((vector_size(32))) = double;
+  Doubles wide;
+  std::memcpy(&wide, &q, sizeof wide);
+  return __builtin_convertvector(wide, Four);
 }
 inline void transpose(Four (&row)[4]) noexcept {
   const Four ab = __builtin_shufflevector(row[0], row[1], 0, 4, 1, 5),
@@ -442,11 +452,18 @@ void work_packed(const Mask<V> (&where)[2], Limb<V> (&limbs)[2], const Work& wor
     Limb<Floats<kTogether>> together;
     float* to = reinterpret_cast<float*>(&together);
     const int here = std::min(kTogether, count - begin);
-    for (int i = 0; i < here; ++i)
-      for (int n = 0; n < kTakes; ++n) to[n * kTogether + i] = places[begin + i][n * kWidth];
+    // Written out, a number takes two instructions; the loop would take eight.
+    for (int i = 0; i < here; ++i) {
+      const float* const from = places[begin + i];
+#pragma GCC unroll 64
+      for (int n = 0; n < kTakes; ++n) to[n * kTogether + i] = from[n * kWidth];
+    }
     work(together);
-    for (int i = 0; i < here; ++i)
-      for (int n = kGives; n < kNumbers; ++n) places[begin + i][n * kWidth] = to[n * kTogether + i];
+    for (int i = 0; i < here; ++i) {
+      float* const back = places[begin + i];
+#pragma GCC unroll 64
+      for (int n = kGives; n < kNumbers; ++n) back[n * kWidth] = to[n * kTogether + i];
+    }
   }
 }
 

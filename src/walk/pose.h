@@ -10,10 +10,9 @@ namespace {
 // A product of rotations is off its length, by 1e-4 where the paper's solver, which has no limits,
 // bends a joint to 170 degrees. A step of Newton's method leaves the rounding of floats.
 template <class V>
-void write_joint(const Turn<V>& q, int joint, const Poses& poses) noexcept {
+void write_product(const Turn<V>& q, int joint, const Poses& poses) noexcept {
   const V k = 1.5f - 0.5f * ((q.w * q.w + q.x * q.x) + (q.y * q.y + q.z * q.z));
-  const Turn<V> of_unit{q.w * k, q.x * k, q.y * k, q.z * k};
-  for (int w = 0; w < poses.walks; ++w) write_joint(of_unit, joint, w, poses);
+  write_joint(Turn<V>{q.w * k, q.x * k, q.y * k, q.z * k}, joint, poses);
 }
 
 // The toes' angle in the foot. Toes stay level while the heel is higher than they are; in the air,
@@ -43,10 +42,10 @@ void write_legs(const Tables& tables, const Time<V>& time, const Feet<V>& feet,
         chosen(swings, legs[0].ankle, legs[1].ankle), chosen(swings, toes[0], toes[1])};
     for (int j = 0; j < 4; ++j) {
       if (bones.joint[j] < 0) continue;
-      write_joint(tables.legs_are_plain
-                      ? turn[j]
-                      : every<V>(bones.before[j]) * turn[j] * every<V>(bones.after[j]),
-                  bones.joint[j], poses);
+      write_product(tables.legs_are_plain
+                        ? turn[j]
+                        : every<V>(bones.before[j]) * turn[j] * every<V>(bones.after[j]),
+                    bones.joint[j], poses);
     }
   }
 }
@@ -72,11 +71,11 @@ void write_root(const Tables& tables, const Hips<Floats<kWidth>>& hips,
     for (std::size_t i = 0; i < tables.above_pelvis.size(); ++i) {
       const int joint = tables.above_pelvis[i].joint;
       above = above * read_joint<V>(joint, all<V>(1.0f), poses);
-      if (i == 0) write_joint(above, joint, poses);
+      if (i == 0) write_product(above, joint, poses);
     }
     turn = back(above) * turn;
   }
-  write_joint(turn, tables.pelvis, poses);
+  write_product(turn, tables.pelvis, poses);
   for (int w = 0; block.is_placed && w < poses.walks; ++w) {
     const Placement& placed = block.placed[w];
     if (placed == Placement{}) continue;

@@ -1,6 +1,7 @@
 #include "walk/sound_input.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cmath>
 #include <cstring>
 
@@ -13,10 +14,13 @@ bool is_sound(const GaitParams& params) noexcept {
   const ParamsRange& range = params_range();
   const auto numbers = numbers_of(params), least = numbers_of(range.least),
              most = numbers_of(range.most);
-  int inside = 0;
-  for (std::size_t k = 0; k < kParamsNumbers; ++k)
+  // The numbers of a plain upper body are within their ranges, and the last ones.
+  static_assert(offsetof(GaitParams, body) + sizeof(UpperBodyParams) == sizeof(GaitParams));
+  const std::size_t count = kParamsNumbers - (is_plain(params.body) ? kBodyNumbers : 0);
+  std::size_t inside = 0;
+  for (std::size_t k = 0; k < count; ++k)
     inside += (numbers[k] >= least[k]) & (numbers[k] <= most[k]);
-  return inside == static_cast<int>(kParamsNumbers);
+  return inside == count;
 }
 
 bool is_finite(const Placement& place) noexcept {

@@ -16,28 +16,47 @@ namespace {
 
 // --- Joints of a pose ----------------------------------------------------------------------------
 
+// The rotation of each walk, transposed from its lanes.
 template <class V>
-void write_joint(const Turn<V>& q, int joint, int w, const Poses& poses) noexcept {
-  store(Four{lane(q.x, w), lane(q.y, w), lane(q.z, w), lane(q.w, w)}, poses.local[w][joint]);
+void to_walks(const Turn<V>& q, Four (&of)[kLanes<V>]) noexcept {
+  if constexpr (kLanes<V> == 1) {
+    of[0] = Four{q.x, q.y, q.z, q.w};
+  } else {
+    for (int w = 0; w < kLanes<V>; w += 4) {
+      Four row[4];
+      int n = 0;
+      for (const V* numbers : {&q.x, &q.y, &q.z, &q.w})
+        row[n++] = part<Four>(reinterpret_cast<const float*>(numbers) + w);
+      transpose(row);
+      std::copy_n(row, 4, of + w);
+    }
+  }
+}
+template <class V>
+void write_joint(const Turn<V>& q, int joint, const Poses& poses) noexcept {
+  Four of[kLanes<V>];
+  to_walks(q, of);
+  for (int w = 0; w < poses.walks; ++w) store(of[w], poses.local[w][joint]);
 }
 // Writes a joint of the walks for which `is` is 1; it is 0 for the others.
 template <class V>
 void write_where(const Turn<V>& q, int joint, const V& is, const Poses& poses) noexcept {
+  Four of[kLanes<V>];
+  to_walks(q, of);
   for (int w = 0; w < poses.walks; ++w)
-    if (lane(is, w) != 0.0f) write_joint(q, joint, w, poses);
+    if (lane(is, w) != 0.0f) store(of[w], poses.local[w][joint]);
 }
 template <class V>
 Turn<V> read_joint(int joint, const V& is, const Poses& poses) noexcept {
-  Turn<V> q = no_turn<V>();
-  for (int w = 0; w < poses.walks; ++w) {
-    if (lane(is, w) == 0.0f) continue;
-    const quat& from = poses.local[w][joint];
-    set_lane(static_cast<float>(from.w), w, q.w);
-    set_lane(static_cast<float>(from.x), w, q.x);
-    set_lane(static_cast<float>(from.y), w, q.y);
-    set_lane(static_cast<float>(from.z), w, q.z);
+  alignas(64) float row[kLanes<V>][4];
+  for (int w = 0; w < kLanes<V>; ++w) {
+    const bool reads = w < poses.walks && lane(is, w) != 0.0f;
+    const Four q = reads ? load(poses.local[w][joint]) : Four{0.0f, 0.0f, 0.0f, 1.0f};
+    std::memcpy(row[w], &q, sizeof q);
   }
-  return q;
+  V n[4];
+  to_lanes(&row[0][0], 4, n);
+  return {n[3], n[0], n[1], n[2]};
 }
 
 // The rotation at a share of the shorter way from one to another.

@@ -444,8 +444,7 @@ DataRead<V> data_read(const Tables& tables, const BodyTick<V>& tick, const V& sw
 }
 // A share of the way from a joint's rotation in the pose to another one.
 inline Four over(const quat& from, const Four& q, float share) noexcept {
-  const Four was{static_cast<float>(from.x), static_cast<float>(from.y), static_cast<float>(from.z),
-                 static_cast<float>(from.w)};
+  const Four was = load(from);
   const float along = (was[0] * q[0] + was[1] * q[1]) + (was[2] * q[2] + was[3] * q[3]);
   return unit(was + (q * (along < 0.0f ? -1.0f : 1.0f) - was) * share);
 }

@@ -46,7 +46,8 @@ WalkState standing(const WalkModel& model, const vec3& place_m, double heading_r
   stand(tables, {x_m, z_m, yaw_rad}, state.walk);
   advance_by(tables, IkMode::robust, 1, state, pose);
   state.root = root_of(state.walk);
-  report(model, tables, state.walk, state.root, pose.root_m, locals_of(model, pose), state.frame);
+  report(model, tables, state.walk, state.root, state.root, pose.root_m, locals_of(model, pose),
+         state.frame);
   return state;
 }
 
@@ -64,7 +65,8 @@ void advance(const WalkModel& model, const GaitParams& params, IkMode mode, doub
   advance_by(tables, mode, parts, state, pose);
   const Placement before = state.root;
   state.root = root_of(state.walk);
-  report(model, tables, state.walk, before, pose.root_m, locals_of(model, pose), state.frame);
+  report(model, tables, state.walk, before, state.root, pose.root_m, locals_of(model, pose),
+         state.frame);
 }
 
 double presence(const WalkState& state) noexcept {

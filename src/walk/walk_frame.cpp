@@ -102,8 +102,8 @@ float phase_of(const Block<1>& block) noexcept {
 }
 
 void report(const WalkModel& model, const Tables& tables, const Block<1>& block,
-            const Placement& before, const vec3& root_m, std::span<const quat> local,
-            WalkFrame& frame) noexcept {
+            const Placement& before, const Placement& root, const vec3& root_m,
+            std::span<const quat> local, WalkFrame& frame) noexcept {
   const State<float>& state = block.state;
   const Told<float>& told = block.told;
   const Placement& placed = block.placed[0];
@@ -133,7 +133,6 @@ void report(const WalkModel& model, const Tables& tables, const Block<1>& block,
   frame.speed_m_s = at.stands ? 0.0
                               : (frame.stride_m[0] + frame.stride_m[1]) /
                                     (ticks * static_cast<double>(tables.tick_s));
-  const Placement root = root_of(block);
   frame.root_moved_m = from_world({vec3(0.0), before.heading_rad}, root.place_m - before.place_m);
   frame.root_turned_rad = root.heading_rad - before.heading_rad;
   frame.root_m = to_world(placed, root.place_m);

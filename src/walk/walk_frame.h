@@ -23,7 +23,7 @@ float phase_of(const Block<1>& block) noexcept;
 
 // Fills a frame, except WalkFrame::bad_inputs. `before`: root before the tick.
 void report(const WalkModel& model, const Tables& tables, const Block<1>& block,
-            const Placement& before, const vec3& root_m, std::span<const quat> local,
-            WalkFrame& frame) noexcept;
+            const Placement& before, const Placement& root, const vec3& root_m,
+            std::span<const quat> local, WalkFrame& frame) noexcept;
 
 }  // namespace gaitpad

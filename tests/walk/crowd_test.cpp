@@ -56,6 +56,27 @@ TEST(Crowd, WalksAsItsMembersWouldAlone) {
   }
 }
 
+// Members of equal styles are put side by side while they walk, some of them far away, and styles
+// change: all go on to the same bits.
+TEST(Crowd, GroupedByStyleItsMembersKeepTheirBits) {
+  MadeCrowd as_made(kMembers), grouped(kMembers);
+  for (int tick = 0; tick < 6 * kCrowdRate; ++tick) {
+    for (MadeCrowd* made : {&as_made, &grouped}) {
+      made->command(tick);
+      if (tick > 2 * kCrowdRate) made->crowd().params()[8] = made->crowd().params()[16];
+      if (tick == kCrowdRate) made->crowd().set_detail(9, Detail::tables);
+    }
+    if (tick % kCrowdRate == 30) grouped.crowd().group_by_style();
+    as_made.crowd().advance(kCrowdDt), grouped.crowd().advance(kCrowdDt);
+  }
+  WordHash hash, of_grouped;
+  as_made.add_to(hash);
+  grouped.add_to(of_grouped);
+  EXPECT_EQ(of_grouped.value(), hash.value());
+  for (int i = 0; i < kMembers; ++i)
+    EXPECT_EQ(grouped.crowd().state(i).frame.steps, as_made.crowd().state(i).frame.steps) << i;
+}
+
 // A block of three members has unused lanes, which repeat the last member. That has to hold as well
 // when its ankle bends too far and its leg is solved again, here in an abrupt stop after a turn.
 TEST(Crowd, WalksAsItsMembersWouldAloneWhereABlockIsNotFull) {

@@ -50,6 +50,10 @@ class Crowd {
   // changes nothing. Set it between ticks: members of one detail are put side by side.
   Detail detail(int member) const noexcept { return details_[member]; }
   void set_detail(int member, Detail detail) noexcept;
+  // Puts members of one model whose params() have the same style side by side. What a style costs
+  // is then paid by those that have it, not by their neighbours as well. Changes no bit. Call it
+  // between ticks, after styles have been given or changed.
+  void group_by_style();
   // Advances all members by one tick of `dt_s` seconds, a constant of the run. No heap, lock or
   // clock.
   void advance(double dt_s) noexcept;

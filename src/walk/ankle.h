@@ -42,8 +42,11 @@ void ease_ankle(const Tables& tables, const Time<V>& time, const Stride<V>& stri
   const auto flies = k == 0 ? time.flies : Mask<V>{}, stands = k == 0 ? no(time.flies) : time.flies;
   // The easing begins gradually in a first step: an ankle that stairs bend in a stand would jump.
   const V first = time.flies ? V(time.u * (1.0f / kFirstRise)) : V(state.tick / state.roll_ticks),
-          begun = starts ? smooth(first) : all<V>(1.0f),
-          may = begun * heel_rise(tables, right, phase, no(Mask<V>{}), change);
+          begun = starts ? smooth(first) : all<V>(1.0f), since = phase - time.step_phase;
+  // Hips that lead may be before the strike of the foot that has landed: its heel stays down.
+  constexpr float kBeforeStrike = 0.3f;  // cycles
+  const auto too_early = k == 1 ? since < floored(V(since + kBeforeStrike)) : Mask<V>{};
+  const V may = too_early ? V{} : V(begun * heel_rise(tables, right, phase, no(Mask<V>{}), change));
   const V soft = chosen<V>(flies, kSoftFlying_rad, kSoftBent_rad),
           excess = soft_positive(bent, soft) * (flies    ? all<V>(1.0f)
                                                 : stands ? may

@@ -622,6 +622,30 @@ Spline lead_in(const PlannedFlight& flight, Wanted& beside) noexcept {
   return knots;
 }
 
+// Moves the knots of a shift until it lacks no more than kLack_m anywhere: the spline is flatter
+// than the way that is left, of which it is a share.
+void make_up_for_lacks(const Wanted& beside, double size, Spline& shift) noexcept {
+  constexpr double kLack_m = 0.001;  // at the reference leg: the room beside a riser is 5 mm
+  constexpr int kRounds = 12;
+  for (int round = 0; round < kRounds; ++round) {
+    int at = 0;
+    double most = kLack_m * size, lacks = 0.0;
+    for (int i = 1; i < kProbes; ++i) {
+      const double got = spline_of(shift, 0.0, static_cast<double>(i) / kProbes),
+                   lack = beside[i] - got;
+      if (lack * beside[i] <= 0.0 || std::abs(lack) <= most) continue;
+      at = i, most = std::abs(lack), lacks = lack;
+    }
+    if (at == 0) return;
+    const int k = std::clamp((at * kKnotsOfFlight + kProbes / 2) / kProbes, 1, kRoomKnots) - 1;
+    Spline alone{};
+    alone[k] = 1.0;
+    const double weight = spline_of(alone, 0.0, static_cast<double>(at) / kProbes);
+    if (weight < kLeast) return;
+    shift[k] = std::clamp(shift[k] + lacks / weight, -kMostShift_m * size, kMostShift_m * size);
+  }
+}
+
 struct RoomPlan {
   Spline raise_m{}, shift_m{};
 };
@@ -653,6 +677,7 @@ RoomPlan plan_over(const Tables& tables, const Floor& floor, const PlannedFlight
     for (int k = 0; k < kRoomKnots; ++k) room.shift_m[k] += back_m[k];
     if (!sharpen(beside, room.shift_m, size, ends)) break;
   }
+  if (flight.stays()) make_up_for_lacks(beside, size, room.shift_m);
   return room;
 }
 

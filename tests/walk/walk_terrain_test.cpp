@@ -420,9 +420,12 @@ TEST(WalkTerrain, NothingFailsWhereverTheStickLeadsOnStairs) {
     double ratio;
     unsigned seed;
   };
-  // The last three walks begin from a stand on two treads that bends an ankle to its limit.
+  // Three walks begin from a stand on two treads that bends an ankle to its limit. In two a foot
+  // flies beside a riser, and its landing's direction turns while it flies. The last ones stop
+  // backwards up stairs.
   for (const auto& [ratio, seed] :
-       {Walk{0.8, 11}, Walk{1.0, 11}, Walk{0.8, 27}, Walk{0.8, 29}, Walk{0.8, 31}}) {
+       {Walk{0.8, 11}, Walk{1.0, 11}, Walk{0.8, 27}, Walk{0.8, 29}, Walk{0.8, 31}, Walk{1.0, 27},
+        Walk{1.0, 43}, Walk{0.8, 12}, Walk{0.8, 28}}) {
     std::vector<SectionShape> sections = {FlatSection{0.3}};
     for (int k = 0; k < 6; ++k) {
       sections.emplace_back(StairsSection{k % 2 ? -0.17 : 0.17, 0.28, 5});
@@ -441,12 +444,10 @@ TEST(WalkTerrain, NothingFailsWhereverTheStickLeadsOnStairs) {
       const double y = in(-0.3, 1.0), x = chance() % 2 ? 0.0 : in(-0.6, 0.6);
       hiker.walk(x, y, ticks);
     }
-    // The bounds are larger, for hard landings of feet whose landing place changed in mid-flight,
-    // and for feet that turn beside a riser: of 120 such walks (legs 0.8 and 1, 60 seeds) 15 sink
-    // by more than 5.7 mm, at worst 21 mm.
+    // The bounds are larger, for hard landings of feet whose landing place changed in mid-flight.
     const std::string what =
         "random sticks, leg " + std::to_string(ratio) + " seed " + std::to_string(seed);
-    expect_sound(hiker.worst(), what, 1.8, 1.5);
+    expect_sound(hiker.worst(), what, 1.1, 1.5);
   }
 }
 

@@ -121,7 +121,12 @@ Vec<V> flight_heel(const Tables& tables, const Time<V>& time, const Landing<V>& 
     // strides of its own length, in the foot's direction. From the share kWalksFrom of a first
     // flight on it comes over to the walk's stride, up to the share kLikeAStep.
     constexpr float kLikeAStep = 0.4f, kWalksFrom = 0.3f;
-    const Vec<V> ahead = seen(hips.own, stride.heel_behind_m, turns, all<V>(kPastClosely));
+    // Captured feet swing far out in the shortest strides, which were solved from whole steps.
+    constexpr float kMostAside_m = 0.04f, kSoftAside_m = 0.03f;  // at the reference leg
+    Vec<V> ahead = seen(hips.own, stride.heel_behind_m, turns, all<V>(kPastClosely));
+    const V outwards = chosen<V>(time.right, -1.0f, 1.0f);
+    ahead.x = outwards * soft_least(V(outwards * ahead.x), all<V>(kMostAside_m * tables.size),
+                                    all<V>(kSoftAside_m * tables.size));
     const V off_m = ahead.z + hips.own.stride_m * (1.0f - gone),
             goes = kLikeAStep * smoother(kWalksFrom, 1.0f, u), walks = closes ? V{} : goes;
     const Vec<V> off = landing.way * Vec<V>{ahead.x, V{}, off_m};

@@ -72,23 +72,35 @@ V flying_yaw(const Time<V>& time, const Landing<V>& landing, const Change<V>& ch
 // while it is beside it: in a turn the feet would touch.
 template <class V>
 V keeps_apart_m(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
-                const Vec<V>& heel_m, const V& u, const Change<V>& change,
+                const Vec<V>& heel_m, const V& twist_rad, const V& u, const Change<V>& change,
                 const State<V>& state) noexcept {
   constexpr float kTurned_rad = 0.1f;  // acts fully from this sum of footprints' turns on
-  constexpr float kApart = 0.65f, kSoft = 0.12f;      // shares of the distance of both tracks
+  constexpr float kApart = 0.65f, kSoft = 0.12f;  // shares of the distance of both tracks
+  // Where tracks are narrow: shoes are 9 cm wide, and their axes must stay 6 cm apart. At the
+  // reference leg.
+  constexpr float kLeastApart_m = 0.085f;
   constexpr float kBeside_m = 0.15f, kPast_m = 0.4f;  // acts fully until, and ends at; in the way
   const V turned = size(state.print_rad) + size(landing.rad);
   if (!any(turned != V{})) return V{};
   const LegBones &l = tables.leg[0], &r = tables.leg[1];
-  const float tracks_m = std::abs(l.track_m) + std::abs(r.track_m);
-  const V outwards = chosen<V>(time.right, -1.0f, 1.0f),
-          foot_m = of_leg<V>(tables, time.right, &LegBones::foot_m), heel = outwards * heel_m.x,
-          toe = heel + outwards * foot_m * way_of(flying_yaw(time, landing, change, state)).sine,
-          soft_m = all<V>(kSoft * tracks_m), near_m = soft_least(heel, toe, soft_m),
+  const float tracks_m = std::abs(l.track_m) + std::abs(r.track_m),
+              apart_m = std::max(kApart * tracks_m, kLeastApart_m * tables.size);
+  const V outwards = chosen<V>(time.right, -1.0f, 1.0f);
+  // How far out of its heel the toe of the flying foot is, and in of its heel that of the standing
+  // one: feet also point in or out in the standing pose, and twist in flight.
+  const auto line_m = [&](int k) {
+    return chosen<V>(time.right, r.toe_m[k] - r.heel_m[k], l.toe_m[k] - l.heel_m[k]);
+  };
+  const Way<V> way = way_of(V(flying_yaw(time, landing, change, state) + twist_rad));
+  const V toe = outwards * (way.cosine * line_m(0) + way.sine * line_m(2)),
+          stands =
+              outwards * chosen<V>(time.right, l.toe_m[0] - l.heel_m[0], r.toe_m[0] - r.heel_m[0]),
+          heel = outwards * heel_m.x - most(stands, V{}), soft_m = all<V>(kSoft * tracks_m),
+          near_m = soft_least(heel, V(heel + toe), soft_m),
           beside = 1.0f - smooth(kBeside_m * tables.size, kPast_m * tables.size, size(heel_m.z)),
           flies = smoother(0.0f, 0.25f, u) * smoother(0.0f, 0.25f, V(1.0f - u));
   return outwards * smooth(0.0f, kTurned_rad, turned) * beside * flies *
-         soft_positive(V(kApart * tracks_m - near_m), soft_m);
+         soft_positive(V(apart_m - near_m), soft_m);
 }
 
 // The place of the swinging heel in the tables, moved onto its footprint and its landing. `base_m`:
@@ -121,7 +133,12 @@ Vec<V> flight_heel(const Tables& tables, const Time<V>& time, const Landing<V>& 
     // strides of its own length, in the foot's direction. From the share kWalksFrom of a first
     // flight on it comes over to the walk's stride, up to the share kLikeAStep.
     constexpr float kLikeAStep = 0.4f, kWalksFrom = 0.3f;
-    const Vec<V> ahead = seen(hips.own, stride.heel_behind_m, turns, all<V>(kPastClosely));
+    // Captured feet swing far out in the shortest strides, which were solved from whole steps.
+    constexpr float kMostAside_m = 0.04f, kSoftAside_m = 0.03f;  // at the reference leg
+    Vec<V> ahead = seen(hips.own, stride.heel_behind_m, turns, all<V>(kPastClosely));
+    const V outwards = chosen<V>(time.right, -1.0f, 1.0f);
+    ahead.x = outwards * soft_least(V(outwards * ahead.x), all<V>(kMostAside_m * tables.size),
+                                    all<V>(kSoftAside_m * tables.size));
     const V off_m = ahead.z + hips.own.stride_m * (1.0f - gone),
             goes = kLikeAStep * smoother(kWalksFrom, 1.0f, u), walks = closes ? V{} : goes;
     const Vec<V> off = landing.way * Vec<V>{ahead.x, V{}, off_m};
@@ -145,7 +162,7 @@ Vec<V> flight_heel(const Tables& tables, const Time<V>& time, const Landing<V>& 
     p.x = p.x - middle.cosine * out;
     p.z = p.z + middle.sine * out;
   }
-  p.x = p.x + keeps_apart_m(tables, time, landing, p, u, change, state);
+  p.x = p.x + keeps_apart_m(tables, time, landing, p, stride.foot[0].twist_rad, u, change, state);
   // A style's factor above 1 acts while the foot is high, one below 1 from the lift-off on.
   const V factor = lift_of<V>(time.right, state), low = least(factor, all<V>(1.0f));
   V more = 1.0f + (most(factor, all<V>(1.0f)) - 1.0f) * (1.0f - smooth(0.5f, 0.85f, u));

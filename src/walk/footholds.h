@@ -126,6 +126,28 @@ AskedStep<V> plan_landing(const Tables& tables, const Time<V>& time, Change<V>& 
   V x_m = along.sine * length_m + to.cosine * asides_m - stood_m - to.sine * lead_m,
     z_m = along.cosine * length_m - to.sine * asides_m + (1.0f - to.cosine) * lead_m,
     rad = heading + (closes ? V{} : V(in_place * ahead_rad));
+  const auto turning = both(no(closes), turns != V{});
+  if (any(turning)) {
+    // In a tight turn the outer foot would land across the standing one's toe, and on the spot its
+    // own toe, which points ahead of the body, would come to the standing foot. Lengths are at the
+    // reference leg: from axis to axis, and beyond the toe, where it ends.
+    constexpr float kClear_m = 0.08f, kSoftClear_m = 0.012f, kBeyond_m = 0.12f;
+    const LegBones &l = tables.leg[0], &r = tables.leg[1];
+    const auto line_m = [&](const Mask<V>& right, int k) {
+      return chosen<V>(right, r.toe_m[k] - r.heel_m[k], l.toe_m[k] - l.heel_m[k]);
+    };
+    const auto other = no(time.right);
+    const Way<V> way = way_of(rad);
+    const V toe =
+                outwards * (way.cosine * line_m(time.right, 0) + way.sine * line_m(time.right, 2)),
+            stands = most(V(outwards * line_m(other, 0)), V{}),
+            near_m = outwards * x_m + in_place * (least(toe, V{}) - stands),
+            past = smooth(V((size(z_m) - line_m(other, 2)) * (1.0f / (kBeyond_m * grown)))),
+            short_m = grown * kClear_m * (1.0f - past) - near_m,
+            clears_m =
+                soft_positive(short_m, all<V>(grown * kSoftClear_m)) * (1.0f - past * past) * turns;
+    x_m = x_m + (turning ? V(outwards * clears_m) : V{});
+  }
   const auto aimed = change.is_aimed != V{};
   if (any(aimed)) {
     // The landing moves to its aim evenly until it is settled.

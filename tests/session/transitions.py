@@ -12,7 +12,9 @@ twelve moments of a cycle.
 - Below, back, faster: the hips below the steady walk's lowest place, how far they go back, and their greatest speed over
   the steady walk's greatest.
 - Stopped: the hips are within 1 cm of where they end. The way counts from the moment at which the thumb begins.
-- Shins: the least distance of both shanks' axes from knee to ankle; feet: of the lines from heel to toe.
+- Shins: the least distance of both shanks' axes from knee to ankle while the walk turns; feet: of the lines from heel to
+  toe.
+- Closing foot: how far the heel of a last flight goes out of the straight line between its footprints.
 - Second difference of all joints, degrees a tick^2 at 240 Hz, of the ticks of the change; chest and head: their angular
   acceleration at 60 Hz over the steady walk's greatest.
 """
@@ -231,12 +233,28 @@ TURNS = {"circle": [(0.5, 0.7, 0.7)], "sharp": [(0.5, 0, 0.9), (3.0, 0.95, 0.3)]
          "zigzag": [(0.5, 0.6, 0.8), (2.0, -0.6, 0.8), (3.1, 0.6, 0.8), (4.3, -0.9, 0.4), (5.2, 0.9, 0.4)]}
 
 
+TURNING = 0.2  # rad/s: slower is straight on, where the capture says how near the feet are
+
+
 def turn_of(player, moves):
     walk = player.walk(*moves, end_s=8.0)
     shins, feet = apart(walk)
     heading = np.abs(np.degrees(walk.col["heading_rad"]))
-    return {"shins": shins.min(), "feet": feet.min(), "stand": feet[:60].min(), "d2": walk.second_differences.max(),
+    turns = np.abs(np.gradient(np.unwrap(walk.col["heading_rad"])) * RATE) > TURNING
+    return {"shins": shins[turns].min(), "feet": feet[turns].min(), "stand": feet[:60].min(), "d2": walk.second_differences.max(),
             "turn_s": 360 / max(1e-6, (heading[-1] - heading[4 * RATE]) / (walk.ticks - 4 * RATE) * RATE)}
+
+
+def closing_foot(walk):
+    """How far the heel of the last flight goes outwards, millimetres from the line between its footprints."""
+    flight = walk.col["stage"] == "flight"
+    last = np.nonzero(flight)[0][-1]
+    first = np.nonzero(~flight[:last])[0][-1] + 1
+    left = walk.col["swing"][last] == "left"
+    heel = walk.heel_fk[0 if left else 1][first:last + 1][:, [0, 2]]
+    way = heel[-1] - heel[0]
+    aside = ((heel - heel[0]) @ [way[1], -way[0]]) / np.linalg.norm(way)
+    return 1000 * (aside if left else -aside).max()
 
 
 def summary(row):

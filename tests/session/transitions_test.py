@@ -9,6 +9,9 @@ from support.program import DATA
 
 CLIPS = {"built-in": None, "m21": "mocap/cmu_m21_walk.bvh", "walk01": "mocap/bvhtoolbox_walk01.bvh",
          "07": "mocap/cmu_07_01.amc"}
+# Captures whose feet came nearest in turns: they point inwards, or their tracks are narrow.
+NARROW = {"12": "mocap/cmu_12_01_walk.bvh", "female": "mocap/cmu_m21_female_walk.bvh", "happy": "mocap/cmu_m21_happy.bvh",
+          "sample": "mocap/bvhparser_sample.bvh"}
 
 
 # Of captured motions: transitions.py prints by how much these bounds are missed.
@@ -17,7 +20,7 @@ NOT_MET = {("a_start_answers_at_once_and_is_a_walk_after_two_steps", "m21"), ("t
            ("a_start_answers_at_once_and_is_a_walk_after_two_steps", "walk01"), ("the_hips_neither_dip_nor_go_back", "walk01"),
            ("chest_and_head_do_not_jump", "walk01"), ("a_stop_at_full_stick_takes_less_than_a_metre", "walk01"),
            ("it_walks_back_soon_after_it_walked_ahead", "walk01"), ("the_hips_neither_dip_nor_go_back", "07"),
-           ("legs_stay_apart_in_turns", "07-sharp"), ("it_walks_back_soon_after_it_walked_ahead", "07")}
+           ("it_walks_back_soon_after_it_walked_ahead", "07")}
 
 
 @pytest.fixture(scope="module", name="player", params=list(CLIPS))
@@ -82,8 +85,29 @@ def test_a_stop_at_full_stick_takes_less_than_a_metre(rows):
 @pytest.mark.parametrize("turn", transitions.TURNS)
 def test_legs_stay_apart_in_turns(player, turn):
     found = transitions.turn_of(player, transitions.TURNS[turn])
-    assert found["shins"] >= 60
-    assert found["feet"] >= min(60, 0.95 * found["stand"])
+    assert found["shins"] >= 70
+    assert found["feet"] >= min(60, found["stand"])
+
+
+def player_on(program, folder, clip):
+    if not (DATA / clip).is_file():
+        pytest.skip(f"{DATA / clip} is not there")
+    return transitions.Player(program, folder, DATA / clip)
+
+
+@pytest.mark.parametrize("clip", NARROW)
+@pytest.mark.parametrize("turn", ("sharp", "in place", "zigzag"))
+def test_legs_of_narrow_walks_stay_apart_in_turns(program, tmp_path, clip, turn):
+    found = transitions.turn_of(player_on(program, tmp_path, NARROW[clip]), transitions.TURNS[turn])
+    assert found["shins"] >= 70
+    assert found["feet"] >= min(59, found["stand"])
+
+
+@pytest.mark.parametrize("clip", ("dpr_walk_simple", "cmu_m21_walk"))
+def test_the_closing_foot_does_not_swing_out(program, tmp_path, clip):
+    player = player_on(program, tmp_path, f"mocap/{clip}.bvh")
+    stops = [player.walk((0.5, 0, 0.8), (4.0 + 0.2 * k, 0, 0), end_s=7.5) for k in range(6)]
+    assert max(map(transitions.closing_foot, stops)) <= 60
 
 
 def test_a_turn_on_the_spot_takes_four_seconds(player):

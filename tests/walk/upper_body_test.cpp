@@ -1,11 +1,14 @@
 // The upper body of a walk: arms, spine and head.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "gaitpad/anatomy.h"
 #include "gaitpad/motion_file.h"
@@ -396,6 +399,50 @@ TEST(WalkBody, ArmsSwingAgainstEachOther) {
     }
     EXPECT_LT(product / std::sqrt(left * right), -0.9) << forward;
   }
+}
+
+TEST(WalkBody, ArmsSwingWithTheStepsOfATurnOnTheSpot) {
+  // To the right and to the left: each hand's way ahead of its shoulder, seen from the body.
+  std::array<std::vector<double>, 2> ahead_m[2];
+  double bend_deg[2]{}, aside_m[2]{};
+  for (int turn : {0, 1}) {
+    MadeBody body;
+    for (int tick = 0; tick < 4 * kRate; ++tick) {
+      body.step({}, 0.0, turn == 0 ? 1.0 : -1.0);
+      if (tick < 2 * kRate) continue;
+      const vec3 across = glm::normalize(body.shoulder(kLeftSide) - body.shoulder(kRightSide)),
+                 ahead = glm::cross(across, vec3(0.0, 1.0, 0.0));
+      for (Side side : {kLeftSide, kRightSide}) {
+        const vec3 hand = body.hand(side) - body.shoulder(side);
+        ahead_m[turn][side].push_back(glm::dot(hand, ahead));
+        if (side == (turn == 0 ? kLeftSide : kRightSide))  // on the outer side
+          aside_m[turn] = std::max(aside_m[turn], std::abs(glm::dot(hand, across)));
+      }
+      bend_deg[turn] = std::max(bend_deg[turn], body.elbow(kLeftSide));
+    }
+  }
+  for (int turn : {0, 1}) {
+    for (Side side : {kLeftSide, kRightSide}) {
+      const auto [least, most] =
+          std::minmax_element(ahead_m[turn][side].begin(), ahead_m[turn][side].end());
+      EXPECT_GT(*most - *least, 0.1) << turn << " " << side;
+      EXPECT_LT(*most - *least, 0.35) << turn << " " << side;
+    }
+    EXPECT_GT(bend_deg[turn], 10.0);
+    EXPECT_GT(aside_m[turn], 0.04);
+    // One arm is ahead while the other one is back.
+    double together = 0.0;
+    const double left = 0.5 * (*std::ranges::max_element(ahead_m[turn][0]) +
+                               *std::ranges::min_element(ahead_m[turn][0])),
+                 right = 0.5 * (*std::ranges::max_element(ahead_m[turn][1]) +
+                                *std::ranges::min_element(ahead_m[turn][1]));
+    for (std::size_t i = 0; i < ahead_m[turn][0].size(); ++i)
+      together += (ahead_m[turn][0][i] - left) * (ahead_m[turn][1][i] - right);
+    EXPECT_LT(together, 0.0);
+  }
+  // A mirrored stick gives the mirrored swing.
+  for (std::size_t i = 0; i < ahead_m[0][0].size(); ++i)
+    EXPECT_NEAR(ahead_m[0][kLeftSide][i], ahead_m[1][kRightSide][i], 1e-4) << i;
 }
 
 TEST(WalkBody, TheStylesFactorScalesTheSwing) {

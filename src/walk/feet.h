@@ -349,7 +349,7 @@ Turn<V> first_edge(const Sole<V>& sole, const Flight<V>& flight, const V& planne
                    const Change<V>& change) noexcept {
   // Below the 5 mm at which a sole is judged to be in the ground.
   constexpr float kMostEdge_m = 0.0045f, kSoftEdge_m = 0.0003f;
-  const auto starts = change.starting != V{};
+  const auto starts = both(change.starting != V{}, change.turns == V{});
   if (!any(starts)) return flight.edge;
   const V across = (turn_about(sole.side, planned) * flight.edge * sole.side).y,
           edge_m = sole.half_width_m * size(across),

@@ -125,15 +125,16 @@ void smooth_asked(const Tables& tables, const Change<V>& change, const V& left,
     // A first step follows a stick that is still on its way, so its filter is quicker.
     const auto starts = change.starting != V{},
                steps = both(starts, state.right_swings == all<V>(static_cast<float>(side)));
-    const auto stops = change.stops != V{}, is_quick = either(starts, stops),
+    const auto stops = change.stops != V{}, turns = change.turns != V{},
+               is_quick = either(starts, stops),
                goes_on = both(change.catch_ticks != V{},
                               state.right_swings == all<V>(static_cast<float>(side)));
     const V rests = most(change.stands, change.closing),
             kept_m = rests != V{} ? V{} : state.length_m[side].x,
             asked_m = walks ? asked.length_m[side] : kept_m,
-            goal_m = either(stops, goes_on) ? change.length_m[side] : asked_m;
-    follow(both(steps, no(stops)) ? V(kFirstStep * goal_m) : goal_m, is_quick, tables.first_step,
-           tables.step, state.length_m[side]);
+            goal_m = either(either(stops, turns), goes_on) ? change.length_m[side] : asked_m;
+    follow(both(steps, no(either(stops, turns))) ? V(kFirstStep * goal_m) : goal_m, is_quick,
+           tables.first_step, tables.step, state.length_m[side]);
     follow(asked.lift[side], tables.step, state.lift[side]);
   }
   const V cycle_s = asked.time_s[0] + asked.time_s[1];
@@ -284,7 +285,7 @@ struct PhaseCubic {
 template <class V>
 Time<V> advance_clock(const Tables& tables, const V& least_s, const Change<V>& change,
                       State<V>& state) noexcept {
-  const auto follows = both(change.starting != V{}, state.flies == V{}),
+  const auto follows = both(both(change.starting != V{}, change.turns == V{}), state.flies == V{}),
              runs = change.stands == V{};
   if (any(follows)) time_first_flight(tables, follows, least_s, change, state);
   const V left = ticks_of_stage(state) - state.tick, s = 1.0f / left;

@@ -259,7 +259,8 @@ V planned_shown(const Time<V>& time, const Change<V>& change) noexcept {
   constexpr float kShownAfter = 0.55f;  // of a first step: from then on all of it
   const V begins = smoother(0.0f, kShownAfter, time.share),
           walks = change.closing != V{} ? closing_left(time, change) : all<V>(1.0f);
-  return change.stands != V{} ? V{} : change.starting != V{} ? begins : walks;
+  const auto starts = both(change.starting != V{}, change.turns == V{});
+  return change.stands != V{} ? V{} : starts ? begins : walks;
 }
 template <class V>
 V planned_over(const Time<V>& time, const Change<V>& change) noexcept {
@@ -286,6 +287,18 @@ void fade_differences(const Time<V>& time, const State<V>& state, Change<V>& cha
   for (Off<V>* off : {&change.off_over, &change.off_ratio, &change.off_edge})
     fade(step_ticks, *off);
   fade(least(change.off_ticks, V(ticks_of_stage(state) - state.tick + 1.0f)), change.off_pitch);
+  if (any(change.turns != V{}))
+    for (Off<V>& off : change.off_turned) fade(change.off_ticks, off);
+}
+
+// The numbers of a stride that Change::off_turned changes, in its order.
+template <class V>
+std::array<V*, kTurnedNumbers> turned_numbers(Stride<V>& stride) noexcept {
+  FootInStride<V>&swing = stride.foot[0], &stand = stride.foot[1];
+  return {&stride.pelvis_m.y,        &stride.pelvis_yaw_rad,    &stride.pelvis_tilt_rad.x,
+          &stride.pelvis_tilt_rad.y, &stride.pelvis_tilt_rad.z, &stand.twist_rad,
+          &stand.roll_rad,           &swing.twist_rad,          &swing.roll_rad,
+          &stride.leg_rad[0][3],     &stride.leg_rad[1][3]};
 }
 
 // True where the hips lead, have just led, or stand: the pose then shows a phase of its own, not
@@ -377,6 +390,11 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
   if (any(change.shown != all<V>(1.0f))) show(change.shown, read);
   put_where<V>(no(runs), by_clock, read);
   round_lift_off(tables, time, phase, landing, over, state, change, read);
+  if (any(change.turns != V{})) {
+    const auto numbers = turned_numbers(read);
+    for (std::size_t k = 0; k < numbers.size(); ++k)
+      *numbers[k] = *numbers[k] + (change.turns != V{} ? change.off_turned[k].x : V{});
+  }
   stride = read;
   stride.heel_behind_m = by_clock.heel_behind_m, stride.heel_ahead_m = by_clock.heel_ahead_m;
   stride.heel_high_m = by_clock.heel_high_m;
@@ -474,13 +492,17 @@ void begin_lead(const Tables& tables, const Mask<V>& strikes, const V& phase, co
   for (Off<V>* off : {&change.off_phase, &change.off_shown}) off->x = rests ? V{} : off->x;
   for (Off<V>* off : {&change.off_over, &change.off_ratio, &change.off_pitch, &change.off_edge})
     *off = chosen(strikes, {}, *off);
+  const auto turned = both(strikes, change.turns != V{});
+  if (any(turned))
+    for (Off<V>& off : change.off_turned) off = chosen(turned, {}, off);
   change.led = strikes ? chosen<V>(leads, 1.0f, 0.0f) : change.led;
   const auto begins = both(strikes, either(change.led != V{}, change.was_led != V{}));
   go_on_from_here(tables, begins, state, change);
   change.is_new = begins ? all<V>(1.0f) : change.is_new;
-  for (V* ends : {&change.starting, &change.resumes, &change.gap_begin, &change.gap_rad,
-                  &change.gap_twist_rad, &change.gap_roll_rad, &change.gap_loose_rad,
-                  &change.pitch_lasts, &change.led_from, &change.led_rate_rad})
+  for (V* ends :
+       {&change.starting, &change.turns, &change.resumes, &change.gap_begin, &change.gap_rad,
+        &change.gap_twist_rad, &change.gap_roll_rad, &change.gap_loose_rad, &change.pitch_lasts,
+        &change.led_from, &change.led_rate_rad})
     *ends = strikes ? V{} : *ends;
   change.gap_lasts = strikes ? all<V>(kLiftFade) : change.gap_lasts;
   change.led_until = strikes ? all<V>(kNever) : change.led_until;

@@ -246,7 +246,8 @@ void change_step(const Tables& tables, bool moves, Block<1>& block, F& footing,
   change.off_ratio = {};
   // Without its rate: the hips' place at the strike is that of the ratio now, which would run
   // ahead.
-  change.off_ratio.x = ratio_was - ratio();
+  // A walk that turns back has its hips in time for their place in the other tables.
+  if (change.turns == 0.0f) change.off_ratio.x = ratio_was - ratio();
   if (!flies) return;
   constexpr float kLow_m = 0.001f;  // least height that a difference is scaled by
   const float ticks = state.flight_ticks;

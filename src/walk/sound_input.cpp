@@ -1,8 +1,8 @@
 #include "walk/sound_input.h"
 
 #include <algorithm>
-#include <cstddef>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 
 #include "control/params_range.h"

@@ -7,6 +7,7 @@
 #include "walk/paper.h"
 #include "walk/pose.h"
 #include "walk/rest.h"
+#include "walk/turn_back.h"
 #include "walk/walk.h"
 
 namespace gaitpad {
@@ -163,6 +164,9 @@ void change_ends(const Tables& tables, Block<kWidth>& block) noexcept {
   const V way_legs = (asked.length_m[0] + asked.length_m[1]) * (1.0f / tables.leg_m) +
                      kTurn_s * size(asked.turn_rad_s);
   const auto comes = size(V(way_legs - asked_legs)) > kGrows_per_s * tables.tick_s * way_legs;
+  if constexpr (!kUneven)
+    one_by_one<kWidth>(is_to_turn_back(block.state, block.change), block,
+                       [&](Block<1>& one, int) { turn_back(tables, one); });
   const auto walks = is_to_walk(block.state), stops = block.change.stops != V{},
              moves = both(block.change.stands == V{}, either(no(walks), no(comes)));
   asked_legs = asked.walks != V{} ? way_legs : V{};

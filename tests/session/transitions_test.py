@@ -116,5 +116,6 @@ def test_a_turn_on_the_spot_takes_four_seconds(player):
 
 def test_it_walks_back_soon_after_it_walked_ahead(player):
     median, worst = transitions.reversal(player)
-    assert median <= 1.5
-    assert worst <= 1.8
+    # A stand in between would take 0.35 s more.
+    assert median <= (1.2 if player.is_built_in else 1.5)
+    assert worst <= (1.3 if player.is_built_in else 1.8)

@@ -109,7 +109,8 @@ struct State {
   V frame_sine{}, frame_cosine{};
 };
 inline constexpr int kSinkKnots = 16;
-inline constexpr float kNever = 1e6f;  // ticks
+inline constexpr float kNever = 1e6f;      // ticks
+inline constexpr int kTurnedNumbers = 11;  // of Change::off_turned
 
 // Steps that are not steady: starts, stops and changes of pace. There the hips *lead*: they go
 // along a quintic to their place at the next strike, and the tables are read at the phase at which
@@ -134,6 +135,12 @@ struct Change {
   // the strike; of the share of the standing foot's pitch, at the latest until its stage ends.
   Off<V> off_phase, off_shown, off_over, off_ratio, off_edge, off_pitch;
   V off_ticks{};
+
+  // 1: the first step the other way of a walk that does not stand in between. What the tables of
+  // both directions differ by: the pelvis' height, yaw and tilt; twist and roll of the standing and
+  // the swing foot; both knees.
+  V turns{};
+  Off<V> off_turned[kTurnedNumbers];
 
   // A stop.
   V stops{};          // 1: the walk comes to rest

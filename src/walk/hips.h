@@ -298,7 +298,8 @@ std::array<V*, kTurnedNumbers> turned_numbers(Stride<V>& stride) noexcept {
   return {&stride.pelvis_m.y,        &stride.pelvis_yaw_rad,    &stride.pelvis_tilt_rad.x,
           &stride.pelvis_tilt_rad.y, &stride.pelvis_tilt_rad.z, &stand.twist_rad,
           &stand.roll_rad,           &swing.twist_rad,          &swing.roll_rad,
-          &stride.leg_rad[0][3],     &stride.leg_rad[1][3]};
+          &stride.leg_rad[0][3],     &stride.leg_rad[1][3],     &stand.pitch_rad,
+          &stride.stood_pitch_rad};
 }
 
 // True where the hips lead, have just led, or stand: the pose then shows a phase of its own, not

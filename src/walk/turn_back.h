@@ -29,11 +29,12 @@ inline Stride<float> shown_stride(const Tables& tables, const Change<float>& cha
                                   const State<float>& state, const Shares& share,
                                   float phase) noexcept {
   const Time<float> time = time_of(tables, state);
-  const float ratio =
-      planned_landing(tables, time, way_at_strike(tables, time, state), change, state).ratio;
-  Stride<float> stride = read_stride(tables, time, phase, state.ratio_behind, ratio, share.over,
-                                     Reads<float>{true, true});
+  const Landing<float> landing =
+      planned_landing(tables, time, way_at_strike(tables, time, state), change, state);
+  Stride<float> stride = read_stride(tables, time, phase, state.ratio_behind, landing.ratio,
+                                     share.over, Reads<float>{true, true});
   show(share.shown, stride);
+  round_lift_off(tables, time, phase, landing, share.over, state, change, stride);
   return stride;
 }
 

@@ -110,7 +110,7 @@ struct State {
 };
 inline constexpr int kSinkKnots = 16;
 inline constexpr float kNever = 1e6f;      // ticks
-inline constexpr int kTurnedNumbers = 11;  // of Change::off_turned
+inline constexpr int kTurnedNumbers = 13;  // of Change::off_turned
 
 // Steps that are not steady: starts, stops and changes of pace. There the hips *lead*: they go
 // along a quintic to their place at the next strike, and the tables are read at the phase at which
@@ -138,7 +138,7 @@ struct Change {
 
   // 1: the first step the other way of a walk that does not stand in between. What the tables of
   // both directions differ by: the pelvis' height, yaw and tilt; twist and roll of the standing and
-  // the swing foot; both knees.
+  // the swing foot; both knees; pitch of the standing foot, and of the swing foot if it stood.
   V turns{};
   Off<V> off_turned[kTurnedNumbers];
 

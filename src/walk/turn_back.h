@@ -101,11 +101,13 @@ inline void turn_back(const Tables& tables, Block<1>& block) noexcept {
   const int swing = right ? 1 : 0;
   State<float> next = state;
   next.tick += 1.0f;
-  const Shares shares = shares_of(tables, change, state),
-               next_shares_ = next_shares(tables, change, state);
-  Stride<float> was[2] = {
-      shown_stride(tables, change, state, shares, change.phase),
-      shown_stride(tables, change, next, next_shares_, change.phase + change.phase_rate)};
+  const Shares shares[2] = {shares_of(tables, change, state), next_shares(tables, change, state)};
+  // The stride that is shown now and a tick later.
+  const auto shown = [&](int k) {
+    return shown_stride(tables, change, k == 0 ? state : next, shares[k],
+                        change.phase + static_cast<float>(k) * change.phase_rate);
+  };
+  Stride<float> was[2] = {shown(0), shown(1)};
   float hardest = 0.0f;
   change_step(tables, true, block, level, [&] {
     state.backward = state.asked.backward;
@@ -133,9 +135,7 @@ inline void turn_back(const Tables& tables, Block<1>& block) noexcept {
   }
   next = state;
   next.tick += 1.0f;
-  Stride<float> is[2] = {
-      shown_stride(tables, change, state, shares, change.phase),
-      shown_stride(tables, change, next, next_shares_, change.phase + change.phase_rate)};
+  Stride<float> is[2] = {shown(0), shown(1)};
   std::array<float*, kTurnedNumbers> from[2] = {turned_numbers(was[0]), turned_numbers(was[1])},
                                      to[2] = {turned_numbers(is[0]), turned_numbers(is[1])};
   for (int k = 0; k < kTurnedNumbers; ++k) {

@@ -87,7 +87,8 @@ def test_unplugged_while_walking_and_plugged_in_again(case):
         pad.unplug()
         session.wait_unplugged(times + 1)
         time.sleep(2.0)  # the walk finishes its step and stands
-        assert session.handles() <= handles, f"{session.handles()} handles, {handles} at first"
+        # Looking for the pad opens a file now and then; what leaks stays open.
+        wait_for(lambda: session.handles() <= handles, 10, f"{handles} handles as at first, not {session.handles()}")
         unplugged_ns = [int(line[1]) for line in pad.lines("unplugging")]
     assert session.summary["unplugged"] == times + 1
     frames = session.frames()

@@ -154,7 +154,7 @@ struct PaperLeg {
 };
 void add_legs(const Walker& before, const Walker& now, double, std::vector<PaperLeg>& legs) {
   constexpr double kLow_m = 1e-5;  // a heel this low has not risen
-  const WalkFrame& frame = now.state.frame;
+  const WalkFrame frame = walk_frame(now);
   const auto last_rad = leg_angles(*before.model, before.pose),
              solved_rad = leg_angles(*now.model, now.pose);
   for (const Side side : {kLeftSide, kRightSide}) {
@@ -393,7 +393,7 @@ Work step_work(const Session& session, const Simulation& simulation, const char*
   for (int tick = kFirstTick; tick < kLastTick; ++tick) {
     counted.step(session.ticks[tick]);
     for (const Walker& w : counted.walkers())
-      for (const int n : w.state.frame.ik_iterations) iterations += n;
+      for (const float n : w.state.walk.told.iterations) iterations += n;
   }
   work.notes["iterations_per_leg"] = iterations / (2.0 * work.units * (kLastTick - kFirstTick));
   return work;

@@ -196,7 +196,7 @@ void copy_pose(const Pose& from, Pose& to) noexcept {
 
 // One tick with these parameters.
 void advance_walk(const GaitParams& params, double dt_s, gaitpad_walk& walk) noexcept {
-  const WalkFrame before = walk.state.frame;
+  const WalkSteps before = walk_steps(walk.state);
   copy_pose(walk.pose, walk.before);
   advance(walk.shared->model, params, IkMode::robust, dt_s, walk.state, walk.pose);
   walk.events = walk_events(before, walk.state);
@@ -208,7 +208,7 @@ Placement placement_of(const double place_m[3], double heading_rad) noexcept {
 }
 
 gaitpad_frame frame_of(const gaitpad_walk& walk) noexcept {
-  const WalkFrame& f = walk.state.frame;
+  const WalkFrame f = walk_frame(walk.shared->model, walk.state, walk.pose);
   gaitpad_frame out = {};
   out.stage = static_cast<int32_t>(f.stage);
   out.swing = f.swing;
@@ -228,7 +228,7 @@ gaitpad_frame frame_of(const gaitpad_walk& walk) noexcept {
     if (event.kind == WalkEventKind::heel_strike) out.heel_struck[event.side] = 1;
     if (event.kind == WalkEventKind::toe_off) out.toe_off[event.side] = 1;
   }
-  out.bad_inputs = f.bad_inputs + walk.bad_numbers;
+  out.bad_inputs = walk.state.bad_inputs + walk.bad_numbers;
   return out;
 }
 

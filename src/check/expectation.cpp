@@ -36,7 +36,7 @@ double worse_slip_m(double before_m, double slip_m) noexcept {
 }
 
 void RunMeter::look(const WalkerSample& sample, const Walker& walker, Character& character) const {
-  const WalkFrame& frame = walker.state.frame;
+  const WalkFrame frame = walk_frame(walker);
   character.walking_ticks += sample.stage != Stage::idle;
   for (const Side side : {kLeftSide, kRightSide}) {
     Foot& foot = character.feet[side];
@@ -86,7 +86,7 @@ Measured RunMeter::finish(const Simulation& simulation, const RunSummary& summar
   for (std::size_t i = 0; i < characters_.size(); ++i) {
     const Character& c = characters_[i];
     const WalkerSummary& walker = summary.walkers[i];
-    const WalkFrame& frame = simulation.walkers()[i].state.frame;
+    const WalkFrame frame = walk_frame(simulation.walkers()[i]);
     auto& m = measured.characters[i];
     m[kStepsLeft] = walker.steps[kLeftSide];
     m[kStepsRight] = walker.steps[kRightSide];

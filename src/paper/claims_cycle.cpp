@@ -308,7 +308,7 @@ GroundWalk ground_walk_of(const WalkModel& model, IkMode mode) {
   int failed = 0;
   const Walk walk = walked(what, [&](const WalkState& state, const Pose& pose) {
     forward_kinematics(model.cycle.skeleton, pose, frames);
-    const WalkFrame& f = state.frame;
+    const WalkFrame f = walk_frame(model, state, pose);
     for (const Side side : {kLeftSide, kRightSide}) {
       const double heel = off_ground_m(terrain, f.heel_m[side], 0.0),
                    toe = off_ground_m(terrain, f.toe_m[side], build.toe_rest_m[side]);

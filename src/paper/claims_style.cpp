@@ -346,7 +346,7 @@ Above above_the_hips(const WalkModel& model, IkMode mode) {
   double before = 0.0;
   bool was_whole = false;
   straight(model, {}, mode, kPaperStick, 7.0, [&](const WalkState& s, const Pose& pose) {
-    const bool is_whole = presence(s) >= 1.0 && s.frame.stage != Stage::idle;
+    const bool is_whole = presence(s) >= 1.0 && walk_steps(s).stage != Stage::idle;
     if (is_whole) {
       sample_local(model.cycle, shown_phase(s), source);
       for (const int j : upper) {
@@ -615,12 +615,13 @@ std::vector<Claim> pad_claims(const Study& study) {
     list.add_untested("25 gamepad", equal_to(0), simulation.error().message);
     return list.take_claims();
   }
-  const GaitLimits& limits = simulation->walkers()[0].limits;
-  const WalkFrame& frame = simulation->walkers()[0].state.frame;
+  const Walker& walker = simulation->walkers()[0];
+  const GaitLimits& limits = walker.limits;
   list.add("25 sticks inside the dead zone that are not exactly neutral", not_neutral(),
            equal_to(0));
   list.add("25 deflections at which more stick walks slower", speed_falls(limits), equal_to(0));
   run(*simulation, 6 * kSecond, {paper_report(vec2(0.0, 1.0))});
+  const WalkFrame frame = walk_frame(walker);
   list.add("25 step at full stick over the greatest",
            frame.stride_m[kRightSide] / limits.max_step_m / limits.step_share[kRightSide],
            within(0.995, 1.005));
@@ -635,7 +636,7 @@ std::vector<Claim> pad_claims(const Study& study) {
   const bool is_neutral = glm::length(simulation->stick().left) == 0.0;
   list.add("25 stick on the tick of the unplugging", is_neutral ? 0.0 : 1.0, equal_to(0));
   int ticks = 0;
-  while (frame.stage != Stage::idle && ticks < 10 * kSecond) {
+  while (walk_steps(walker.state).stage != Stage::idle && ticks < 10 * kSecond) {
     simulation->step({});
     ++ticks;
   }

@@ -134,7 +134,7 @@ Walk walked(const WalkCase& what, const EachTick& each) {
     advance(model, gait_params(stick, what.style, limits), what.ik, 1.0 / kPaperRate_hz, state,
             pose);
     WalkSample& sample = walk.samples[static_cast<std::size_t>(tick)];
-    sample.frame = state.frame;
+    sample.frame = walk_frame(model, state, pose);
     sample.angles_rad = leg_angles(model, pose);
     sample.phase = shown_phase(state);
     sample.hips_m = state.root.place_m;

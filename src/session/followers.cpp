@@ -161,14 +161,14 @@ Followers::Followers(const Options& options,
 
 // Overrides a stick at rest with the first character's speed and turn rate; gait_params() then
 // finds the member's own steps. `ahead`: the first character's heading, a unit vector.
-GaitParams Followers::params_of(int member, const GaitParams& first, const WalkState& first_state,
-                                const vec3& ahead) const noexcept {
+GaitParams Followers::params_of(int member, const GaitParams& first, const Placement& first_root,
+                                double first_m_s, const vec3& ahead) const noexcept {
   const Kind& kind = kinds_[kind_[static_cast<std::size_t>(member)]];
   if (!first.walking) return gait_params(Stick{}, kind.values, kind.limits);
   const Placement root = crowd_.root(member);
   // Vector from the member to its place in the formation.
-  const vec3 off_m = (first_state.root.place_m - first_m_) -
-                     (root.place_m - start_m_[static_cast<std::size_t>(member)]);
+  const vec3 off_m =
+      (first_root.place_m - first_m_) - (root.place_m - start_m_[static_cast<std::size_t>(member)]);
   const double behind_m = glm::dot(vec3(off_m.x, 0.0, off_m.z), ahead);
   // Sideways distance to its place, + to the left.
   const double beside_m = off_m.x * ahead.z - off_m.z * ahead.x;
@@ -182,13 +182,13 @@ GaitParams Followers::params_of(int member, const GaitParams& first, const WalkS
     const double more = std::clamp(way * behind_m * kCatchUp_1_m, -kMostWait, kMostCatchUp);
     // Stairs make the first character slower than its stick asks; use the speed of its present
     // cycle.
-    const double real_m_s = is_flat_ ? speed : std::min(speed, first_state.frame.speed_m_s);
+    const double real_m_s = is_flat_ ? speed : std::min(speed, first_m_s);
     const double wanted_m_s = std::max(real_m_s + speed * more, kLeastSpeed * speed);
     // Short legs keep up by quicker steps.
     limits.max_speed_m_s =
         std::max(limits.max_speed_m_s, first.backward ? wanted_m_s / kBackwardShare : wanted_m_s);
     set(overrides, GaitKey::speed_m_s, way * wanted_m_s);
-    const double aim_rad = first_state.root.heading_rad +
+    const double aim_rad = first_root.heading_rad +
                            std::clamp(way * beside_m * kAim_rad_m, -kMostAim_rad, kMostAim_rad);
     turn_rate_rad_s +=
         std::clamp((aim_rad - root.heading_rad) * kTurn_1_s, -kMostTurn_rad_s, kMostTurn_rad_s);
@@ -197,13 +197,13 @@ GaitParams Followers::params_of(int member, const GaitParams& first, const WalkS
   return gait_params(Stick{}, kind.values, overrides, limits);
 }
 
-void Followers::advance(const GaitParams& first, const WalkState& first_state,
+void Followers::advance(const GaitParams& first, const Placement& first_root, double first_m_s,
                         double dt_s) noexcept {
   if (size() == 0) return;
-  const vec3 ahead = heading_direction(first_state.root.heading_rad);
+  const vec3 ahead = heading_direction(first_root.heading_rad);
   const std::span<GaitParams> params = crowd_.params();
   for (int i = 0; i < size(); ++i)
-    params[static_cast<std::size_t>(i)] = params_of(i, first, first_state, ahead);
+    params[static_cast<std::size_t>(i)] = params_of(i, first, first_root, first_m_s, ahead);
   if (workers_ == nullptr) {
     crowd_.advance(dt_s);
   } else {

@@ -419,7 +419,7 @@ void LiveLoop::sample(std::int64_t took_ns) noexcept {
 void LiveLoop::beat() noexcept {
   const std::uint16_t device = simulation_.pads().driving();
   if (device == kNoDevice) return;
-  const double speed_m_s = simulation_.walkers().front().state.frame.speed_m_s;
+  const double speed_m_s = walk_frame(simulation_.walkers().front()).speed_m_s;
   pads_.rumble(device, heel_beat(speed_m_s), kBeat);
 }
 

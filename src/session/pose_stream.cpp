@@ -165,7 +165,8 @@ void copy_tick(const Simulation& simulation, StreamedTick& streamed) noexcept {
   streamed.walker_count = static_cast<int>(walkers.size());
   for (std::size_t i = 0; i < walkers.size(); ++i) {
     copy_pose(walkers[i].pose, streamed.walkers[i].pose);
-    streamed.walkers[i].heading_rad = walkers[i].state.frame.heading_rad;
+    streamed.walkers[i].heading_rad =
+        moved(walkers[i].state.placed, walkers[i].state.root).heading_rad;
   }
 }
 

@@ -9,7 +9,7 @@ void copy_walker(const Walker& walker, WalkerFrame& frame) noexcept {
   const WalkState& state = walker.state;
   copy_pose(walker.before, frame.before);
   copy_pose(walker.pose, frame.pose);
-  frame.walk = state.frame;
+  frame.walk = walk_frame(walker);
   frame.params = walker.params;
   frame.style = walker.values;
   frame.style_index = walker.style;
@@ -77,7 +77,7 @@ void copy_sample(const Simulation& simulation, TickSample& sample) noexcept {
   sample.stick_y = static_cast<float>(simulation.stick().left.y);
   for (std::size_t i = 0; i < walkers.size(); ++i) {
     const Walker& walker = walkers[i];
-    const WalkFrame& walk = walker.state.frame;
+    const WalkFrame walk = walk_frame(walker);
     const std::array<LegAngles, 2> angles_rad = leg_angles(*walker.model, walker.pose);
     WalkerSample& s = sample.walkers[i];
     for (const Side side : {kLeftSide, kRightSide}) {

@@ -127,17 +127,17 @@ bool give_back(std::span<Walker> walkers, std::string_view name) noexcept {
 
 // Keeps the chosen style and the counts since the session's start.
 void restart(std::span<const Style> styles, Walker& w) noexcept {
-  const std::array<int, 2> steps = w.state.frame.steps;
+  const std::array<int, 2> steps = walk_steps(w.state).steps;
   restart_style(w, styles);
   w.overrides = {};
   w.state = standing(*w.model, w.start_m, w.pose);
-  w.state.frame.steps = steps;
   for (const Side side : {kLeftSide, kRightSide})
     w.state.walk.told.steps[side] = static_cast<float>(steps[side]);
 }
 
 int landings(const Walker& walker) noexcept {
-  return walker.state.frame.steps[kLeftSide] + walker.state.frame.steps[kRightSide];
+  const Told<float>& told = walker.state.walk.told;
+  return static_cast<int>(told.steps[kLeftSide] + told.steps[kRightSide] - told.struck);
 }
 
 }  // namespace
@@ -293,11 +293,14 @@ void Simulation::step(std::span<const Report> reports) noexcept {
     const vec3 way_m = w.state.root.place_m - before_m;
     const double walked_m = glm::length(vec2(way_m.x, way_m.z));
     w.walked_m += walked_m;
-    w.tired = tired(w.tired, w.values, walked_m, w.state.frame.stage == Stage::idle, dt_s_);
-    for (const bool failed : w.state.frame.ik_failed) w.ik_failures += failed;
+    w.tired = tired(w.tired, w.values, walked_m, walk_steps(w.state).stage == Stage::idle, dt_s_);
+    for (const float failed : w.state.walk.told.failed) w.ik_failures += failed != 0.0f;
     add_to_hash(w.pose.root_m, {w.pose.local.data(), static_cast<std::size_t>(w.pose.joint_count)});
   }
-  followers_.advance(walkers_.front().params, walkers_.front().state, dt_s_);
+  if (followers_.size() > 0) {
+    const Walker& first = walkers_.front();
+    followers_.advance(first.params, first.state.root, walk_frame(first).speed_m_s, dt_s_);
+  }
   const Crowd& crowd = followers_.crowd();
   for (int i = 0; i < crowd.size(); ++i) add_to_hash(crowd.root_m(i), crowd.local(i));
   heel_struck_ = landings(walkers_.front()) != landings_before;

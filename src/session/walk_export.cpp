@@ -224,7 +224,7 @@ WalkerSummary walker_summary(const Simulation& simulation, const Walker& walker)
     s.ankle_joint[side] = model.cycle.skeleton.joints[leg.joints.ankle].name;
     s.heel_offset_m[side] = heel_offset_m(leg);
     s.toe_rest_m[side] = leg.toe_rest_m;
-    s.steps[side] = walker.state.frame.steps[side];
+    s.steps[side] = walk_steps(walker.state).steps[side];
   }
   s.style = simulation.styles()[walker.style].name;
   s.fatigue = walker.in_force.fatigue;
@@ -268,7 +268,7 @@ Result<WalkExport> WalkExport::open(OutputFiles& files, const Walker& walker, st
 }
 
 void WalkExport::write(std::int64_t tick, const Stick& stick) {
-  append_frames_row(tick, format_.rate_hz, stick, walker_->state.frame, row_);
+  append_frames_row(tick, format_.rate_hz, stick, walk_frame(*walker_), row_);
   frames_->write(row_.data(), static_cast<std::streamsize>(row_.size()));
   row_.clear();
   if (!is_shown(tick, format_.rate_hz, format_.fps)) return;
@@ -326,7 +326,7 @@ void ExportedFollower::follow(const Simulation& simulation) noexcept {
   crowd.copy_pose(member_, walker_->pose);
   const vec3 way_m = walker_->state.root.place_m - before_m;
   walker_->walked_m += glm::length(vec2(way_m.x, way_m.z));
-  for (const bool failed : walker_->state.frame.ik_failed) walker_->ik_failures += failed;
+  for (const float failed : walker_->state.walk.told.failed) walker_->ik_failures += failed != 0.0f;
 }
 
 WalkerSummary ExportedFollower::summary(const Simulation& simulation) const {

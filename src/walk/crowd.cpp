@@ -272,13 +272,14 @@ WalkState Crowd::state(int member) const noexcept {
   state.detail = details_[member];
   state.tick_s = blocks_[block]->tick_s;
   state.root = root_of(state.walk);
-  const WalkModel& model = *models_[member];
+  state.root_before = root_before(*blocks_[block], lane);
   place(state.placed, 0, state.walk);
-  report(model, tables_of(model, state.tick_s / tick_parts(state.tick_s)), state.walk,
-         root_before(*blocks_[block], lane), state.root, roots_m_[member], local(member),
-         state.frame);
-  state.frame.bad_inputs = bad_inputs_[member];
+  state.bad_inputs = bad_inputs_[member];
   return state;
+}
+
+WalkFrame Crowd::frame(int member) const noexcept {
+  return frame_of(*models_[member], state(member), roots_m_[member], local(member));
 }
 
 Placement Crowd::root(int member) const noexcept {
@@ -290,7 +291,7 @@ void Crowd::put_state(int member, const WalkState& state) noexcept {
   blocks_[block]->put(state, lane);
   blocks_[block]->set_detail(details_[member], lane);
   placed_[member] = state.placed;
-  bad_inputs_[member] = state.frame.bad_inputs;
+  bad_inputs_[member] = state.bad_inputs;
 }
 
 void Crowd::restart(int member, const vec3& place_m) noexcept {
@@ -358,7 +359,7 @@ void Crowd::place_anew(int member, const Work& work) noexcept {
   WalkState moving = state(member);
   work(moving, pose);
   placed_[member] = moving.placed;
-  bad_inputs_[member] = moving.frame.bad_inputs;
+  bad_inputs_[member] = moving.bad_inputs;
   store_pose(member, pose);
 }
 
@@ -437,7 +438,7 @@ void Crowd::advance_block(int number, double dt_s) noexcept {
       if (!is_sound(params_[member])) {
         WalkState in_force = state(member);
         params_[member] = mended_params(params_[member], in_force);
-        bad_inputs_[member] = in_force.frame.bad_inputs;
+        bad_inputs_[member] = in_force.bad_inputs;
       }
       block.ask(params_[member], lane);
     }

@@ -58,24 +58,24 @@ GaitParams mended_params(const GaitParams& params, WalkState& state) noexcept {
     const double least = numbers_of(range.least)[k], most = numbers_of(range.most)[k];
     if (numbers[k] >= least && numbers[k] <= most) continue;
     numbers[k] = within(numbers_of(in_force)[k], least, most);
-    ++state.frame.bad_inputs;
+    ++state.bad_inputs;
   }
   return mended;
 }
 
 double mended_tick(WalkState& state) noexcept {
-  ++state.frame.bad_inputs;
+  ++state.bad_inputs;
   return state.tick_s;
 }
 
 Detail mended_detail(WalkState& state) noexcept {
-  ++state.frame.bad_inputs;
+  ++state.bad_inputs;
   return detail_of(state.walk);
 }
 
 double mended_place(double place_m, WalkState& state) noexcept {
   if (std::abs(place_m) <= kFarthest_m) return place_m;
-  ++state.frame.bad_inputs;
+  ++state.bad_inputs;
   return 0.0;
 }
 

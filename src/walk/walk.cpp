@@ -10,10 +10,6 @@
 namespace gaitpad {
 namespace {
 
-std::span<const quat> locals_of(const WalkModel& model, const Pose& pose) noexcept {
-  return {pose.local.data(), model.cycle.skeleton.joints.size()};
-}
-
 // Moves a walk on by `parts` ticks.
 void advance_by(const Tables& tables, IkMode mode, int parts, WalkState& state,
                 Pose& pose) noexcept {
@@ -45,9 +41,7 @@ WalkState standing(const WalkModel& model, const vec3& place_m, double heading_r
   const Tables tables = tables_of(model, state.tick_s);
   stand(tables, {x_m, z_m, yaw_rad}, state.walk);
   advance_by(tables, IkMode::robust, 1, state, pose);
-  state.root = root_of(state.walk);
-  report(model, tables, state.walk, state.root, state.root, pose.root_m, locals_of(model, pose),
-         state.frame);
+  state.root = state.root_before = root_of(state.walk);
   return state;
 }
 
@@ -63,10 +57,8 @@ void advance(const WalkModel& model, const GaitParams& params, IkMode mode, doub
   set_detail(state.detail, 0, state.walk);
   ask(params, state.walk);
   advance_by(tables, mode, parts, state, pose);
-  const Placement before = state.root;
+  state.root_before = state.root;
   state.root = root_of(state.walk);
-  report(model, tables, state.walk, before, state.root, pose.root_m, locals_of(model, pose),
-         state.frame);
 }
 
 double presence(const WalkState& state) noexcept {

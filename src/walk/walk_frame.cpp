@@ -4,6 +4,7 @@
 #include "motion/leg_pose.h"
 #include "walk/feet.h"
 #include "walk/ground_plan.h"
+#include "walk/sound_input.h"
 
 namespace gaitpad {
 namespace {
@@ -101,33 +102,42 @@ float phase_of(const Block<1>& block) noexcept {
   return runs_by_hips(moment_of(block), block) ? block.change.phase : block.state.phase;
 }
 
-void report(const WalkModel& model, const Tables& tables, const Block<1>& block,
-            const Placement& before, const Placement& root, const vec3& root_m,
-            std::span<const quat> local, WalkFrame& frame) noexcept {
-  const State<float>& state = block.state;
-  const Told<float>& told = block.told;
-  const Placement& placed = block.placed[0];
-  const Moment at = moment_of(block);
-  frame.stage = at.flies ? Stage::flight : at.stands && !at.settles ? Stage::idle : Stage::roll;
+WalkSteps walk_steps(const WalkState& state) noexcept {
+  const Moment at = moment_of(state.walk);
+  WalkSteps now;
+  now.stage = at.flies ? Stage::flight : at.stands && !at.settles ? Stage::idle : Stage::roll;
   // While standing, the foot that has landed last.
-  frame.swing = at.stands ? side_of(!at.right) : side_of(at.flies == at.right);
+  now.swing = at.stands ? side_of(!at.right) : side_of(at.flies == at.right);
+  const bool is_idle = now.stage == Stage::idle;
+  for (const Side side : {kLeftSide, kRightSide}) {
+    const bool swings = now.swing == side, counts = at.struck && swings;
+    now.heel_planted[side] = is_idle || (now.stage == Stage::roll && swings);
+    now.toe_planted[side] = is_idle || !swings;
+    now.steps[side] = static_cast<int>(state.walk.told.steps[side]) - counts;
+  }
+  return now;
+}
+
+WalkFrame frame_of(const WalkModel& model, const WalkState& state, const vec3& root_m,
+                   std::span<const quat> local) noexcept {
+  const Tables tables = tables_of(model, state.tick_s / tick_parts(state.tick_s));
+  const State<float>& walk = state.walk.state;
+  const Told<float>& told = state.walk.told;
+  const Placement &placed = state.walk.placed[0], &root = state.root, &before = state.root_before;
+  const Moment at = moment_of(state.walk);
+  WalkFrame frame{walk_steps(state)};
   int step_ticks = at.ticks, last_ticks = static_cast<int>(told.step_ticks[0]);
   if (at.struck) {  // the pose still shows the step that has ended
     step_ticks = last_ticks;
     last_ticks = static_cast<int>(told.step_ticks[1]);
   }
   for (const Side side : {kLeftSide, kRightSide}) {
-    const bool swings = frame.swing == side, counts = at.struck && swings;
-    const bool is_idle = frame.stage == Stage::idle;
-    frame.heel_planted[side] = is_idle || (frame.stage == Stage::roll && swings);
-    frame.toe_planted[side] = is_idle || !swings;
-    frame.steps[side] = static_cast<int>(told.steps[side]) - counts;
-    frame.stride_m[side] = is_idle ? 0.0 : told.stride_m[side];
+    frame.stride_m[side] = frame.stage == Stage::idle ? 0.0 : told.stride_m[side];
     frame.ik_iterations[side] = static_cast<int>(told.iterations[side]);
     frame.ik_error_m[side] = told.error_m[side];
     frame.ik_failed[side] = told.failed[side] != 0.0f;
   }
-  if (!at.stands && !at.struck) frame.stride_m[side_of(at.right)] = step_m(tables, state);
+  if (!at.stands && !at.struck) frame.stride_m[side_of(at.right)] = step_m(tables, walk);
   frame.overhangs = static_cast<int>(told.overhangs);
   const int ticks = step_ticks + (last_ticks > 0 ? last_ticks : step_ticks);
   frame.speed_m_s = at.stands ? 0.0
@@ -137,9 +147,15 @@ void report(const WalkModel& model, const Tables& tables, const Block<1>& block,
   frame.root_turned_rad = root.heading_rad - before.heading_rad;
   frame.root_m = to_world(placed, root.place_m);
   frame.heading_rad = placed.heading_rad + root.heading_rad;
-  frame.turn_rate_rad_s = state.turn_rad_s.x;
+  frame.turn_rate_rad_s = walk.turn_rad_s.x;
   frame.pelvis_m = root_m;
   report_feet(model, tables, placed, root_m, local, frame);
+  return frame;
+}
+
+WalkFrame walk_frame(const WalkModel& model, const WalkState& state, const Pose& pose) noexcept {
+  return frame_of(model, state, pose.root_m,
+                  {pose.local.data(), model.cycle.skeleton.joints.size()});
 }
 
 std::array<LegAngles, 2> leg_angles(const WalkModel& model, const Pose& pose) noexcept {

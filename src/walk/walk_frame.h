@@ -1,4 +1,4 @@
-// Reports a tick (WalkFrame) from the walk's state and pose. Blocks report only on request.
+// Reports a tick (WalkFrame) from the walk's state and pose.
 #pragma once
 #include <span>
 
@@ -21,9 +21,8 @@ Placement root_of(const Block<kWidth>& block, int walk) noexcept {
 // Phase of the data that the pose shows.
 float phase_of(const Block<1>& block) noexcept;
 
-// Fills a frame, except WalkFrame::bad_inputs. `before`: root before the tick.
-void report(const WalkModel& model, const Tables& tables, const Block<1>& block,
-            const Placement& before, const Placement& root, const vec3& root_m,
-            std::span<const quat> local, WalkFrame& frame) noexcept;
+// walk_frame() of a pose that is not in a Pose.
+WalkFrame frame_of(const WalkModel& model, const WalkState& state, const vec3& root_m,
+                   std::span<const quat> local) noexcept;
 
 }  // namespace gaitpad

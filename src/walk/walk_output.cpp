@@ -26,8 +26,8 @@ int bones_of(std::span<const int> joints, std::span<float> out, std::size_t floa
 
 }  // namespace
 
-WalkEvents walk_events(const WalkFrame& before, const WalkState& state) noexcept {
-  const WalkFrame& now = state.frame;
+WalkEvents walk_events(const WalkSteps& before, const WalkState& state) noexcept {
+  const WalkSteps now = walk_steps(state);
   WalkEvents events;
   // Place of an event: the heel or toe where the foot stands, or stood last.
   const Block<1>& walk = state.walk;

@@ -1,27 +1,12 @@
 // Places a walk in the world, and lets it follow a body that an engine moves.
-#include "walk/walk_placement.h"
-
 #include <cmath>
 #include <limits>
 
 #include "gaitpad/control.h"
+#include "gaitpad/walk.h"
+#include "walk/steer.h"
 
 namespace gaitpad {
-
-void place_in_world(const Placement& placed, WalkFrame& frame, vec3& root_m, quat& root) noexcept {
-  if (placed == Placement{}) return;
-  root_m = to_world(placed, root_m);
-  root = rotation_y(placed.heading_rad) * root;
-  frame.heading_rad += placed.heading_rad;
-  frame.pelvis_m = to_world(placed, frame.pelvis_m);
-  frame.root_m = to_world(placed, frame.root_m);
-  for (const int side : {0, 1}) {
-    frame.heel_m[side] = to_world(placed, frame.heel_m[side]);
-    frame.toe_m[side] = to_world(placed, frame.toe_m[side]);
-    frame.heel_ground_m[side] += placed.place_m.y;
-    frame.toe_ground_m[side] += placed.place_m.y;
-  }
-}
 
 namespace {
 
@@ -30,13 +15,16 @@ bool is_sound_move(const vec3& place_m, double heading_rad, WalkState& state) no
   int bad = 0;
   for (const double number : {place_m.x, place_m.y, place_m.z, heading_rad})
     bad += !(std::abs(number) <= kFarthest_m);
-  state.frame.bad_inputs += bad;
+  state.bad_inputs += bad;
   return bad == 0;
 }
 
 void place_walk(const Placement& by, WalkState& state, Pose& pose) noexcept {
+  if (by == Placement{}) return;
   state.placed = moved(by, state.placed);
-  place_in_world(by, state.frame, pose.root_m, pose.local[0]);
+  place(state.placed, 0, state.walk);
+  pose.root_m = to_world(by, pose.root_m);
+  pose.local[0] = rotation_y(by.heading_rad) * pose.local[0];
 }
 
 bool is_finite(const CapsuleMotion& c) noexcept {
@@ -64,22 +52,22 @@ GaitParams following(const CapsuleMotion& capsule, const WalkState& state, const
   constexpr double kCatchUp_s = 0.6, kTurns_s = 0.35;
   constexpr double kStill_m_s = 0.1, kBeside_m = 0.8;  // a slower and nearer body has arrived
   constexpr double kNear_m = 0.12, kFaces_rad = 3.0 * kDegree;  // a walk that is nearer stands
-  const WalkFrame& frame = state.frame;
+  const Placement root = moved(state.placed, state.root);
   Stick stick;
   if (!is_finite(capsule)) {
     stick.left = vec2(std::numeric_limits<double>::quiet_NaN());
     return gait_params(stick, style, limits);
   }
-  vec3 off_m = capsule.place_m - frame.root_m;
+  vec3 off_m = capsule.place_m - root.place_m;
   off_m.y = 0.0;
   const vec3 goes = capsule.velocity_m_s + off_m / kCatchUp_s;
   const bool arrives =
       horizontal_length(capsule.velocity_m_s) < kStill_m_s && horizontal_length(off_m) < kBeside_m;
   const double aim_rad = arrives ? capsule.heading_rad : heading_of(goes);
-  const double off_rad = aim_rad - frame.heading_rad,
+  const double off_rad = aim_rad - root.heading_rad,
                left_rad = off_rad - 2.0 * kPi * std::floor(off_rad / (2.0 * kPi) + 0.5);
   // The walk steps back only to a body that has arrived; otherwise it turns round.
-  const double along = glm::dot(goes, heading_direction(frame.heading_rad)),
+  const double along = glm::dot(goes, heading_direction(root.heading_rad)),
                ahead = arrives ? along : std::max(0.0, along);
   GaitOverrides overrides;
   const auto ask = [&overrides](GaitKey key, double value) {

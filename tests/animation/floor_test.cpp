@@ -105,14 +105,14 @@ TEST(AskedGround, IsTheGroundOfThePlaceThatAWalkIsPutTo) {
   for (int tick = 0; tick < 12 * kRate; ++tick) {
     const bool put = tick % kRate == 77;
     if (put)
-      put_walk(state.frame.root_m +
+      put_walk(walk_frame(model, state, pose).root_m +
                    vec3(2.0 * kPi / 0.8 * (tick / kRate % 2 ? 1.0 : -1.0), 0.0, 2.0 * kPi / 0.7),
-               state.frame.heading_rad, state, pose);
+               walk_frame(model, state, pose).heading_rad, state, pose);
     // In each fourth second the stick rests, so that both feet stand flat for a while.
     const bool stands = tick / kRate % 4 == 3;
     advance(model, stands ? stand : params, IkMode::robust, kDt, state, pose);
+    const WalkFrame frame = walk_frame(model, state, pose);
     for (const int side : {0, 1}) {
-      const WalkFrame& frame = state.frame;
       if (frame.toe_planted[side] && stood[side] && !put)
         drift_m = std::max(drift_m, glm::distance(frame.toe_m[side], last[side]));
       const vec3& heel = frame.heel_m[side];
@@ -131,7 +131,7 @@ TEST(AskedGround, IsTheGroundOfThePlaceThatAWalkIsPutTo) {
   EXPECT_LT(drift_m, 1e-4);
   EXPECT_LT(off_m, 1e-4);
   EXPECT_LT(ball_off_m, 1e-4);
-  EXPECT_GT(state.frame.steps[0], 6);
+  EXPECT_GT(walk_steps(state).steps[0], 6);
 }
 
 int asked_several = 0, asked_alone = 0;
@@ -205,14 +205,15 @@ TEST(GroundGrid, IsWalkedOnInAnyDirectionWithHeelsOnIt) {
     double off_m = 0.0;
     for (int tick = 0; tick < 5 * kRate; ++tick) {
       advance(model, params, IkMode::robust, kDt, state, pose);
+      const WalkFrame frame = walk_frame(model, state, pose);
       for (const int side : {0, 1}) {
-        const vec3& heel = state.frame.heel_m[side];
-        if (state.frame.heel_planted[side])
+        const vec3& heel = frame.heel_m[side];
+        if (frame.heel_planted[side])
           off_m = std::max(off_m, std::abs(heel.y - ground_at(grid, heel.x, heel.z).height_m));
       }
     }
     EXPECT_LT(off_m, 1e-4) << heading_rad;
-    EXPECT_GT(state.frame.steps[0], 3);
+    EXPECT_GT(walk_steps(state).steps[0], 3);
   }
 }
 

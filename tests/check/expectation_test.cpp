@@ -185,7 +185,7 @@ TEST(RunMeter, MeasuresWhatThePosesShow) {
       const vec3 step_m = walker.state.root.place_m - last_m[i];
       way_m[i] += std::hypot(step_m.x, step_m.z);
       last_m[i] = walker.state.root.place_m;
-      moving_ticks[i] += walker.state.frame.stage != Stage::idle;
+      moving_ticks[i] += walk_steps(walker.state).stage != Stage::idle;
     }
   }
   const SimulationConfig config = made_config(2);
@@ -197,7 +197,7 @@ TEST(RunMeter, MeasuresWhatThePosesShow) {
   ASSERT_EQ(measured.characters.size(), 2u);
   for (int i = 0; i < 2; ++i) {
     const auto& m = measured.characters[i];
-    const WalkFrame& frame = simulation.walkers()[i].state.frame;
+    const WalkFrame frame = walk_frame(simulation.walkers()[i]);
     EXPECT_NEAR(m[kDistance], way_m[i], 1e-9);
     EXPECT_NEAR(m[kSpeed], way_m[i] / (moving_ticks[i] / 240.0), 1e-9);
     EXPECT_EQ(m[kStepsLeft], frame.steps[kLeftSide]);

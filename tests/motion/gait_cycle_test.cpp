@@ -274,7 +274,8 @@ TEST(GaitCycle, AStepToLimpWalksBackwardsInACurveWithoutSuddenJoints) {
     before = pose;
     advance(model, gait_params(stick, StyleValues{}, gait_limits(model)), IkMode::robust,
             1.0 / 240.0, state, pose);
-    EXPECT_FALSE(state.frame.ik_failed[kLeftSide] || state.frame.ik_failed[kRightSide]) << tick;
+    const WalkFrame frame = walk_frame(model, state, pose);
+    EXPECT_FALSE(frame.ik_failed[kLeftSide] || frame.ik_failed[kRightSide]) << tick;
     for (int j = 0; j < pose.joint_count; ++j) {
       const double cosine = std::min(std::abs(glm::dot(before.local[j], pose.local[j])), 1.0);
       fastest_deg = std::max(fastest_deg, 2.0 * std::acos(cosine) / kDegree);

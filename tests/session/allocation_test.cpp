@@ -76,7 +76,7 @@ void expect_no_heap_use(SimulationConfig config, IkMode mode) {
   EXPECT_EQ(uses, 0);
   EXPECT_EQ(simulation->counts().ticks, 6000);
   EXPECT_EQ(simulation->counts().bad_commands, 2);
-  EXPECT_GT(simulation->walkers()[0].state.frame.steps[kLeftSide], 10);
+  EXPECT_GT(walk_steps(simulation->walkers()[0].state).steps[kLeftSide], 10);
 }
 
 TEST(Allocation, NoneInStepsWithReportsCommandsAndReplugging) {

@@ -680,11 +680,11 @@ void feed_walks() {
       Walking fed_walk = begun;
       feed.give(fed_walk, value);
       ++fed;
-      EXPECT_GT(fed_walk.state.frame.bad_inputs, 0) << feed.name << " " << value;
+      EXPECT_GT(fed_walk.state.bad_inputs, 0) << feed.name << " " << value;
       EXPECT_TRUE(is_finite(fed_walk.pose)) << feed.name << " " << value;
       fed_walk.walk(fed_walk.usual, 30);
       EXPECT_TRUE(is_finite(fed_walk.pose)) << feed.name << " " << value;
-      EXPECT_LT(glm::distance(fed_walk.state.frame.root_m, unfed.state.frame.root_m), 0.02)
+      EXPECT_LT(glm::distance(fed_walk.state.root.place_m, unfed.state.root.place_m), 0.02)
           << feed.name << " " << value;
     }
   }
@@ -695,13 +695,13 @@ void feed_walks() {
     const double least = numbers_of(params_range().least)[k],
                  most = numbers_of(params_range().most)[k];
     for (const double value : bad_numbers(least, most)) {
-      const int before = crowd.state(2).frame.bad_inputs;
+      const int before = crowd.state(2).bad_inputs;
       for (GaitParams& params : crowd.params()) params = begun.usual;
       numbers_of(crowd.params()[2])[k] = value;
       EXPECT_TRUE(check(crowd.params()[2])) << k << " " << value;
       crowd.advance(1.0 / 60.0);
       ++fed;
-      EXPECT_EQ(crowd.state(2).frame.bad_inputs, before + 1) << k << " " << value;
+      EXPECT_EQ(crowd.state(2).bad_inputs, before + 1) << k << " " << value;
       ASSERT_TRUE(is_finite(crowd.root_m(2), crowd.local(2))) << k << " " << value;
     }
   }
@@ -720,16 +720,16 @@ void feed_walks() {
     for (const WalkState& state : {standing(good_model(), vec3(value, 0.0, 0.0), pose),
                                    standing(good_model(), vec3(0.0), value, pose)}) {
       ++fed;
-      EXPECT_EQ(state.frame.bad_inputs, 1) << value;
+      EXPECT_EQ(state.bad_inputs, 1) << value;
       EXPECT_TRUE(is_finite(pose)) << value;
     }
-    const int before = crowd.state(1).frame.bad_inputs;
+    const int before = crowd.state(1).bad_inputs;
     crowd.move(1, {vec3(0.0, value, 0.0), 0.0});
     crowd.put(1, vec3(0.0), value);
     crowd.restart(0, vec3(0.0, 0.0, value));
     fed += 3;
-    EXPECT_EQ(crowd.state(1).frame.bad_inputs, before + 2) << value;
-    EXPECT_EQ(crowd.state(0).frame.bad_inputs, 1) << value;
+    EXPECT_EQ(crowd.state(1).bad_inputs, before + 2) << value;
+    EXPECT_EQ(crowd.state(0).bad_inputs, 1) << value;
   }
 }
 
@@ -767,7 +767,7 @@ void feed_values() {
       ++fed;
       EXPECT_TRUE(is_finite(walk.pose)) << "function " << i << ", " << v;
       if (check(all[i])) {
-        EXPECT_GT(walk.state.frame.bad_inputs, 0) << i;
+        EXPECT_GT(walk.state.bad_inputs, 0) << i;
       }
     }
   }

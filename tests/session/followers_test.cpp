@@ -134,7 +134,7 @@ TEST(Followers, StandOnTheTerrain) {
     simulation.step(tick == 0 ? std::vector<Report>{made_report(0x80, 0x20)}
                               : std::vector<Report>{});
     for (int i = 0; i < 12; ++i) {
-      const WalkFrame& frame = simulation.followers().crowd().state(i).frame;
+      const WalkFrame frame = simulation.followers().crowd().frame(i);
       for (const Side side : {kLeftSide, kRightSide}) {
         if (!frame.toe_planted[side]) continue;
         ASSERT_NEAR(frame.toe_m[side].y, frame.toe_ground_m[side], 0.05) << tick << " " << i;

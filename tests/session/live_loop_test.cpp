@@ -361,7 +361,7 @@ TEST_F(LiveLoopTest, TheLoopThreadUsesNoHeap) {
   EXPECT_TRUE(is_new);
   EXPECT_GT(parts.simulation->counts().reports, 100);
   EXPECT_EQ(parts.simulation->counts().commands, 2);  // the command of the script and the one above
-  EXPECT_GT(parts.simulation->walkers()[0].state.frame.steps[kRightSide], 0);
+  EXPECT_GT(walk_steps(parts.simulation->walkers()[0].state).steps[kRightSide], 0);
 }
 
 // A pad that is held forward; it logs each command to its motors.
@@ -431,7 +431,7 @@ TEST_F(LiveLoopTest, EveryHeelStrikeIsABeatOf80MsThatGrowsWithTheSpeed) {
   sleep_for(200);
   parts.loop->stop();
   loop.join();
-  const auto& steps = parts.simulation->walkers()[0].state.frame.steps;
+  const auto steps = walk_steps(parts.simulation->walkers()[0].state).steps;
   EXPECT_EQ(strikes(), steps[kLeftSide] + steps[kRightSide]);
   const std::lock_guard lock(motor_log.mutex);
   ASSERT_GE(motor_log.calls.size(), 10u);

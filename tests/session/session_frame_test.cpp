@@ -73,8 +73,9 @@ TEST_F(SessionFrameTest, FeetOfAMovedWalkAreInTheWorld) {
   move_walk(by, walker.state, walker.pose);
   copy_frame(*simulation_, frame_);
   const WalkerFrame& after = frame_.walkers[0];
+  // Through another root's rotation, whose length is 1 to the rounding of floats.
   for (const Side side : {kLeftSide, kRightSide})
-    EXPECT_LT(glm::distance(after.walk.heel_m[side], to_world(by, before.walk.heel_m[side])), 1e-9);
+    EXPECT_LT(glm::distance(after.walk.heel_m[side], to_world(by, before.walk.heel_m[side])), 5e-7);
 }
 
 TEST_F(SessionFrameTest, ThePhaseStartsAtTheRightHeelStrike) {

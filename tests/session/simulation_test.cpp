@@ -16,13 +16,13 @@ namespace {
 TEST(Simulation, StandsWithoutAReport) {
   Simulation s = made_simulation(made_config(1));
   step(s, {}, 480);
-  EXPECT_EQ(s.walkers()[0].state.frame.stage, Stage::idle);
-  EXPECT_EQ(s.walkers()[0].state.frame.speed_m_s, 0.0);
+  EXPECT_EQ(walk_steps(s.walkers()[0].state).stage, Stage::idle);
+  EXPECT_EQ(walk_frame(s.walkers()[0]).speed_m_s, 0.0);
 }
 
 TEST(Simulation, AForwardStickWalksStraight) {
   const Simulation s = walked(made_config(1), 0x80, 0x00, 960);
-  const WalkFrame& frame = s.walkers()[0].state.frame;
+  const WalkFrame frame = walk_frame(s.walkers()[0]);
   EXPECT_GT(frame.pelvis_m.z, 3.0);
   EXPECT_EQ(frame.heading_rad, 0.0);
 }
@@ -40,9 +40,9 @@ TEST(Simulation, AStickThatPointsLeadsThereWhereverTheCharacterFaces) {
     Simulation s = made_simulation(made_config(1));
     step(s, {made_command(c.command)});
     step(s, {made_report(c.x, c.y)}, 5 * 240);
-    const vec3 from_m = s.walkers()[0].state.frame.pelvis_m;
+    const vec3 from_m = walk_frame(s.walkers()[0]).pelvis_m;
     step(s, {}, 240);
-    const WalkFrame& frame = s.walkers()[0].state.frame;
+    const WalkFrame frame = walk_frame(s.walkers()[0]);
     const SinCos aim = sin_cos(c.heading_deg * kPi / 180.0);
     const vec3 way_m = frame.pelvis_m - from_m;
     EXPECT_GT(way_m.x * aim.sin + way_m.z * aim.cos, 1.0) << c.command << " " << c.x << " " << c.y;
@@ -56,7 +56,7 @@ TEST(Simulation, AStickThatPointsLeadsThereWhereverTheCharacterFaces) {
 TEST(Simulation, UnpluggingFinishesTheStepAndStands) {
   Simulation s = walked(made_config(1), 0x80, 0x00, 700);
   step(s, {made_plug(ReportKind::removed)}, 480);
-  EXPECT_EQ(s.walkers()[0].state.frame.stage, Stage::idle);
+  EXPECT_EQ(walk_steps(s.walkers()[0].state).stage, Stage::idle);
   EXPECT_EQ(s.stick().left, vec2(0.0));
 }
 
@@ -75,7 +75,7 @@ TEST(Simulation, ACharacterWalksOnTheSkeletonThatItBrings) {
   const Walker& w = s.walkers()[0];
   EXPECT_EQ(w.ik_failures, 0);
   EXPECT_NEAR(w.model->leg_length_m, 1.5 * w.model->source_leg_length_m, 1e-9);
-  EXPECT_GT(w.state.frame.pelvis_m.z, 4.0);
+  EXPECT_GT(walk_frame(w).pelvis_m.z, 4.0);
 }
 
 TEST(Simulation, AConfigurationThatCannotRunIsRefusedWithOneSentence) {
@@ -148,7 +148,7 @@ TEST(Simulation, CharactersStandSideBySideAndDoNotDisturbEachOther) {
   Simulation one = walked(made_config(1), 0x90, 0x20, 480);
   Simulation three = walked(made_config(3), 0x90, 0x20, 480);
   const auto pelvis = [](const Simulation& s, int i) {
-    return s.walkers()[i].state.frame.pelvis_m;
+    return walk_frame(s.walkers()[i]).pelvis_m;
   };
   EXPECT_EQ(pelvis(one, 0), pelvis(three, 0));
   Simulation standing = made_simulation(made_config(3));
@@ -247,7 +247,7 @@ TEST(Simulation, PadsAddedLaterGiveTheSameWalkAsPadsKnownFromTheStart) {
   EXPECT_EQ(live.pose_hash(), replay.pose_hash());
   EXPECT_EQ(live.counts().bad_reports, replay.counts().bad_reports);
   EXPECT_EQ(live.pads().driving(), 1);
-  EXPECT_GT(live.walkers()[0].state.frame.steps[kLeftSide], 3);
+  EXPECT_GT(walk_steps(live.walkers()[0].state).steps[kLeftSide], 3);
 }
 
 TEST(Simulation, AHeelStrikesOnceAStep) {
@@ -258,12 +258,12 @@ TEST(Simulation, AHeelStrikesOnceAStep) {
   for (int tick = 1; tick < 1200; ++tick) {
     if (tick == 900) s.step(std::vector<Report>{made_report(0x80, 0x80)});
     s.step({});
-    const WalkFrame& frame = s.walkers()[0].state.frame;
+    const WalkFrame frame = walk_frame(s.walkers()[0]);
     EXPECT_EQ(s.heel_struck(), before == Stage::flight && frame.stage == Stage::roll);
     strikes += s.heel_struck();
     before = frame.stage;
   }
-  const WalkFrame& frame = s.walkers()[0].state.frame;
+  const WalkFrame frame = walk_frame(s.walkers()[0]);
   EXPECT_EQ(frame.stage, Stage::idle);
   EXPECT_EQ(strikes, frame.steps[kLeftSide] + frame.steps[kRightSide]);
   EXPECT_GT(strikes, 6);
@@ -311,12 +311,12 @@ TEST(Simulation, ASetCommandChangesAStyleValueUntilTheNextStyle) {
 TEST(Simulation, AGaitCommandOverridesAParameterUntilItIsReturnedToTheStick) {
   Simulation s = made_simulation(made_config(2));
   step(s, {made_command("gait 2 speed_m_s 1"), made_command("gait hip_sway 0.5")}, 1200);
-  EXPECT_EQ(s.walkers()[0].state.frame.stage, Stage::idle);
+  EXPECT_EQ(walk_steps(s.walkers()[0].state).stage, Stage::idle);
   // Not exactly 1 m/s: a stage lasts a whole number of ticks, and a cycle has only some hundred.
-  EXPECT_NEAR(s.walkers()[1].state.frame.speed_m_s, 1.0, 0.01);
+  EXPECT_NEAR(walk_frame(s.walkers()[1]).speed_m_s, 1.0, 0.01);
   EXPECT_EQ(s.walkers()[0].params.hip_sway, 0.5);
   step(s, {made_command("gait 2 speed_m_s stick")}, 480);
-  EXPECT_EQ(s.walkers()[1].state.frame.stage, Stage::idle);
+  EXPECT_EQ(walk_steps(s.walkers()[1].state).stage, Stage::idle);
   EXPECT_EQ(s.walkers()[1].params.hip_sway, 0.5);
   step(s, {made_command("gait stick")});
   EXPECT_EQ(s.walkers()[0].params.hip_sway, 1.0);
@@ -332,7 +332,7 @@ TEST(Simulation, AResetRestoresTheStart) {
        {made_report(0x90, 0x10), made_command("gait 1 hip_sway 2"), made_command("style 1 limp"),
         made_command("set 2 fatigue 1")},
        777);
-  const std::array<int, 2> steps = s.walkers()[0].state.frame.steps;
+  const std::array<int, 2> steps = walk_steps(s.walkers()[0].state).steps;
   const double walked_m = s.walkers()[0].walked_m;
   EXPECT_GT(walked_m, 1.0);
   // A reset keeps the chosen style, so the first walker's initial style is chosen first.
@@ -345,8 +345,8 @@ TEST(Simulation, AResetRestoresTheStart) {
     EXPECT_EQ(w.overrides.is_set, GaitOverrides().is_set);
     EXPECT_TRUE(w.values == s.styles()[w.style]);
   }
-  EXPECT_EQ(s.walkers()[0].state.frame.steps[kLeftSide],
-            steps[kLeftSide] + fresh.walkers()[0].state.frame.steps[kLeftSide])
+  EXPECT_EQ(walk_steps(s.walkers()[0].state).steps[kLeftSide],
+            steps[kLeftSide] + walk_steps(fresh.walkers()[0].state).steps[kLeftSide])
       << "a reset does not reset the count of steps";
   EXPECT_NEAR(s.walkers()[0].walked_m, walked_m + fresh.walkers()[0].walked_m, 1e-9)
       << "the jump back to the start is not walked";
@@ -441,10 +441,10 @@ void walk_at_random(IkMode mode, std::string (*command)(std::mt19937&), const Ch
 // m where one leg has to stop while the other takes its longest step, or has to turn at once.
 TEST(Simulation, LegsFollowRandomGaitCommands) {
   walk_at_random(IkMode::robust, any_gait_command, [](const Walker& w) {
-    EXPECT_GT(w.state.frame.pelvis_m.y, 0.45 * w.model->stand_m);
+    EXPECT_GT(walk_frame(w).pelvis_m.y, 0.45 * w.model->stand_m);
     for (const Side side : {kLeftSide, kRightSide}) {
-      EXPECT_GT(w.state.frame.heel_m[side].y, -0.02);
-      EXPECT_LT(w.state.frame.ik_error_m[side], 0.16);
+      EXPECT_GT(walk_frame(w).heel_m[side].y, -0.02);
+      EXPECT_LT(walk_frame(w).ik_error_m[side], 0.16);
     }
   });
 }
@@ -453,8 +453,8 @@ TEST(Simulation, RandomCommandsKeepThePoseValid) {
   for (const IkMode mode : {IkMode::robust, IkMode::paper}) {
     walk_at_random(mode, any_command, [](const Walker& w) {
       // Low, because a random style may bounce three times as far.
-      EXPECT_GT(w.state.frame.pelvis_m.y, 0.3 * w.model->stand_m);
-      EXPECT_LT(w.state.frame.pelvis_m.y, 1.15 * w.model->stand_m);
+      EXPECT_GT(walk_frame(w).pelvis_m.y, 0.3 * w.model->stand_m);
+      EXPECT_LT(walk_frame(w).pelvis_m.y, 1.15 * w.model->stand_m);
       // Joints are unit quaternions of floats.
       for (int j = 0; j < w.pose.joint_count; ++j)
         ASSERT_NEAR(glm::length(w.pose.local[j]), 1.0, 4e-7);
@@ -467,7 +467,7 @@ TEST(Simulation, RandomCommandsKeepThePoseValid) {
 TEST(Simulation, NoCommandsMakeTheHipsDive) {
   for (unsigned seed = 1; seed <= 60; ++seed) {
     const auto check = [](const Walker& w) {
-      EXPECT_GT(w.state.frame.pelvis_m.y, 0.5 * w.model->stand_m);
+      EXPECT_GT(walk_frame(w).pelvis_m.y, 0.5 * w.model->stand_m);
     };
     walk_at_random(IkMode::robust, any_command, check, seed, 5000);
   }
@@ -621,15 +621,15 @@ TEST(Tiring, SlowsAWalkWithDistanceAndRecoversAtRest) {
   config.styles[0].fatigue_recovery_per_s = 0.05;
   Simulation s = made_simulation(config);
   walk_to(s, 4.0);
-  const double fresh_m_s = s.walkers()[0].state.frame.speed_m_s;
+  const double fresh_m_s = walk_frame(s.walkers()[0]).speed_m_s;
   walk_to(s, 15.0);
   const Walker& w = s.walkers()[0];
   EXPECT_NEAR(w.in_force.fatigue, std::min(w.walked_m * 0.04, 1.0), 1e-3);
-  EXPECT_LT(w.state.frame.speed_m_s, 0.85 * fresh_m_s);
+  EXPECT_LT(walk_frame(w).speed_m_s, 0.85 * fresh_m_s);
   s.take_report(made_report(0x80, 0x80));
   for (int k = 0; k < 480; ++k) s.step({});
   const double tired = w.tired;
-  EXPECT_EQ(w.state.frame.stage, Stage::idle);
+  EXPECT_EQ(walk_steps(w.state).stage, Stage::idle);
   for (int k = 0; k < 480; ++k) s.step({});
   EXPECT_NEAR(w.tired, tired - 0.1, 1e-9);
   s.step(std::vector{made_command("reset")});

@@ -85,7 +85,7 @@ Straightness straightness(const StickCalibration& calibration, int ticks, const 
   for (int tick = 0; tick < ticks; ++tick) {
     simulation.step(std::vector<Report>{report_of(raw(tick))});
     const WalkState& state = simulation.walkers()[0].state;
-    if (!simulation.heel_struck() || state.frame.swing != kLeftSide) continue;
+    if (!simulation.heel_struck() || walk_steps(state).swing != kLeftSide) continue;
     const double at_m = state.root.place_m.x;
     if (is_begun) {
       ++found.strides;
@@ -97,7 +97,7 @@ Straightness straightness(const StickCalibration& calibration, int ticks, const 
     last_m = at_m;
   }
   found.drift_m = std::fabs(last_m - first_m) / std::max(found.strides, 1);
-  found.stride_m = simulation.walkers()[0].state.frame.stride_m[kLeftSide];
+  found.stride_m = walk_frame(simulation.walkers()[0]).stride_m[kLeftSide];
   return found;
 }
 

@@ -214,7 +214,8 @@ Untouched untouched(MadeStick stick, const StickCalibration& calibration) {
       reports.push_back(word_report(track[next].raw));
     simulation.step(reports);
     found.steps += simulation.heel_struck();
-    found.walking_s += simulation.walkers()[0].state.frame.stage == Stage::idle ? 0.0 : 1.0 / 240.0;
+    found.walking_s +=
+        walk_steps(simulation.walkers()[0].state).stage == Stage::idle ? 0.0 : 1.0 / 240.0;
   }
   return found;
 }

@@ -17,7 +17,7 @@ GaitParams ahead(double y, double x = 0.0) {
   return gait_params({.left = vec2(x, y)}, StyleValues{}, gait_limits(adult()));
 }
 
-Side flying_next(const WalkFrame& frame) {
+Side flying_next(const WalkSteps& frame) {
   return frame.stage == Stage::flight ? frame.swing : other(frame.swing);
 }
 
@@ -38,18 +38,18 @@ struct AskedWalk {
     most_slide_m = most_bend_rad = 0.0;
     failed = 0;
   }
+  WalkFrame frame() const { return walk_frame(model, state, pose); }
   void step() {
-    const WalkFrame was = state.frame;
+    const WalkFrame was = frame();
     advance(model, params, IkMode::robust, kDt, state, pose);
     const std::array<LegAngles, 2> now = leg_angles(model, pose);
+    const WalkFrame is = frame();
     for (const int side : {0, 1}) {
-      failed += state.frame.ik_failed[side];
-      if (was.toe_planted[side] && state.frame.toe_planted[side])
-        most_slide_m =
-            std::max(most_slide_m, glm::distance(was.toe_m[side], state.frame.toe_m[side]));
-      if (was.heel_planted[side] && state.frame.heel_planted[side])
-        most_slide_m =
-            std::max(most_slide_m, glm::distance(was.heel_m[side], state.frame.heel_m[side]));
+      failed += is.ik_failed[side];
+      if (was.toe_planted[side] && is.toe_planted[side])
+        most_slide_m = std::max(most_slide_m, glm::distance(was.toe_m[side], is.toe_m[side]));
+      if (was.heel_planted[side] && is.heel_planted[side])
+        most_slide_m = std::max(most_slide_m, glm::distance(was.heel_m[side], is.heel_m[side]));
       for (int j = 0; j < kLegDofs; ++j)
         most_bend_rad =
             std::max(most_bend_rad, std::abs(now[side][j] - 2.0 * last[side][j] + before[side][j]));
@@ -59,16 +59,16 @@ struct AskedWalk {
   }
   // Walks until that foot has landed.
   void land(Side side) {
-    const int steps = state.frame.steps[side];
-    for (int i = 0; i < 2 * kRate && state.frame.steps[side] == steps; ++i) step();
-    ASSERT_EQ(state.frame.steps[side], steps + 1);
+    const int steps = walk_steps(state).steps[side];
+    for (int i = 0; i < 2 * kRate && walk_steps(state).steps[side] == steps; ++i) step();
+    ASSERT_EQ(walk_steps(state).steps[side], steps + 1);
   }
   // The landing of the running step as the walk has planned it, `by` away in axes of the heading.
   Placement planned(const vec3& by, double turn_rad) const {
     const State<float>& step = state.walk.state;
     const Placement heel = moved(
         stands_at(), {vec3(step.landing_x_m, 0.0, step.landing_z_m), step.landing_rad + turn_rad});
-    return {heel.place_m + rotation_y(state.frame.heading_rad) * by, heel.heading_rad};
+    return {heel.place_m + rotation_y(frame().heading_rad) * by, heel.heading_rad};
   }
   // The heel of the foot that stands, or has landed last.
   Placement stands_at() const {
@@ -89,9 +89,9 @@ TEST(AskedSteps, AFootLandsWhereItIsAskedTo) {
         if (!heel) continue;  // this foot lands soon
         ++asked;
         ASSERT_TRUE(step_to(walk.model, *heel, walk.state));
-        const Side side = flying_next(walk.state.frame);
+        const Side side = flying_next(walk_steps(walk.state));
         walk.land(side);
-        vec3 off = walk.state.frame.heel_m[side] - heel->place_m;
+        vec3 off = walk.frame().heel_m[side] - heel->place_m;
         off.y = 0.0;
         most_m = std::max(most_m, glm::length(off));
         EXPECT_NEAR(wrapped(walk.stands_at().heading_rad - heel->heading_rad), 0.0, 1e-6);
@@ -117,13 +117,13 @@ TEST(AskedSteps, OneOnWavesLandsThereToo) {
   }};
   model.terrain = waves;
   AskedWalk walk(model, ahead(0.7), 400);
-  while (walk.state.frame.stage != Stage::roll) walk.step();
+  while (walk_steps(walk.state).stage != Stage::roll) walk.step();
   const auto heel = nearest_step(model, walk.planned(vec3(0.04, 0.0, 0.08), 0.1), walk.state);
   ASSERT_TRUE(heel && step_to(model, *heel, walk.state));
-  const Side side = flying_next(walk.state.frame);
+  const Side side = flying_next(walk_steps(walk.state));
   walk.land(side);
-  vec3 off = walk.state.frame.heel_m[side] - heel->place_m;
-  EXPECT_NEAR(walk.state.frame.heel_m[side].y, walk.state.frame.heel_ground_m[side], 1e-4);
+  vec3 off = walk.frame().heel_m[side] - heel->place_m;
+  EXPECT_NEAR(walk.frame().heel_m[side].y, walk.frame().heel_ground_m[side], 1e-4);
   off.y = 0.0;
   EXPECT_LT(glm::length(off), 1e-3);
   EXPECT_LT(walk.most_slide_m, 1e-4);
@@ -134,8 +134,8 @@ TEST(AskedSteps, AfterItTheWalkGoesOnAsItsStickSays) {
   const auto heel = nearest_step(walk.model, walk.planned(vec3(0.0, 0.0, -0.2), 0.0), walk.state);
   ASSERT_TRUE(heel && step_to(walk.model, *heel, walk.state));
   for (int i = 0; i < 4 * kRate; ++i) walk.step(), other_walk.step();
-  EXPECT_NEAR(walk.state.frame.speed_m_s, other_walk.state.frame.speed_m_s, 0.01);
-  EXPECT_NEAR(walk.state.frame.stride_m[0], other_walk.state.frame.stride_m[0], 0.01);
+  EXPECT_NEAR(walk.frame().speed_m_s, other_walk.frame().speed_m_s, 0.01);
+  EXPECT_NEAR(walk.frame().stride_m[0], other_walk.frame().stride_m[0], 0.01);
   EXPECT_LT(walk.state.root.place_m.z, other_walk.state.root.place_m.z - 0.1)
       << "it is a step back";
 }
@@ -176,11 +176,11 @@ TEST(AskedSteps, AStickThatIsReleasedDoesNotMoveTheLanding) {
   const auto heel = nearest_step(walk.model, walk.planned(vec3(0.0, 0.0, 0.1), 0.0), walk.state);
   ASSERT_TRUE(heel && step_to(walk.model, *heel, walk.state));
   walk.params = ahead(0.0);
-  const Side side = flying_next(walk.state.frame);
+  const Side side = flying_next(walk_steps(walk.state));
   walk.land(side);
   EXPECT_LT(horizontal_length(walk.stands_at().place_m - heel->place_m), 1e-6);
   for (int i = 0; i < 4 * kRate; ++i) walk.step();
-  EXPECT_EQ(walk.state.frame.stage, Stage::idle);
+  EXPECT_EQ(walk_steps(walk.state).stage, Stage::idle);
   EXPECT_LT(walk.most_slide_m, 1e-4);
 }
 
@@ -199,7 +199,7 @@ TEST(AskedSteps, APushedWalkCatchesItselfWithItsNextFootprint) {
       EXPECT_EQ(walk.failed, 0);
       EXPECT_LT(walk.most_slide_m, 1e-4);
       EXPECT_LT(walk.most_bend_rad, kSharpest_rad);
-      EXPECT_NEAR(walk.state.frame.speed_m_s, other_walk.state.frame.speed_m_s, 0.01);
+      EXPECT_NEAR(walk.frame().speed_m_s, other_walk.frame().speed_m_s, 0.01);
     }
     EXPECT_GT(most_m, 0.05) << "the hips go where they are pushed";
   }
@@ -210,8 +210,8 @@ TEST(AskedSteps, APushedStepLandsAsFarAsideAsTheHipsFall) {
   constexpr double kPush_m_s = 0.4, kGravity_m_s2 = 9.81;
   for (const int ticks : {400, 430, 460, 490, 520, 550}) {
     AskedWalk walk(adult(), ahead(0.7), ticks), other_walk(adult(), ahead(0.7), ticks);
-    while (walk.state.frame.stage != Stage::roll) walk.step(), other_walk.step();
-    const Side side = flying_next(walk.state.frame);
+    while (walk_steps(walk.state).stage != Stage::roll) walk.step(), other_walk.step();
+    const Side side = flying_next(walk_steps(walk.state));
     const double outwards = side == kLeftSide ? 1.0 : -1.0;
     ASSERT_TRUE(push_walk(vec3(outwards * kPush_m_s, 0.0, 0.0), walk.state));
     walk.land(side), other_walk.land(side);

@@ -74,7 +74,7 @@ TEST(Crowd, GroupedByStyleItsMembersKeepTheirBits) {
   grouped.add_to(of_grouped);
   EXPECT_EQ(of_grouped.value(), hash.value());
   for (int i = 0; i < kMembers; ++i)
-    EXPECT_EQ(grouped.crowd().state(i).frame.steps, as_made.crowd().state(i).frame.steps) << i;
+    EXPECT_EQ(grouped.crowd().frame(i).steps, as_made.crowd().frame(i).steps) << i;
 }
 
 // A block of three members has unused lanes, which repeat the last member. That has to hold as well
@@ -104,7 +104,7 @@ TEST(Crowd, ItsMembersDoDifferentThings) {
   int climbed = 0, turned = 0;
   for (int tick = 0; tick < kTicks; ++tick) made.step(tick);
   for (int i = 0; i < kMembers; ++i) {
-    const WalkFrame& frame = made.crowd().state(i).frame;
+    const WalkFrame& frame = made.crowd().frame(i);
     ++stages[static_cast<std::size_t>(frame.stage)];
     climbed += std::abs(frame.heel_ground_m[0]) > 0.1;
     turned += std::abs(frame.heading_rad) > 1.0;
@@ -160,14 +160,14 @@ TEST(Crowd, PuttingAMemberBackLeavesTheReportsOfTheOthers) {
   for (GaitParams& params : crowd.params())
     params = gait_params({.left = vec2(0.3, 0.8)}, StyleValues{}, gait_limits(*model));
   for (int tick = 0; tick < 3 * kCrowdRate; ++tick) crowd.advance(kCrowdDt);
-  const WalkFrame before = crowd.state(0).frame;
+  const WalkFrame before = crowd.frame(0);
   crowd.restart(1, vec3(5.0, 0.0, 0.0));
-  const WalkFrame after = crowd.state(0).frame;
+  const WalkFrame after = crowd.frame(0);
   EXPECT_GT(glm::length(before.root_moved_m), 0.005);
   EXPECT_EQ(after.root_moved_m, before.root_moved_m);
   EXPECT_EQ(after.root_turned_rad, before.root_turned_rad);
   EXPECT_EQ(after.speed_m_s, before.speed_m_s);
-  EXPECT_EQ(crowd.state(1).frame.root_moved_m, vec3(0.0));
+  EXPECT_EQ(crowd.frame(1).root_moved_m, vec3(0.0));
 }
 
 // Pushes and stepping stones at many moments: members answer as they would alone, to the bit.
@@ -190,8 +190,8 @@ TEST(Crowd, PushesAndStepsOfItsMembersAreThoseOfAWalkAlone) {
       }
       if ((tick + 7 * i) % 59 == 0) {
         const Placement ahead = {
-            states[i].frame.root_m + 0.5 * heading_direction(states[i].frame.heading_rad),
-            states[i].frame.heading_rad + 0.1};
+            states[i].root.place_m + 0.5 * heading_direction(states[i].root.heading_rad),
+            states[i].root.heading_rad + 0.1};
         const auto alone = nearest_step(crowd.model(i), ahead, states[i]),
                    heel = crowd.nearest_step(i, ahead);
         ASSERT_EQ(heel, alone) << i << ", tick " << tick;

@@ -55,14 +55,14 @@ class MadeWalker {
   void walk(const GaitParams& params, int ticks) {
     for (int i = 0; i < ticks; ++i) {
       advance(model_, params, mode_, kDt, state_, pose_);
-      frames_.push_back(state_.frame);
+      frames_.push_back(last());
       angles_rad_.push_back(leg_angles(model_, pose_));
     }
   }
   const WalkModel& model() const { return model_; }
   const WalkState& state() const { return state_; }
   const Pose& pose() const { return pose_; }
-  const WalkFrame& last() const { return state_.frame; }
+  WalkFrame last() const { return walk_frame(model_, state_, pose_); }
   const std::vector<WalkFrame>& frames() const { return frames_; }
   const std::vector<std::array<LegAngles, 2>>& angles_rad() const { return angles_rad_; }
 

@@ -71,10 +71,10 @@ void draw_between(const WalkModel& model, double rate_hz, const StyleValues& sty
     Stick stick;
     if (time_s < 8.0) stick.left = vec2(time_s < 4.0 ? 0.0 : 0.5, time_s < 6.0 ? 0.8 : 0.4);
     before = pose;
-    const WalkFrame was = state.frame;
+    const WalkFrame was = walk_frame(model, state, pose);
     advance(model, gait_params(stick, style, gait_limits(model)), IkMode::robust, 1.0 / rate_hz,
             state, pose);
-    const WalkFrame& now = state.frame;
+    const WalkFrame now = walk_frame(model, state, pose);
     for (const double share : {0.2, 0.4, 0.6, 0.8}) {
       ASSERT_TRUE(pose_between(model, before, pose, share, shown));
       const Feet feet = feet_of(model, shown);

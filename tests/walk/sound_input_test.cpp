@@ -46,7 +46,7 @@ TEST(SoundInput, EveryBadParameterIsCountedAndLeavesThePoseFinite) {
         advance(adult(), params, IkMode::robust, 1.0 / 30.0, state, pose);
         ASSERT_TRUE(is_finite(pose)) << "number " << number << ", " << bad;
       }
-      EXPECT_EQ(state.frame.bad_inputs, 3) << "number " << number << ", " << bad;
+      EXPECT_EQ(state.bad_inputs, 3) << "number " << number << ", " << bad;
       ++fed;
     }
   }
@@ -61,7 +61,7 @@ TEST(SoundInput, AWalkGoesOnWhileAllItsParametersAreBad) {
   for (double& number : numbers_of(nothing)) number = kNaN;
   bad.walk(nothing, kRate);
   good.walk(usual_params(), kRate);
-  EXPECT_EQ(bad.last().bad_inputs, int(kParamsNumbers) * kRate);
+  EXPECT_EQ(bad.state().bad_inputs, int(kParamsNumbers) * kRate);
   EXPECT_TRUE(is_finite(bad.pose()));
   EXPECT_LT(glm::distance(bad.last().pelvis_m, good.last().pelvis_m), 0.05);
 }
@@ -76,7 +76,7 @@ TEST(SoundInput, ABadTickLastsAsLongAsTheOneBefore) {
     advance(adult(), usual_params(), IkMode::robust, bad, state, pose);
     advance(adult(), usual_params(), IkMode::robust, kDt, same, same_pose);
     EXPECT_EQ(pose.root_m, same_pose.root_m) << bad;
-    EXPECT_EQ(state.frame.bad_inputs, ++count) << bad;
+    EXPECT_EQ(state.bad_inputs, ++count) << bad;
   }
 }
 
@@ -84,7 +84,7 @@ TEST(SoundInput, ABadPlaceIsCountedAsTheOrigin) {
   Pose pose;
   for (const double bad : {kNaN, kInfinity, -kInfinity, 1e300}) {
     const WalkState state = standing(adult(), vec3(bad, bad, 2.0), pose);
-    EXPECT_EQ(state.frame.bad_inputs, 1) << bad;
+    EXPECT_EQ(state.bad_inputs, 1) << bad;
     EXPECT_TRUE(is_finite(pose)) << bad;
     EXPECT_NEAR(state.root.place_m.z, 2.0, 1e-9);
   }
@@ -103,8 +103,8 @@ TEST(SoundInput, ACrowdCountsThemToo) {
   }
   for (int i = 0; i < 5; ++i) {
     EXPECT_TRUE(is_finite(crowd.root_m(i), crowd.local(i)));
-    EXPECT_GE(crowd.state(i).frame.bad_inputs, i == 0 ? 1 : 8) << i;
-    EXPECT_LE(crowd.state(i).frame.bad_inputs, i == 0 ? 1 : 10) << i;
+    EXPECT_GE(crowd.state(i).bad_inputs, i == 0 ? 1 : 8) << i;
+    EXPECT_LE(crowd.state(i).bad_inputs, i == 0 ? 1 : 10) << i;
   }
 }
 

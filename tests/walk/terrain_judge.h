@@ -30,7 +30,7 @@ class TerrainJudge {
   explicit TerrainJudge(const WalkModel& model) : model_(model) {}
 
   void see(const WalkState& state, const Pose& pose) {
-    const WalkFrame& frame = state.frame;
+    const WalkFrame frame = walk_frame(model_, state, pose);
     pose_skeleton(pose);
     for (Side side : {kLeftSide, kRightSide}) see_foot(frame, side);
     see_smoothness(pose);

@@ -20,7 +20,7 @@ std::vector<WalkEvent> walked_and_stopped(double dt_s, WalkState& state) {
   state = standing(adult(), vec3(0.0), pose);
   std::vector<WalkEvent> events;
   for (int tick = 0; tick < static_cast<int>(12.0 / dt_s); ++tick) {
-    const WalkFrame before = state.frame;
+    const WalkSteps before = walk_steps(state);
     advance(adult(), tick * dt_s < 6.0 ? go : stop, IkMode::robust, dt_s, state, pose);
     for (const WalkEvent& event : walk_events(before, state)) events.push_back(event);
   }
@@ -33,10 +33,11 @@ TEST(WalkEvents, EachFootBeginsItsStepLeavesAndLandsInTurnAtEachRate) {
     std::array<std::vector<WalkEventKind>, 2> of_foot;
     for (const WalkEvent& event : walked_and_stopped(dt_s, state))
       of_foot[event.side].push_back(event.kind);
-    ASSERT_EQ(state.frame.stage, Stage::idle);
+    const WalkSteps end = walk_steps(state);
+    ASSERT_EQ(end.stage, Stage::idle);
     for (const int side : {0, 1}) {
-      ASSERT_EQ(of_foot[side].size(), 3u * state.frame.steps[side]) << dt_s;
-      ASSERT_GT(state.frame.steps[side], 3);
+      ASSERT_EQ(of_foot[side].size(), 3u * end.steps[side]) << dt_s;
+      ASSERT_GT(end.steps[side], 3);
       for (std::size_t i = 0; i < of_foot[side].size(); ++i)
         ASSERT_EQ(static_cast<int>(of_foot[side][i]), static_cast<int>(i % 3)) << dt_s << ' ' << i;
     }
@@ -49,17 +50,18 @@ TEST(WalkEvents, StandWhereTheFrameHasTheFoot) {
   WalkState state = standing(adult(), vec3(0.0), pose);
   move_walk({vec3(7.0, 2.0, -3.0), 0.8}, state, pose);
   int strikes = 0;
-  std::array<vec3, 2> struck_m = state.frame.heel_m;
+  std::array<vec3, 2> struck_m = walk_frame(adult(), state, pose).heel_m;
   for (int tick = 0; tick < 6 * kRate; ++tick) {
-    const WalkFrame before = state.frame;
+    const WalkFrame before = walk_frame(adult(), state, pose);
     advance(adult(), go, IkMode::robust, kDt, state, pose);
+    const WalkFrame now = walk_frame(adult(), state, pose);
     for (const WalkEvent& event : walk_events(before, state)) {
       const bool strikes_now = event.kind == WalkEventKind::heel_strike;
-      const vec3& seen_m = strikes_now                            ? state.frame.heel_m[event.side]
+      const vec3& seen_m = strikes_now                            ? now.heel_m[event.side]
                            : event.kind == WalkEventKind::toe_off ? before.toe_m[event.side]
                                                                   : struck_m[event.side];
       EXPECT_LT(glm::distance(event.place_m, seen_m), 1e-3) << tick;
-      if (strikes_now) struck_m[event.side] = state.frame.heel_m[event.side];
+      if (strikes_now) struck_m[event.side] = now.heel_m[event.side];
       strikes += strikes_now;
     }
   }
@@ -71,7 +73,7 @@ TEST(WalkEvents, AMoveOfTheWalkIsNone) {
   walker.walk(0.0, 0.8, 500);
   WalkState state = walker.state();
   Pose pose = walker.pose();
-  const WalkFrame before = state.frame;
+  const WalkSteps before = walk_steps(state);
   put_walk(vec3(40.0, 0.0, 2.0), 2.0, state, pose);
   EXPECT_EQ(walk_events(before, state).count, 0);
 }

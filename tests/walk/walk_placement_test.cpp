@@ -40,17 +40,17 @@ TEST(Placement, AMovedWalkHasTheBitsOfOneThatIsNot) {
                            moved_pose.local.begin() + 1))
         << tick;
     ASSERT_EQ(moved_pose.root_m, to_world(moving.placed, pose.root_m)) << tick;
+    const WalkFrame still = walk_frame(adult(), state, pose),
+                    frame = walk_frame(adult(), moving, moved_pose);
     for (const int side : {0, 1}) {
       // Through another root's rotation, whose length is 1 to the rounding of floats.
       constexpr double kRounding_m = 5e-7;
-      ASSERT_LT(glm::distance(moving.frame.heel_m[side],
-                              to_world(moving.placed, state.frame.heel_m[side])),
+      ASSERT_LT(glm::distance(frame.heel_m[side], to_world(moving.placed, still.heel_m[side])),
                 kRounding_m);
-      ASSERT_LT(
-          glm::distance(moving.frame.toe_m[side], to_world(moving.placed, state.frame.toe_m[side])),
-          kRounding_m);
+      ASSERT_LT(glm::distance(frame.toe_m[side], to_world(moving.placed, still.toe_m[side])),
+                kRounding_m);
     }
-    ASSERT_EQ(moving.frame.root_moved_m, state.frame.root_moved_m);
+    ASSERT_EQ(frame.root_moved_m, still.root_moved_m);
   }
 }
 
@@ -64,14 +64,14 @@ TEST(Placement, MovingWritesThePoseAtOnceAndPlantedFeetStayInTheMovedFrame) {
   EXPECT_LT(glm::distance(pose.root_m, to_world(by, walker.pose().root_m)), 1e-12);
   EXPECT_LT(glm::distance(from_world(by, to_world(by, vec3(1.0, 2.0, 3.0))), vec3(1.0, 2.0, 3.0)),
             1e-12);
-  const std::array<bool, 2> planted = state.frame.heel_planted;
-  const std::array<vec3, 2> heel_m = state.frame.heel_m;
+  const WalkFrame before = walk_frame(adult(), state, pose);
   advance(adult(), asked(0.2, 0.7), IkMode::robust, kDt, state, pose);
+  const WalkFrame now = walk_frame(adult(), state, pose);
   for (const int side : {0, 1}) {
-    if (planted[side] && state.frame.heel_planted[side])
-      EXPECT_LT(glm::distance(state.frame.heel_m[side], heel_m[side]), 1e-4);
+    if (before.heel_planted[side] && now.heel_planted[side])
+      EXPECT_LT(glm::distance(now.heel_m[side], before.heel_m[side]), 1e-4);
   }
-  EXPECT_NEAR(state.frame.heading_rad, state.root.heading_rad + 1.1, 1e-12);
+  EXPECT_NEAR(now.heading_rad, state.root.heading_rad + 1.1, 1e-12);
 }
 
 TEST(Placement, PutBringsTheHipsToAPlaceAndHeading) {
@@ -80,8 +80,9 @@ TEST(Placement, PutBringsTheHipsToAPlaceAndHeading) {
   WalkState state = walker.state();
   Pose pose = walker.pose();
   put_walk(vec3(-3.0, 0.5, 9.0), 2.5, state, pose);
-  EXPECT_LT(glm::distance(state.frame.root_m, vec3(-3.0, 0.5, 9.0)), 1e-9);
-  EXPECT_NEAR(state.frame.heading_rad, 2.5, 1e-9);
+  const WalkFrame frame = walk_frame(adult(), state, pose);
+  EXPECT_LT(glm::distance(frame.root_m, vec3(-3.0, 0.5, 9.0)), 1e-9);
+  EXPECT_NEAR(frame.heading_rad, 2.5, 1e-9);
 }
 
 TEST(Placement, AStandThatFacesAnotherWayIsTheSameStand) {
@@ -97,7 +98,8 @@ TEST(Placement, AStandThatFacesAnotherWayIsTheSameStand) {
   EXPECT_LT(glm::distance(to_world(by, ahead.root_m), aside.root_m), 1e-6);
   for (int j = 1; j < ahead.joint_count; ++j)
     EXPECT_LT(angle_between(ahead.local[j], aside.local[j]), 1e-6) << j;
-  EXPECT_NEAR(b.frame.heading_rad, a.frame.heading_rad + heading, 1e-9);
+  EXPECT_NEAR(walk_frame(adult(), b, aside).heading_rad,
+              walk_frame(adult(), a, ahead).heading_rad + heading, 1e-9);
 }
 
 TEST(Placement, RootMotionAddsUpToTheWay) {
@@ -108,13 +110,15 @@ TEST(Placement, RootMotionAddsUpToTheWay) {
     for (int tick = 0; tick < 9 * rate_hz; ++tick) {
       advance(adult(), asked_at(tick * kRate / rate_hz), IkMode::robust, 1.0 / rate_hz, state,
               pose);
-      capsule.place_m = to_world(capsule, state.frame.root_moved_m);
-      capsule.heading_rad += state.frame.root_turned_rad;
+      const WalkFrame frame = walk_frame(adult(), state, pose);
+      capsule.place_m = to_world(capsule, frame.root_moved_m);
+      capsule.heading_rad += frame.root_turned_rad;
     }
     EXPECT_GT(glm::distance(capsule.place_m, vec3(2.0, 0.0, 1.0)), 3.0);
     // A stand's hips are where floats have them: some 1e-8 m from where it was put.
-    EXPECT_LT(glm::distance(capsule.place_m, state.frame.root_m), 1e-7) << rate_hz;
-    EXPECT_NEAR(capsule.heading_rad, state.frame.heading_rad, 1e-9) << rate_hz;
+    const WalkFrame frame = walk_frame(adult(), state, pose);
+    EXPECT_LT(glm::distance(capsule.place_m, frame.root_m), 1e-7) << rate_hz;
+    EXPECT_NEAR(capsule.heading_rad, frame.heading_rad, 1e-9) << rate_hz;
   }
 }
 
@@ -133,7 +137,7 @@ TEST(Placement, MembersOfACrowdMoveAsWalksAlone) {
     advance(adult(), asked_at(tick), IkMode::robust, kDt, state, pose);
     ASSERT_EQ(crowd.root_m(2), pose.root_m) << tick;
     ASSERT_EQ(crowd.local(2)[0], pose.local[0]) << tick;
-    ASSERT_EQ(crowd.state(2).frame.root_m, state.frame.root_m) << tick;
+    ASSERT_EQ(crowd.frame(2).root_m, walk_frame(adult(), state, pose).root_m) << tick;
   }
 }
 
@@ -178,21 +182,23 @@ TEST(Placement, AWalkFollowsWhatAnEngineMoves) {
     }
     advance(adult(), following(capsule, state, StyleValues{}, limits), IkMode::robust, kDt, state,
             pose);
-    const double off_m = horizontal_length(capsule.place_m - state.frame.root_m);
+    const WalkFrame frame = walk_frame(adult(), state, pose);
+    const double off_m = horizontal_length(capsule.place_m - frame.root_m);
     if (tick > 4 * kRate && tick < 20 * kRate) worst_m = std::max(worst_m, off_m);
     for (const int side : {0, 1}) {
-      const bool stands = state.frame.toe_planted[side];
+      const bool stands = frame.toe_planted[side];
       if (stands && planted[side])
-        drift_m = std::max(drift_m, glm::distance(toe_m[side], state.frame.toe_m[side]));
+        drift_m = std::max(drift_m, glm::distance(toe_m[side], frame.toe_m[side]));
       planted[side] = stands;
-      toe_m[side] = state.frame.toe_m[side];
+      toe_m[side] = frame.toe_m[side];
     }
   }
   EXPECT_LT(worst_m, 0.15);
   EXPECT_LT(drift_m, 1e-4);
-  EXPECT_EQ(state.frame.stage, Stage::idle);
-  EXPECT_LT(horizontal_length(capsule.place_m - state.frame.root_m), 0.2);
-  EXPECT_LT(std::abs(wrapped(state.frame.heading_rad - capsule.heading_rad)), 6.0 * kDegree);
+  const WalkFrame end = walk_frame(adult(), state, pose);
+  EXPECT_EQ(end.stage, Stage::idle);
+  EXPECT_LT(horizontal_length(capsule.place_m - end.root_m), 0.2);
+  EXPECT_LT(std::abs(wrapped(end.heading_rad - capsule.heading_rad)), 6.0 * kDegree);
 }
 
 }  // namespace

@@ -139,13 +139,14 @@ TEST(WalkStyle, ALimpLeansOverTheSoreLegWhileItStands) {
   for (int k = 0; k < 2 * kRate; ++k) {
     walker.walk(0.0, kStick, 1, shipped("limp_left"));
     const WalkState& s = walker.state();
-    if (s.frame.stage != Stage::flight) continue;
+    const WalkSteps at = walk_steps(s);
+    if (at.stage != Stage::flight) continue;
     const double left = lean_of(walker).left_deg;
-    if (s.frame.swing == kRightSide) over_left = std::max(over_left, left);
-    if (s.frame.swing != kRightSide) over_right = std::min(over_right, left);
+    if (at.swing == kRightSide) over_left = std::max(over_left, left);
+    if (at.swing != kRightSide) over_right = std::min(over_right, left);
     // The knee of the uninjured leg straightens in mid-stance.
     const bool is_middle = 2.0f * s.walk.state.tick == s.walk.state.flight_ticks;
-    if (s.frame.swing == kLeftSide && is_middle)
+    if (at.swing == kLeftSide && is_middle)
       knee_rad = std::max(knee_rad, leg_angles(walker.model(), walker.pose())[kRightSide][kKneeX]);
   }
   EXPECT_GT(over_left, 5.0);

@@ -119,9 +119,9 @@ TEST(WalkTerrain, LevelGroundIsWalkedAsWithoutTerrain) {
   // iteration.
   constexpr double kSame_m = 1e-5;
   for (Side side : {kLeftSide, kRightSide}) {
-    EXPECT_LT(glm::distance(a.state().frame.heel_m[side], b.state().frame.heel_m[side]), kSame_m);
+    EXPECT_LT(glm::distance(a.last().heel_m[side], b.last().heel_m[side]), kSame_m);
   }
-  EXPECT_LT(glm::distance(a.state().frame.pelvis_m, b.state().frame.pelvis_m), kSame_m);
+  EXPECT_LT(glm::distance(a.last().pelvis_m, b.last().pelvis_m), kSame_m);
 }
 
 TEST(WalkTerrain, StairsAreClimbedATreadAStep) {
@@ -132,7 +132,7 @@ TEST(WalkTerrain, StairsAreClimbedATreadAStep) {
       double lowest = 0.0, last = 0.0, most = 0.0;
       for (int k = 0; k < 3000; ++k) {
         hiker.walk(0.0, y, 1);
-        const WalkFrame& f = hiker.state().frame;
+        const WalkFrame f = hiker.last();
         if (!hiker.has_landed()) continue;
         most = std::max(most, std::abs(f.heel_ground_m[f.swing] - last));
         last = f.heel_ground_m[f.swing];
@@ -160,8 +160,8 @@ std::vector<SingleSupport> single_supports(const WalkModel& model, double y, dou
   for (int k = 0; k < 20000 && hiker.state().root.place_m.z < until_m; ++k) {
     hiker.walk(0.0, y, 1);
     const WalkState& state = hiker.state();
-    const Side stands = other(state.frame.swing);
-    if (state.frame.stage == Stage::flight) {
+    const Side stands = other(walk_steps(state).swing);
+    if (walk_steps(state).stage == Stage::flight) {
       now.knee_deg.push_back(leg_angles(model, hiker.pose())[stands][kKneeX] / kDegree);
       if (state.walk.told.struck == 0.0f) now.rise_m = state.walk.footing.landing_y_m;
     } else if (!now.knee_deg.empty()) {
@@ -259,7 +259,7 @@ double most_beyond_m(const WalkModel& model, double y, double until_m) {
   double farthest = -1e9, most = -1e9;
   for (int k = 0; k < 20000 && hiker.state().root.place_m.z < until_m; ++k) {
     hiker.walk(0.0, y, 1);
-    const WalkFrame& f = hiker.state().frame;
+    const WalkFrame f = hiker.last();
     const double heel = hiker.sole(f.swing).heel.z;
     if (f.stage == Stage::flight) farthest = std::max(farthest, heel);
     if (!hiker.has_landed()) continue;
@@ -299,8 +299,8 @@ TEST(WalkTerrain, AStopOnStairsEndsWithBothFeetOnWholeTreads) {
       Hiker hiker(model);
       hiker.walk_to(z, 0.7);
       hiker.walk(0.0, 0.0, 700);
-      EXPECT_EQ(hiker.state().frame.stage, Stage::idle);
-      const auto& f = hiker.state().frame;
+      EXPECT_EQ(hiker.last().stage, Stage::idle);
+      const WalkFrame f = hiker.last();
       EXPECT_EQ(f.heel_ground_m[0], f.heel_ground_m[1]) << rise << " stopped at " << z;
       expect_sound(hiker.worst(), "stop at " + std::to_string(z));
     }
@@ -400,7 +400,7 @@ TEST(WalkTerrain, SlopesShortenSteps) {
     const WalkModel model = model_on(1.0, ground_of({SlopeSection{60.0, grade, 0.5}}));
     Hiker hiker(model, IkMode::robust, 2.0);
     hiker.walk(0.0, 0.7, 2000);
-    return hiker.state().frame.stride_m[0];
+    return hiker.last().stride_m[0];
   };
   const double level = stride(0.001);
   EXPECT_LT(stride(0.2), 0.9 * level);
@@ -456,7 +456,7 @@ TEST(WalkTerrain, PaperModeStaysBoundedAndFinite) {
   Hiker hiker(model, IkMode::paper);
   hiker.walk_to(17.0, 0.7);
   for (Side side : {kLeftSide, kRightSide}) {
-    EXPECT_LT(glm::distance(hiker.state().frame.heel_m[side], hiker.state().frame.pelvis_m),
+    EXPECT_LT(glm::distance(hiker.last().heel_m[side], hiker.last().pelvis_m),
               1.5 * model.leg_length_m);
   }
 }

@@ -303,7 +303,7 @@ RateRun run_at(int rate_hz, const vec2& stick) {
     run.walked_m += glm::distance(state.root.place_m, before_m);
     if (tick * 10 % rate_hz == 0) run.poses.push_back(pose);
   }
-  EXPECT_EQ(state.frame.bad_inputs, 0);
+  EXPECT_EQ(state.bad_inputs, 0);
   return run;
 }
 double rms_deg(const RateRun& a, const RateRun& b) {

@@ -51,9 +51,10 @@ int main(int argc, char** argv) {
     const gaitpad::GaitParams params = gaitpad::gait_params(stick, style, limits);
     gaitpad::advance(*model, params, gaitpad::IkMode::robust, 1.0 / kRate_hz, state, pose);
     std::printf("%.6f", double(tick) / kRate_hz);
+    const gaitpad::WalkFrame frame = gaitpad::walk_frame(*model, state, pose);
     for (const gaitpad::Side side : {gaitpad::kLeftSide, gaitpad::kRightSide}) {
-      print_point(state.frame.heel_m[side]);
-      print_point(state.frame.toe_m[side]);
+      print_point(frame.heel_m[side]);
+      print_point(frame.toe_m[side]);
     }
     std::putchar('\n');
   }

@@ -42,10 +42,10 @@ int main() {
     WalkState state = standing(*model, vec3(4.0 * leg_m, 0.0, 1.0), 0.5, pose);
     for (int tick = 1; tick <= 1200; ++tick) {
       if (tick % 60 == 0 && leg_m == 0.7) move_walk({vec3(2.5 * kPi, 0.0, 0.0)}, state, pose);
-      const WalkFrame before = state.frame;
+      const WalkFrame before = walk_frame(*model, state, pose);
       advance(*model, circle, IkMode::robust, 1.0 / 60.0, state, pose);
       not_finite += !std::isfinite(pose.root_m.x + pose.local[3].w);
-      const WalkFrame& now = state.frame;
+      const WalkFrame now = walk_frame(*model, state, pose);
       for (const std::size_t side : {0u, 1u}) {
         const double heel_m = std::abs(now.heel_m[side].y - now.heel_ground_m[side]);
         const double toe_m = std::abs(now.toe_m[side].y - now.toe_ground_m[side]);

@@ -146,8 +146,9 @@ int main(int argc, char** argv) {
     SDL_RenderPresent(renderer);
     if (options.frames < 0) SDL_Delay(1000 / kFrames_per_s);
   }
+  const std::array<int, 2> steps = gaitpad::walk_steps(state).steps;
   std::printf("walked to x %.3f m, z %.3f m in %d steps\n", pose.root_m.x, pose.root_m.z,
-              state.frame.steps[0] + state.frame.steps[1]);
+              steps[0] + steps[1]);
   if (pad != nullptr) SDL_GameControllerClose(pad);
   SDL_DestroyRenderer(renderer);
   SDL_DestroyWindow(window);

@@ -66,6 +66,8 @@ class Crowd {
   // The state that advance() of one would have. It is put together here: ask for it where it is
   // needed, not for each member in each tick.
   WalkState state(int member) const noexcept;
+  // walk_frame() of a member.
+  WalkFrame frame(int member) const noexcept;
   // WalkState::root of a member.
   Placement root(int member) const noexcept;
   // The pose of the last tick: the place of joint 0 in the world, and each joint's local rotation.

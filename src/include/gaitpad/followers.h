@@ -70,8 +70,10 @@ class Followers {
   }
   const vec3& start_m(int member) const noexcept { return start_m_[member]; }
 
-  // Advances all members by one tick. Call it after the first character's tick.
-  void advance(const GaitParams& first, const WalkState& first_state, double dt_s) noexcept;
+  // Advances all members by one tick. Call it after the first character's tick, with its
+  // parameters, WalkState::root and WalkFrame::speed_m_s.
+  void advance(const GaitParams& first, const Placement& first_root, double first_m_s,
+               double dt_s) noexcept;
   // Puts all members back to their places at the beginning.
   void restart() noexcept;
   // The poses of the first Options::shown members.
@@ -86,8 +88,8 @@ class Followers {
     StyleValues values;
     GaitLimits limits;
   };
-  GaitParams params_of(int member, const GaitParams& first, const WalkState& first_state,
-                       const vec3& ahead) const noexcept;
+  GaitParams params_of(int member, const GaitParams& first, const Placement& first_root,
+                       double first_m_s, const vec3& ahead) const noexcept;
   void keep_shown() noexcept;
 
   Crowd crowd_;

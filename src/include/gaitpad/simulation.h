@@ -102,6 +102,10 @@ struct Walker {
   std::int64_t ik_failures = 0;  // number of failures, one for each leg and tick
 };
 
+inline WalkFrame walk_frame(const Walker& walker) noexcept {
+  return walk_frame(*walker.model, walker.state, walker.pose);
+}
+
 // Copies only as many joints as there are: a whole Pose has 10 KB.
 void copy_pose(const Pose& from, Pose& to) noexcept;
 

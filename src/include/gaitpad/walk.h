@@ -45,11 +45,17 @@ enum class Stage : std::uint8_t {
   roll,    // Table I (b): the landed heel and the other foot's toe are planted
 };
 
-// The results of one tick, for export, tests and panels; advance() fills them. World frame, metres:
-// y up, floor 0, heading 0 along +z, x to the left at heading 0. Arrays are indexed by Side.
-struct WalkFrame {
+// Where a walk is in its steps; walk_steps() tells it. Arrays are indexed by Side.
+struct WalkSteps {
   Stage stage = Stage::idle;
-  Side swing = kLeftSide;    // flight: the flying foot; roll: the foot that has just landed
+  Side swing = kLeftSide;  // flight: the flying foot; roll: the foot that has just landed
+  std::array<bool, 2> heel_planted{true, true}, toe_planted{true, true};
+  std::array<int, 2> steps{};  // number of landings so far
+};
+
+// The results of one tick, for export, tests and panels; walk_frame() computes them. World frame,
+// metres: y up, floor 0, heading 0 along +z, x to the left at heading 0.
+struct WalkFrame : WalkSteps {
   double heading_rad = 0.0;  // heading, positive to the left; whole turns add up
   double turn_rate_rad_s = 0.0;
   double speed_m_s = 0.0;  // (left + right step) / cycle time of the running cycle; 0 when idle
@@ -61,41 +67,38 @@ struct WalkFrame {
   double root_turned_rad = 0.0;
   std::array<double, 2>
       stride_m{};  // length of each foot's running or last step; negative backwards
-  std::array<bool, 2> heel_planted{true, true}, toe_planted{true, true};
   std::array<vec3, 2> heel_m{}, toe_m{};
   std::array<int, 2> ik_iterations{};  // iterations of all solves of that leg in this tick
   std::array<double, 2> ik_error_m{};  // error of the last of these solves
   std::array<bool, 2> ik_failed{};     // the last solve did not converge
-  std::array<int, 2> steps{};          // number of landings so far
   // Height of the ground under heel and toe, planted or not.
   std::array<double, 2> heel_ground_m{}, toe_ground_m{};
   int overhangs = 0;  // number of landings so far on a tread that is too short for the foot
-  // Number of inputs so far that advance(), standing(), move_walk() or put_walk() refused.
-  int bad_inputs = 0;
 };
 
 // The whole state of a walk; standing() and advance() fill it. Plain, trivially copyable.
 struct WalkState {
-  WalkFrame frame;
   // A walk is computed in its own coordinates, which its terrain's sections share. `placed` is the
-  // place of these coordinates in the world; poses and `frame` are in the world. Writing `placed`
+  // place of these coordinates in the world; poses and frames are in the world. Writing `placed`
   // between two ticks moves the walk and its ground rigidly, and every other bit stays. For a walk
   // on a platform set it to the platform's place in each tick; for a shifted origin and a teleport
   // see move_walk() and put_walk().
   Placement placed;
   // In the walk's own coordinates: the hips' place on the ground, without the data's oscillations,
-  // and the heading; whole turns add up.
-  Placement root;
+  // and the heading; whole turns add up. `root_before`: before the last tick.
+  Placement root, root_before;
   // The caller writes it between two ticks; another number counts as a bad input and as the detail
   // in force.
   Detail detail = Detail::full;
   double tick_s = 1.0 / 240.0;  // length of the last tick
-  Block<1> walk;                // what the next tick begins from
+  // Number of inputs so far that advance(), standing(), move_walk() or put_walk() refused.
+  int bad_inputs = 0;
+  Block<1> walk;  // what the next tick begins from
 };
 
 // Makes a character stand at `place_m`, facing +z, on its terrain; the height of `place_m` is
 // ignored. Sets `pose`. A coordinate or heading that is not finite or beyond kFarthest_m counts as
-// 0 (WalkFrame::bad_inputs).
+// 0 (WalkState::bad_inputs).
 WalkState standing(const WalkModel& model, const vec3& place_m, Pose& pose) noexcept;
 
 // Makes a character stand there, facing `heading_rad`.
@@ -104,7 +107,7 @@ WalkState standing(const WalkModel& model, const vec3& place_m, double heading_r
 
 // Turns the walk about the world's vertical through the origin and shifts it, even in the middle of
 // a step. Planted feet stay where they are in the moved frame. If a number is not finite or beyond
-// kFarthest_m, nothing moves and it is counted (WalkFrame::bad_inputs).
+// kFarthest_m, nothing moves and it is counted (WalkState::bad_inputs).
 void move_walk(const Placement& by, WalkState& state, Pose& pose) noexcept;
 // Moves the walk so that its hips are over a place and face a heading.
 void put_walk(const vec3& place_m, double heading_rad, WalkState& state, Pose& pose) noexcept;
@@ -145,11 +148,16 @@ bool push_walk(const vec3& velocity_m_s, WalkState& state) noexcept;
 
 // Advances the walk by one tick of `dt_s` seconds, a constant of the run, and writes the pose. The
 // walk is the same at every rate; a tick longer than 1/60 s is computed in equal parts. Never
-// fails: a goal that the inverse kinematics could not reach is flagged in state.frame.ik_failed. A
+// fails: a goal that the inverse kinematics could not reach is flagged in WalkFrame::ik_failed. A
 // parameter or tick length that is not finite or that check() refuses is replaced by the present
-// one; state.frame.bad_inputs counts them.
+// one; state.bad_inputs counts them.
 void advance(const WalkModel& model, const GaitParams& params, IkMode mode, double dt_s,
              WalkState& state, Pose& pose) noexcept;
+
+// What a walk did in the last tick. `pose`: that of this tick.
+WalkFrame walk_frame(const WalkModel& model, const WalkState& state, const Pose& pose) noexcept;
+// The part of it that the state alone tells.
+WalkSteps walk_steps(const WalkState& state) noexcept;
 
 // The share of the data's oscillations and postures that shows: 0 at rest, 1 from half the data's
 // pace on.

@@ -1,7 +1,7 @@
 // The output of a walk for a game: the events of a tick, the joints that it wants, and the pose in
 // floats, in its own memory and joint order.
 //
-//   const WalkFrame before = state.frame;
+//   const WalkSteps before = walk_steps(state);
 //   advance(model, params, IkMode::robust, 1.0 / 60.0, state, pose);
 //   for (const WalkEvent& event : walk_events(before, state)) play_sound(event.place_m);
 //   mix_pose(legs_and_pelvis_weights, pose, game_pose);
@@ -39,9 +39,9 @@ struct WalkEvents {
   const WalkEvent* end() const noexcept { return event.data() + count; }
 };
 
-// The events since `before`, the frame of one tick earlier. A move of the walk in between is no
+// The events since `before`, the steps of one tick earlier. A move of the walk in between is no
 // event.
-WalkEvents walk_events(const WalkFrame& before, const WalkState& state) noexcept;
+WalkEvents walk_events(const WalkSteps& before, const WalkState& state) noexcept;
 
 // Weights for mix_pose(), one for each joint of the model's skeleton: 1 for the legs, the pelvis
 // and the joints that carry it; else 0, so that a game's own trunk, arms and head stay as they are,
@@ -67,8 +67,8 @@ bool pose_between(const WalkModel& model, const Pose& from, const Pose& to, doub
 // Both functions below write one entry for each of the caller's bones: that of joint `joints[i]`,
 // or nothing if there is no such joint in the pose. They write as many bones as `out` has room for,
 // and return the number of entries that they considered. Places in the world are converted to the
-// frame of `model`, the caller's object: {state.frame.root_m, state.frame.heading_rad} for an
-// object that is moved by root motion, {} for the world. If that is not finite nothing is written,
+// frame of `model`, the caller's object: moved(state.placed, state.root) for an object that is
+// moved by root motion, {} for the world. If that is not finite nothing is written,
 // and 0 returned.
 
 // Writes local rotations, 4 floats each: x, y, z, w. The root's turns into the frame of `model`;

@@ -43,34 +43,46 @@ std::array<double, kRowNumbers> numbers_of(const StridePlace& place) {
   return all;
 }
 
-void fill_harmonics(const WalkModel& model, BuildTables& tables) {
-  for (int r = 0; r < kRatios; ++r) {
-    for (auto& side : tables.leg_harmonics[r])
+// The strides of each ratio at each knot.
+template <std::size_t kOf>
+using Places = std::vector<std::array<StridePlace, kOf>>;
+template <std::size_t kOf>
+Places<kOf> places_of(const WalkModel& model, bool backward) {
+  Places<kOf> places(kKnots);
+  for (int k = 0; k < kKnots; ++k)
+    for (std::size_t r = 0; r < kOf; ++r)
+      places[k][r] =
+          stride_of(model, backward, double(k) / kKnots, kRatioStep * static_cast<double>(r));
+  return places;
+}
+
+void fill_harmonics(const Places<kRatios>& places, BuildTables& tables) {
+  for (auto& sides : tables.leg_harmonics)
+    for (auto& side : sides)
       for (auto& numbers : side) numbers.fill(0.0f);
-    for (int k = 0; k < kKnots; ++k) {
-      const StrideCell cell = stride_of(model, false, double(k) / kKnots, kRatioStep * r).cell;
-      for (int n = 0; n < 1 + 2 * kHarmonics; ++n) {
-        const SinCos turn = gaitpad::sin_cos(2.0 * kPi * ((n + 1) / 2) * k / kKnots);
-        const double of = (n == 0 ? 1.0 : n % 2 == 1 ? 2.0 * turn.cos : 2.0 * turn.sin) / kKnots;
+  for (int k = 0; k < kKnots; ++k) {
+    for (int n = 0; n < 1 + 2 * kHarmonics; ++n) {
+      const SinCos turn = gaitpad::sin_cos(2.0 * kPi * ((n + 1) / 2) * k / kKnots);
+      const double of = (n == 0 ? 1.0 : n % 2 == 1 ? 2.0 * turn.cos : 2.0 * turn.sin) / kKnots;
+      for (int r = 0; r < kRatios; ++r)
         for (int side : {0, 1})
           for (int j = 0; j < kLegAngles; ++j)
-            tables.leg_harmonics[r][side][j][n] += static_cast<float>(of * cell.leg_rad[side][j]);
-      }
+            tables.leg_harmonics[r][side][j][n] +=
+                static_cast<float>(of * places[k][r].cell.leg_rad[side][j]);
     }
   }
 }
 
 template <std::size_t kOf>
-void fill_strides(const WalkModel& model, bool backward, RowsOf<kOf>& rows) {
+void fill_strides(const Places<kOf>& places, RowsOf<kOf>& rows) {
   for (std::size_t r = 0; r < kOf; ++r) {
-    std::array<std::array<double, kRowNumbers>, kKnots> sample;
-    for (int k = 0; k < kKnots; ++k)
-      sample[k] = numbers_of(
-          stride_of(model, backward, double(k) / kKnots, kRatioStep * static_cast<double>(r)));
+    std::array<std::array<double, kKnots>, kRowNumbers> sample;
+    for (int k = 0; k < kKnots; ++k) {
+      const std::array<double, kRowNumbers> numbers = numbers_of(places[k][r]);
+      for (int n = 0; n < kRowNumbers; ++n) sample[n][k] = numbers[n];
+    }
     for (int n = 0; n < kRowNumbers; ++n) {
-      std::array<double, kKnots> of_number;
-      for (int k = 0; k < kKnots; ++k) of_number[k] = sample[k][n];
-      const auto knots = spline_through(of_number);
+      const auto knots = spline_through(sample[n]);
       for (int row = 0; row < kKnots + 3; ++row)
         reinterpret_cast<float*>(&rows[row][r])[n] = static_cast<float>(knots[knot_of_row(row)]);
     }
@@ -378,11 +390,12 @@ const Filters& kept_filters(double time_scale, double tick_s) noexcept {
 
 std::shared_ptr<const BuildTables> build_tables(const WalkModel& model) {
   auto tables = std::make_shared<BuildTables>();
-  fill_strides(model, false, tables->forward);
-  fill_strides(model, true, tables->back);
+  const Places<kRatios> places = places_of<kRatios>(model, false);
+  fill_strides(places, tables->forward);
+  fill_harmonics(places, *tables);
+  fill_strides(places_of<kBackRatios>(model, true), tables->back);
   fill_footprints(model.forward, tables->footprints, tables->most_ratio);
   fill_footprints(model.back, tables->back_footprints, tables->most_back_ratio);
-  fill_harmonics(model, *tables);
   fill_legs(model, *tables);
   fill_upper_body(model, *tables);
   fill_hardness(model, *tables);

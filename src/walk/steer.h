@@ -46,20 +46,23 @@ void ask(const GaitParams& params, int walk, Block<kWidth>& block) noexcept {
     set(params.hip_bounce, asked.bounce);
     set(params.hip_sway, asked.sway);
   }
+  // Most walks have no style: goals that were not asked for are not written either.
+  const auto asks = [&](bool is_asked, V& of) {
+    const bool was_asked = lane(of, walk) != 0.0f;
+    set(is_asked, of);
+    return is_asked || was_asked;
+  };
   Styled<V>& styled = block.styled;
-  set(!is_plain(params.body), styled.asked);
-  const BodyNumbers body = body_numbers(params.body);
-  for (int n = 0; n < kBodyNumbers; ++n) set(body[n], styled.goal[n]);
-  Weighted<V>& weighted = block.weighted;
-  bool is_even = true;
-  for (const int side : {0, 1}) {
-    for (int j = 0; j < kLegAngles; ++j) {
-      const double weight = params.weight[side][j];
-      set(weight, weighted.goal[side][j]);
-      is_even &= weight == 1.0;
-    }
+  if (asks(!is_plain(params.body), styled.asked)) {
+    const BodyNumbers body = body_numbers(params.body);
+    for (int n = 0; n < kBodyNumbers; ++n) set(body[n], styled.goal[n]);
   }
-  set(!is_even, weighted.asked);
+  static constexpr GaitParams kEven;
+  Weighted<V>& weighted = block.weighted;
+  if (asks(params.weight != kEven.weight, weighted.asked)) {
+    for (const int side : {0, 1})
+      for (int j = 0; j < kLegAngles; ++j) set(params.weight[side][j], weighted.goal[side][j]);
+  }
 }
 inline void ask(const GaitParams& params, Block<1>& block) noexcept { ask(params, 0, block); }
 

@@ -16,8 +16,8 @@
 #include <cstring>
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <utility>
-#include <vector>
 
 #include "base/text.h"
 #include "system/descriptors.h"
@@ -123,10 +123,11 @@ Result<std::string> file_text(const std::string& path, std::size_t max_bytes) {
   if (!stream) return failure(": cannot be opened for reading");
   std::string text;
   if (!code) text.reserve(size);
-  std::vector<char> block(1 << 16);
+  constexpr std::streamsize kBlock = 1 << 16;
+  const auto block = std::make_unique_for_overwrite<char[]>(kBlock);
   while (stream && text.size() <= max_bytes) {
-    stream.read(block.data(), static_cast<std::streamsize>(block.size()));
-    text.append(block.data(), static_cast<std::size_t>(stream.gcount()));
+    stream.read(block.get(), kBlock);
+    text.append(block.get(), static_cast<std::size_t>(stream.gcount()));
   }
   if (stream.bad()) return failure(": reading failed");
   if (text.size() > max_bytes) return failure(too_large);  // the file grew while it was read

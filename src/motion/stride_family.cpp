@@ -60,6 +60,7 @@ StridePlace stride_at(const std::vector<StrideTable>& tables, double phase, doub
     const StrideTable& table = tables[first + n];
     add(place.track, table, by_table[n]);
     for (int m = 0; m < 4; ++m) {
+      if (by_knot[m] == 0.0) continue;  // at a knot
       const int knot = (static_cast<int>(i) + m - 1 + kCycleSamples) % kCycleSamples;
       add(place.cell, table.knot[knot], by_table[n] * by_knot[m]);
     }

@@ -419,13 +419,15 @@ TEST(WalkTerrain, NothingFailsWhereverTheStickLeadsOnStairs) {
   struct Walk {
     double ratio;
     unsigned seed;
+    double most_jump_deg = 1.5;
   };
   // Three walks begin from a stand on two treads that bends an ankle to its limit. In two a foot
   // flies beside a riser, and its landing's direction turns while it flies. The last ones stop
   // backwards up stairs.
-  for (const auto& [ratio, seed] :
+  // 1.0 5: a first step's foot stands on a higher tread until its hips are beyond its strike.
+  for (const auto& [ratio, seed, most_jump_deg] :
        {Walk{0.8, 11}, Walk{1.0, 11}, Walk{0.8, 27}, Walk{0.8, 29}, Walk{0.8, 31}, Walk{1.0, 27},
-        Walk{1.0, 43}, Walk{0.8, 12}, Walk{0.8, 28}}) {
+        Walk{1.0, 43}, Walk{0.8, 12}, Walk{0.8, 28}, Walk{1.0, 5}}) {
     std::vector<SectionShape> sections = {FlatSection{0.3}};
     for (int k = 0; k < 6; ++k) {
       sections.emplace_back(StairsSection{k % 2 ? -0.17 : 0.17, 0.28, 5});
@@ -447,7 +449,7 @@ TEST(WalkTerrain, NothingFailsWhereverTheStickLeadsOnStairs) {
     // The bounds are larger, for hard landings of feet whose landing place changed in mid-flight.
     const std::string what =
         "random sticks, leg " + std::to_string(ratio) + " seed " + std::to_string(seed);
-    expect_sound(hiker.worst(), what, 1.1, 1.5);
+    expect_sound(hiker.worst(), what, 1.1, most_jump_deg);
   }
 }
 

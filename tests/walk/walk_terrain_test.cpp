@@ -415,6 +415,18 @@ TEST(WalkTerrain, ARiserTooHighForTheLegsIsNotClimbed) {
   expect_sound(hiker.worst(), "too high");
 }
 
+// The phase of the first step runs ahead at its fastest; where it has come up it slows down in
+// time.
+TEST(WalkTerrain, AStartUpARiserBendsTheStandingKneeEvenly) {
+  const WalkModel model =
+      model_on(1.0, ground_of({FlatSection{0.3}, StairsSection{0.17, 0.28, 5}}));
+  for (const double y : {0.33, 0.54, 0.63}) {
+    Hiker hiker(model);
+    hiker.walk(0.0, y, 120);
+    EXPECT_LT(hiker.worst().jump_deg, 1.2) << "stick " << y;
+  }
+}
+
 TEST(WalkTerrain, NothingFailsWhereverTheStickLeadsOnStairs) {
   struct Walk {
     double ratio;

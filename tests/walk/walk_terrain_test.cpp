@@ -438,11 +438,11 @@ TEST(WalkTerrain, NothingFailsWhereverTheStickLeadsOnStairs) {
   // backwards up stairs.
   // 1.0 5: a first step's foot stands on a higher tread until its hips are beyond its strike. 51,
   // 15, 56, 60: a closing step goes on to a tread two higher, and its ankle is at its limit. 58 and
-  // 37: the foot is below the ground of its new flight.
+  // 37: the foot is below the ground of its new flight. 39: a stop in a flight whose landing stays.
   for (const auto& [ratio, seed, most_jump_deg] :
        {Walk{0.8, 11}, Walk{1.0, 11}, Walk{0.8, 27}, Walk{0.8, 29}, Walk{0.8, 31}, Walk{1.0, 27},
         Walk{1.0, 43}, Walk{0.8, 12}, Walk{0.8, 28}, Walk{1.0, 5}, Walk{1.0, 51}, Walk{1.0, 15},
-        Walk{0.8, 56}, Walk{1.0, 60}, Walk{0.8, 58}, Walk{0.8, 37}}) {
+        Walk{0.8, 56}, Walk{1.0, 60}, Walk{0.8, 58}, Walk{0.8, 37}, Walk{0.8, 39, 1.8}}) {
     std::vector<SectionShape> sections = {FlatSection{0.3}};
     for (int k = 0; k < 6; ++k) {
       sections.emplace_back(StairsSection{k % 2 ? -0.17 : 0.17, 0.28, 5});

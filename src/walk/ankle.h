@@ -12,6 +12,8 @@ namespace {
 // over 6 degrees, and over 12 in flight.
 inline constexpr float kMostBent_rad = 0.66322512f, kSoftBent_rad = 0.10471976f,
                        kSoftFlying_rad = 0.20943951f;
+// Eased by at most 40 degrees: beyond that a leg that cannot reach its foot turned it ever farther.
+inline constexpr float kMostEased_rad = 0.69813170f;
 
 // Points a flying foot down: by its pitch alone as far as the ground allows, then about its toe,
 // which keeps its height.
@@ -45,12 +47,17 @@ void ease_ankle(const Tables& tables, const Time<V>& time, const Stride<V>& stri
           begun = starts ? smooth(first) : all<V>(1.0f), since = phase - time.step_phase;
   // Hips that lead may be before the strike of the foot that has landed: its heel stays down.
   constexpr float kBeforeStrike = 0.3f;  // cycles
-  const auto too_early = k == 1 ? since < floored(V(since + kBeforeStrike)) : Mask<V>{};
-  const V may = too_early ? V{} : V(begun * heel_rise(tables, right, phase, no(Mask<V>{}), change));
+  const V cycles = floored(V(since + kBeforeStrike));
+  const auto too_early = k == 1 ? since < cycles : Mask<V>{};
+  // They may be beyond the next strike of the foot that lifts off: its heel stays up.
+  constexpr float kUntilStrike = 0.45f;  // cycles
+  const V beyond = k == 0 ? most(V(since - cycles - kUntilStrike), V{}) : V{},
+          rises = heel_rise(tables, right, V(phase - beyond), no(Mask<V>{}), change),
+          may = too_early ? V{} : V(begun * rises);
   const V soft = chosen<V>(flies, kSoftFlying_rad, kSoftBent_rad),
-          excess = soft_positive(bent, soft) * (flies    ? all<V>(1.0f)
-                                                : stands ? may
-                                                         : V{});
+          excess = least(soft_positive(bent, soft), all<V>(kMostEased_rad)) * (flies ? all<V>(1.0f)
+                                                                               : stands ? may
+                                                                                        : V{});
   const auto eases = excess != V{};
   if (!any(eases)) return;
   Foot<V>& foot = feet.foot[k];

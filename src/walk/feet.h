@@ -211,8 +211,19 @@ Vec<V> with_gap(const Tables& tables, const Time<V>& time, const Vec<V>& heel_m,
   }
   of_gap = fading ? of_gap : V{};
   of_slope = fading ? V(of_slope * change.gap_lasts) : V{};
+  // The floor does not stop the rate of a foot that a new plan finds below its ground, up to
+  // kMostBelow legs a flight: beside a cliff it has no bound.
+  constexpr float kMostBelow = 3.0f;
+  V rate_below{};
+  if constexpr (kIsUneven<F>) {
+    const float most_m = kMostBelow * tables.leg_m;
+    rate_below = both(changed, footing.gap_under_m > V{})
+                     ? within(state.gap_slope_m.y, -most_m, most_m)
+                     : V{};
+  }
   p = p + Vec<V>{state.gap_m.x, V(state.gap_m.y * falls), state.gap_m.z} * of_gap +
-      state.gap_slope_m * of_slope;
+      Vec<V>{state.gap_slope_m.x, V(state.gap_slope_m.y - rate_below), state.gap_slope_m.z} *
+          of_slope;
   V high_m = most(p.y, base_m);
   if (any(changed)) {
     const V soft_m = kSoftFloor_m * tables.size * smoother(0.0f, 0.3f, s) *
@@ -221,7 +232,8 @@ Vec<V> with_gap(const Tables& tables, const Time<V>& time, const Vec<V>& heel_m,
         changed ? V(base_m + soft_positive(V(p.y - base_m), most(soft_m, all<V>(1e-6f)))) : high_m;
   }
   p.y = high_m;
-  if constexpr (kIsUneven<F>) p.y = changed ? V(p.y - footing.gap_under_m * of_gap) : p.y;
+  if constexpr (kIsUneven<F>)
+    p.y = changed ? V(p.y - footing.gap_under_m * of_gap + rate_below * of_slope) : p.y;
   return p;
 }
 // The rest of the pitch's difference from the tables, at a tick of the flight.
@@ -507,8 +519,15 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
   }
   pitch_in_flight(time, sole, flight, planned, off, change, state, footing, foot);
   // A new plan may begin with a foot below the line that clears the ground. What turns the foot
-  // later keeps to that line.
-  feet.base_m = feet.floor_m = most(flight.base_m, clear_m);
+  // later comes to keep to that line.
+  feet.base_m = most(flight.base_m, clear_m);
+  if constexpr (kIsUneven<F>) {
+    constexpr float kComes = 0.18f;  // share of the rest of the flight
+    const V keeps = smoother(0.0f, kComes, gap_share(time.u, change));
+    feet.base_m = both(time.flies, change.gap_begin != V{}) ? mix(flight.base_m, feet.base_m, keeps)
+                                                            : feet.base_m;
+  }
+  feet.floor_m = feet.base_m;
   if constexpr (kIsUneven<F>) {
     const V left_m = footing.print_y_m + rise_of(footing.print, V(foot.heel_m.x - state.print_x_m),
                                                  V(foot.heel_m.z - state.print_z_m));

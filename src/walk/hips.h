@@ -189,6 +189,7 @@ V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& l
   constexpr float kPhaseStep = 1e-3f;                         // cycles, of the slope
   constexpr float kBeforeStep = 0.1f, kAfterStep = 0.14f;     // cycles around the step's own
   constexpr float kFastestPhase = 2.5f, kFastestStop = 1.5f;  // of the clock's rate
+  constexpr float kComesUp_s = 0.06f;  // at the reference leg: a phase at its fastest slows down
   constexpr int kFewTries = 2, kPhaseTries = 6;  // iterations: usually, and of a new plan
   const Way<V>& way = landing.way;
   const Path<V>& path = state.path;
@@ -226,7 +227,16 @@ V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& l
   }
   const auto stops = tables.terrain != nullptr ? change.stops != V{} : Mask<V>{};
   const V fastest = chosen<V>(stops, kFastestStop, kFastestPhase) * strike_rate;
-  return is_new ? phase : least(most(phase, V(last - fastest)), V(last + fastest));
+  V next = least(most(phase, V(last - fastest)), V(last + fastest));
+  if (tables.terrain != nullptr) {
+    // A phase that lags behind comes up in time: its rate goes over to the hips'.
+    const V bend = (kFastestPhase - 1.0f) * strike_rate *
+                   (tables.tick_s / (kComesUp_s * tables.time_scale)),
+            lags = phase - last - rate, comes = root(V(2.0f * bend * size(lags)));
+    next = size(lags) > comes ? least(most(next, V(last + rate - comes)), V(last + rate + comes))
+                              : next;
+  }
+  return is_new ? phase : next;
 }
 
 // Scales a stride towards standing: `shown` is the share of it that is left.

@@ -449,7 +449,8 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
   float asked_m = step_m, share = 1.0f;
   if constexpr (kIsUneven<F>) {
     share = footing.share;
-    asked_m = step_m / share;
+    // A landing that stays is asked for as before: its foothold is not where it was asked for.
+    asked_m = moves ? step_m / share : state.length_m[right ? 1 : 0].x;
     if (moves) step_m = foothold_m(tables, asked_m, block);
   }
   if (from + step_m < need / kMostBrake_m_s2)

@@ -493,6 +493,14 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
   const auto stays = both(no(time.flies), both(change.led != V{}, no(first_roll)));
   const V soft = kDegree_rad * smoother(rolled);
   planned = both(stays, soft > V{}) ? soft_positive(planned, most(soft, all<V>(1e-6f))) : planned;
+  // Nor does its heel come down again: about the toe it would go back, and on so in the air, where
+  // the hips lead away from it.
+  if constexpr (!kIsUneven<F>) {
+    constexpr float kSoftHold_rad = 0.1f * kDegree_rad;  // in a tick: rounds where the heel stays
+    const auto holds = both(both(stays, no(time.back)), state.tick > all<V>(1.0f));
+    const V last = state.last_pitch_rad[0];
+    planned = holds ? V(last + soft_positive(V(planned - last), all<V>(kSoftHold_rad))) : planned;
+  }
   foot.toe_m = {state.toe_x_m, sole.toe_rest_m, state.toe_z_m};
   V clear_m = flight.base_m;
   if constexpr (kIsUneven<F>) {

@@ -300,49 +300,91 @@ void change_step(const Tables& tables, bool moves, Block<1>& block, F& footing,
   state.swing_pitch_rate = (was.pitch_rad[1] - is.pitch_rad[1]) - state.swing_pitch_rad;
 }
 
-// Ticks until the hips are as far ahead of the standing foot as in the tables at the lift-off of
-// the other foot.
-inline float ticks_to_lift_off(const Tables& tables, const State<float>& state,
-                               const Change<float>& change) noexcept {
-  const Time<float> time = time_of(tables, state);
+// Where the tables have the hips at the lift-off that ends a roll: ahead of the footprint that the
+// foot leaves, or of the standing foot.
+inline float lift_off_m(const Tables& tables, const Time<float>& time, float ratio,
+                        bool of_print) noexcept {
   const float phase = time.step_phase + roll_cycles<float>(tables, time.right);
-  const FootprintsIn<float> prints = footprints_of(tables, time, state.ratio_behind);
-  const float place_m = prints.stride_m * phase - prints.stand_m.z +
-                        read_pelvis(tables, time, phase, state.ratio_behind).z;
+  const FootprintsIn<float> prints = footprints_of(tables, time, ratio);
+  const float foot_m =
+      of_print ? prints.swing_m.z - (time.right ? 0.0f : prints.stride_m) : prints.stand_m.z;
+  return prints.stride_m * phase - foot_m + read_pelvis(tables, time, phase, ratio).z;
+}
+// Ticks until hips that come to rest at `rest_m` ahead of the standing foot are at `place_m`.
+inline float ticks_to_place(float place_m, float rest_m, const State<float>& state,
+                            const Change<float>& change) noexcept {
   Off<float> off = change.pelvis_z_m;
-  off.x -= tables.rest_lead_m;
+  off.x -= rest_m;
   float ticks = 1.0f;
   for (; ticks < change.rest_ticks; ticks += 1.0f) {
     fade(change.rest_ticks + 1.0f - ticks, off);
-    if ((tables.rest_lead_m + off.x - place_m) * (time.back ? -1.0f : 1.0f) >= 0.0f) break;
+    if ((rest_m + off.x - place_m) * (state.backward != 0.0f ? -1.0f : 1.0f) >= 0.0f) break;
   }
   return ticks;
+}
+
+// Times a roll in a stop, in ticks from now. It ends when the hips are as far ahead of the standing
+// foot as in the tables, but the toe has time to come down. Only hips that would leave the rear
+// foot farther behind than a whole stride does end it sooner: its leg would be straight.
+struct RollLeft {
+  float least, lifts;
+};
+inline RollLeft roll_left(const Tables& tables, float rest_m, const State<float>& state,
+                          const Change<float>& change) noexcept {
+  constexpr float kEvenRoll_s = 0.11f;  // in which a toe comes down as softly as in a walk
+  constexpr float kWhole = 1.0f;        // ratio of the data's stride
+  const float scale = tables.time_scale / tables.tick_s;
+  const auto ticks_of_time = [&](float time_s) { return floored(time_s * scale + 0.5f); };
+  const Time<float> time = time_of(tables, state);
+  const auto ticks_to = [&](float place_m) {
+    return ticks_to_place(place_m, rest_m, state, change);
+  };
+  float even = least(ticks_of_time(kEvenRoll_s), state.roll_ticks) - state.tick;
+  if (tables.terrain == nullptr) {
+    const float whole_m = lift_off_m(tables, time, most(state.ratio_behind, kWhole), true);
+    even = least(even, ticks_to(state.print_z_m + whole_m));
+  }
+  return {most(even, ticks_of_time(kLeastRollLeft_s)),
+          ticks_to(lift_off_m(tables, time, state.ratio_behind, false))};
+}
+
+// Sets the ticks of a roll and the flight after it.
+inline void set_step_ticks(const Tables& tables, float roll, float flight,
+                           State<float>& state) noexcept {
+  const bool right = state.right_swings != 0.0f;
+  state.roll_ticks = roll, state.flight_ticks = flight;
+  state.end_rate = 0.5f * (roll_cycles<float>(tables, right) / roll +
+                           flight_cycles<float>(tables, right) / flight);
 }
 
 // Times the last step in its roll: the foot lands when the hips rest, or later.
 inline void time_closing_step(const Tables& tables, State<float>& state,
                               Change<float>& change) noexcept {
-  constexpr float kLeastClosing_s = 0.30f, kLeastClosingRoll_s = 0.11f;  // flight and roll
-  const float scale = tables.time_scale / tables.tick_s;
-  const auto ticks_of_time = [&](float time_s) { return floored(time_s * scale + 0.5f); };
-  const float shortest = ticks_of_time(kLeastClosing_s * change.slowness),
-              longest = most(shortest, floored(kMostClosing * state.flight_ticks)),
-              least_roll =
-                  most(least(ticks_of_time(kLeastClosingRoll_s), state.roll_ticks) - state.tick,
-                       ticks_of_time(kLeastRollLeft_s));
+  constexpr float kLeastClosing_s = 0.30f;  // of the flight
+  const float shortest = floored(
+                  kLeastClosing_s * change.slowness * (tables.time_scale / tables.tick_s) + 0.5f),
+              longest = most(shortest, floored(kMostClosing * state.flight_ticks));
+  const RollLeft roll = roll_left(tables, tables.rest_lead_m, state, change);
   // The hips may come to rest before the foot lands.
-  const float all_ticks = most(change.rest_ticks, shortest + least_roll),
+  const float all_ticks = most(change.rest_ticks, shortest + roll.least),
               most_roll =
                   least(all_ticks - shortest, floored(kLongestClosingRoll * state.roll_ticks)),
-              rolls = least(most(ticks_to_lift_off(tables, state, change), least_roll),
-                            most(least_roll, most_roll));
-  state.flight_ticks = least(most(all_ticks - rolls, shortest), longest);
-  state.roll_ticks = state.tick + rolls;
-  change.closing_ticks = rolls + state.flight_ticks;
+              rolls = least(most(roll.lifts, roll.least), most(roll.least, most_roll)),
+              flight = least(most(all_ticks - rolls, shortest), longest);
+  set_step_ticks(tables, state.tick + rolls, flight, state);
+  change.closing_ticks = rolls + flight;
   change.rest_ticks = least(change.rest_ticks, change.closing_ticks);
-  const bool right = state.right_swings != 0.0f;
-  state.end_rate = 0.5f * (roll_cycles<float>(tables, right) / state.roll_ticks +
-                           flight_cycles<float>(tables, right) / state.flight_ticks);
+}
+
+// Times the roll of a step between, where it begins: by its own time it would last longer than the
+// hips, which are as fast as the walk was, take to the lift-off.
+inline void time_step_between(const Tables& tables, State<float>& state,
+                              const Change<float>& change) noexcept {
+  const float length_m = change.length_m[state.right_swings != 0.0f ? 1 : 0],
+              to_m = state.backward != 0.0f ? -length_m : length_m;
+  const RollLeft roll = roll_left(tables, tables.rest_lead_m + to_m, state, change);
+  const float rolls = least(most(roll.lifts, roll.least), state.roll_ticks);
+  set_step_ticks(tables, rolls, state.flight_ticks + state.roll_ticks - rolls, state);
 }
 
 // The longest last step, in seconds, if its times were those of the running step.
@@ -377,6 +419,8 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
   // From the landing to the end of a closing step, and of a step between; the share of speed times
   // time that braking hips go in it.
   constexpr float kToClose_s = 0.40f, kNextStep_s = 0.35f, kWayWhileClosing = 0.44f;
+  // Share of speed times time above which hips that have all that time would first get faster.
+  constexpr float kWayInTime = 0.5f;
   constexpr float kLurch = 1.35f;       // ratio of the speed of hips that lurch to the walk's mean
   constexpr float kFurtherStep = 0.3f;  // shortest step between, a share of the foot's own
   constexpr float kTurnsOnSpot = 0.1f;  // steps below this ratio are on the spot
@@ -442,7 +486,10 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
   }
   const float least_m = most(kLeastStep * own_m, foot_m + kBehind_m);
   const auto wanted = [&](float time_s) {
-    return most(need / kBrake_m_s2, kWayWhileClosing * speed * (left_s + time_s * scale)) - from;
+    const float longest = left_s + longest_s + (time_s > kToClose_s ? kNextStep_s * scale : 0.0f),
+                brakes_m = most(least(need / kBrake_m_s2, kWayInTime * speed * longest),
+                                need / kMostBrake_m_s2);
+    return most(brakes_m, kWayWhileClosing * speed * (left_s + time_s * scale)) - from;
   };
   float step_m = planned, further_m = 0.0f;
   if (moves) step_m = least(most(wanted(kToClose_s), least(least_m, planned)), planned);

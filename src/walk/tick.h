@@ -573,6 +573,11 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
       if constexpr (kUneven) time_rest(tables, one.state, one.change);
       time_closing_step(tables, one.state, one.change);
     });
+    if constexpr (!kUneven) {
+      one_by_one<kWidth>(
+          both(strikes, both(change.stops != V{}, change.closing == V{})), block,
+          [&](Block<1>& one, int) { time_step_between(tables, one.state, one.change); });
+    }
     rest(tables, change, state);
     if constexpr (kUneven) footing.next_rise = change.stands != V{} ? V{} : footing.next_rise;
   }

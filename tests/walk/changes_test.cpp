@@ -37,7 +37,7 @@ constexpr Bounds kOfCaptures{.worst_m_s2 = 7.0,
                              .resumed_deg = 1.55,
                              .paced_deg = 1.5,
                              .tap_deg = 1.35,
-                             .lower_m = 0.03,
+                             .lower_m = 0.02,
                              .resumed_m = 0.03,
                              .way_m = 1.2,
                              .turn_back_s = 0.95,
@@ -46,8 +46,7 @@ constexpr Bounds kOfCaptures{.worst_m_s2 = 7.0,
                              .resumed = 2.5,
                              .paced = 2.5,
                              .faster = 1.35,
-                             .shins_m = 0.05,
-                             .feet_m = 0.05,
+                             .feet_m = 0.054,
                              .turning_deg = 1.55,
                              .spot_m_s2 = 7.5,
                              .spot_deg = 1.85};
@@ -227,6 +226,36 @@ TEST_P(Stops, BrakeAsPeopleDo) {
   }
   EXPECT_LE(median(all_m_s2), bounds().median_m_s2);
 }
+
+// Where a walk is fast and its steps are long, the leg behind is straight at its lift-off.
+struct Fast {
+  const char *name, *file;
+  double lower_m, faster, jerks;
+};
+class FastStops : public testing::TestWithParam<Fast> {};
+
+TEST_P(FastStops, NeitherSinkNorSpeedUpNorStraightenTheLegBehind) {
+  GAITPAD_NEEDS(kCapturedMotions);
+  const Of motion{GetParam().name, GetParam().file, kOfCaptures};
+  const Steady& steady = walking(motion, 1.0).steady;
+  Changes stops;
+  at_moments(motion, 1.0, [&](ThumbWalk& walk) {
+    const int since = walk.ticks();
+    walk.walk(0.0, 0.0, 3 * kRate);
+    stops.add(change_of(walk, since, steady));
+  });
+  stops.print("stops", motion, 1.0);
+  EXPECT_LE(stops.worst.lower_m, GetParam().lower_m);
+  EXPECT_LE(stops.worst.faster, GetParam().faster);
+  EXPECT_LE(stops.worst.jerk_deg, GetParam().jerks * steady.jerk_deg);
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Of, FastStops,
+    testing::Values(Fast{"cmu_07_08", "cmu_07_08.amc", 0.025, 1.2, 2.0},
+                    Fast{"cmu_007_12", "cmu_007_12_iclone.bvh", 0.1, 1.08, 7.0},
+                    Fast{"cmu_007_01", "cmu_007_01_iclone.bvh", 0.02, 1.06, 2.0}),
+    [](const auto& of) { return std::string(of.param.name); });
 
 class Resumes : public OfMotion {};
 

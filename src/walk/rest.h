@@ -373,7 +373,10 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
   // chosen for a soft braking, in a hurry for a harder one; above the hardest one, one more step
   // comes between.
   constexpr float kNeed = 0.72f;
-  constexpr float kBrake_m_s2 = 3.0f, kHastyBrake_m_s2 = 3.3f, kMostBrake_m_s2 = 3.9f;
+  constexpr float kBrake_m_s2 = 3.0f, kMostBrake_m_s2 = 3.9f;
+  // Of a walk that is to go the other way: to close at once. If it will turn back without standing:
+  // to close after the landing, and the hardest one.
+  constexpr float kHastyClose_m_s2 = 3.3f, kHastyBrake_m_s2 = 3.9f, kMostHasty_m_s2 = 4.7f;
   // From the landing to the end of a closing step, and of a step between; the share of speed times
   // time that braking hips go in it.
   constexpr float kToClose_s = 0.40f, kNextStep_s = 0.35f, kWayWhileClosing = 0.44f;
@@ -421,7 +424,10 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
     change.pelvis_x_m = x, change.pelvis_z_m = z;
   };
   // A walk that is to go the other way is in a hurry.
-  const float close_m_s2 = state.asked.walks != 0.0f ? kHastyBrake_m_s2 : kBrake_m_s2;
+  const bool hurries = state.asked.walks != 0.0f, turns = hurries && !kIsUneven<F> && !time.back;
+  const float close_m_s2 = hurries ? kHastyClose_m_s2 : kBrake_m_s2,
+              brake_m_s2 = turns ? kHastyBrake_m_s2 : kBrake_m_s2,
+              most_m_s2 = turns ? kMostHasty_m_s2 : kMostBrake_m_s2;
   const bool may_close = (from >= need / close_m_s2 && foot_m < -kBehind_m) || on_spot;
   const bool moves = !flies || (may_move && time.u < kStays);
   if (may_close && change.starting == 0.0f && moves) {
@@ -442,7 +448,7 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
   }
   const float least_m = most(kLeastStep * own_m, foot_m + kBehind_m);
   const auto wanted = [&](float time_s) {
-    return most(need / kBrake_m_s2, kWayWhileClosing * speed * (left_s + time_s * scale)) - from;
+    return most(need / brake_m_s2, kWayWhileClosing * speed * (left_s + time_s * scale)) - from;
   };
   float step_m = planned, further_m = 0.0f;
   if (moves) step_m = least(most(wanted(kToClose_s), least(least_m, planned)), planned);
@@ -452,7 +458,7 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
     asked_m = step_m / share;
     if (moves) step_m = foothold_m(tables, asked_m, block);
   }
-  if (from + step_m < need / kMostBrake_m_s2)
+  if (from + step_m < need / most_m_s2)
     further_m = least(most(wanted(kToClose_s + kNextStep_s) - step_m, kFurtherStep * next_own_m),
                       next_own_m);
   const float step_s = (state.roll_ticks + state.flight_ticks) * tick_s,

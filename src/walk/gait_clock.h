@@ -111,13 +111,13 @@ inline constexpr float kLeastCycle_s =
 inline constexpr float kTurned_rad = 5.9604645e-8f, kFrameTurned_rad = 8.0f * kTurned_rad;
 
 inline constexpr float kStill_rad = 1e-7f;    // a turn too small to see
+inline constexpr float kFirstStep = 0.9f;     // of the length asked for: a first step is shorter
 inline constexpr float kLonger_ticks = 2.0f;  // most by which a tick lengthens a planned flight
 
 // `left`: share of the lengths asked for that uneven ground leaves.
 template <class V>
 void smooth_asked(const Tables& tables, const Change<V>& change, const V& left,
                   State<V>& state) noexcept {
-  constexpr float kFirstStep = 0.9f;        // of the length asked for: a first step is shorter
   constexpr float kStraight_rad_s = 1e-5f;  // too small to see
   const Asked<V>& asked = state.asked;
   const auto walks = is_to_walk(state);

@@ -415,7 +415,10 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
   // chosen for a soft braking, in a hurry for a harder one; above the hardest one, one more step
   // comes between.
   constexpr float kNeed = 0.72f;
-  constexpr float kBrake_m_s2 = 3.0f, kHastyBrake_m_s2 = 3.3f, kMostBrake_m_s2 = 3.9f;
+  constexpr float kBrake_m_s2 = 3.0f, kMostBrake_m_s2 = 3.9f;
+  // Of a walk that is to go the other way: to close at once. If it will turn back without standing:
+  // to close after the landing, and the hardest one.
+  constexpr float kHastyClose_m_s2 = 3.3f, kHastyBrake_m_s2 = 3.9f, kMostHasty_m_s2 = 4.7f;
   // From the landing to the end of a closing step, and of a step between; the share of speed times
   // time that braking hips go in it.
   constexpr float kToClose_s = 0.40f, kNextStep_s = 0.35f, kWayWhileClosing = 0.44f;
@@ -465,7 +468,10 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
     change.pelvis_x_m = x, change.pelvis_z_m = z;
   };
   // A walk that is to go the other way is in a hurry.
-  const float close_m_s2 = state.asked.walks != 0.0f ? kHastyBrake_m_s2 : kBrake_m_s2;
+  const bool hurries = state.asked.walks != 0.0f, turns = hurries && !kIsUneven<F> && !time.back;
+  const float close_m_s2 = hurries ? kHastyClose_m_s2 : kBrake_m_s2,
+              brake_m_s2 = turns ? kHastyBrake_m_s2 : kBrake_m_s2,
+              most_m_s2 = turns ? kMostHasty_m_s2 : kMostBrake_m_s2;
   const bool may_close = (from >= need / close_m_s2 && foot_m < -kBehind_m) || on_spot;
   const bool moves = !flies || (may_move && time.u < kStays);
   if (may_close && change.starting == 0.0f && moves) {
@@ -487,8 +493,8 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
   const float least_m = most(kLeastStep * own_m, foot_m + kBehind_m);
   const auto wanted = [&](float time_s) {
     const float longest = left_s + longest_s + (time_s > kToClose_s ? kNextStep_s * scale : 0.0f),
-                brakes_m = most(least(need / kBrake_m_s2, kWayInTime * speed * longest),
-                                need / kMostBrake_m_s2);
+                brakes_m = most(least(need / brake_m_s2, kWayInTime * speed * longest),
+                                need / most_m_s2);
     return most(brakes_m, kWayWhileClosing * speed * (left_s + time_s * scale)) - from;
   };
   float step_m = planned, further_m = 0.0f;
@@ -500,7 +506,7 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
     asked_m = moves ? step_m / share : state.length_m[right ? 1 : 0].x;
     if (moves) step_m = foothold_m(tables, asked_m, block);
   }
-  if (from + step_m < need / kMostBrake_m_s2)
+  if (from + step_m < need / most_m_s2)
     further_m = least(most(wanted(kToClose_s + kNextStep_s) - step_m, kFurtherStep * next_own_m),
                       next_own_m);
   const float step_s = (state.roll_ticks + state.flight_ticks) * tick_s,

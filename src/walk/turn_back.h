@@ -38,12 +38,16 @@ inline Stride<float> shown_stride(const Tables& tables, const Change<float>& cha
   return stride;
 }
 
-// Times the landing of the first step the other way so that the hips turn round softly. Returns
-// their hardest acceleration, in m/s^2.
+inline constexpr float kMostTurn_m_s2 = 5.2f;  // of hips that turn round
+
+// Times the landing of the first step the other way: soon, but so that the hips turn round softly.
+// Returns their hardest acceleration, in m/s^2; it is above kMostTurn_m_s2 if no time is soft
+// enough.
 inline float time_turning_step(const Tables& tables, State<float>& state,
                                const Change<float>& change) noexcept {
   constexpr float kLeastLeft_s = 0.34f, kMostLeft_s = 0.7f;  // of the flight
-  constexpr float kLateTurn = 5.0f;                          // cost of a second, in m/s^2
+  // Costs in m/s^2: of a second, and of 1 m/s^2 above the bound.
+  constexpr float kLateTurn = 9.0f, kTooHard = 1000.0f;
   constexpr int kTimes = 16, kPoints = 32;  // times that are tried; points of each quintic
   const float tick_s = tables.tick_s, scale = tables.time_scale;
   const bool right = state.right_swings != 0.0f;
@@ -80,7 +84,8 @@ inline float time_turning_step(const Tables& tables, State<float>& state,
       most_a = most(most_a, size(off.a / (point * point) + there.a));
     }
     most_a = most_a / (tick_s * tick_s);
-    const float cost = most_a + kLateTurn * ticks * tick_s;
+    const float cost =
+        most_a + kLateTurn * ticks * tick_s + kTooHard * most(most_a - kMostTurn_m_s2, 0.0f);
     if (cost < least_cost) best = ticks, best_rate = rate, hardest = most_a, least_cost = cost;
   }
   state.flight_ticks = begun + best;
@@ -89,10 +94,10 @@ inline float time_turning_step(const Tables& tables, State<float>& state,
   return hardest;
 }
 
-// Turns a walk back in its last flight, if that is soft enough.
+// Turns a walk back in its last flight, if that is soft enough. It mostly is in the first tick.
+// Hips that are still too fast may turn in a later one: without that two rough captures take 0.1 s
+// more.
 inline void turn_back(const Tables& tables, Block<1>& block) noexcept {
-  constexpr float kMostTurn_m_s2 = 4.5f;
-  constexpr float kFirstStep = 0.9f;  // of the length asked for, as when a walk starts
   const Block<1> before = block;
   State<float>& state = block.state;
   Change<float>& change = block.change;

@@ -496,10 +496,12 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
   // Nor does its heel come down again: about the toe it would go back, and on so in the air, where
   // the hips lead away from it.
   if constexpr (!kIsUneven<F>) {
-    constexpr float kSoftHold_rad = 0.1f * kDegree_rad;  // in a tick: rounds where the heel stays
+    constexpr float kSoftHold_rad_s = 24.0f * kDegree_rad;  // rounds where the heel stays
     const auto holds = both(both(stays, no(time.back)), state.tick > all<V>(1.0f));
     const V last = state.last_pitch_rad[0];
-    planned = holds ? V(last + soft_positive(V(planned - last), all<V>(kSoftHold_rad))) : planned;
+    planned =
+        holds ? V(last + soft_positive(V(planned - last), all<V>(kSoftHold_rad_s * tables.tick_s)))
+              : planned;
   }
   foot.toe_m = {state.toe_x_m, sole.toe_rest_m, state.toe_z_m};
   V clear_m = flight.base_m;

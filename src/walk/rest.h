@@ -493,8 +493,8 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
   const float least_m = most(kLeastStep * own_m, foot_m + kBehind_m);
   const auto wanted = [&](float time_s) {
     const float longest = left_s + longest_s + (time_s > kToClose_s ? kNextStep_s * scale : 0.0f),
-                brakes_m = most(least(need / brake_m_s2, kWayInTime * speed * longest),
-                                need / most_m_s2);
+                brakes_m =
+                    most(least(need / brake_m_s2, kWayInTime * speed * longest), need / most_m_s2);
     return most(brakes_m, kWayWhileClosing * speed * (left_s + time_s * scale)) - from;
   };
   float step_m = planned, further_m = 0.0f;

@@ -381,13 +381,13 @@ def test_a_killed_replay_leaves_nothing_and_what_earlier_ones_left_is_removed(st
 
 
 def test_long_gaps_take_the_time_of_their_ticks_and_show_progress(program, made):
-    gap_s = 540
-    reports = [report(gap_s * i, y=0x10) for i in range(11)]
-    path = made.write("gaps.hid", HEADER + "".join(reports) + end(10 * gap_s))
+    gap_s, gaps = 540, 30  # progress is shown after two seconds; all of it takes three times as long
+    reports = [report(gap_s * i, y=0x10) for i in range(gaps + 1)]
+    path = made.write("gaps.hid", HEADER + "".join(reports) + end(gaps * gap_s))
     with Terminal(program, "replay", path) as terminal:
         terminal.wait_for(r"replay: \d+ %, (\d+ min )?\d+ s left", 60)
         assert terminal.wait_end(300) == 0
-    assert f"{10 * gap_s * RATE_HZ} ticks at {RATE_HZ} Hz" in terminal.text
+    assert f"{gaps * gap_s * RATE_HZ} ticks at {RATE_HZ} Hz" in terminal.text
 
 
 # ---- several recordings in one process -------------------------------------------------------

@@ -14,7 +14,7 @@ import time
 import pytest
 
 from pads import KINDS, LONG, Pad, wait_for
-from session import HAS_SANITIZERS, IDS, Session, remark
+from session import HAS_SANITIZERS, IDS, Session, remark, ticks_of
 from test_matrix import VALUES
 from uhid_pad import EMPTY_PLUG, FULL_PLUG, UhidPad
 
@@ -35,10 +35,15 @@ def push(pad, session):
     time.sleep(0.1)
 
 
-def seen_pushes(session):
-    """The number of times that the stick went from rest beyond 0.9 and back."""
-    sticks = [float(frame["stick_y"]) for frame in session.frames()]
-    return sum(a <= 0.9 < b for a, b in zip(sticks, sticks[1:]))
+def sticks_of(session):
+    return [float(frame["stick_y"]) for frame in session.frames()]
+
+
+def seen_pushes(session, sticks):
+    """How often the pad was there and its stick went beyond 0.9. Where a busy host holds the guest up the pad is silent,
+    and its stick goes to rest and comes back in the middle of a push."""
+    ends = ticks_of(session.lines(), lambda line: line.startswith("H:") and line.endswith(" remove"))
+    return sum(max(sticks[begin:end], default=0.0) > 0.9 for begin, end in zip([0, *ends], ends))
 
 
 @pytest.mark.timeout(7200 if LONG else 900)
@@ -59,7 +64,7 @@ def test_every_push_after_plugging_in_is_seen():
                     push(pad, session)
                     pad.unplug()
                     session.wait_unplugged(turn + 1)
-            seen = seen_pushes(session)
+            seen = seen_pushes(session, sticks_of(session))
             assert seen == TURNS, f"session {number}: {seen} of {TURNS} pushes were seen"
             assert session.summary["plugged"] == session.summary["unplugged"] == TURNS
     ordered = sorted(waits_s)
@@ -85,7 +90,7 @@ def test_a_pad_that_rests_when_it_is_opened_counts_from_its_first_push(case):
             push(pad, session)
             pad.unplug()
             session.wait_unplugged(turn + 1)
-    assert seen_pushes(session) == times
+    assert seen_pushes(session, sticks_of(session)) == times
     remark(f"a pad that rests when it is opened, {case}: {times} times, its first push was seen")
 
 
@@ -168,8 +173,8 @@ def test_every_tap_is_seen_at_full_speed(source):
         took_s = time.monotonic() - began
         wait_for(lambda: held(session) <= first, 10, f"{first} files and threads as after the first cycle, not {held(session)}")
     assert session.summary["plugged"] == session.summary["unplugged"] == source.FIRST + CYCLES, session.summary
-    sticks = [float(frame["stick_y"]) for frame in session.frames()]
-    seen = sum(a <= 0.9 < b for a, b in zip(sticks, sticks[1:]))
+    sticks = sticks_of(session)
+    seen = seen_pushes(session, sticks)
     assert seen == CYCLES, f"{seen} of {CYCLES} taps were seen"
     assert sticks[-1] == 0.0, "stuck"
     remark(f"plugging in at full speed, {type(source).__name__}: {CYCLES} times in {took_s:.0f} s, each tap was seen; in the session "

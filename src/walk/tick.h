@@ -467,6 +467,106 @@ void pose_walks(const Tables& tables, const BodyTick<Floats<kWidth>>& tick,
   keep_solves(tick.time, legs, block.told);
 }
 
+// Begins walks, plans stops and takes pushes. Returns the walks whose plan has changed within a
+// step.
+template <int kWidth, bool kUneven>
+Mask<Floats<kWidth>> change_plans(const Tables& tables, bool looks_ahead,
+                                  Block<kWidth>& block) noexcept {
+  using V = Floats<kWidth>;
+  const Change<V>& change = block.change;
+  const auto follows = change.is_new != V{};  // already new because a step has begun
+  begin_walks(tables, block);
+  if (!kUneven || looks_ahead) change_ends<kWidth, kUneven>(tables, block);
+  one_by_one<kWidth>(either(change.push_x_m_s != V{}, change.push_z_m_s != V{}), block,
+                     [&](Block<1>& one, int) { take_push(tables, one); });
+  return both(no(follows), change.is_new != V{});
+}
+
+// Ends the step of walks that strike: the step frame moves to the landing, swing and stand change
+// places, and the next step is planned. `to`: the way of the step; `before_rad`: the flying foot's
+// pitch two ticks ago.
+template <int kWidth, class F>
+void strike(const Tables& tables, const BodyTick<Floats<kWidth>>& tick,
+            const Way<Floats<kWidth>>& to, const Mask<Floats<kWidth>>& strikes,
+            Landing<Floats<kWidth>>& landing, const Feet<Floats<kWidth>>& feet,
+            const Floats<kWidth>& before_rad, Block<kWidth>& block, F& footing) noexcept {
+  using V = Floats<kWidth>;
+  constexpr bool kUneven = kIsUneven<F>;
+  State<V>& state = block.state;
+  Change<V>& change = block.change;
+  const Time<V>& time = tick.time;
+  V overhangs{};
+  if constexpr (kUneven) overhangs = footing.overhangs;
+  landing.rad = rounded_to(kFrameTurned_rad, landing.rad);
+  count_step(time, landing, to, strikes, state, overhangs, block.told);
+  auto is_level = change.slowness == all<V>(1.0f);
+  move_frame<kWidth>(landing, strikes, block);
+  if constexpr (kUneven) {
+    move_rails(strikes, footing.landing_y_m, block.styled);
+    change_footing(landing, strikes, feet.flat_toe_m.y, footing);
+    const V slow = slowness_of(tables, no(time.right), state, footing);
+    change.slowness = strikes ? slow : change.slowness;
+    is_level = slow == all<V>(1.0f);
+  }
+  // After a late change of plan the step has not yet changed over to its own stride.
+  landing.ratio = change.off_over.x != V{}
+                      ? mix(state.ratio_behind, landing.ratio, V(1.0f + change.off_over.x))
+                      : landing.ratio;
+  change_feet(landing, strikes, feet, tick.stride, state);
+  change_weighted_legs(strikes, block.weighted);
+  change_styled_feet(strikes, block.styled);
+  end_aims(landing, strikes, change);
+  const auto keeps = either(change.led != V{}, change.off_phase.x != V{});
+  const V rate = keeps ? change.phase_rate : state.phase_rate;
+  begin_lead(tables, strikes, tick.phase, rate, is_level, state, change);
+  begin_step(tables, time, strikes, change, state);
+  const V& pitch_rad = feet.foot[0].pitch_rad;
+  roll_on(both(strikes, change.led != V{}), pitch_rad,
+          slope_of(pitch_rad, state.last_pitch_rad[1], before_rad), change, state);
+  one_by_one<kWidth>(both(strikes, change.closing != V{}), block, [&](Block<1>& one, int) {
+    if constexpr (kUneven) time_rest(tables, one.state, one.change);
+    time_closing_step(tables, one.state, one.change);
+  });
+  if constexpr (!kUneven) {
+    one_by_one<kWidth>(
+        both(strikes, both(change.stops != V{}, change.closing == V{})), block,
+        [&](Block<1>& one, int) { time_step_between(tables, one.state, one.change); });
+  }
+  rest(tables, change, state);
+  if constexpr (kUneven) footing.next_rise = change.stands != V{} ? V{} : footing.next_rise;
+}
+
+// Looks ahead for walks whose next ticks may ask more of a leg than the tables do. `is_unsteady`:
+// they started, stopped or caught a push as the tick began.
+template <int kWidth, bool kPaper, bool kUneven>
+void look_where_needed(const Tables& tables, const Time<Floats<kWidth>>& time,
+                       const Mask<Floats<kWidth>>& is_new, const Mask<Floats<kWidth>>& is_unsteady,
+                       const Mask<Floats<kWidth>>& lifts, const Mask<Floats<kWidth>>& strikes,
+                       Block<kWidth>& block) noexcept {
+  using V = Floats<kWidth>;
+  const State<V>& state = block.state;
+  const Change<V>& change = block.change;
+  const auto half = is_half_seen(tables, state);
+  auto changes = is_unsteady, again = either(lifts, strikes), paces = Mask<V>{};
+  if constexpr (kUneven) {
+    // Any change of pace may ask more of a leg.
+    const auto sinks = either(change.led != V{}, change.sink_ticks != V{});
+    changes = either(either(is_unsteady, sinks), leaves_stairs(change, block.footing));
+    again = either(again, half);
+  } else {
+    // Hips must have begun to sink when a step of another pace begins.
+    paces = either(lifts, half);
+    if (any(paces))
+      paces =
+          both(paces, has_other_pace(tables, time.right,
+                                     own_step_m<V>(tables, time.right, time.back), state, change));
+  }
+  const auto looks = either(either(is_new, either(both(again, changes), paces)),
+                            both(is_to_walk(state), is_unforeseen(tables, state, change)));
+  one_by_one<kWidth>(looks, block,
+                     [&](Block<1>& one, int) { look_ahead<kPaper, kUneven>(tables, one); });
+}
+
 template <int kWidth, bool kPaper, class F>
 void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Poses& poses,
                 bool looks_ahead) noexcept {
@@ -474,12 +574,7 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
   State<V>& state = block.state;
   Change<V>& change = block.change;
   constexpr bool kUneven = kIsUneven<F>;
-  const auto follows = change.is_new != V{};  // already new because a step has begun
-  begin_walks(tables, block);
-  if (!kUneven || looks_ahead) change_ends<kWidth, kUneven>(tables, block);
-  one_by_one<kWidth>(either(change.push_x_m_s != V{}, change.push_z_m_s != V{}), block,
-                     [&](Block<1>& one, int) { take_push(tables, one); });
-  const auto is_new = both(no(follows), change.is_new != V{}),
+  const auto is_new = change_plans<kWidth, kUneven>(tables, looks_ahead, block),
              is_unsteady = either(either(change.starting != V{}, change.stops != V{}),
                                   change.catch_ticks != V{});
   if constexpr (kUneven && !kPaper) lean_into_slope(tables, state, change, footing);
@@ -526,10 +621,9 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
   for (int k : {0, 1}) feet.ankle_m[k] = ankle_of(feet.foot[k], feet.sole[k]);
   sink(tables, time, stride, feet.ankle_m, state, change, pelvis);
   reach_with_toe(tables, time, change, pelvis, feet);
+  const BodyTick<V> tick{time, landing, hips, stride, pelvis, idle, phase, change.shown};
   if (looks_ahead)  // a look ahead needs no pose
-    pose_walks<kWidth, kPaper>(
-        tables, BodyTick<V>{time, landing, hips, stride, pelvis, idle, phase, change.shown}, is_new,
-        block, footing, feet, poses);
+    pose_walks<kWidth, kPaper>(tables, tick, is_new, block, footing, feet, poses);
 
   take_back(asked_rad, feet);
   const auto lifts = both(no(time.flies), state.tick >= state.roll_ticks),
@@ -541,70 +635,17 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
   if constexpr (kUneven)
     footing.last_rise_m[1] = footing.last_rise_m[0], footing.last_rise_m[0] = footing.rise_m;
   block.told.struck = chosen<V>(strikes, 1.0f, 0.0f);
-  if (any(strikes)) {
-    V overhangs{};
-    if constexpr (kUneven) overhangs = footing.overhangs;
-    landing.rad = rounded_to(kFrameTurned_rad, landing.rad);
-    count_step(time, landing, asked.to, strikes, state, overhangs, block.told);
-    auto is_level = change.slowness == all<V>(1.0f);
-    move_frame<kWidth>(landing, strikes, block);
-    if constexpr (kUneven) {
-      move_rails(strikes, footing.landing_y_m, block.styled);
-      change_footing(landing, strikes, feet.flat_toe_m.y, footing);
-      const V slow = slowness_of(tables, no(time.right), state, footing);
-      change.slowness = strikes ? slow : change.slowness;
-      is_level = slow == all<V>(1.0f);
-    }
-    // After a late change of plan the step has not yet changed over to its own stride.
-    landing.ratio = change.off_over.x != V{}
-                        ? mix(state.ratio_behind, landing.ratio, V(1.0f + change.off_over.x))
-                        : landing.ratio;
-    change_feet(landing, strikes, feet, stride, state);
-    change_weighted_legs(strikes, block.weighted);
-    change_styled_feet(strikes, block.styled);
-    end_aims(landing, strikes, change);
-    const auto keeps = either(change.led != V{}, change.off_phase.x != V{});
-    const V rate = keeps ? change.phase_rate : state.phase_rate;
-    begin_lead(tables, strikes, phase, rate, is_level, state, change);
-    begin_step(tables, time, strikes, change, state);
-    roll_on(both(strikes, change.led != V{}), feet.foot[0].pitch_rad,
-            slope_of(feet.foot[0].pitch_rad, state.last_pitch_rad[1], before_rad), change, state);
-    one_by_one<kWidth>(both(strikes, change.closing != V{}), block, [&](Block<1>& one, int) {
-      if constexpr (kUneven) time_rest(tables, one.state, one.change);
-      time_closing_step(tables, one.state, one.change);
-    });
-    if constexpr (!kUneven) {
-      one_by_one<kWidth>(
-          both(strikes, both(change.stops != V{}, change.closing == V{})), block,
-          [&](Block<1>& one, int) { time_step_between(tables, one.state, one.change); });
-    }
-    rest(tables, change, state);
-    if constexpr (kUneven) footing.next_rise = change.stands != V{} ? V{} : footing.next_rise;
-  }
+  if (any(strikes))
+    strike<kWidth>(tables, tick, asked.to, strikes, landing, feet, before_rad, block, footing);
   count_last_roll(tables, strikes, change, block.told);
   if (any(lifts)) {
     plan_limp(tables, time, lifts, state, change);
     begin_flight(tables, time, lifts, change, state);
     if (kUneven && looks_ahead) plan_rooms<kWidth>(tables, lifts, block);
   }
-  if (!looks_ahead) return;
-  const auto half = is_half_seen(tables, state), begins = either(lifts, strikes);
-  // On level ground hips must have begun to sink when a step of another pace begins.
-  auto paces = kUneven ? Mask<V>{} : either(lifts, half);
-  if (any(paces))
-    paces =
-        both(paces, has_other_pace(tables, time.right, own_step_m<V>(tables, time.right, time.back),
-                                   state, change));
-  // On uneven ground any change of pace may ask more of a leg than the tables do.
-  Mask<V> leaves{};
-  if constexpr (kUneven) leaves = leaves_stairs(change, footing);
-  const auto sinks = either(change.led != V{}, change.sink_ticks != V{}),
-             changes = kUneven ? either(either(is_unsteady, sinks), leaves) : is_unsteady,
-             again = kUneven ? either(begins, half) : begins,
-             looks = either(either(is_new, either(both(again, changes), paces)),
-                            both(is_to_walk(state), is_unforeseen(tables, state, change)));
-  one_by_one<kWidth>(looks, block,
-                     [&](Block<1>& one, int) { look_ahead<kPaper, kUneven>(tables, one); });
+  if (looks_ahead)
+    look_where_needed<kWidth, kPaper, kUneven>(tables, time, is_new, is_unsteady, lifts, strikes,
+                                               block);
 }
 
 template <int kWidth, bool kPaper = false>

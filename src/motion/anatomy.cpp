@@ -10,53 +10,41 @@ namespace {
 
 // --- What a name says ---------------------------------------------------------------------------
 
-struct PartWord {
-  std::string_view word;
+// Words are in lower case, separated by spaces.
+struct PartWords {
   NamedPart part;
+  std::string_view words;
 };
-constexpr PartWord kPartWords[] = {
-    {"toe", NamedPart::toe},           {"toes", NamedPart::toe},
-    {"ball", NamedPart::toe},          {"bale", NamedPart::toe},
-    {"toebase", NamedPart::toe},       {"forefoot", NamedPart::toe},
-    {"ankle", NamedPart::ankle},       {"foot", NamedPart::ankle},
-    {"knee", NamedPart::knee},         {"shin", NamedPart::knee},
-    {"calf", NamedPart::knee},         {"tibia", NamedPart::knee},
-    {"leg", NamedPart::knee},  // "UpLeg", "Upper Leg": the hip
-    {"lowleg", NamedPart::knee},       {"lowerleg", NamedPart::knee},
-    {"loleg", NamedPart::knee},        {"shank", NamedPart::knee},
-    {"thigh", NamedPart::hip},         {"femur", NamedPart::hip},
-    {"hip", NamedPart::hip},           {"upleg", NamedPart::hip},
-    {"upperleg", NamedPart::hip},      {"collar", NamedPart::collar},
-    {"clavicle", NamedPart::collar},   {"clav", NamedPart::collar},
-    {"collarbone", NamedPart::collar}, {"scapula", NamedPart::collar},
-    {"shoulder", NamedPart::shoulder}, {"shoulderjoint", NamedPart::shoulder},
-    {"humerus", NamedPart::upper_arm}, {"shldr", NamedPart::upper_arm},
-    {"uparm", NamedPart::upper_arm},   {"upperarm", NamedPart::upper_arm},
-    {"upprarm", NamedPart::upper_arm}, {"bicep", NamedPart::upper_arm},
-    {"biceps", NamedPart::upper_arm},  {"elbow", NamedPart::elbow},
-    {"forearm", NamedPart::elbow},     {"radius", NamedPart::elbow},
-    {"ulna", NamedPart::elbow},        {"lowerarm", NamedPart::elbow},
-    {"lowarm", NamedPart::elbow},      {"loarm", NamedPart::elbow},
-    {"wrist", NamedPart::wrist},       {"hand", NamedPart::wrist},
+constexpr PartWords kPartWords[] = {
+    {NamedPart::toe, "toe toes ball bale toebase forefoot"},
+    {NamedPart::ankle, "ankle foot"},
+    // "UpLeg" and "Upper Leg" are the hip: named_joint() sees to that.
+    {NamedPart::knee, "knee shin calf tibia leg lowleg lowerleg loleg shank"},
+    {NamedPart::hip, "thigh femur hip upleg upperleg"},
+    {NamedPart::collar, "collar clavicle clav collarbone scapula"},
+    {NamedPart::shoulder, "shoulder shoulderjoint"},
+    {NamedPart::upper_arm, "humerus shldr uparm upperarm upprarm bicep biceps"},
+    {NamedPart::elbow, "elbow forearm radius ulna lowerarm lowarm loarm"},
+    {NamedPart::wrist, "wrist hand"},
 };
-constexpr std::string_view kNeckWords[] = {"neck", "lowerneck", "upperneck"};
-constexpr std::string_view kHeadWords[] = {"head", "skull"};
+constexpr std::string_view kNeckWords = "neck lowerneck upperneck", kHeadWords = "head skull";
 // Joints beside or inside a bone, or at its tip: never the joint that turns it.
-constexpr std::string_view kHelperWords[] = {
-    "twist", "share", "roll", "rigmesh", "pole", "ik", "metatarsals", "end", "nub",
-};
+constexpr std::string_view kHelperWords = "twist share roll rigmesh pole ik metatarsals end nub";
 // Joints beyond the wrist, beside an arm or on a head. Leg joints may contain these words
 // ("MiddleToe").
-constexpr std::string_view kBesideArmWords[] = {
-    "dum",    "thumb",   "index", "middle", "mid",        "ring",    "pinky",    "little",
-    "finger", "fingers", "palm",  "carpal", "metacarpal", "carpals", "pectoral", "eye",
-    "top",    "weapon",  "prop",  "leg",    "foot",       "hip"};
+constexpr std::string_view kBesideArmWords =
+    "dum thumb index middle mid ring pinky little finger fingers palm carpal metacarpal carpals "
+    "pectoral eye top weapon prop leg foot hip";
 // Joints beside the hip joint, under the thigh.
-constexpr std::string_view kBesideLegWords[] = {"buttock", "buttocks"};
+constexpr std::string_view kBesideLegWords = "buttock buttocks";
 
-template <std::size_t n>
-bool is_among(const std::string_view (&list)[n], std::string_view word) {
-  return std::find(std::begin(list), std::end(list), word) != std::end(list);
+bool is_among(std::string_view words, std::string_view word) {
+  for (std::size_t at = words.find(word); at != words.npos; at = words.find(word, at + 1)) {
+    const std::size_t end = at + word.size();
+    if ((at == 0 || words[at - 1] == ' ') && (end == words.size() || words[end] == ' '))
+      return true;
+  }
+  return false;
 }
 
 bool is_upper_case(char c) { return c >= 'A' && c <= 'Z'; }
@@ -84,14 +72,14 @@ std::vector<std::string> name_words(std::string_view name) {
 }
 
 NamedSide side_of(std::string_view word) {
-  if (word == "l" || word == "left" || word == "lft") return NamedSide::left;
-  if (word == "r" || word == "right" || word == "rgt") return NamedSide::right;
+  if (is_among("l left lft", word)) return NamedSide::left;
+  if (is_among("r right rgt", word)) return NamedSide::right;
   return NamedSide::none;
 }
 
 NamedPart part_of(std::string_view word) {
-  for (const PartWord& known : kPartWords) {
-    if (known.word == word) return known.part;
+  for (const PartWords& known : kPartWords) {
+    if (is_among(known.words, word)) return known.part;
   }
   return NamedPart::none;
 }
@@ -136,8 +124,8 @@ NamedJoint named_joint(std::string_view name) {
     // Toe words win over foot words: "FootToes" and "LeftFootBall" are toes.
     const NamedPart part = part_of(word);
     if (joint.part == NamedPart::none || part == NamedPart::toe) joint.part = part;
-    is_upper |= word == "up" || word == "upper";
-    is_lower |= word == "fore" || word == "low" || word == "lower" || word == "lo";
+    is_upper |= is_among("up upper", word);
+    is_lower |= is_among("fore low lower lo", word);
     is_arm |= word == "arm";
     is_beside_arm |= is_among(kBesideArmWords, word);
     is_beside_leg |= is_among(kBesideLegWords, word);
@@ -192,6 +180,26 @@ bool is_limb(const Figure& figure, const Limb& limb) {
   return upper > 0.0 && lower > 0.0 && upper < 2.5 * lower && lower < 2.5 * upper;
 }
 
+// The longest limb of three neighbouring joints of a chain. Returns the index of the first of them;
+// -1 if there is none.
+int longest_limb(const Figure& figure, std::span<const int> chain) {
+  int best = -1;
+  double longest = 0.0;
+  for (std::size_t i = 0; i + 2 < chain.size(); ++i) {
+    const Limb limb{chain[i], chain[i + 1], chain[i + 2]};
+    const double length = length_of(figure, limb);
+    if (length <= longest || !is_limb(figure, limb)) continue;
+    longest = length;
+    best = static_cast<int>(i);
+  }
+  return best;
+}
+
+// Adds a joint to a chain, unless it is in the last one's place.
+void add_apart(const Figure& figure, int joint, std::vector<int>& chain) {
+  if (chain.empty() || figure.distance(joint, chain.back()) > 0.0) chain.push_back(joint);
+}
+
 // Two limbs of similar length (ratio below 1.5), neither of which is a descendant of the other.
 bool is_pair(const Figure& figure, const Limb& left, const Limb& right) {
   const double left_m = length_of(figure, left), right_m = length_of(figure, right);
@@ -217,18 +225,22 @@ int named_ancestor(const Skeleton& skeleton, int joint, NamedSide side, NamedPar
 
 using Legs = std::array<LegJoints, 2>;
 
+// The End Site of a joint; -1 if it has none.
+int end_site_of(const Skeleton& skeleton, int joint) {
+  for (const int child : children_of(skeleton, joint)) {
+    if (skeleton.joints[child].is_end_site) return child;
+  }
+  return -1;
+}
+
 // The toe joint's own End Site, otherwise its last descendant in the file's order. Scripts that
 // read exported poses follow the same rule.
 int toe_end_of(const Skeleton& skeleton, int toe) {
-  const auto& joints = skeleton.joints;
-  for (const int child : children_of(skeleton, toe)) {
-    if (joints[child].is_end_site) return child;
-  }
+  if (const int end = end_site_of(skeleton, toe); end >= 0) return end;
   int last = toe;
-  for (int j = toe + 1; j < static_cast<int>(joints.size()); ++j) {
-    if (!is_ancestor(skeleton, toe, j)) break;
-    last = j;
-  }
+  while (last + 1 < static_cast<int>(skeleton.joints.size()) &&
+         is_ancestor(skeleton, toe, last + 1))
+    ++last;
   return last;
 }
 
@@ -253,15 +265,6 @@ int toe_of(const Figure& figure, int ankle) {
   return best;
 }
 
-// The End Site of a foot without length; -1 if there is none. Old Acclaim skeletons have such feet;
-// build_toes() gives them the usual length.
-int foot_point_of(const Figure& figure, int ankle) {
-  for (const int child : children_of(figure.skeleton, ankle)) {
-    if (figure.joint(child).is_end_site) return child;
-  }
-  return -1;
-}
-
 // Finds the toe, if it is not given, and its end. Returns false if the foot has no length.
 bool complete_foot(const Figure& figure, LegJoints& leg) {
   if (leg.toe < 0) leg.toe = toe_of(figure, leg.ankle);
@@ -282,8 +285,9 @@ std::optional<LegJoints> named_leg(const Figure& figure, NamedSide side) {
     if (leg.knee < 0) continue;
     leg.hip = named_ancestor(figure.skeleton, leg.knee, side, NamedPart::hip);
     if (leg.hip < 0 || !is_limb(figure, limb_of(leg))) continue;
-    // Accept a foot without length if its ankle has a name.
-    if (toe_of(figure, j) < 0) leg.toe = foot_point_of(figure, j);
+    // Accept a foot without length, which old Acclaim skeletons have, if its ankle has a name.
+    // build_toes() gives it the usual length.
+    if (toe_of(figure, j) < 0) leg.toe = end_site_of(figure.skeleton, j);
     if (complete_foot(figure, leg)) return leg;
   }
   return std::nullopt;
@@ -293,21 +297,14 @@ std::optional<LegJoints> named_leg(const Figure& figure, NamedSide side) {
 // so the leaf itself is no ankle.
 std::optional<LegJoints> shaped_leg(const Figure& figure, int ancestor, int leaf) {
   std::vector<int> chain;  // joints from the leaf upwards; of joints in one place only one
-  for (int j = leaf; j != ancestor; j = figure.parent(j)) {
-    if (chain.empty() || figure.distance(j, chain.back()) > 0.0) chain.push_back(j);
-  }
-  LegJoints best;
-  double longest = 0.0;
-  for (std::size_t i = 1; i + 2 < chain.size(); ++i) {
-    LegJoints leg;
-    leg.ankle = chain[i], leg.knee = chain[i + 1], leg.hip = chain[i + 2];
-    const double length = length_of(figure, limb_of(leg));
-    if (length <= longest || !is_limb(figure, limb_of(leg))) continue;
-    longest = length;
-    best = leg;
-  }
-  if (longest == 0.0 || !complete_foot(figure, best)) return std::nullopt;
-  return best;
+  for (int j = leaf; j != ancestor; j = figure.parent(j)) add_apart(figure, j, chain);
+  if (chain.empty()) return std::nullopt;
+  const std::span<const int> above_leaf = std::span(chain).subspan(1);
+  const int first = longest_limb(figure, above_leaf);
+  if (first < 0) return std::nullopt;
+  LegJoints leg;
+  leg.ankle = above_leaf[first], leg.knee = above_leaf[first + 1], leg.hip = above_leaf[first + 2];
+  return complete_foot(figure, leg) ? std::optional(leg) : std::nullopt;
 }
 
 // Takes pairs of leaves from the lowest upwards, and returns the first pair that hangs on one joint
@@ -500,21 +497,13 @@ ArmChain named_arm(const Figure& figure, const Legs& legs, NamedSide side) {
 // The arm between `top` and a leaf: its two longest neighbouring bones of similar length.
 ArmChain shaped_arm(const Figure& figure, int top, int leaf) {
   std::vector<int> chain;  // joints from the top; of joints in one place only one
-  for (const int j : path_below(figure.skeleton, top, leaf)) {
-    if (chain.empty() || figure.distance(j, chain.back()) > 0.0) chain.push_back(j);
-  }
-  ArmChain best;
-  double longest = 0.0;
-  for (std::size_t i = 0; i + 2 < chain.size(); ++i) {
-    ArmChain arm;
-    arm.collar = i > 0 ? chain[i - 1] : -1;
-    arm.shoulder = chain[i], arm.elbow = chain[i + 1], arm.wrist = chain[i + 2];
-    const double length = length_of(figure, limb_of(arm));
-    if (length <= longest || !is_limb(figure, limb_of(arm))) continue;
-    longest = length;
-    best = arm;
-  }
-  return best;
+  for (const int j : path_below(figure.skeleton, top, leaf)) add_apart(figure, j, chain);
+  const int first = longest_limb(figure, chain);
+  ArmChain arm;
+  if (first < 0) return arm;
+  arm.collar = first > 0 ? chain[first - 1] : -1;
+  arm.shoulder = chain[first], arm.elbow = chain[first + 1], arm.wrist = chain[first + 2];
+  return arm;
 }
 
 // The longest arm on each side of the trunk. The left hip tells which side is left.

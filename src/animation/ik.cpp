@@ -32,22 +32,22 @@ double jacobian_entry(const vec3& a, const vec3& n, const vec3& d, const vec3& m
 
 // --- The chain in one pose -----------------------------------------------------------------------
 
-// A pose of the chain, with every DOF as an axis in space. A column of the Jacobian is then one
-// cross product per point.
-struct IkPose {
-  std::array<vec3, kMaxIkDofs> axis;     // axis of each DOF, base frame
-  std::array<vec3, kMaxIkDofs> pivot_m;  // a point on the axis of each DOF
-  vec3 x, y, z;                          // axes of the last frame in the base frame
-  vec3 end_m;                            // origin of the last frame
-};
-
-vec3 point_in_base(const IkPose& pose, const vec3& p) noexcept {
-  return pose.end_m + p.x * pose.x + p.y * pose.y + p.z * pose.z;
-}
-
-// Axes of the frame that the chain has reached so far, in the base frame.
+// Axes of a frame of the chain, in the base frame.
 struct Axes {
   vec3 x{1.0, 0.0, 0.0}, y{0.0, 1.0, 0.0}, z{0.0, 0.0, 1.0};
+};
+
+// A pose of the chain, with every DOF as an axis in space, and the distance of each row from its
+// goal: dX of step 1 of section 3.3.2. A column of the Jacobian is then one cross product per
+// point. All in the base frame.
+struct IkPose {
+  std::array<vec3, kMaxIkDofs> axis;     // axis of each DOF
+  std::array<vec3, kMaxIkDofs> pivot_m;  // a point on the axis of each DOF
+  Axes last;                             // axes of the last frame
+  vec3 end_m;                            // its origin
+  std::array<vec3, kMaxIkRows> point_m;  // points of the rows
+  std::array<double, kMaxIkRows> dx;
+  double squares = 0.0;  // |dX|^2
 };
 
 // Turns the frame about a unit axis that is given in the frame itself, by Rodrigues' formula;
@@ -79,25 +79,23 @@ void pose_chain(const IkChain& chain, const IkAngles& angles_rad, IkPose& pose) 
     const vec3& l = dof.link_m;
     if (l.x != 0.0 || l.y != 0.0 || l.z != 0.0) end += l.x * f.x + l.y * f.y + l.z * f.z;
   }
-  pose.x = f.x, pose.y = f.y, pose.z = f.z;
+  pose.last = f;
   pose.end_m = end;
 }
 
-// Step 1 of section 3.3.2: dX, the distance of each row from its goal.
-struct IkErrors {
-  std::array<double, kMaxIkRows> dx;
-  std::array<vec3, kMaxIkRows> point_m;  // points of the rows, base frame
-  double squares = 0.0;                  // |dX|^2
-};
-
-void measure_errors(const IkPose& pose, std::span<const IkRow> rows, IkErrors& errors) noexcept {
+void pose_chain(const IkChain& chain, std::span<const IkRow> rows, const IkAngles& angles_rad,
+                IkPose& pose) noexcept {
   assert(rows.size() <= kMaxIkRows);
-  errors.squares = 0.0;
+  pose_chain(chain, angles_rad, pose);
+  pose.squares = 0.0;
   for (std::size_t r = 0; r < rows.size(); ++r) {
-    const bool same_point = r > 0 && rows[r].point_m == rows[r - 1].point_m;
-    errors.point_m[r] = same_point ? errors.point_m[r - 1] : point_in_base(pose, rows[r].point_m);
-    errors.dx[r] = rows[r].goal_m - glm::dot(rows[r].direction, errors.point_m[r]);
-    errors.squares += errors.dx[r] * errors.dx[r];
+    const vec3& p = rows[r].point_m;
+    const bool same_point = r > 0 && p == rows[r - 1].point_m;
+    pose.point_m[r] = same_point
+                          ? pose.point_m[r - 1]
+                          : pose.end_m + p.x * pose.last.x + p.y * pose.last.y + p.z * pose.last.z;
+    pose.dx[r] = rows[r].goal_m - glm::dot(rows[r].direction, pose.point_m[r]);
+    pose.squares += pose.dx[r] * pose.dx[r];
   }
 }
 
@@ -178,20 +176,18 @@ IkResult refused() noexcept {
 IkFrame end_frame(const IkChain& chain, const IkAngles& angles_rad) noexcept {
   IkPose pose;
   pose_chain(chain, angles_rad, pose);
-  return {pose.end_m, from_axes(pose.x, pose.y, pose.z)};
+  return {pose.end_m, from_axes(pose.last.x, pose.last.y, pose.last.z)};
 }
 
 void position_jacobian(const IkChain& chain, std::span<const IkRow> rows,
                        const IkAngles& angles_rad, IkJacobian& jacobian,
                        std::array<double, kMaxIkRows>& error_m) noexcept {
   IkPose pose;
-  pose_chain(chain, angles_rad, pose);
-  IkErrors errors;
-  measure_errors(pose, rows, errors);
+  pose_chain(chain, rows, angles_rad, pose);
   for (std::size_t r = 0; r < rows.size(); ++r) {
-    error_m[r] = errors.dx[r];
+    error_m[r] = pose.dx[r];
     for (int j = 0; j < chain.dofs; ++j) {
-      const vec3 column = glm::cross(pose.axis[j], errors.point_m[r] - pose.pivot_m[j]);
+      const vec3 column = glm::cross(pose.axis[j], pose.point_m[r] - pose.pivot_m[j]);
       jacobian[r][j] = glm::dot(rows[r].direction, column);
     }
   }
@@ -323,10 +319,8 @@ Pass one_pass(const IkChain& chain, std::span<const IkRow> rows, const PaperOpti
 double pose_error(const IkChain& chain, std::span<const IkRow> rows,
                   const IkAngles& angles_rad) noexcept {
   IkPose pose;
-  IkErrors errors;
-  pose_chain(chain, angles_rad, pose);
-  measure_errors(pose, rows, errors);
-  return std::sqrt(errors.squares);
+  pose_chain(chain, rows, angles_rad, pose);
+  return std::sqrt(pose.squares);
 }
 
 }  // namespace
@@ -445,27 +439,17 @@ void limited_step(const Problem& p, const ColumnsOf<kRows>& column, Step<kRows>&
   }
 }
 
-// A chain's pose, its errors, and their columns of the Jacobian. kRows is even; a row beyond the
-// given ones is zero.
-struct Place : IkErrors {
-  IkPose pose;
-};
+// The columns of the Jacobian. kRows is even; a row beyond the given ones is zero.
 template <int kRows>
-void place_chain(const Problem& p, const IkAngles& angles_rad, Place& place) noexcept {
-  pose_chain(p.chain, angles_rad, place.pose);
-  measure_errors(place.pose, p.rows, place);
-  for (std::size_t r = p.rows.size(); r < kRows; ++r) place.dx[r] = 0.0;
-}
-template <int kRows>
-void set_columns(const Problem& p, const Place& place, ColumnsOf<kRows>& column) noexcept {
+void set_columns(const Problem& p, const IkPose& pose, ColumnsOf<kRows>& column) noexcept {
   std::array<vec3, kRows> direction{}, moment{};
   for (std::size_t r = 0; r < p.rows.size(); ++r) {
     direction[r] = p.rows[r].direction;
-    moment[r] = glm::cross(place.point_m[r], direction[r]);
+    moment[r] = glm::cross(pose.point_m[r], direction[r]);
   }
   for (int j = 0; j < p.chain.dofs; ++j) {
-    const vec3& a = place.pose.axis[j];
-    const vec3 n = glm::cross(place.pose.pivot_m[j], a);
+    const vec3& a = pose.axis[j];
+    const vec3 n = glm::cross(pose.pivot_m[j], a);
     for (int r = 0; r < kRows; ++r) column[j][r] = jacobian_entry(a, n, direction[r], moment[r]);
   }
 }
@@ -485,16 +469,16 @@ Try one_try(const Problem& p, const IkAngles& start, int max_iterations) noexcep
   const int dofs = p.chain.dofs;
   const double enough = p.options.tolerance_m * p.options.tolerance_m;
   IkAngles angles_rad = start, next = start;
-  Place place, best;
+  IkPose pose, best;
   double growth = Solver::kGrowth, seen_m = kInfinite;
   int seen_at = 0;
   for (int k = 0;; ++k) {
-    place_chain<kRows>(p, next, k == 0 ? best : place);
+    pose_chain(p.chain, p.rows, next, k == 0 ? best : pose);
     if (k > 0) {
-      const bool better = place.squares < best.squares;
+      const bool better = pose.squares < best.squares;
       growth = better ? std::max(growth * Solver::kGrowthDown, Solver::kGrowth)
                       : growth * Solver::kGrowthUp;
-      if (better) angles_rad = next, best = place;
+      if (better) angles_rad = next, best = pose;
     }
     if (p.trace != nullptr) add_trace_row(p.trace, angles_rad, std::sqrt(best.squares));
     if (best.squares <= enough || k >= max_iterations) return {angles_rad, best.squares, k};
@@ -511,7 +495,8 @@ Try one_try(const Problem& p, const IkAngles& start, int max_iterations) noexcep
     step.weight = p.weight;
     step.damping = std::max(p.options.damping * p.options.damping, kLeastDamping_m2) +
                    growth * std::min(best.squares, kMost_m2);
-    for (int r = 0; r < kRows; ++r) step.error[r] = share * best.dx[r];
+    step.error.fill(0.0);
+    for (std::size_t r = 0; r < p.rows.size(); ++r) step.error[r] = share * best.dx[r];
     IkDofValues delta;
     limited_step<kRows>(p, column, step, angles_rad, delta);
     double greatest = 0.0;
@@ -551,10 +536,8 @@ IkAngles nearest_start(const Problem& p, const IkAngles& given, int first) noexc
   for (int k = first; k < first + kCandidates; ++k) {
     const IkAngles candidate = spread_start(p, given, k);
     IkPose pose;
-    IkErrors errors;
-    pose_chain(p.chain, candidate, pose);
-    measure_errors(pose, p.rows, errors);
-    if (errors.squares < least) least = errors.squares, nearest = candidate;
+    pose_chain(p.chain, p.rows, candidate, pose);
+    if (pose.squares < least) least = pose.squares, nearest = candidate;
   }
   return nearest;
 }
@@ -609,7 +592,7 @@ IkResult solve_robust(const IkChain& chain, std::span<const IkRow> rows,
   for (int j = 0; j < chain.dofs; ++j) {
     p.min_rad[j] = chain.dof[j].min_rad;
     p.max_rad[j] = chain.dof[j].max_rad;
-    start[j] = std::min(std::max(start[j], p.min_rad[j]), p.max_rad[j]);
+    start[j] = std::clamp(start[j], p.min_rad[j], p.max_rad[j]);
   }
   IkAngles answer = start;
   const IkResult result =

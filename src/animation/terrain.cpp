@@ -29,6 +29,13 @@ std::optional<Error> length_problem(double length_m) {
   return metres_problem("length", length_m, kMinLength_m, kMaxLength_m);
 }
 
+// The reason why `what`, at both ends of a length, is longer than that, if it is.
+std::optional<Error> ends_problem(double end_m, const char* what, double length_m) {
+  if (end_m > 0.0 && 2.0 * end_m <= length_m) return std::nullopt;
+  return Error{short_number(end_m) + " m of " + what + " do not fit into " +
+               short_number(length_m) + " m"};
+}
+
 // The reason why a sole would not lie on a surface with this bend and grade.
 std::optional<Error> shape_problem(double bend_1_m, double grade) {
   if (!(grade <= kMaxGrade))
@@ -73,10 +80,7 @@ struct MostOfShare {
 std::optional<Error> faded_problem(double length_m, double fade_m, const MostOfShare& share,
                                    const Most& surface) {
   if (auto problem = length_problem(length_m)) return problem;
-  if (!(fade_m > 0.0 && 2.0 * fade_m <= length_m)) {
-    return Error{short_number(fade_m) + " m of fading at both ends do not fit into " +
-                 short_number(length_m) + " m"};
-  }
+  if (auto problem = ends_problem(fade_m, "fading at both ends", length_m)) return problem;
   return shape_problem(
       surface.bend_1_m + 2.0 * share.slope_1_m * surface.grade + share.bend_1_m2 * surface.height_m,
       surface.grade + share.slope_1_m * surface.height_m);
@@ -113,10 +117,8 @@ ShapePoint point_at(const SlopeSection& slope, double, double u) noexcept {
 
 std::optional<Error> problem_of(const SlopeSection& slope) {
   if (auto problem = length_problem(slope.length_m)) return problem;
-  if (!(slope.rounding_m > 0.0 && 2.0 * slope.rounding_m <= slope.length_m)) {
-    return Error{short_number(slope.rounding_m) + " m of rounding at both ends do not fit into " +
-                 short_number(slope.length_m) + " m"};
-  }
+  if (auto problem = ends_problem(slope.rounding_m, "rounding at both ends", slope.length_m))
+    return problem;
   const double grade = std::abs(slope.grade);
   return shape_problem(grade / slope.rounding_m, grade);
 }
@@ -210,6 +212,14 @@ double height_in(const Heights& heights, int column, int row) noexcept {
       .height_m[static_cast<std::size_t>(row) * static_cast<std::size_t>(heights.columns) +
                 static_cast<std::size_t>(column)];
 }
+// True if the sides have 2 to `most` samples, and the heights are as many as they say.
+template <class Heights>
+bool has_sides(const Heights& heights, int most) noexcept {
+  const int columns = heights.columns, rows = heights.rows;
+  return columns >= 2 && rows >= 2 && columns <= most && rows <= most &&
+         heights.height_m.size() ==
+             static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
+}
 double sample(const HeightField& field, int column, int row) noexcept {
   const int c = std::clamp(column, 0, field.columns - 1), r = std::clamp(row, 0, field.rows - 1);
   return height_in(field, c, r);
@@ -271,8 +281,7 @@ ShapePoint point_at(const FieldSection& section, double x, double u) noexcept {
 std::optional<Error> problem_of(const FieldSection& section) {
   if (!section.field) return Error{"the height field is missing"};
   const HeightField& f = *section.field;
-  if (f.columns < 2 || f.rows < 2 || f.columns > kMaxFieldSide || f.rows > kMaxFieldSide ||
-      f.height_m.size() != static_cast<std::size_t>(f.columns) * static_cast<std::size_t>(f.rows))
+  if (!has_sides(f, kMaxFieldSide))
     return Error{std::to_string(f.columns) + " x " + std::to_string(f.rows) +
                  " samples are not 2 to " + std::to_string(kMaxFieldSide) + " a side"};
   const auto is_finite = [](float h) { return std::isfinite(h); };
@@ -281,10 +290,7 @@ std::optional<Error> problem_of(const FieldSection& section) {
   const double m = section.pixel_m, n = section.height_scale;
   if (!is_within(m, 1e-3, 100.0)) return Error{"a sample is not 1 mm to 100 m wide"};
   const double width_m = (f.columns - 1) * m;
-  if (!(2.0 * section.fade_m <= width_m)) {
-    return Error{short_number(section.fade_m) + " m of fading at both sides do not fit into " +
-                 short_number(width_m) + " m"};
-  }
+  if (auto problem = ends_problem(section.fade_m, "fading at both sides", width_m)) return problem;
   const Differences most = differences(f);
   if (!(most.height * n < 100.0)) return Error{"a height is beyond 100 m"};
   // The share is a product of two, across and along; these numbers bound it in any direction.
@@ -309,16 +315,14 @@ void scale(FieldSection& section, double factor) noexcept {
 constexpr double kFar_m = 1e4;
 
 double bounded_place(double x_m) noexcept {
-  if (x_m > kFar_m) return kFar_m;
-  return x_m > -kFar_m ? x_m : -kFar_m;
+  return x_m > -kFar_m ? std::min(x_m, kFar_m) : -kFar_m;
 }
 
 // The difference in height between a section's end and its begin.
 double rise_of(const SectionShape& shape) noexcept {
   if (const auto* slope = std::get_if<SlopeSection>(&shape)) return rise_of(*slope);
-  if (const auto* stairs = std::get_if<StairsSection>(&shape))
-    return stairs->rise_m * stairs->count;
-  return 0.0;
+  const auto* stairs = std::get_if<StairsSection>(&shape);
+  return stairs ? stairs->rise_m * stairs->count : 0.0;
 }
 
 int risers_of(const SectionShape& shape) noexcept {
@@ -394,8 +398,7 @@ std::optional<Error> check(const GroundGrid& grid) {
   if (!std::isfinite(grid.x_m) || !std::isfinite(grid.z_m))
     return Error{"GroundGrid: x_m or z_m is not finite"};
   const int columns = grid.columns, rows = grid.rows;
-  if (columns < 2 || rows < 2 || columns > kMaxGridSide || rows > kMaxGridSide ||
-      grid.height_m.size() != static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows))
+  if (!has_sides(grid, kMaxGridSide))
     return Error{"GroundGrid: " + std::to_string(grid.height_m.size()) + " heights are not " +
                  std::to_string(columns) + " x " + std::to_string(rows) + " samples, 2 to " +
                  std::to_string(kMaxGridSide) + " a side"};

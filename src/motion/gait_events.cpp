@@ -257,21 +257,25 @@ struct Reader {
   double sample_s;
 
   int half(double time_s) const { return count_of(time_s, sample_s); }
+  // The samples within a time of one sample.
+  SampleRange around(int i, double time_s) const {
+    const int n = half(time_s);
+    return {std::max(i - n, range.first), std::min(i + n, range.last)};
+  }
   double speed(const std::vector<vec3>& p, int i) const {
-    const int n = half(kSpeed_s);
-    const int a = std::max(i - n, range.first), b = std::min(i + n, range.last);
+    const auto [a, b] = around(i, kSpeed_s);
     return glm::distance(p[a], p[b]) / (std::max(b - a, 1) * sample_s);
   }
-  vec3 mean(const std::vector<vec3>& p, int i, int n) const {
-    const int a = std::max(i - n, range.first), b = std::min(i + n, range.last);
-    vec3 sum(0.0);
-    for (int k = a; k <= b; ++k) sum += p[k];
-    return sum / double(b - a + 1);
+  // Height, averaged around the sample.
+  double height(const std::vector<vec3>& p, int i) const {
+    const auto [a, b] = around(i, kFlat_s);
+    double sum = 0.0;
+    for (int k = a; k <= b; ++k) sum += p[k].y;
+    return sum / (b - a + 1);
   }
   // Score of speed and height, averaged around the sample; small when the foot is flat.
   double flatness(int i) const {
-    const int n = half(kFlat_s);
-    const int a = std::max(i - n, range.first), b = std::min(i + n, range.last);
+    const auto [a, b] = around(i, kFlat_s);
     double sum = 0.0;
     for (int k = a; k <= b; ++k) {
       sum += speed(foot.heel_m, k) + speed(foot.toe_m, k) +
@@ -328,7 +332,7 @@ SwingSearch search_of(const FeetTracks& tracks, const Run& run, double limit_m_s
   s.scale = tracks.leg_m / kReferenceLeg_m;
   s.fastest_heel = r.fastest(r.foot.heel_m, run.first, run.last);
   s.flat = r.flattest(std::min(run.last + 1, run.rest_last), run.rest_last);
-  s.standing_heel_m = r.mean(r.foot.heel_m, s.flat, r.half(kFlat_s)).y;
+  s.standing_heel_m = r.height(r.foot.heel_m, s.flat);
   s.fastest_toe = r.fastest(r.foot.toe_m, run.first, run.last);
   int leaving = s.fastest_toe;
   while (leaving > run.rest_first && r.speed(r.foot.toe_m, leaving) > limit_m_s) --leaving;

@@ -418,13 +418,10 @@ std::vector<int> joints_between(const Skeleton& skeleton, int from, int to) {
   return path_below(skeleton, from, skeleton.joints[to].parent);
 }
 
-// The vector from joint `from` to joint `to`, in the frame of `from`, with the locals given.
-vec3 link(const Skeleton& skeleton, const std::vector<quat>& local, int from, int to) {
-  vec3 v = skeleton.joints[to].offset_m;
-  for (int j = skeleton.joints[to].parent; j >= 0 && j != from; j = skeleton.joints[j].parent) {
-    v = skeleton.joints[j].offset_m + local[j] * v;
-  }
-  return from == to ? vec3(0.0) : v;
+// Turns a vector from the frame of the joint at the top into that of the last joint between.
+vec3 into_last(const std::vector<int>& between, const std::vector<quat>& local, vec3 v) {
+  for (const int j : between) v = glm::conjugate(local[j]) * v;
+  return v;
 }
 
 std::vector<quat> mean_locals(const CapturedCycle& c) {
@@ -499,11 +496,8 @@ void build_toes(const FlatPose& flat, const std::vector<quat>& local, GaitCycle&
   if (is_short(from_ankle(j.toe))) {
     const vec3 wanted(0.0, -kOwnAnkle_legs * leg_m, kOwnToe_legs * leg_m);
     const vec3 missing = glm::conjugate(flat.foot) * (wanted - from_ankle(j.toe));
-    vec3 turned = missing;  // rotates into the frame of the toe's parent
-    for (const int k : joints_between(out.skeleton, j.ankle, j.toe)) {
-      turned = glm::conjugate(local[k]) * turned;
-    }
-    joints[j.toe].offset_m += turned;
+    joints[j.toe].offset_m +=
+        into_last(joints_between(out.skeleton, j.ankle, j.toe), local, missing);
   }
   leg.toe_m = from_ankle(j.toe);
   leg.toe_end_m = joints[j.toe].is_end_site || j.toe == j.toe_end
@@ -601,11 +595,8 @@ double knee_angle(const LegModel& leg, double captured_rad, double reach_m) {
 // The knee's hinge in the frame of the joint above the knee (the thigh or its twist joint).
 vec3 hinge_above_knee(const GaitCycle& cycle, int side) {
   const LegModel& leg = cycle.leg[side];
-  vec3 hinge = glm::conjugate(leg.standing[0]) * kLeft;
-  for (const int j : joints_between(cycle.skeleton, leg.joints.hip, leg.joints.knee)) {
-    hinge = glm::conjugate(cycle.standing_local[j]) * hinge;
-  }
-  return hinge;
+  return into_last(joints_between(cycle.skeleton, leg.joints.hip, leg.joints.knee),
+                   cycle.standing_local, glm::conjugate(leg.standing[0]) * kLeft);
 }
 
 // Leg angles that put the ankle and the foot at their captured places, with the knee's hinge as

@@ -79,6 +79,13 @@ AnglesXzy angles_xzy(const quat& q) noexcept {
   return a;
 }
 
+vec3 link(const Skeleton& skeleton, const std::vector<quat>& local, int from, int to) {
+  vec3 v(0.0);
+  for (int j = to; j > from; j = skeleton.joints[j].parent)
+    v = skeleton.joints[j].offset_m + local[j] * v;
+  return v;
+}
+
 std::vector<quat> world_rotations(const Skeleton& skeleton, std::span<const quat> local) {
   const auto world = std::make_unique<JointFrames>();
   forward_kinematics(skeleton, local, *world);

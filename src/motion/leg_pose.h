@@ -52,6 +52,9 @@ inline double hips_heading(const vec3& across_m) noexcept {
 inline vec3 mirrored(const vec3& v) noexcept { return vec3(-v.x, v.y, v.z); }
 inline quat mirrored(const quat& q) noexcept { return quat(q.w, q.x, -q.y, -q.z); }
 
+// The vector from joint `from` to joint `to` at or below it, in the frame of `from`, with the
+// locals given.
+vec3 link(const Skeleton& skeleton, const std::vector<quat>& local, int from, int to);
 // World rotation of every joint for the local rotations given.
 std::vector<quat> world_rotations(const Skeleton& skeleton, std::span<const quat> local);
 // The same of one joint; no rotation for -1, above the root.

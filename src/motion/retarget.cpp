@@ -209,11 +209,7 @@ vec3 bone_of(const GaitCycle& cycle, int joint, int end) {
       sum += cycle.skeleton.joints[child].offset_m;
     return sum;
   }
-  vec3 v(0.0);
-  for (int j = end; j > joint; j = cycle.skeleton.joints[j].parent) {
-    v = cycle.skeleton.joints[j].offset_m + cycle.standing_local[j] * v;
-  }
-  return v;
+  return link(cycle.skeleton, cycle.standing_local, joint, end);
 }
 
 // Turns the character's bones to the directions of the source's standing pose: the arms of a T pose

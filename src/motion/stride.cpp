@@ -20,7 +20,7 @@ namespace {
 // --- Where pelvis and legs are in every frame ----------------------------------------------------
 
 struct LegTrack {
-  std::vector<vec3> hip_m, knee_m, ankle_m, toe_m;
+  std::vector<vec3> knee_m, ankle_m, toe_m;
 };
 struct WalkTrack {
   std::vector<vec3> pelvis_m;
@@ -39,7 +39,6 @@ WalkTrack walk_track(const Motion& motion) {
     for (int side = 0; side < 2; ++side) {
       const LegJoints& joints = motion.legs[side];
       LegTrack& leg = track.leg[side];
-      leg.hip_m.push_back(at[joints.hip]);
       leg.knee_m.push_back(at[joints.knee]);
       leg.ankle_m.push_back(at[joints.ankle]);
       leg.toe_m.push_back(at[joints.toe]);

@@ -1,6 +1,7 @@
 #include "gaitpad/crowd.h"
 
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <functional>
 #include <map>
@@ -22,35 +23,21 @@ template <int kWidth>
 struct RootNumbers {
   Floats<kWidth> heading_rad{}, pelvis_x_m{}, pelvis_z_m{}, beside_x_m{}, beside_z_m{};
   Origin origin[kWidth];
-  void keep(const Block<kWidth>& of) noexcept {
-    heading_rad = of.state.heading_rad;
-    pelvis_x_m = of.state.pelvis_x_m[0], pelvis_z_m = of.state.pelvis_z_m[0];
-    beside_x_m = of.told.pelvis_x_m, beside_z_m = of.told.pelvis_z_m;
-    std::copy_n(of.origin, kWidth, origin);
-  }
-  // Those of one lane alone.
-  void keep(const Block<kWidth>& of, int w) noexcept {
-    RootNumbers all;
-    all.keep(of);
-    set_lane(lane(all.heading_rad, w), w, heading_rad);
-    set_lane(lane(all.pelvis_x_m, w), w, pelvis_x_m);
-    set_lane(lane(all.pelvis_z_m, w), w, pelvis_z_m);
-    set_lane(lane(all.beside_x_m, w), w, beside_x_m);
-    set_lane(lane(all.beside_z_m, w), w, beside_z_m);
-    origin[w] = all.origin[w];
-  }
 };
+template <int kWidth>
+RootNumbers<kWidth> root_numbers(const Block<kWidth>& of) noexcept {
+  RootNumbers<kWidth> root{of.state.heading_rad, of.state.pelvis_x_m[0], of.state.pelvis_z_m[0],
+                           of.told.pelvis_x_m,   of.told.pelvis_z_m,     {}};
+  std::copy_n(of.origin, kWidth, root.origin);
+  return root;
+}
 template <int kFrom, int kTo>
 void copy_root(const RootNumbers<kFrom>& from, int from_lane, RootNumbers<kTo>& to,
                int to_lane) noexcept {
-  const auto copy = [&](auto of_from, auto of_to) {
-    set_lane(lane(from.*of_from, from_lane), to_lane, to.*of_to);
-  };
-  using From = RootNumbers<kFrom>;
-  using To = RootNumbers<kTo>;
-  copy(&From::heading_rad, &To::heading_rad);
-  copy(&From::pelvis_x_m, &To::pelvis_x_m), copy(&From::pelvis_z_m, &To::pelvis_z_m);
-  copy(&From::beside_x_m, &To::beside_x_m), copy(&From::beside_z_m, &To::beside_z_m);
+  constexpr int kNumbers = offsetof(RootNumbers<1>, origin) / sizeof(float);
+  for (int n = 0; n < kNumbers; ++n)
+    reinterpret_cast<float*>(&to)[n * kTo + to_lane] =
+        reinterpret_cast<const float*>(&from)[n * kFrom + from_lane];
   to.origin[to_lane] = from.origin[from_lane];
 }
 
@@ -62,11 +49,9 @@ class WalkBlock {
   virtual ~WalkBlock() = default;
   virtual std::unique_ptr<WalkBlock> clone() const = 0;
   virtual std::size_t bytes() const noexcept = 0;
-  virtual void put(const WalkState& state, int lane) noexcept = 0;
   virtual Block<1> walk(int lane) const noexcept = 0;
-  // Takes a walk over from a lane of another block.
+  // Puts a walk into a lane. `before`: the numbers of its root before the last tick.
   virtual void take(const Block<1>& walk, const RootNumbers<1>& before, int lane) noexcept = 0;
-  // The numbers of a walk's root before the last tick.
   virtual RootNumbers<1> before(int lane) const noexcept = 0;
   virtual void set_detail(Detail detail, int lane) noexcept = 0;
   // True if the walk was last asked for these parameters.
@@ -87,13 +72,6 @@ class BlockOf final : public WalkBlock {
   std::unique_ptr<WalkBlock> clone() const override { return std::make_unique<BlockOf>(*this); }
   std::size_t bytes() const noexcept override { return sizeof *this; }
 
-  void put(const WalkState& state, int lane) noexcept override {
-    for_lanes(lane, [&](int w) {
-      copy_walk(state.walk, 0, block_, w);
-      asked_[w] = {};
-      before_.keep(block_, w);
-    });
-  }
   Block<1> walk(int lane) const noexcept override {
     Block<1> one;
     copy_walk(block_, lane, one, 0);
@@ -129,7 +107,7 @@ class BlockOf final : public WalkBlock {
   void place(const Placement& placed, int lane) noexcept override {
     for_lanes(lane, [&](int w) { gaitpad::place(placed, w, block_); });
   }
-  void keep_root() noexcept override { before_.keep(block_); }
+  void keep_root() noexcept override { before_ = root_numbers(block_); }
   void advance(const Tables& tables, IkMode mode, const Poses& poses) noexcept override {
     if constexpr (kWidth == 1) {
       if (mode == IkMode::paper) {
@@ -151,7 +129,7 @@ class BlockOf final : public WalkBlock {
     for (int w = walks_; lane == walks_ - 1 && w < kWidth; ++w) work(w);
   }
   Block<kWidth> block_{};
-  RootNumbers<kWidth> before_;
+  RootNumbers<kWidth> before_{};
   std::array<Asked, kWidth> asked_;
   int walks_;
 };
@@ -288,7 +266,7 @@ Placement Crowd::root(int member) const noexcept {
 
 void Crowd::put_state(int member, const WalkState& state) noexcept {
   const auto [block, lane] = lane_[member];
-  blocks_[block]->put(state, lane);
+  blocks_[block]->take(state.walk, root_numbers(state.walk), lane);
   blocks_[block]->set_detail(details_[member], lane);
   placed_[member] = state.placed;
   bad_inputs_[member] = state.bad_inputs;

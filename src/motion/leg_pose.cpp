@@ -61,8 +61,15 @@ Stand standing_legs(const std::array<LegModel, 2>& legs, double knee_rad) noexce
     angles[kHipZ] = -stand.roll_rad;
     angles[kKneeX] = knee;
     angles[kAnkleX] = -angles[kHipX] - knee;
+    stand.lead_m += 0.5 * (-leg.heel_m.z - leg.hip_m.z);
   }
   return stand;
+}
+
+std::array<double, 4> stage_shares(const GaitCycle& cycle) noexcept {
+  const double left_off = cycle.toe_off[kLeftSide], left_strike = cycle.strike[kLeftSide],
+               right_off = cycle.toe_off[kRightSide];
+  return {left_off, left_strike - left_off, right_off - left_strike, 1.0 - right_off};
 }
 
 quat rotation_xzy(const AnglesXzy& a) noexcept {

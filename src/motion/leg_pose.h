@@ -38,10 +38,14 @@ double knee_at_span(const LegModel& leg, double span_m) noexcept;
 struct Stand {
   double pelvis_m = 0.0;  // height of the pelvis over the floor
   double roll_rad = 0.0;  // roll of the pelvis about +z, left side up positive
+  double lead_m = 0.0;    // of the pelvis ahead of the heels
   std::array<LegAngles, 2> angles{};
 };
 // No knee is straighter than `knee_rad`.
 Stand standing_legs(const std::array<LegModel, 2>& legs, double knee_rad) noexcept;
+
+// The stages' shares of a cycle: right roll, left flight, left roll, right flight.
+std::array<double, 4> stage_shares(const GaitCycle& cycle) noexcept;
 
 // The direction that hips face, from the line from the right to the left one.
 inline double hips_heading(const vec3& across_m) noexcept {

@@ -59,15 +59,12 @@ struct Builder {
   const GaitCycle& cycle;
   StrideFamily family;
   std::array<vec3, 2> own_footprint_m{};
-  std::array<double, 4> phase_share{};  // the four stages' shares of the cycle
   std::array<LegAngles, 2> mean_rad{};
   vec3 mean_tilt{0.0};
   std::array<vec3, kCycleSamples> tilt{};  // rotation vector (rad) of the pelvis without its yaw
   std::array<double, kCycleSamples> yaw{};
 
   explicit Builder(const GaitCycle& data) : cycle(data) {
-    const double left_off = data.toe_off[0], left = data.strike[0], right_off = data.toe_off[1];
-    phase_share = {left_off, left - left_off, right_off - left, 1.0 - right_off};
     measure_footprints();
     keep_steps();
     measure_standing();
@@ -124,7 +121,7 @@ struct Builder {
     family.stand_m = stand.pelvis_m;
     family.stand_roll_rad = stand.roll_rad;
     family.stand_rad = stand.angles;
-    for (const LegModel& leg : cycle.leg) family.lead_m += 0.5 * (-leg.heel_m.z - leg.hip_m.z);
+    family.lead_m = stand.lead_m;
   }
 
   // The pelvis' rotation without its yaw, relative to standing, as a rotation vector (rad); the
@@ -166,10 +163,10 @@ struct Builder {
 
   StageClock clock(double ratio) const {
     StageClock c;
-    c.phase_share = phase_share;
+    c.phase_share = stage_shares(cycle);
     for (int first : {0, 2}) {
-      const double half = phase_share[first] + phase_share[first + 1];
-      c.time_share[first] = roll_time_share(phase_share[first], ratio);
+      const double half = c.phase_share[first] + c.phase_share[first + 1];
+      c.time_share[first] = roll_time_share(c.phase_share[first], ratio);
       c.time_share[first + 1] = half - c.time_share[first];
     }
     return c;

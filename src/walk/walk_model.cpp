@@ -223,8 +223,6 @@ IkChain leg_chain(const LegModel& leg) {
   return chain;
 }
 
-double elevation(const vec3& v) { return atan2(v.y, horizontal_length(v)); }
-
 // Scales bones below the hips by scale * leg_ratio, all others by scale.
 void scale_build(GaitCycle& cycle, double scale, double leg_ratio) {
   for (std::size_t j = 0; j < cycle.skeleton.joints.size(); ++j) {
@@ -239,13 +237,8 @@ void scale_build(GaitCycle& cycle, double scale, double leg_ratio) {
   const double k = scale * leg_ratio;
   for (LegModel& leg : cycle.leg) {
     leg.hip_m *= scale;
-    leg.thigh_m *= k;
-    leg.shank_m *= k;
-    leg.heel_m *= k;
-    leg.toe_m *= k;
-    leg.toe_end_m *= k;
-    leg.toe_rest_m *= k;
-    leg.toe_end_rest_m *= k;
+    for (double* m : {&leg.thigh_m, &leg.shank_m, &leg.toe_rest_m, &leg.toe_end_rest_m}) *m *= k;
+    for (vec3* m : {&leg.heel_m, &leg.toe_m, &leg.toe_end_m}) *m *= k;
   }
 }
 
@@ -255,19 +248,13 @@ LegBuild leg_build(const LegModel& model) {
   leg.chain = leg_chain(model);
   const vec3 line = model.toe_m - model.heel_m;
   leg.foot_m = glm::length(line);
-  leg.elevation_rad = elevation(line);
+  leg.elevation_rad = atan2(line.y, horizontal_length(line));
   leg.forward = foot_forward(model);
   leg.side = glm::cross(kUp, leg.forward);
   leg.ball_m = vec3(model.toe_m.x, model.heel_m.y, model.toe_m.z);
   leg.tip_m = leg.ball_m + vec3(model.toe_end_m.x, 0.0, model.toe_end_m.z);
   leg.half_width_m = kHalfFoot * model.length_m();
   return leg;
-}
-
-// The place of a heel or toe of the source in its travel frame.
-vec3 foot_point(const CycleSample& sample, Side side, const vec3& point_m) {
-  const LegSample& leg = sample.leg[side];
-  return leg.ankle_m + leg.foot * point_m;
 }
 
 // Mean place of a standing heel relative to the pelvis' path, over the flat part of support: from
@@ -277,18 +264,12 @@ vec3 mean_heel(const GaitCycle& source, Side side) {
   constexpr int kCount = 16;
   for (int i = 0; i < kCount; ++i) {
     const double own = 0.12 + 0.2 * i / kCount;
-    vec3 heel =
-        foot_point(sample_at(source, own + source.strike[side]), side, source.leg[side].heel_m);
+    const LegSample leg = sample_at(source, own + source.strike[side]).leg[side];
+    vec3 heel = leg.ankle_m + leg.foot * source.leg[side].heel_m;
     heel.z += source.stride_m * own;
     sum += heel / static_cast<double>(kCount);
   }
   return sum;
-}
-
-void fill_shares(const GaitCycle& source, WalkModel& model) {
-  const double left_off = source.toe_off[kLeftSide], left_strike = source.strike[kLeftSide],
-               right_off = source.toe_off[kRightSide];
-  model.share = {left_off, left_strike - left_off, right_off - left_strike, 1.0 - right_off};
 }
 
 void collect_kept_joints(WalkModel& model) {
@@ -478,18 +459,15 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
     model.leg[side].track_m =
         mean_heel(cycle, side).x * ratio + cycle.leg[side].hip_m.x * (character.scale - ratio);
   }
-  fill_shares(cycle, model);
-  const double source_step = 0.5 * cycle.stride_m;
-  model.source_step_m = source_step * ratio;
-  for (const LegBuild& leg : model.leg) {
-    model.rest_lead_m += 0.5 * (-leg.model.heel_m.z - leg.model.hip_m.z);
-  }
+  model.share = stage_shares(cycle);
+  model.source_step_m = 0.5 * cycle.stride_m * ratio;
   model.stride_scale = stride_scale(cycle, character.scale, ratio);
   model.forward = footprint_line(strides.table, model.stride_scale);
   model.back = footprint_line(strides.back, model.stride_scale);
   const double knee = std::min(strides.stand_rad[0][kKneeX], strides.stand_rad[1][kKneeX]);
   const Stand stand = standing_legs({model.leg[0].model, model.leg[1].model}, knee);
   model.stand_m = stand.pelvis_m;
+  model.rest_lead_m = stand.lead_m;
   model.stand_roll_rad = stand.roll_rad;
   model.stand_rad = stand.angles;
   for (Side side : {kLeftSide, kRightSide}) model.own_step_m[side] = cycle.step_m[side] * ratio;

@@ -10,9 +10,15 @@
 namespace gaitpad {
 namespace {
 
-template <class Numbers>
-std::array<float, 3> floats(const Numbers& v) {
+std::array<float, 3> floats(const vec3& v) {
   return {static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)};
+}
+template <std::size_t kCount>
+std::array<float, kCount> floats(const std::array<double, kCount>& numbers) {
+  std::array<float, kCount> to;
+  std::transform(numbers.begin(), numbers.end(), to.begin(),
+                 [](double number) { return static_cast<float>(number); });
+  return to;
 }
 std::array<float, 4> wxyz(const quat& q) {
   return {static_cast<float>(q.w), static_cast<float>(q.x), static_cast<float>(q.y),
@@ -57,9 +63,7 @@ Places<kOf> places_of(const WalkModel& model, bool backward) {
 }
 
 void fill_harmonics(const Places<kRatios>& places, BuildTables& tables) {
-  for (auto& sides : tables.leg_harmonics)
-    for (auto& side : sides)
-      for (auto& numbers : side) numbers.fill(0.0f);
+  tables.leg_harmonics = {};
   for (int k = 0; k < kKnots; ++k) {
     for (int n = 0; n < 1 + 2 * kHarmonics; ++n) {
       const SinCos turn = gaitpad::sin_cos(2.0 * kPi * ((n + 1) / 2) * k / kKnots);
@@ -122,8 +126,7 @@ void fill_legs(const WalkModel& model, BuildTables& tables) {
     to.stance_m = static_cast<float>(std::abs(below_hip_m) > std::abs(from.track_m) ? below_hip_m
                                                                                     : from.track_m);
     to.own_step_m = static_cast<float>(model.own_step_m[side]);
-    for (int j = 0; j < kLegAngles; ++j)
-      to.stand_rad[j] = static_cast<float>(model.stand_rad[side][j]);
+    to.stand_rad = floats(model.stand_rad[side]);
     for (int j = 0; j < 4; ++j) {
       to.joint[j] = from.joint[j].joint;
       to.before[j] = wxyz(from.joint[j].before);
@@ -217,16 +220,13 @@ void fill_arms(const WalkModel& model, BuildTables& tables) {
     arm.hanging = wxyz(from.hanging);
     arm.chest = wxyz(from.chest);
     arm.grip_m = floats(from.grip_m);
-    for (int j = 0; j < kArmAngles; ++j) {
-      arm.min_rad[j] = static_cast<float>(from.min_rad[j]);
-      arm.max_rad[j] = static_cast<float>(from.max_rad[j]);
-      arm.middle_rad[j] = static_cast<float>(from.middle_rad[j]);
-    }
+    arm.min_rad = floats(from.min_rad);
+    arm.max_rad = floats(from.max_rad);
+    arm.middle_rad = floats(from.middle_rad);
   }
   tables.arm_m = static_cast<float>(body.arm_m);
   tables.shoulder_height_m = static_cast<float>(body.shoulder_height_m);
-  const BodyNumbers plain = body_numbers(UpperBodyParams{});
-  for (int n = 0; n < kBodyNumbers; ++n) tables.plain_body[n] = static_cast<float>(plain[n]);
+  tables.plain_body = floats(body_numbers(UpperBodyParams{}));
 }
 
 // The pelvis, and the joints between it and the root.
@@ -399,7 +399,7 @@ std::shared_ptr<const BuildTables> build_tables(const WalkModel& model) {
   fill_legs(model, *tables);
   fill_upper_body(model, *tables);
   fill_hardness(model, *tables);
-  for (int k = 0; k < 4; ++k) tables->stage_share[k] = static_cast<float>(model.share[k]);
+  tables->stage_share = floats(model.share);
   tables->size = static_cast<float>(model.size);
   tables->time_scale = static_cast<float>(model.time_scale);
   tables->stand_m = static_cast<float>(model.stand_m);

@@ -31,14 +31,16 @@ struct Counterpart {
   double share = 0.0;          // share of the way from the lower joint to the upper one
 };
 
-// The joint that a bone points to in the standing pose, or one of these.
-constexpr int kNoAim = -1;
-constexpr int kChildren = -2;   // means: to the mean place of the joint's children
-constexpr int kAsItStood = -3;  // unchanged: the joint keeps its standing rotation
+// Stand for the joint that a bone points to in the standing pose.
+enum Aim : int {
+  kNoAim = -1,
+  kChildren = -2,   // the mean place of the joint's children
+  kAsItStood = -3,  // the joint keeps its standing rotation
+};
 
 struct UpperBodyMatch {  // the counterpart of each joint of the character
   std::vector<Counterpart> from;
-  std::vector<int> aim;
+  std::vector<int> aim;  // a joint or an Aim
   // Direction of each bone in the source's standing pose; unused without an aim.
   std::vector<vec3> direction;
 };

@@ -18,7 +18,7 @@ constexpr int kPelvis = 3, kUnknowns = kPelvis + 2 * kLegDofs;  // numbers of un
 // Weights of squared residuals, relative to a change of 1 rad of a knee.
 constexpr double kDegreeCosts_m = 0.04;  // an error of the pelvis that costs as much as 1 degree
 constexpr double kPelvisWeight = (kDegree / kDegreeCosts_m) * (kDegree / kDegreeCosts_m);
-constexpr double kHipWeight = 1.8, kAnkleWeight = 1.8;
+constexpr double kJointWeight = 1.8;    // a change of hip or ankle, relative to one of a knee
 constexpr double kSmoothWeight = 20.0;  // of second differences between samples
 // Factors on kSmoothWeight for the pelvis.
 constexpr double kPelvisSmooth = 5000.0, kPelvisSmoothUp = 4000.0;
@@ -44,6 +44,7 @@ constexpr double kSoftFloor_m = 0.004, kSoftHeel_m = 0.001;
 constexpr double kSoftKnee = 2.0 * kDegree;
 constexpr double kToeClearance_m = 0.01;  // height of the toe in the middle of the flight
 constexpr double kMostStep = 0.25;        // largest change in an iteration, radians or metres
+constexpr double kRounding = 1e-9;        // metres, radians, cycles or samples: no difference
 
 constexpr std::array<double, 3> kBend = {1.0, -2.0, 1.0};  // coefficients of a second difference
 
@@ -67,7 +68,7 @@ Mirrored mirror_of(int k) {
 double weight_of(int k) {
   if (k < kPelvis) return kPelvisWeight;
   const int j = (k - kPelvis) % kLegDofs;
-  return j < kKneeX ? kHipWeight : j == kKneeX ? 1.0 : kAnkleWeight;
+  return j == kKneeX ? 1.0 : kJointWeight;
 }
 
 // Place of a foot's point and its derivatives by the unknowns of its sample.
@@ -319,13 +320,10 @@ double factor_of(const StrideProblem& p, int k) {
   return p.leg_weight[(k - kPelvis) / kLegDofs][(k - kPelvis) % kLegDofs];
 }
 
-// Differences in metres, radians or cycles up to which strides count as mirrored.
-constexpr double kSameMirrored = 1e-9;
-
+bool is_same(double a, double b) { return std::abs(a - b) < kRounding; }
 bool is_mirrored(const vec3& a, const vec3& b) {
-  return glm::distance(a, mirrored(b)) < kSameMirrored;
+  return is_same(glm::distance(a, mirrored(b)), 0.0);
 }
-bool is_same(double a, double b) { return std::abs(a - b) < kSameMirrored; }
 
 }  // namespace
 
@@ -410,9 +408,9 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
       heels[i] = point_rows(frames, leg.heel_m);
       toes[i] = point_rows(frames, leg.toe_m);
     }
-    const int strike = static_cast<int>(std::floor(problem.strike[side] * n + 1e-9)),
-              lift = static_cast<int>(std::ceil(problem.toe_off[side] * n - 1e-9)),
-              down = static_cast<int>(std::floor(problem.toe_off[1 - side] * n + 1e-9));
+    const int strike = static_cast<int>(std::floor(problem.strike[side] * n + kRounding)),
+              lift = static_cast<int>(std::ceil(problem.toe_off[side] * n - kRounding)),
+              down = static_cast<int>(std::floor(problem.toe_off[1 - side] * n + kRounding));
     for (int d = 0; d < kLanding; ++d) {
       const double fades = 1.0 - double(d) / kLanding, weight = fades * fades;
       const auto soften = [&](int sample, const std::vector<PointRows>& point, double soft) {
@@ -429,8 +427,7 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
       const LegModel& leg = problem.leg[side];
       const LegFrames& frames = all_frames[side][i];
       // A point stands from the sample before its event to the one after it.
-      constexpr double kNear = 1e-9;
-      const double sample = (1.0 - kNear) / n;
+      const double sample = (1.0 - kRounding) / n;
       const double begins = fraction(phase - problem.strike[side] + sample);
       const double own = begins - sample;
       const double roll = fraction(problem.toe_off[1 - side] - problem.strike[side]);

@@ -23,6 +23,10 @@ V by_side(const Mask<V>& right, const V (&of)[2]) noexcept {
 template <class V>
 Vec<V> by_side(const Mask<V>& right, const std::array<float, 3>& left_of,
                const std::array<float, 3>& right_of) noexcept {
+  if constexpr (kLanes<V> == 1) {
+    const std::array<float, 3>& of = right ? right_of : left_of;
+    return {of[0], of[1], of[2]};
+  }
   return {chosen<V>(right, right_of[0], left_of[0]), chosen<V>(right, right_of[1], left_of[1]),
           chosen<V>(right, right_of[2], left_of[2])};
 }
@@ -30,10 +34,12 @@ Vec<V> by_side(const Mask<V>& right, const std::array<float, 3>& left_of,
 // A number of the right or the left leg, and an angle of its standing pose.
 template <class V>
 V of_leg(const Tables& tables, const Mask<V>& right, float LegBones::*number) noexcept {
+  if constexpr (kLanes<V> == 1) return tables.leg[right ? 1 : 0].*number;
   return chosen<V>(right, tables.leg[1].*number, tables.leg[0].*number);
 }
 template <class V>
 V stand_rad(const Tables& tables, const Mask<V>& right, int angle) noexcept {
+  if constexpr (kLanes<V> == 1) return tables.leg[right ? 1 : 0].stand_rad[angle];
   return chosen<V>(right, tables.leg[1].stand_rad[angle], tables.leg[0].stand_rad[angle]);
 }
 // Whether foot k, 0 for swing and 1 for stand, is the right one.

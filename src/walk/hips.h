@@ -1,5 +1,7 @@
 // Third part of a tick: moves the hips, and finds the phase at which the tables are read.
 #pragma once
+#include <cstdint>
+
 #include "walk/strides.h"
 
 namespace gaitpad {
@@ -14,10 +16,20 @@ Path<V> path_to(const Landing<V>& landing, const FootprintsIn<V>& prints, const 
           landing.way.cosine * prints.stride_m};
 }
 
+// True if there is no difference in any walk, by its bits: a zero with a sign is one.
+template <class V>
+bool is_nothing(const Off<V>& off) noexcept {
+  std::array<std::uint32_t, sizeof off / sizeof(std::uint32_t)> parts;
+  std::memcpy(parts.data(), &off, sizeof off);
+  std::uint32_t sum = 0;
+  for (const std::uint32_t part : parts) sum |= part;
+  return sum == 0;
+}
 // Moves a difference by one tick along the quintic that brings it, its rate and its acceleration to
 // 0 in `ticks`.
 template <class V>
 void fade(const V& ticks, Off<V>& off) noexcept {
+  if (is_nothing(off)) return;
   const V n = most(ticks, all<V>(1.0f)), s = 1.0f / n, p = off.v * n, q = off.a * (0.5f * n * n);
   const V c3 = -10.0f * off.x - 6.0f * p - 3.0f * q, c4 = 15.0f * off.x + 8.0f * p + 3.0f * q,
           c5 = -6.0f * off.x - 3.0f * p - q;
@@ -82,12 +94,14 @@ Hips<V> move_hips(const Tables& tables, const Time<V>& time, const Landing<V>& l
     const auto was_led = both(strikes, change.was_led != V{});
     if (any(was_led)) {
       V x_m[3], z_m[3];
-      const StrideMix<V> mix =
-          mix_of_strides(tables, time, state.ratio_behind, state.ratio_behind, V{}, was_led);
+      const StrideMix<V> mix = mix_of_strides(tables, time, state.ratio_behind, was_led);
+      const V phases[3] = {phase_at(0.0f), phase_at(aim), phase_at(2.0f * aim)};
+      Vec<V> pelvis_m[3];
+      read_pelvis(mix, phases, pelvis_m);
       for (int n : {0, 1, 2}) {
         const float k = static_cast<float>(n) * aim;
-        const V at = phase_at(k);
-        const Vec<V> pelvis = hips.heading * read_pelvis(mix, at);
+        const V at = phases[n];
+        const Vec<V> pelvis = hips.heading * pelvis_m[n];
         const auto goes = [&](const Off<V>& of) { return V(of.x + k * (of.v + 0.5f * k * of.a)); };
         x_m[n] = goes(change.pelvis_x_m) - pelvis.x - (to.x_m + to.per_cycle_x_m * at);
         z_m[n] = goes(change.pelvis_z_m) - pelvis.z - (to.z_m + to.per_cycle_z_m * at);
@@ -132,18 +146,22 @@ Off<V> middle_of(const V (&m)[3], float apart) noexcept {
 }
 
 // Moves the pelvis by one tick to its place in the tables at the coming strike, with their rate and
-// acceleration there.
+// acceleration there. `ratios`: of the step's own stride.
 template <class V>
 void move_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
-                 const V& strike_phase, const V& strike_rate, const State<V>& state,
-                 Change<V>& change) noexcept {
+                 const Knots<V>& ratios, const V& strike_phase, const V& strike_rate,
+                 const State<V>& state, Change<V>& change) noexcept {
   const float aim = aim_ticks(tables);
   const auto led = change.led != V{}, closes = change.closing != V{}, stops = change.stops != V{};
-  const StrideMix<V> mix = mix_of_strides(tables, time, landing.ratio, landing.ratio, V{}, led);
-  V x_m[3], z_m[3];
+  const StrideMix<V> mix = mix_of_ratio(tables, time, ratios, both(led, no(stops)));
+  V x_m[3], z_m[3], phases[3];
+  for (int k : {0, 1, 2})
+    phases[k] = strike_phase + (static_cast<float>(k - 1) * aim) * strike_rate;
+  Vec<V> pelvis_m[3];
+  read_pelvis(mix, phases, pelvis_m);
   for (int k : {0, 1, 2}) {
-    const V at = strike_phase + (static_cast<float>(k - 1) * aim) * strike_rate;
-    const Vec<V> pelvis = landing.way * read_pelvis(mix, at);
+    const V at = phases[k];
+    const Vec<V> pelvis = landing.way * pelvis_m[k];
     x_m[k] = state.path.x_m + state.path.per_cycle_x_m * at + pelvis.x;
     z_m[k] = state.path.z_m + state.path.per_cycle_z_m * at + pelvis.z;
   }
@@ -175,12 +193,14 @@ void move_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& la
 }
 
 // The phase at which the tables have the pelvis at its place, by Newton's method on a sum of
-// squares: distance of the hips from their place, and of the phase from the clock's. `rate` becomes
-// the phase's rate.
+// squares: distance of the hips from their place, and of the phase from the clock's. `strides`: the
+// tables as this tick shows them, by `share` those of its own stride. `rate` becomes the phase's
+// rate.
 template <class V>
 V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
-                  const Hips<V>& hips, const V& strike_phase, const V& strike_rate, const V& share,
-                  const State<V>& state, const Change<V>& change, V& rate) noexcept {
+                  const Hips<V>& hips, StrideMix<V> strides, const V& strike_phase,
+                  const V& strike_rate, const V& share, const State<V>& state,
+                  const Change<V>& change, V& rate) noexcept {
   // A phase that is a cycle off the clock counts as much as hips that are kInTime_m off their
   // place. That keeps the hips' height in time with the landing. In first and last steps that go
   // farther than kGoesSomewhere of the data's stride the hips alone tell the phase; kLeastWay_m2
@@ -198,10 +218,7 @@ V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& l
           per_cycle = mix(way.ahead(V{}, hips.behind.stride_m),
                           way.ahead(path.per_cycle_x_m, path.per_cycle_z_m), share);
   const auto led = change.led != V{}, is_new = both(led, change.is_new != V{});
-  StrideMix<V> mix = mix_of_strides(tables, time, state.ratio_behind, landing.ratio, share, led);
-  const auto by_tables = [&](const V& p) {
-    return V(at_zero + per_cycle * p + read_pelvis(mix, p).z);
-  };
+  strides.keep(led);
   const V wanted = way.ahead(change.pelvis_x_m.x, change.pelvis_z_m.x),
           goes = way.ahead(change.pelvis_x_m.v, change.pelvis_z_m.v);
   const float square = tables.size * tables.size, in_time_m2 = kInTime_m * kInTime_m * square,
@@ -214,9 +231,12 @@ V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& l
   phase = least(most(phase, low), high);
   const V last = phase;
   for (int n = 0; n < (any(is_new) ? kPhaseTries : kFewTries); ++n) {
-    if (n == kFewTries) mix.keep(is_new);
-    const V here = by_tables(phase),
-            slope = (by_tables(V(phase + kPhaseStep)) - here) * (1.0f / kPhaseStep),
+    if (n == kFewTries) strides.keep(is_new);
+    const V phases[2] = {phase, V(phase + kPhaseStep)};
+    Vec<V> pelvis_m[2];
+    read_pelvis(strides, phases, pelvis_m);
+    const auto goes_m = [&](int k) { return V(at_zero + per_cycle * phases[k] + pelvis_m[k].z); };
+    const V here = goes_m(0), slope = (goes_m(1) - here) * (1.0f / kPhaseStep),
             weight = 1.0f / (slope * slope + (in_time + least_m2));
     const V step = ((here - wanted) * slope + in_time * (phase - state.phase)) * weight,
             next = least(most(V(phase - step), low), high),
@@ -322,10 +342,9 @@ Mask<V> has_own_phase(const Change<V>& change) noexcept {
 
 // Smooths the pitch of the foot that lifts off next where the hips lead: the tables' pitch turns a
 // corner at its lift-off, which a phase that runs ahead of the clock goes around fast. The pitch is
-// a mean over phases, the wider the farther the phase is from the clock's.
+// a mean over phases, the wider the farther the phase is from the clock's. `mix`: of the stride.
 template <class V>
-void round_lift_off(const Tables& tables, const Time<V>& time, const V& phase,
-                    const Landing<V>& landing, const V& over, const State<V>& state,
+void round_lift_off(const Time<V>& time, const V& phase, StrideMix<V> mix, const State<V>& state,
                     const Change<V>& change, Stride<V>& stride) noexcept {
   constexpr float kWide = 0.6f;     // of the distance from the clock's phase, to either side
   constexpr float kWidest = 0.03f;  // cycles
@@ -333,15 +352,14 @@ void round_lift_off(const Tables& tables, const Time<V>& time, const V& phase,
   const V wide = least(V(kWide * size(V(phase - state.phase))), all<V>(kWidest));
   const auto leads = both(change.led != V{}, change.stands == V{});
   if (!any(leads)) return;
-  const StrideMix<V> mix =
-      mix_of_strides(tables, time, state.ratio_behind, landing.ratio, over, leads);
+  mix.keep(leads);
   V mean_rad{};
   const auto right = time.flies ? no(time.right) : time.right;
-  for (int k : {-2, -1, 0, 1, 2}) {
-    V n[4];
-    read_four(mix, kPitchAt, V(phase + (0.5f * static_cast<float>(k)) * wide), n);
-    mean_rad = mean_rad + kOfMean[std::abs(k)] * (right ? n[1] : n[0]);
-  }
+  V phases[5], n[5][4];
+  for (int k = 0; k < 5; ++k) phases[k] = phase + (0.5f * static_cast<float>(k - 2)) * wide;
+  read_fours(mix, kPitchAt, phases, n);
+  for (int k = 0; k < 5; ++k)
+    mean_rad = mean_rad + kOfMean[std::abs(k - 2)] * (right ? n[k][1] : n[k][0]);
   const V pitch_rad = change.shown * mean_rad;
   const auto stands = both(leads, time.flies), rolls = both(leads, no(time.flies));
   stride.foot[0].pitch_rad = rolls ? pitch_rad : stride.foot[0].pitch_rad;
@@ -364,6 +382,10 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
   change.rest_ticks = most(V(change.rest_ticks - 1.0f), V{});
   change.catch_ticks = most(V(change.catch_ticks - 1.0f), V{});
   const V over = planned_over(time, change) + change.off_over.x;
+  const V last = last_ratio<V>(time.back);
+  const Knots<V> ahead = ratios_at(landing.ratio, last);
+  const StrideMix<V> strides =
+      mix_of_ratios(tables, time, ratios_at(state.ratio_behind, last), ahead, over, runs);
   V phase = state.phase, rate = state.phase_rate;
   if (any(led)) {
     const Stages<V> next = stages_of(tables, change, state, no(time.right));
@@ -372,10 +394,10 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
             strike_rate = time.flies ? state.end_rate
                                      : V(0.5f * (flight / state.flight_ticks +
                                                  next.roll / ticks_of(next.roll_s, tables.tick_s)));
-    move_pelvis(tables, time, landing, strike_phase, strike_rate, state, change);
+    move_pelvis(tables, time, landing, ahead, strike_phase, strike_rate, state, change);
     V moves{};
-    const V found = phase_of_pelvis(tables, time, landing, hips, strike_phase, strike_rate, over,
-                                    state, change, moves);
+    const V found = phase_of_pelvis(tables, time, landing, hips, strides, strike_phase, strike_rate,
+                                    over, state, change, moves);
     phase = led ? found : phase;
     rate = led ? moves : rate;
   }
@@ -396,11 +418,10 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
   change.phase = runs ? phase : change.phase;
   change.phase_rate = runs ? goes : change.phase_rate;
   phase = runs ? phase : state.phase;
-  Stride<V> read = read_stride(tables, time, phase, state.ratio_behind, landing.ratio, over,
-                               Reads<V>{runs, runs});
+  Stride<V> read = read_stride(strides, time, phase);
   if (any(change.shown != all<V>(1.0f))) show(change.shown, read);
   put_where<V>(no(runs), by_clock, read);
-  round_lift_off(tables, time, phase, landing, over, state, change, read);
+  round_lift_off(time, phase, strides, state, change, read);
   if (any(change.turns != V{})) {
     const auto numbers = turned_numbers(read);
     for (std::size_t k = 0; k < numbers.size(); ++k)

@@ -14,9 +14,15 @@ bool is_sound(const GaitParams& params) noexcept {
   const ParamsRange& range = params_range();
   const auto numbers = numbers_of(params), least = numbers_of(range.least),
              most = numbers_of(range.most);
-  // The numbers of a plain upper body are within their ranges, and the last ones.
+  // The numbers of a plain upper body are within their ranges, and the last ones; before them are
+  // the weights.
   static_assert(offsetof(GaitParams, body) + sizeof(UpperBodyParams) == sizeof(GaitParams));
-  const std::size_t count = kParamsNumbers - (is_plain(params.body) ? kBodyNumbers : 0);
+  static_assert(offsetof(GaitParams, weight) + sizeof params.weight == offsetof(GaitParams, body));
+  std::size_t count = kParamsNumbers;
+  if (is_plain(params.body)) {
+    count -= kBodyNumbers;
+    if (is_even(params.weight)) count -= sizeof params.weight / sizeof(double);
+  }
   std::size_t inside = 0;
   for (std::size_t k = 0; k < count; ++k)
     inside += (numbers[k] >= least[k]) & (numbers[k] <= most[k]);

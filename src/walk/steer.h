@@ -27,6 +27,12 @@ inline bool is_plain(const UpperBodyParams& params) noexcept {
   // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
   return std::memcmp(&params, &kPlain, sizeof kPlain) == 0 || params == kPlain;
 }
+// True if all weights of the legs are 1.
+inline bool is_even(const decltype(GaitParams::weight)& weight) noexcept {
+  static constexpr auto kEven = GaitParams{}.weight;
+  // NOLINTNEXTLINE(bugprone-suspicious-memory-comparison)
+  return std::memcmp(&weight, &kEven, sizeof kEven) == 0 || weight == kEven;
+}
 
 // Asks a walk for parameters. A walk that is to end keeps the times and lengths of its steps.
 template <int kWidth>
@@ -57,9 +63,8 @@ void ask(const GaitParams& params, int walk, Block<kWidth>& block) noexcept {
     const BodyNumbers body = body_numbers(params.body);
     for (int n = 0; n < kBodyNumbers; ++n) set(body[n], styled.goal[n]);
   }
-  static constexpr GaitParams kEven;
   Weighted<V>& weighted = block.weighted;
-  if (asks(params.weight != kEven.weight, weighted.asked)) {
+  if (asks(!is_even(params.weight), weighted.asked)) {
     for (const int side : {0, 1})
       for (int j = 0; j < kLegAngles; ++j) set(params.weight[side][j], weighted.goal[side][j]);
   }

@@ -149,6 +149,29 @@ struct Reads {
   Mask<V> plan, whole;
 };
 
+// The swing heel of both heels of a row, and a row's other numbers.
+template <class V>
+Vec<V> swing_heel(const Time<V>& time, const V* of) noexcept {
+  return chosen(time.right, Vec<V>{of[3], of[4], of[5]}, Vec<V>{of[0], of[1], of[2]});
+}
+template <class V>
+Stride<V> stride_of(const Time<V>& time, const V* n) noexcept {
+  Stride<V> stride;
+  FootInStride<V>&swing = stride.foot[0], &stand = stride.foot[1];
+  by_foot(time.right, n[6], n[7], swing.pitch_rad, stand.pitch_rad);
+  by_foot(time.right, n[8], n[10], swing.twist_rad, stand.twist_rad);
+  by_foot(time.right, n[9], n[11], swing.roll_rad, stand.roll_rad);
+  stride.pelvis_m = {n[12], n[13], n[14]};
+  stride.pelvis_yaw_rad = n[15];
+  stride.pelvis_tilt_rad = {n[16], n[17], n[18]};
+  for (int j = 0; j < kLegAngles; ++j)
+    by_foot(time.right, n[19 + j], n[26 + j], stride.leg_rad[0][j], stride.leg_rad[1][j]);
+  stride.pelvis_low_m = n[33];
+  stride.pelvis_high_m = n[34];
+  stride.stood_pitch_rad = swing.pitch_rad;
+  return stride;
+}
+
 // Reads the numbers of a stride. `change`: share by which the last step's stride, of ratio
 // `behind`, has changed into this step's, of ratio `ahead`.
 template <class V>
@@ -217,26 +240,11 @@ Stride<V> read_stride(const Tables& tables, const Time<V>& time, const V& phase,
   V n[kNumbers];
   to_lanes(&row[0][0], kNumbers, n);
 
-  Stride<V> stride;
-  const auto heel = [&](const V* left_heel) {
-    return chosen(time.right, Vec<V>{left_heel[3], left_heel[4], left_heel[5]},
-                  Vec<V>{left_heel[0], left_heel[1], left_heel[2]});
-  };
+  Stride<V> stride = stride_of(time, n);
+  const auto heel = [&](const V* of) { return swing_heel(time, of); };
   stride.heel_high_m = heel(n).y;
   stride.heel_behind_m = heel(n + kRowNumbers);
   stride.heel_ahead_m = heel(n + kRowNumbers + kHeelNumbers);
-  FootInStride<V>&swing = stride.foot[0], &stand = stride.foot[1];
-  by_foot(time.right, n[6], n[7], swing.pitch_rad, stand.pitch_rad);
-  by_foot(time.right, n[8], n[10], swing.twist_rad, stand.twist_rad);
-  by_foot(time.right, n[9], n[11], swing.roll_rad, stand.roll_rad);
-  stride.pelvis_m = {n[12], n[13], n[14]};
-  stride.pelvis_yaw_rad = n[15];
-  stride.pelvis_tilt_rad = {n[16], n[17], n[18]};
-  for (int j = 0; j < kLegAngles; ++j)
-    by_foot(time.right, n[19 + j], n[26 + j], stride.leg_rad[0][j], stride.leg_rad[1][j]);
-  stride.pelvis_low_m = n[33];
-  stride.pelvis_high_m = n[34];
-  stride.stood_pitch_rad = swing.pitch_rad;
   return stride;
 }
 
@@ -260,13 +268,13 @@ struct StrideMix {
       if (lane(is, w) == 0.0f) walk[w].rows.first = nullptr;
   }
 };
-// The mix of the strides of ratios `behind` and `ahead`, for walks `where` it is asked for.
+// The mix of strides around the ratios of two others, for walks `where` it is asked for. `change`:
+// the share of the second one.
 template <class V>
-StrideMix<V> mix_of_strides(const Tables& tables, const Time<V>& time, const V& behind,
-                            const V& ahead, const V& change, const Mask<V>& where) noexcept {
+StrideMix<V> mix_of_ratios(const Tables& tables, const Time<V>& time, const Knots<V>& old,
+                           const Knots<V>& next, const V& change, const Mask<V>& where) noexcept {
   const V last = last_ratio<V>(time.back), back = chosen<V>(time.back, 1.0f, 0.0f),
           is = chosen<V>(where, 1.0f, 0.0f);
-  const Knots<V> old = ratios_at(behind, last), next = ratios_at(ahead, last);
   StrideMix<V> mix;
   for (int w = 0; w < kLanes<V>; ++w) {
     if (lane(is, w) == 0.0f) continue;
@@ -282,6 +290,73 @@ StrideMix<V> mix_of_strides(const Tables& tables, const Time<V>& time, const V& 
   }
   return mix;
 }
+// The same of the strides around one ratio.
+template <class V>
+StrideMix<V> mix_of_ratio(const Tables& tables, const Time<V>& time, const Knots<V>& ratios,
+                          const Mask<V>& where) noexcept {
+  const V last = last_ratio<V>(time.back), back = chosen<V>(time.back, 1.0f, 0.0f),
+          is = chosen<V>(where, 1.0f, 0.0f);
+  StrideMix<V> mix;
+  for (int w = 0; w < kLanes<V>; ++w) {
+    if (lane(is, w) == 0.0f) continue;
+    auto& of = mix.walk[w];
+    const int first = static_cast<int>(lane(ratios.first, w));
+    for (int k = 0; k < 4; ++k) of.weight[first + 1 + k] = lane(ratios.weight[k], w);
+    of.begin = std::max(0, first);
+    of.end = std::min(static_cast<int>(lane(last, w)), first + 3);
+    of.rows = rows_of(tables, lane(back, w) != 0.0f);
+  }
+  return mix;
+}
+// The mix of the strides of ratios `behind` and `ahead`; and the stride of one ratio.
+template <class V>
+StrideMix<V> mix_of_strides(const Tables& tables, const Time<V>& time, const V& behind,
+                            const V& ahead, const V& change, const Mask<V>& where) noexcept {
+  const V last = last_ratio<V>(time.back);
+  return mix_of_ratios(tables, time, ratios_at(behind, last), ratios_at(ahead, last), change,
+                       where);
+}
+template <class V>
+StrideMix<V> mix_of_strides(const Tables& tables, const Time<V>& time, const V& ratio,
+                            const Mask<V>& where) noexcept {
+  return mix_of_ratio(tables, time, ratios_at(ratio, last_ratio<V>(time.back)), where);
+}
+
+// Sums kParts registers of the rows of a mix, from number `at` on, around a walk's knots.
+template <class R, int kParts, class OfWalk, class V>
+[[gnu::always_inline]] inline void sum_rows(const OfWalk& of, int at, const Knots<V>& knots, int w,
+                                            R (&sum)[kParts]) noexcept {
+  const float* row = of.rows.at(static_cast<int>(lane(knots.first, w)), of.begin) + at;
+  const float k0 = lane(knots.weight[0], w), k1 = lane(knots.weight[1], w),
+              k2 = lane(knots.weight[2], w), k3 = lane(knots.weight[3], w);
+  const int knot = of.rows.of_knot;
+  for (int r = of.begin; r <= of.end; ++r, row += kRowNumbers) {
+    const float weight = of.weight[r + 1];
+#pragma GCC unroll 10
+    for (int n = 0; n < kParts; ++n) {
+      const float* const from = row + n * kLanes<R>;
+      const R here = part<R>(from) * k0 + part<R>(from + knot) * k1 +
+                     part<R>(from + 2 * knot) * k2 + part<R>(from + 3 * knot) * k3;
+      sum[n] += here * weight;
+    }
+  }
+}
+
+// Reads a stride but for its heels, which are 0; all of it is 0 for walks that the mix leaves out.
+template <class V>
+Stride<V> read_stride(const StrideMix<V>& mix, const Time<V>& time, const V& phase) noexcept {
+  constexpr int kParts = kRowNumbers / kLanes<RowPart>;
+  const Knots<V> knots = knots_at(phase);
+  alignas(64) float row[kLanes<V>][kRowNumbers];
+  for (int w = 0; w < kLanes<V>; ++w) {
+    RowPart sum[kParts] = {};
+    if (mix.walk[w].rows.first != nullptr) sum_rows(mix.walk[w], 0, knots, w, sum);
+    std::memcpy(row[w], sum, sizeof sum);
+  }
+  V n[kRowNumbers];
+  to_lanes(&row[0][0], kRowNumbers, n);
+  return stride_of(time, n);
+}
 
 // Reads four neighbouring numbers of a row, from number `at` on; 0 for walks that the mix leaves
 // out.
@@ -290,21 +365,33 @@ void read_four(const StrideMix<V>& mix, int at, const V& phase, V (&to)[4]) noex
   const Knots<V> knots = knots_at(phase);
   alignas(64) float row[kLanes<V>][4];
   for (int w = 0; w < kLanes<V>; ++w) {
-    const auto& of = mix.walk[w];
-    Four sum{};
-    if (of.rows.first != nullptr) {
-      const float* const first = of.rows.at(static_cast<int>(lane(knots.first, w)), 0) + at;
-      for (int r = of.begin; r <= of.end; ++r) {
-        Four here{};
-        for (int k = 0; k < 4; ++k)
-          here +=
-              part<Four>(first + k * of.rows.of_knot + r * kRowNumbers) * lane(knots.weight[k], w);
-        sum += here * of.weight[r + 1];
-      }
-    }
-    std::memcpy(row[w], &sum, sizeof sum);
+    Four sum[1] = {};
+    if (mix.walk[w].rows.first != nullptr) sum_rows(mix.walk[w], at, knots, w, sum);
+    std::memcpy(row[w], sum, sizeof sum);
   }
   to_lanes(&row[0][0], 4, to);
+}
+
+// The same at several phases. The knots of one walk's phases are found side by side.
+template <class V, int kPhases>
+void read_fours(const StrideMix<V>& mix, int at, const V (&phase)[kPhases],
+                V (&to)[kPhases][4]) noexcept {
+#ifndef GAITPAD_NO_VECTORS
+  if constexpr (kLanes<V> == 1) {
+    using Phases = Floats<kPhases <= 4 ? 4 : 8>;
+    static_assert(kPhases <= kLanes<Phases>);
+    Phases phases{};
+    std::memcpy(&phases, phase, sizeof phase);
+    const Knots<Phases> knots = knots_at(phases);
+    for (int i = 0; i < kPhases; ++i) {
+      Four sum[1] = {};
+      if (mix.walk[0].rows.first != nullptr) sum_rows(mix.walk[0], at, knots, i, sum);
+      std::memcpy(to[i], sum, sizeof sum);
+    }
+    return;
+  }
+#endif
+  for (int i = 0; i < kPhases; ++i) read_four(mix, at, phase[i], to[i]);
 }
 
 // Plans the limp of a flight at its lift-off; if it followed a style that changes during the
@@ -353,7 +440,7 @@ void raise_limping_heel(const Tables& tables, const Time<V>& time, const V& phas
   const V shows = change.limp * smoother(V(u * 5.0f)) * (1.0f - smoother(V((u - 0.5f) * 2.5f))),
           as_far = ratio * change.limp_far;
   V heel_m[4];  // 0: height of the left heel, 3: of the right one
-  read_four(mix_of_strides(tables, time, as_far, as_far, V{}, limps), 1, phase, heel_m);
+  read_four(mix_of_strides(tables, time, as_far, limps), 1, phase, heel_m);
   const V high_m = most(stride.heel_high_m, time.right ? heel_m[3] : heel_m[0]);
   stride.heel_high_m = limps ? mix(stride.heel_high_m, high_m, shows) : stride.heel_high_m;
 }
@@ -407,10 +494,18 @@ Vec<V> read_pelvis(const StrideMix<V>& mix, const V& phase) noexcept {
   read_four(mix, offsetof(StrideRow, pelvis_m) / sizeof(float), phase, n);
   return {n[0], n[1], n[2]};
 }
+// The same at several phases.
+template <class V, int kPhases>
+void read_pelvis(const StrideMix<V>& mix, const V (&phase)[kPhases],
+                 Vec<V> (&pelvis_m)[kPhases]) noexcept {
+  V n[kPhases][4];
+  read_fours(mix, offsetof(StrideRow, pelvis_m) / sizeof(float), phase, n);
+  for (int i = 0; i < kPhases; ++i) pelvis_m[i] = {n[i][0], n[i][1], n[i][2]};
+}
 template <class V>
 Vec<V> read_pelvis(const Tables& tables, const Time<V>& time, const V& phase,
                    const V& ratio) noexcept {
-  return read_pelvis(mix_of_strides(tables, time, ratio, ratio, V{}, V{} == V{}), phase);
+  return read_pelvis(mix_of_strides(tables, time, ratio, V{} == V{}), phase);
 }
 
 // The footprints of a stride, in its travel frame: its length, and the heels of swing and stand.

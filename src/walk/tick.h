@@ -328,10 +328,11 @@ void look_ahead(const Tables& tables, Block<1>& block) noexcept {
             left = sink_ticks_left(tables, change.sink_ticks), at = left > 0 ? all_ticks - left : 0,
             first = at / knot, gone = at - first * knot;
   std::array<float, kSinkKnots> wants_m{};  // most sinking between two knots
+  const int seen = all_ticks - knot;        // no knot asks for what comes later
   Block<1> ahead = block;
   NoFooting level;
   ahead.change.sink_ticks = 0.0f;
-  for (int tick = gone; tick < all_ticks; ++tick) {
+  for (int tick = gone; tick < seen; ++tick) {
     advance_on<1, kPaper>(tables, ahead, footing_of<kUneven>(ahead, level), Poses{}, false);
     float& most_m = wants_m[tick / knot];
     most_m = most(most_m, ahead.change.wants_m);

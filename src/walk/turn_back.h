@@ -31,10 +31,11 @@ inline Stride<float> shown_stride(const Tables& tables, const Change<float>& cha
   const Time<float> time = time_of(tables, state);
   const Landing<float> landing =
       planned_landing(tables, time, way_at_strike(tables, time, state), change, state);
-  Stride<float> stride = read_stride(tables, time, phase, state.ratio_behind, landing.ratio,
-                                     share.over, Reads<float>{true, true});
+  const StrideMix<float> mix =
+      mix_of_strides(tables, time, state.ratio_behind, landing.ratio, share.over, true);
+  Stride<float> stride = read_stride(mix, time, phase);
   show(share.shown, stride);
-  round_lift_off(tables, time, phase, landing, share.over, state, change, stride);
+  round_lift_off(time, phase, mix, state, change, stride);
   return stride;
 }
 

@@ -280,6 +280,8 @@ template <class V>
           rate = either(change.stands != V{}, change.starting != V{}) ? V{} : state.phase_rate;
   const Turn<V> heading = tick.hips.heading.turn(),
                 upright = tick.pelvis.turn * back(tilted(tables, tick.stride, state));
+  const StrideMix<V> mix =
+      mix_of_strides(tables, tick.time, state.ratio_behind, tick.landing.ratio, over, begins);
   Vec<V> chest[2], head[2];
   for (int k : {0, 1}) {
     const float ago = static_cast<float>(k + 1);
@@ -292,8 +294,7 @@ template <class V>
     const Bearing<V> before = bearing_of(
         tables, then, is_styled, V(state.chest_ahead_rad.x - ago_s * state.chest_ahead_rad.v),
         V(state.head_ahead_rad.x - ago_s * state.head_ahead_rad.v), V{}, styled);
-    Stride<V> stride = read_stride(tables, tick.time, phase, state.ratio_behind, tick.landing.ratio,
-                                   over, Reads<V>{begins, begins});
+    Stride<V> stride = read_stride(mix, tick.time, phase);
     show(change.shown, stride);
     Trunk<V> trunk;
     trunk.base = base_turn(tables, heading, upright * tilted(tables, stride, state));

@@ -27,7 +27,7 @@ function is written where it is used, so a name may occur twice in a file. Reaso
 Lengths *at the reference leg* grow with the character's legs, times with their fourth root. The time constants of the filters
 of a tick have no names: `filters_of()` in `tables.cpp` lists them.
 
-*x 2, / 2*: the value was doubled and halved in trials (`tools/constant_trials.py`), and so many of the 148 lines of `core_hash`
+*x 2, / 2*: the value was doubled and halved in trials (`tools/constant_trials.py`), and these numbers of the 148 lines of `core_hash`
 changed: four walks of 28 s with the built-in motion (level, level in paper mode, over sections, over asked ground) and a
 crowd of 20 s. Constants of one name in one file are changed together. A dash: not tried since the value changed. 0, 0 says
 only that these walks do not need it: they hold no capture, no push and no asked step.

@@ -338,6 +338,16 @@ def test_a_page_that_a_script_writes_is_what_it_writes(script):
     assert subprocess.run([sys.executable, ROOT / "tools" / script, "--check"]).returncode == 0
 
 
+def test_a_trial_multiplies_each_number_that_has_a_name(monkeypatch):
+    monkeypatch.syspath_prepend(ROOT / "tools")
+    import constant_trials
+    text = "#pragma once\nconstexpr float kA = 1.0f, kB = 2.0f * kA;  // of a leg\nvoid f() {\n  constexpr double kC = 3.0;\n}\n"
+    changed, names = constant_trials.variable(text, "x.h")
+    assert names == ["kA", "kB", "kC"]
+    assert 'kB = static_cast<float>((2.0f * kA) * trial_factor("x.h:kB"))' in changed
+    assert '  static const double kC = static_cast<double>((3.0) * trial_factor("x.h:kC"))' in changed
+
+
 def test_the_page_of_constants_has_what_the_sources_say():
     """A second reading of some declarations, by hand: beside, above, several in one, in a table."""
     page = (ROOT / "docs/constants.md").read_text()

@@ -26,7 +26,13 @@ value in degrees, or *count* of whole numbers; where there is a dash, the reason
 function is written where it is used, so a name may occur twice in a file. Reasons are the sources' comments; *as above*: one comment tells of several.
 Lengths *at the reference leg* grow with the character's legs, times with their fourth root. The time constants of the filters
 of a tick have no names: `filters_of()` in `tables.cpp` lists them.
+
+*x 2, / 2*: the value was doubled and halved in trials (`tools/constant_trials.py`), and these numbers of the 148 lines of `core_hash`
+changed: four walks of 28 s with the built-in motion (level, level in paper mode, over sections, over asked ground) and a
+crowd of 20 s. Constants of one name in one file are changed together. A dash: not tried since the value changed. 0, 0 says
+only that these walks do not need it: they hold no capture, no push and no asked step.
 """
+TRIALS = ROOT / "tools" / "constant_trials.tsv"
 DECLARED = re.compile(r"(?m)^([ \t]*)(?:inline |static )*constexpr (?P<type>[\w:]+(?:<[^;={]*?>)?) (?=k[A-Z])")
 NAMES = r"(k[A-Z]\w*)((?:\[[^\]]*\])*)\s*"
 UNITS = {"s": "s", "m": "m", "rad": "rad", "deg": "degrees", "m_s": "m/s", "m_s2": "m/s²", "rad_s": "rad/s", "1_s": "1/s",
@@ -143,17 +149,26 @@ def constants_of(path):
             yield first + 1, match[1], value_text(match[4]), unit_of(match[1], match[4], found["type"]), own
 
 
+def trials():
+    """What constant_trials.py wrote: by "file:name", the value that was tried and the two counts."""
+    rows = (line.split("\t") for line in TRIALS.read_text().splitlines()) if TRIALS.exists() else ()
+    return {key: (value, f"{doubled}, {halved}") for key, value, doubled, halved in rows}
+
+
 def page():
-    lines, count = HEAD.splitlines(), 0
+    lines, count, tried = HEAD.splitlines(), 0, trials()
     for room, title in ROOMS.items():
-        lines += ["", f"## {title}: `src/{room}`", "", "| constant | value | unit | where | reason |", "|---|---|---|---|---|"]
+        more = (" x 2, / 2 |", "---|") if room == "walk" else ("", "")
+        lines += ["", f"## {title}: `src/{room}`", "", f"| constant | value | unit | where | reason |{more[0]}", f"|---|---|---|---|---|{more[1]}"]
         for path in sorted((ROOT / "src" / room).glob("*.[hc]*")):
             last = None
             for line, name, value, unit, reason in constants_of(path):
                 count += 1
                 told = "as above" if reason and reason == last else reason or "-"
                 last = reason
-                cells = (f"`{name}`", value, unit or "-", f"`{path.name}`", told)
+                then, counts = tried.get(f"{path.name}:{name}", ("", "-"))
+                trial = (counts if then == value else "-",) if room == "walk" else ()
+                cells = (f"`{name}`", value, unit or "-", f"`{path.name}`", told, *trial)
                 lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
     at = len(HEAD.splitlines())
     lines[at:at] = ["", f"There are {count}."]

@@ -7,13 +7,12 @@ namespace {
 
 // --- The adult -----------------------------------------------------------------------------------
 
-// Segment lengths as fractions of the stature H (Drillis & Contini, in Winter's tables). The hip
-// joints stand closer than Winter's .0955 H, which is half the pelvis' outer breadth.
-// Thigh and shank are 0.245 + 0.246 of the stature.
+// Segment lengths, here and below, are fractions of the stature H (Drillis & Contini, in Winter's
+// tables). The hip joints stand closer than Winter's .0955 H, which is half the pelvis' outer
+// breadth. Thigh and shank are 0.245 + 0.246 of the stature.
 constexpr double kStature_m = kReferenceLeg_m / 0.491;
 constexpr double kThigh_m = kReferenceLeg_m * 0.245 / 0.491;
 constexpr double kShank_m = kReferenceLeg_m - kThigh_m;
-constexpr double kHipHalf_m = 0.052 * kStature_m;
 constexpr double kHipDrop_m = 0.03 * kStature_m;  // height of the pelvis joint above the hip joints
 constexpr double kAnkleHeight_m = 0.039 * kStature_m;  // above the floor, standing
 // Heel and ball from the ankle, tip from the ball; then the heights of ball and tip of a standing
@@ -21,9 +20,6 @@ constexpr double kAnkleHeight_m = 0.039 * kStature_m;  // above the floor, stand
 constexpr double kHeelBack_m = 0.05, kBallForward_m = 0.13, kToeLength_m = 0.06;
 constexpr double kBallRest_m = 0.02, kToeEndRest_m = 0.01;
 constexpr double kToeOut = 7.0 * kDegree;
-constexpr double kShoulderHalf_m = 0.1295 * kStature_m;
-constexpr double kUpperArm_m = 0.186 * kStature_m, kForearm_m = 0.146 * kStature_m,
-                 kHand_m = 0.108 * kStature_m;
 // Distance from the pelvis joint to the height of the shoulders.
 constexpr double kTrunk_m = 0.288 * kStature_m - kHipDrop_m;
 
@@ -39,7 +35,7 @@ vec3 turned_out(double sign, const vec3& v) { return rotation_y(sign * kToeOut) 
 
 LegModel add_leg(Builder& body, int hips, const std::string& side, double sign) {
   LegModel leg;
-  leg.hip_m = vec3(sign * kHipHalf_m, -kHipDrop_m, 0.0);
+  leg.hip_m = vec3(sign * 0.052 * kStature_m, -kHipDrop_m, 0.0);
   leg.thigh_m = kThigh_m;
   leg.shank_m = kShank_m;
   leg.heel_m = turned_out(sign, vec3(0.0, -kAnkleHeight_m, -kHeelBack_m));
@@ -62,10 +58,10 @@ void add_arm(Builder& body, int chest, const std::string& side, double sign) {
   const int shoulder =
       body.add(side + "Shoulder", chest, vec3(sign * collar, 0.45 * kTrunk_m, 0.0));
   const int arm =
-      body.add(side + "Arm", shoulder, vec3(sign * (kShoulderHalf_m - collar), 0.0, 0.0));
-  const int forearm = body.add(side + "ForeArm", arm, vec3(0.0, -kUpperArm_m, 0.0));
-  const int hand = body.add(side + "Hand", forearm, vec3(0.0, -kForearm_m, 0.0));
-  body.add(side + "Hand_End", hand, vec3(0.0, -kHand_m, 0.0), true);
+      body.add(side + "Arm", shoulder, vec3(sign * (0.1295 * kStature_m - collar), 0.0, 0.0));
+  const int forearm = body.add(side + "ForeArm", arm, vec3(0.0, -0.186 * kStature_m, 0.0));
+  const int hand = body.add(side + "Hand", forearm, vec3(0.0, -0.146 * kStature_m, 0.0));
+  body.add(side + "Hand_End", hand, vec3(0.0, -0.108 * kStature_m, 0.0), true);
 }
 
 }  // namespace

@@ -36,7 +36,7 @@ constexpr double kLeastLift = 0.3;
 // Share of the cycle for which a foot stands flat after its roll.
 constexpr double kFlatPhase = 0.2;
 // Limits of valid input. A step is shorter than two legs, so a stride is shorter than four.
-constexpr double kLeastBone_m = 0.01, kMostLegs = 4.0, kMostAngle = 2.0 * kPi;
+constexpr double kLeastBone_m = 0.01, kMostLegs = 4.0;
 
 // The cycle run backwards in time: a lift becomes a strike. Phase 0 is the right foot's lift in the
 // data; the stages keep the cycle's shares.
@@ -328,7 +328,7 @@ std::optional<std::string> fault_of(const GaitCycle& cycle) {
       return "holds a rotation of the pelvis that is not a unit quaternion";
     for (const LegSample& leg : sample.leg) {
       for (const double angle : leg.angles) {
-        if (std::abs(angle) > kMostAngle) return "turns a leg by more than a full turn";
+        if (std::abs(angle) > 2.0 * kPi) return "turns a leg by more than a full turn";
       }
     }
   }

@@ -211,7 +211,6 @@ template <class V>
 void begin_weights(const Tables& tables, const Mask<V>& begins, const Time<V>& time, const V& phase,
                    const V (&even_rad)[2][kLegAngles], const Change<V>& change,
                    const State<V>& state, Weighted<V>& weighted) noexcept {
-  constexpr float kLast = kRatios - 1;
   // Each harmonic at this phase, as cosine and sine, filtered once and twice.
   V once[kHarmonics][2], twice[kHarmonics][2];
   const V lag = state.phase_rate * (kTurn_rad * (1.0f / tables.mean_pull - 1.0f));
@@ -224,8 +223,9 @@ void begin_weights(const Tables& tables, const Mask<V>& begins, const Time<V>& t
     twice[h][0] = (once[h][0] + wt * once[h][1]) * q;
     twice[h][1] = (once[h][1] - wt * once[h][0]) * q;
   }
-  const V y = within(V(state.ratio_behind * float(1.0 / kRatioStep)), 0.0f, kLast),
-          first = least(floored(y), all<V>(kLast - 1.0f)), share = y - first;
+  const V last = all<V>(kRatios - 1.0f),
+          y = least(most(V(state.ratio_behind * float(1.0 / kRatioStep)), V{}), last),
+          first = least(floored(y), V(last - 1.0f)), share = y - first;
   for (int k : {0, 1}) {
     const auto right = is_right(time, k);
     const V side = chosen<V>(right, 1.0f, 0.0f);

@@ -118,15 +118,9 @@ std::array<IkRow, 6> foot_rows(const LegBuild& leg, const IkFrame& frame, bool i
           row(other, across),   row(effector + kSideLever_m * leg.side, across)};
 }
 
-// Both legs of one tick, solved by the walk's closed form. They start at the pose of the tick
-// before and move to the walk's solution.
-struct RobustLeg {
-  Vec<float> ankle_m;
-  Turn<float> foot;
-  float thigh_m = 0.0f, shank_m = 0.0f;
-  std::array<float, kLegDofs> start_rad{};
-};
-using RobustLegs = std::array<RobustLeg, 2>;
+// Both legs of one tick, solved side by side by the walk's closed form, as a tick of one walk does.
+// They start at the pose of the tick before and move to the walk's solution.
+using RobustLegs = std::array<LegGoal<float>, 2>;
 void add_legs(const Walker& before, const Walker& now, double, std::vector<RobustLegs>& legs) {
   RobustLegs& both = legs.emplace_back();
   const auto last_rad = leg_angles(*before.model, before.pose),
@@ -137,12 +131,12 @@ void add_legs(const Walker& before, const Walker& now, double, std::vector<Robus
     const IkFrame foot = end_frame(leg.chain, all_angles(solved_rad[side]));
     const vec3& p = foot.position_m;
     const quat& q = foot.rotation;
-    RobustLeg& solve = both[side];
+    LegGoal<float>& solve = both[side];
     solve.ankle_m = {number(p.x), number(p.y), number(p.z)};
     solve.foot = {number(q.w), number(q.x), number(q.y), number(q.z)};
     solve.thigh_m = number(leg.model.thigh_m);
     solve.shank_m = number(leg.model.shank_m);
-    for (int j = 0; j < kLegDofs; ++j) solve.start_rad[j] = number(last_rad[side][j]);
+    for (int j = 0; j < kLegDofs; ++j) solve.table_rad[j] = number(last_rad[side][j]);
   }
 }
 
@@ -184,18 +178,13 @@ std::vector<Legs> solves_of(const Session& session, Simulation simulation,
   return legs;
 }
 
-int solve(RobustLegs& both) {
-  int reached = 0;
-  for (const RobustLeg& leg : both) {
-    float start_rad[kLegDofs], off_rad[kLegDofs]{};
-    std::copy(leg.start_rad.begin(), leg.start_rad.end(), start_rad);
-    const auto solved =
-        solve_leg<float>(leg.thigh_m, leg.shank_m, leg.ankle_m, leg.foot, start_rad, off_rad);
-    reached += solved.short_m == 0.0f;
-    benchmark::DoNotOptimize(solved);
-    benchmark::DoNotOptimize(off_rad);
-  }
-  return reached;
+int solve(const RobustLegs& both) {
+  LegGoal<float> goals[2] = {both[0], both[1]};
+  Leg<float> legs[2];
+  solve_both(goals, legs);
+  benchmark::DoNotOptimize(legs);
+  benchmark::DoNotOptimize(goals);
+  return (legs[0].short_m == 0.0f) + (legs[1].short_m == 0.0f);
 }
 int solve(PaperLeg& leg) {
   IkAngles angles = leg.start;

@@ -328,10 +328,13 @@ Flight<V> fly(const Tables& tables, const Time<V>& time, const Landing<V>& landi
               const F& footing) noexcept {
   Flight<V> flight;
   const V u = time.u;
-  flight.table_heel_m = flight_heel(tables, time, landing, by_clock, hips, phase, u, change, state,
-                                    footing, flight.base_m);
-  flight.heel_m =
-      with_gap(tables, time, flight.table_heel_m, flight.base_m, change, state, footing);
+  // On level ground nothing asks where the heel of a rolling foot will fly, before it lifts off.
+  if (kIsUneven<F> || any(either(time.flies, state.tick >= state.roll_ticks))) {
+    flight.table_heel_m = flight_heel(tables, time, landing, by_clock, hips, phase, u, change,
+                                      state, footing, flight.base_m);
+    flight.heel_m =
+        with_gap(tables, time, flight.table_heel_m, flight.base_m, change, state, footing);
+  }
   // A low foot that hardly leaves the floor does not roll onto an edge.
   const V over = flight_share(u, change);
   const V low = mix(all<V>(1.0f), low_lift<V>(time.right, state),
@@ -395,6 +398,13 @@ void pitch_in_flight(const Time<V>& time, const Sole<V>& sole, const Flight<V>& 
   // tables.
   constexpr float kWideLead_rad = 0.2f;
   const V u = time.u;
+  foot.edge = first_edge(sole, flight, planned, u, change);
+  const auto turn_to = [&](const V& pitch) {
+    foot.heel_m = flight.heel_m;
+    const Turn<V> level = flight.way.turn();
+    set_pitch(sole, kIsUneven<F> ? flight.tilt * level : level, pitch, no(time.flies), foot);
+  };
+  if (!any(time.flies)) return turn_to(most(planned, V{}));
   V height_m = flight.heel_m.y;
   if constexpr (kIsUneven<F>) {
     // The plane on which the foot stood bounds the toe at first; it may differ from the ground
@@ -402,19 +412,14 @@ void pitch_in_flight(const Time<V>& time, const Sole<V>& sole, const Flight<V>& 
     const V lifted_m = flight.lifted_m * (1.0f - smoother(0.0f, kLiftGround, u));
     height_m = (height_m - (flight.base_m + lifted_m)) * upright(footing.print);
   }
-  foot.edge = first_edge(sole, flight, planned, u, change);
   const Vec<V> rolled = foot.edge * sole.line_m;
   const V ahead = dot(rolled, sole.forward), flat_ahead = dot(sole.line_m, sole.forward);
   const V steeper = (rolled.y * flat_ahead - sole.line_m.y * ahead) / (sole.foot_m * sole.foot_m);
-  V edge_m{};
-  if (any(time.flies)) {
-    const V across =
-        (flight.way.turn() * (turn_about(sole.side, planned) * foot.edge) * sole.side).y;
-    V clears = smooth(0.0f, 0.25f, u);
-    // Hips that lead from the end of stairs are fast, and the edge of their foot is low.
-    if constexpr (kIsUneven<F>) clears = change.led != V{} ? smooth(0.0f, 0.1f, u) : clears;
-    edge_m = sole.half_width_m * size(across) * clears * (1.0f - smooth(0.9f, 1.0f, u));
-  }
+  const V across = (flight.way.turn() * (turn_about(sole.side, planned) * foot.edge) * sole.side).y;
+  V clears = smooth(0.0f, 0.25f, u);
+  // Hips that lead from the end of stairs are fast, and the edge of their foot is low.
+  if constexpr (kIsUneven<F>) clears = change.led != V{} ? smooth(0.0f, 0.1f, u) : clears;
+  const V edge_m = sole.half_width_m * size(across) * clears * (1.0f - smooth(0.9f, 1.0f, u));
   V foot_m = sole.foot_m, wide{};
   if (any(change.led != V{})) {
     // A foot on its edge is shorter. The steady walk's flights are solved without that.
@@ -429,10 +434,7 @@ void pitch_in_flight(const Time<V>& time, const Sole<V>& sole, const Flight<V>& 
   const V limit = sole.elevation_rad - arc + arc_sine(steeper);
   const V soft =
       kSoftPitch_rad + kWiderPitch * loose_pitch(u, off, change) + edge_m / foot_m + wide;
-  const V pitch = time.flies ? soft_least(planned, limit, soft) : most(planned, V{});
-  foot.heel_m = flight.heel_m;
-  const Turn<V> level = flight.way.turn();
-  set_pitch(sole, kIsUneven<F> ? flight.tilt * level : level, pitch, no(time.flies), foot);
+  turn_to(time.flies ? soft_least(planned, limit, soft) : most(planned, V{}));
 }
 
 template <class V>

@@ -100,6 +100,8 @@ void keep_heels_low(const Tables& tables, const Time<V>& time, const V& phase,
   }
   for (int k : {0, 1}) {
     const auto right = is_right(time, k), rises = both(no(rolls[k]), low[k] > V{});
+    asked_rad[k] = V{};
+    if (!any(rises)) continue;
     Foot<V>& foot = feet.foot[k];
     const V pitch_rad = pitch_in_reach<V>(foot, feet.sole[k], pelvis.place_m + pelvis.hip_m[k],
                                           V(kLowReach * leg_m<V>(tables, right)));

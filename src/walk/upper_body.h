@@ -42,6 +42,13 @@ void smooth_body(const Tables& tables, const Mask<V>& is_styled, Styled<V>& styl
   auto plain = no(asked);
   for (int n = 0; n < kBodyNumbers; ++n) {
     const V none = all<V>(tables.plain_body[n]), goal = asked ? styled.goal[n] : none;
+    const auto is_none = goal == none,
+               rests = both(either(acted, is_none),
+                            both(styled.body[n].x == goal, styled.body[n].v == V{}));
+    if (!any(both(moves, no(rests)))) {  // most numbers of a style are those of none
+      plain = both(plain, is_none);
+      continue;
+    }
     Smoothed<V> number{acted ? styled.body[n].x : none, acted ? styled.body[n].v : V{}};
     follow(goal, tables.body, number);
     const V unit = most(size(goal), all<V>(1.0f));
@@ -347,7 +354,6 @@ template <int kWidth, bool kPaper>
   // Arms keep hanging as in the data while the trunk leans.
   Turn<V> shoulder[2];
   const auto turn_shoulder = [&](int side, const Turn<V>& turn, const Mask<V>& where) {
-    if (!any(where)) return;
     const ArmBones& bones = tables.arm[side];
     Turn<V> above = below(trunk, bones.on_trunk);
     for (int i = bones.on_trunk; i < bones.shoulder; ++i)
@@ -364,6 +370,7 @@ template <int kWidth, bool kPaper>
     if (!has[side]) continue;
     const ArmBones& bones = tables.arm[side];
     shoulder[side] = read_joint<V>(bones.path[bones.shoulder].joint, is, poses);
+    if (!any(tilts)) continue;
     turn_shoulder(side, seen(turn_x(V(-bearing.forward_rad)) * turn_z(bearing.left_rad)), tilts);
   }
   // Bound the turn of the chest.
@@ -394,7 +401,7 @@ template <int kWidth, bool kPaper>
   for (int side : {0, 1}) {
     const V out_rad = (side == 0 ? kDegree_rad : -kDegree_rad) * styled.body[kArmOut_deg + side].x;
     const auto spreads = both(is_styled, out_rad != V{});
-    if (!has[side] || kPaper) continue;
+    if (!has[side] || kPaper || !any(spreads)) continue;
     turn_shoulder(side, seen(turn_z(spreads ? out_rad : V{})), spreads);
     hangs = either(hangs, spreads);
   }

@@ -273,6 +273,12 @@ Mask<V> smooth_weights(const Tables& tables, Weighted<V>& weighted) noexcept {
     for (int j = 0; j < kLegAngles; ++j) {
       Smoothed<V>& in_force = weighted.weight[side][j];
       const V goal = asked ? weighted.goal[side][j] : one;
+      const auto is_one = goal == one,
+                 rests = both(either(acted, is_one), both(in_force.x == goal, in_force.v == V{}));
+      if (!any(both(moves, no(rests)))) {
+        acts = either(acts, both(acted, no(is_one)));
+        continue;
+      }
       Smoothed<V> weight{acted ? in_force.x : one, acted ? in_force.v : V{}};
       follow(goal, tables.weights, weight);
       const auto even = both(goal == one, size(V(weight.x - one)) < all<V>(kSettled)),

@@ -323,9 +323,9 @@ template <int kWidth, bool kPaper>
                                  const Poses& poses) noexcept {
   using V = Floats<kWidth>;
   // A turning walk raises the bounds, for its own turn is a part of the chest's and the head's: by
-  // kMoreTurning rad/s^2 times the square of the turn's rate, up to kMostTurning. The chest, which
-  // the head leads, has kChestLess of the head's bound.
-  constexpr float kMoreTurning = 110.0f * kDegree_rad, kMostTurning = 260.0f * kDegree_rad,
+  // kMoreTurning rad/s^2 times the fourth power of the turn's rate, up to kMostTurning. The chest,
+  // which the head leads, has kChestLess of the head's bound.
+  constexpr float kMoreTurning = 320.0f * kDegree_rad, kMostTurning = 300.0f * kDegree_rad,
                   kChestLess = 0.8f;
   const State<V>& state = block.state;
   Styled<V>& styled = block.styled;
@@ -370,7 +370,8 @@ template <int kWidth, bool kPaper>
   const auto acts = either(eases, either(poise.chest.ticks > V{}, poise.head.ticks > V{}));
   const bool may_ease = !kPaper && tables.has_head && any(acts);
   const V turns_rad = state.turn_rad_s.v * (dt * dt), asked = state.asked.turn_rad_s,
-          more = least(V(kMoreTurning * asked * asked), all<V>(kMostTurning)),
+          square = asked * asked,
+          more = least(V(kMoreTurning * square * square), all<V>(kMostTurning)),
           of_head = tables.most_head_s2 + more,
           of_chest = most(all<V>(tables.most_chest_s2), V(kChestLess * of_head));
   if (may_ease) {

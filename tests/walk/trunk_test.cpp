@@ -286,6 +286,30 @@ TEST(UpperBody, TurnsTheHeadWellAheadInASharpTurn) {
   }
 }
 
+// The arm on the outer side of a walk that turns is carried forward, the other one stays behind.
+TEST(UpperBody, CarriesArmsWithTheTrunkInASharpTurn) {
+  constexpr double kLeast_m = 0.13;
+  for (const double side : {1.0, -1.0}) {
+    Walker walker;
+    walker.push(vec2(0.0, 0.9));
+    walker.hold(2 * kRate);
+    walker.push(vec2(0.95 * side, 0.3));
+    walker.hold(kRate);
+    double outer_m = 0.0;
+    const int ticks = 4 * kRate;
+    for (int tick = 0; tick < ticks; ++tick) {
+      walker.step();
+      const vec3 left = walker.hand(kLeftSide) - walker.hand(kRightSide);
+      const double heading_rad =
+          walker.block.origin[0].heading_rad + static_cast<double>(walker.block.state.heading_rad);
+      const SinCos ahead = gaitpad::sin_cos(heading_rad);
+      outer_m += side * (left.x * ahead.sin + left.z * ahead.cos) / ticks;
+    }
+    std::printf("outer hand ahead by %.3f m\n", outer_m);
+    EXPECT_GT(outer_m, kLeast_m);
+  }
+}
+
 TEST(UpperBody, SwingsArmsAgainstTheLegsFromTheFirstStepOn) {
   const int hip[2] = {adult().leg[0].joint[0].joint, adult().leg[1].joint[0].joint},
             ankle[2] = {adult().leg[0].joint[2].joint, adult().leg[1].joint[2].joint};

@@ -215,21 +215,25 @@ V data_phase(const Tables& tables, const Time<V>& time, const V& phase) noexcept
   return time.back ? V(share[0] + share[1] + share[2] - phase) : phase;
 }
 
-// Swings the arms in a turn on the spot, where the data show nothing: each goes forward with the
-// other leg, elbows bend, and the arm on the outer side of the turn is carried out with the chest.
-// A walk's own swing takes over as its posture grows.
+// Moves the arms in a turn. They follow the twist of the trunk: the arm on the outer side is
+// carried out and forward with the chest, the other one stays behind. On the spot, where the data
+// show nothing, each also goes forward with the other leg, and elbows bend; a walk's own swing
+// takes over as its posture grows.
 template <class V>
 void swing_in_turn(const Tables& tables, const BodyTick<V>& tick, const State<V>& state,
                    const Poses& poses) noexcept {
   // Small beside a walk's: a shoulder that swings by 9 degrees moves the hand by 10 cm to either
-  // side. Elbows bend by kBend_rad, and by kBends_rad more where the arm is ahead.
+  // side. Elbows bend by kBend_rad, and by kBends_rad more where the arm is ahead. A turn carries
+  // one hand forward and one back by kReach_rad, 7 cm.
   constexpr float kSwing_rad = 9.0f * kDegree_rad, kBend_rad = 14.0f * kDegree_rad,
-                  kBends_rad = 5.0f * kDegree_rad, kOut_rad = 6.0f * kDegree_rad;
+                  kBends_rad = 5.0f * kDegree_rad, kOut_rad = 6.0f * kDegree_rad,
+                  kReach_rad = 6.0f * kDegree_rad;
   constexpr float kWhole_rad = 0.13f;  // turn of the chest ahead: as of a turn by 1 rad/s
   constexpr float kWalks = 0.9f;       // of the posture: from here on the data's swing is enough
   const V &ahead_rad = state.chest_ahead_rad.x, own = 1.0f - smooth(0.0f, kWalks, state.posture.x),
-          share = own * smooth(0.0f, kWhole_rad, size(ahead_rad)) * within(tick.shown, 0.0f, 1.0f);
-  const auto swings = share > V{};
+          carried = smooth(0.0f, kWhole_rad, size(ahead_rad)) * within(tick.shown, 0.0f, 1.0f),
+          share = own * carried;
+  const auto swings = carried > V{};
   if (!any(swings)) return;
   const V is = chosen<V>(swings, 1.0f, 0.0f);
   V sine, swing;  // 1 when the right foot strikes, with the left arm ahead
@@ -238,13 +242,15 @@ void swing_in_turn(const Tables& tables, const BodyTick<V>& tick, const State<V>
     const ArmBones& bones = tables.arm[side];
     if (bones.path.empty()) continue;
     const float left = side == kLeftSide ? 1.0f : -1.0f;
-    const V forward = left * swing,
-            out_rad = left * kOut_rad * share * (left * ahead_rad < V{} ? all<V>(1.0f) : V{});
+    const V forward = left * swing, outer = left * ahead_rad < V{} ? all<V>(1.0f) : all<V>(-1.0f),
+            out_rad = (0.5f * kOut_rad * left) * carried * (1.0f + outer),
+            reach_rad = kReach_rad * carried * outer;
     const auto turn = [&](int at, const std::array<float, 4>& axes, const Turn<V>& by) {
       const Turn<V> frame = every<V>(axes), q = read_joint<V>(bones.path[at].joint, is, poses);
       write_where(unit(frame * by * back(frame) * q), bones.path[at].joint, is, poses);
     };
-    turn(bones.shoulder, bones.chest, turn_z(out_rad) * turn_x(V(-kSwing_rad * share * forward)));
+    turn(bones.shoulder, bones.chest,
+         turn_z(out_rad) * turn_x(V(-kSwing_rad * share * forward - reach_rad)));
     if (bones.elbow == bones.shoulder + 1)  // else a joint between them turns the elbow's axis
       turn(bones.elbow, bones.hanging, turn_x(V(-share * (kBend_rad + kBends_rad * forward))));
   }
@@ -331,9 +337,9 @@ template <int kWidth, bool kPaper>
                                  const Poses& poses) noexcept {
   using V = Floats<kWidth>;
   // A turning walk raises the bounds, for its own turn is a part of the chest's and the head's: by
-  // kMoreTurning rad/s^2 times the square of the turn's rate, up to kMostTurning. The chest, which
-  // the head leads, has kChestLess of the head's bound.
-  constexpr float kMoreTurning = 110.0f * kDegree_rad, kMostTurning = 260.0f * kDegree_rad,
+  // kMoreTurning rad/s^2 times the fourth power of the turn's rate, up to kMostTurning. The chest,
+  // which the head leads, has kChestLess of the head's bound.
+  constexpr float kMoreTurning = 320.0f * kDegree_rad, kMostTurning = 300.0f * kDegree_rad,
                   kChestLess = 0.8f;
   const State<V>& state = block.state;
   Styled<V>& styled = block.styled;
@@ -378,7 +384,8 @@ template <int kWidth, bool kPaper>
   const auto acts = either(eases, either(poise.chest.ticks > V{}, poise.head.ticks > V{}));
   const bool may_ease = !kPaper && tables.has_head && any(acts);
   const V turns_rad = state.turn_rad_s.v * (dt * dt), asked = state.asked.turn_rad_s,
-          more = least(V(kMoreTurning * asked * asked), all<V>(kMostTurning)),
+          square = asked * asked,
+          more = least(V(kMoreTurning * square * square), all<V>(kMostTurning)),
           of_head = tables.most_head_s2 + more,
           of_chest = most(all<V>(tables.most_chest_s2), V(kChestLess * of_head));
   if (may_ease) {

@@ -428,6 +428,30 @@ TEST_P(Turns, InPlaceTakeThreeToFourSeconds) {
   }
 }
 
+// A foot that skims the floor looks as if it slid.
+TEST_P(Turns, InPlaceLiftTheFoot) {
+  constexpr double kLeast_m = 0.022, kMost_m = 0.05;  // people: 3 to 5 cm
+  const ThumbWalk walk = moved(model(), {{0.0, 1.0, 0.0}}, 7.0);
+  double lowest_m = 1.0, highest_m = 0.0, sum_m = 0.0;
+  int flights = 0;
+  double top_m = 0.0;  // of the lowest point of the foot in this flight
+  for (int i = 2 * kRate; i < walk.ticks(); ++i) {
+    const Trail &trail = walk.trails[i], &was = walk.trails[i - 1];
+    const int side = was.right_swings ? kRightSide : kLeftSide;
+    const double rest_m = model().leg[side].model.toe_rest_m;
+    if (was.flies)
+      top_m = std::max(top_m, std::min(was.heel_m[side].y, was.toe_m[side].y - rest_m));
+    if (!was.flies || trail.flies) continue;
+    lowest_m = std::min(lowest_m, top_m), highest_m = std::max(highest_m, top_m);
+    sum_m += top_m, ++flights, top_m = 0.0;
+  }
+  std::printf("%s: lifts the whole foot by %.0f to %.0f mm, %.0f in the mean\n", GetParam().name,
+              lowest_m * 1e3, highest_m * 1e3, sum_m / flights * 1e3);
+  EXPECT_GE(lowest_m, kLeast_m);
+  EXPECT_GE(sum_m / flights, 0.026);
+  EXPECT_LE(highest_m, kMost_m);
+}
+
 TEST_P(Turns, InPlaceEndSoftly) {
   double most_m_s2 = 0.0, jerk = 0.0, slowest_s = 0.0;
   for (const double stick : {1.0, -0.9, 0.5}) {

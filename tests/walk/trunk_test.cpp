@@ -236,35 +236,77 @@ TEST(UpperBody, ShowsAPushWithinATenthOfASecond) {
   }
 }
 
-// The heading of a segment, from where it was before the turn.
+// Seconds after which head, chest and pelvis have turned.
+std::array<double, 3> turned_after_s(const vec2& from, const vec2& to, double turned_rad) {
+  // Beside a walk that does not turn: its own sway is no turn.
+  Walker turns, straight;
+  for (Walker* walker : {&turns, &straight}) {
+    walker->push(from);
+    walker->hold(3 * kRate);
+  }
+  std::array<double, 3> at_s{};
+  for (int tick = 0; tick < 2 * kRate; ++tick) {
+    if (tick == 0) turns.push(to), straight.push(from);
+    turns.step(), straight.step();
+    const auto turned = [&](const quat& a, const quat& b) {
+      return std::abs(wrapped(heading_of(b * kForward) - heading_of(a * kForward)));
+    };
+    const std::array<double, 3> rad = {turned(straight.head(), turns.head()),
+                                       turned(straight.chest(), turns.chest()),
+                                       turned(straight.pelvis(), turns.pelvis())};
+    for (int k = 0; k < 3; ++k)
+      if (at_s[k] == 0.0 && rad[k] > turned_rad) at_s[k] = (kThumb + tick) * kDt;
+  }
+  std::printf("(%.1f, %.1f): head %.3f, chest %.3f, pelvis %.3f s\n", to.x, to.y, at_s[0], at_s[1],
+              at_s[2]);
+  return at_s;
+}
+
 TEST(UpperBody, TurnsHeadThenChestThenPelvis) {
-  constexpr double kTurned = 5.0 * kDegree;
   for (const auto& [from, to] :
        {std::array{kRest, vec2(0.9, 0.0)}, std::array{kRest, vec2(-0.9, 0.0)},
         std::array{vec2(0.0, 0.8), vec2(0.5, 0.8)}, std::array{vec2(0.0, 0.8), vec2(-0.7, 0.6)}}) {
-    // Beside a walk that does not turn: its own sway is no turn.
-    Walker turns, straight;
-    for (Walker* walker : {&turns, &straight}) {
-      walker->push(from);
-      walker->hold(3 * kRate);
-    }
-    std::array<double, 3> at_s{};
-    for (int tick = 0; tick < 2 * kRate; ++tick) {
-      if (tick == 0) turns.push(to), straight.push(from);
-      turns.step(), straight.step();
-      const auto turned = [&](const quat& a, const quat& b) {
-        return std::abs(wrapped(heading_of(b * kForward) - heading_of(a * kForward)));
-      };
-      const std::array<double, 3> rad = {turned(straight.head(), turns.head()),
-                                         turned(straight.chest(), turns.chest()),
-                                         turned(straight.pelvis(), turns.pelvis())};
-      for (int k = 0; k < 3; ++k)
-        if (at_s[k] == 0.0 && rad[k] > kTurned) at_s[k] = (kThumb + tick) * kDt;
-    }
-    std::printf("(%.1f, %.1f): head %.3f, chest %.3f, pelvis %.3f s\n", to.x, to.y, at_s[0],
-                at_s[1], at_s[2]);
+    const std::array<double, 3> at_s = turned_after_s(from, to, 5.0 * kDegree);
     EXPECT_LT(at_s[0], at_s[1]);
     EXPECT_LT(at_s[1], at_s[2]);
+  }
+}
+
+// In the middle of a turn the head is 0.3 s ahead; early in a sharp one, where its bound holds it
+// back, at least this.
+TEST(UpperBody, TurnsTheHeadWellAheadInASharpTurn) {
+  for (const double side : {1.0, -1.0}) {
+    const vec2 from(0.0, 0.9), to(0.95 * side, 0.3);
+    const std::array<double, 3> early_s = turned_after_s(from, to, 10.0 * kDegree),
+                                half_s = turned_after_s(from, to, 30.0 * kDegree);
+    EXPECT_LE(early_s[0], early_s[2] - 0.15);
+    EXPECT_LE(early_s[1], early_s[2] - 0.07);
+    EXPECT_LE(half_s[0], half_s[2] - 0.27);
+    EXPECT_LE(half_s[1], half_s[2] - 0.10);
+  }
+}
+
+// The arm on the outer side of a walk that turns is carried forward, the other one stays behind.
+TEST(UpperBody, CarriesArmsWithTheTrunkInASharpTurn) {
+  constexpr double kLeast_m = 0.13;
+  for (const double side : {1.0, -1.0}) {
+    Walker walker;
+    walker.push(vec2(0.0, 0.9));
+    walker.hold(2 * kRate);
+    walker.push(vec2(0.95 * side, 0.3));
+    walker.hold(kRate);
+    double outer_m = 0.0;
+    const int ticks = 4 * kRate;
+    for (int tick = 0; tick < ticks; ++tick) {
+      walker.step();
+      const vec3 left = walker.hand(kLeftSide) - walker.hand(kRightSide);
+      const double heading_rad =
+          walker.block.origin[0].heading_rad + static_cast<double>(walker.block.state.heading_rad);
+      const SinCos ahead = gaitpad::sin_cos(heading_rad);
+      outer_m += side * (left.x * ahead.sin + left.z * ahead.cos) / ticks;
+    }
+    std::printf("outer hand ahead by %.3f m\n", outer_m);
+    EXPECT_GT(outer_m, kLeast_m);
   }
 }
 

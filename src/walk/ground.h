@@ -352,7 +352,8 @@ V climbed_m(const Tables& tables, const Time<V>& time, const V& base_m,
   constexpr float kClimbs = 0.6f;  // share of the flight, for a usual riser or a lower one
   const V rise_m = footing.landing_y_m - footing.print_y_m;
   const auto climbs = both(time.flies, rise_m > V{});
-  const V share = time.u * most(V(rise_m * (1.0f / (kStairRise * tables.leg_m))), all<V>(1.0f)),
+  const V risers = most(V(rise_m * (1.0f / (kStairRise * tables.leg_m))), all<V>(1.0f)),
+          share = time.u * root(risers),
           even_m = footing.print_y_m + rise_m * smoother(0.0f, kClimbs, share);
   return climbs ? least(base_m, even_m) : base_m;
 }

@@ -460,11 +460,11 @@ TerrainWorst walked_by_chance(const WalkModel& model, unsigned seed, double take
 }
 
 // Of 120 such walks, legs of 0.8 and 1 and seeds 1 to 60, these were the worst. What failed in
-// them: 0.8 9, 43 and 44, 1.0 44: a foot that lifted hit the line over a riser that it had to
-// clear, or ceased to rise with the hips at once. 0.8 39, 1.0 20: hips rose over a straight rear
-// leg before a first step. 0.8 10, 1.0 13 and 48: a new plan moved a foot aside that turned. 1.0 6,
-// 17 and 25: a foot that touched a riser was raised over it, and came down hard. 0.8 34, 1.0 29:
-// feet turned by 80 degrees in a slow step. 0.8 42: a leg did not reach its foot.
+// them: 0.8 9, 21, 43, 1.0 5: a foot that lifted hit the line over a riser that it had to clear, or
+// ceased to rise with the hips at once. 0.8 39, 1.0 20: hips rose over a straight rear leg before a
+// first step. 1.0 6, 17: a foot that touched a riser was raised over it, and came down hard. 0.8
+// 34, 1.0 13, 29, 34, 48: feet turned by up to 80 degrees in a slow step. 0.8 42: a leg did not
+// reach its foot. 0.8 41: a walk went on with a foot below its new line.
 TEST(WalkTerrain, NothingFailsWhereverAThumbLeadsOnStairs) {
   constexpr double kThumb_s = 0.06, kMostJump_deg = 1.5;
   struct Walk {
@@ -472,8 +472,7 @@ TEST(WalkTerrain, NothingFailsWhereverAThumbLeadsOnStairs) {
     std::vector<unsigned> seeds;
   };
   for (const auto& [ratio, seeds] :
-       {Walk{0.8, {9, 10, 11, 34, 39, 41, 42, 43, 44, 46}},
-        Walk{1.0, {6, 13, 17, 19, 20, 25, 29, 34, 44, 46, 48, 51, 52}}}) {
+       {Walk{0.8, {9, 21, 34, 39, 41, 42, 43}}, Walk{1.0, {5, 6, 13, 17, 20, 29, 34, 48}}}) {
     const WalkModel model = model_on(ratio, ground_of(stairs_up_and_down()));
     for (const unsigned seed : seeds)
       expect_sound(walked_by_chance(model, seed, kThumb_s),
@@ -487,7 +486,6 @@ TEST(WalkTerrain, NothingFailsWhereverTheStickLeadsOnStairs) {
   struct Walk {
     double ratio;
     unsigned seed;
-    double most_jump_deg = 1.5;
   };
   // Three walks begin from a stand on two treads that bends an ankle to its limit. In two a foot
   // flies beside a riser, and its landing's direction turns while it flies. The last ones stop
@@ -495,14 +493,13 @@ TEST(WalkTerrain, NothingFailsWhereverTheStickLeadsOnStairs) {
   // 1.0 5: a first step's foot stands on a higher tread until its hips are beyond its strike. 51,
   // 15, 56, 42: a closing step goes on to a tread two higher, and its ankle is at its limit. 58 and
   // 37: the foot is below the ground of its new flight. 39: a stop in a flight whose landing stays.
-  for (const auto& [ratio, seed, most_jump_deg] :
+  for (const auto& [ratio, seed] :
        {Walk{0.8, 11}, Walk{1.0, 11}, Walk{0.8, 27}, Walk{0.8, 29}, Walk{0.8, 31}, Walk{1.0, 27},
-        Walk{1.0, 43}, Walk{0.8, 12}, Walk{0.8, 28}, Walk{1.0, 5, 1.65}, Walk{1.0, 51},
-        Walk{1.0, 15}, Walk{0.8, 56}, Walk{1.0, 42}, Walk{0.8, 58}, Walk{0.8, 37}, Walk{0.8, 39}}) {
+        Walk{1.0, 43}, Walk{0.8, 12}, Walk{0.8, 28}, Walk{1.0, 5}, Walk{1.0, 51}, Walk{1.0, 15},
+        Walk{0.8, 56}, Walk{1.0, 42}, Walk{0.8, 58}, Walk{0.8, 37}, Walk{0.8, 39}}) {
     const WalkModel model = model_on(ratio, ground_of(stairs_up_and_down()));
     expect_sound(walked_by_chance(model, seed, 0.0),
-                 "jumps, leg " + std::to_string(ratio) + " seed " + std::to_string(seed), 1.1,
-                 most_jump_deg);
+                 "jumps, leg " + std::to_string(ratio) + " seed " + std::to_string(seed), 1.1, 1.5);
   }
 }
 

@@ -202,6 +202,7 @@ template <class V, class F>
 Vec<V> with_gap(const Tables& tables, const Time<V>& time, const Vec<V>& heel_m, const V& base_m,
                 const Change<V>& change, const State<V>& state, const F& footing) noexcept {
   constexpr float kSoftFloor_m = 0.02f;  // rounds the floor's corner after a change of plan
+  constexpr float kDips = 0.2f;          // share of a flight by which the line has its whole room
   const V s = gap_share(time.u, change);
   const auto fading = both(time.flies, s < all<V>(1.0f)), changed = change.gap_begin != V{};
   V of_gap = value_left(s), of_slope = slope_left(s), falls = all<V>(1.0f);
@@ -233,11 +234,22 @@ Vec<V> with_gap(const Tables& tables, const Time<V>& time, const Vec<V>& heel_m,
       Vec<V>{state.gap_slope_m.x, V(state.gap_slope_m.y - rate_below), state.gap_slope_m.z} *
           of_slope;
   V high_m = most(p.y, base_m);
+  // Over a riser the line is above the ground, and a foot that lifts or whose plan changes may dip
+  // below it by as much as it is rounded.
+  V over_riser{};
+  if constexpr (kIsUneven<F>) over_riser = footing.crosses;
+  const auto dips = over_riser != V{};
+  if (any(dips)) {
+    const V dip_m =
+        most(V(kSoftFloor_m * tables.size * smoother(0.0f, kDips, time.u)), all<V>(1e-6f));
+    high_m = dips ? V(base_m + soft_positive(V(p.y - base_m + dip_m), dip_m) - dip_m) : high_m;
+  }
   if (any(changed)) {
-    const V soft_m = kSoftFloor_m * tables.size * smoother(0.0f, 0.3f, s) *
-                     (1.0f - smoother(0.7f, 1.0f, time.u));
-    high_m =
-        changed ? V(base_m + soft_positive(V(p.y - base_m), most(soft_m, all<V>(1e-6f)))) : high_m;
+    const V ends_m = kSoftFloor_m * tables.size * (1.0f - smoother(0.7f, 1.0f, time.u)),
+            comes = smoother(0.0f, 0.3f, s),
+            soft_m = most(V(dips ? ends_m : V(ends_m * comes)), all<V>(1e-6f)),
+            dip_m = dips ? V(soft_m * (1.0f - comes)) : V{};
+    high_m = changed ? V(base_m + soft_positive(V(p.y - base_m + dip_m), soft_m) - dip_m) : high_m;
   }
   p.y = high_m;
   if constexpr (kIsUneven<F>)
@@ -480,7 +492,8 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
       feet.flat_toe_m = tilt * sole.line_m;
       // The foot rises on its toe as far as the hips have risen over it.
       const V rises_m = rise_with_hips<V>(tables, right, stride.leg_rad[1][3], V{}, V{}, footing),
-              begun = starts ? smoother(0.0f, kFirstRise, time.u) : one;
+              begun = smoother(
+                  V(time.u * (starts ? all<V>(1.0f / kFirstRise) : all<V>(1.0f / kStandRises))));
       planted = time.flies ? pitch_to_rise<V>(tables, right, V(rises_m * begun), planted) : planted;
     }
     foot.edge = edge_of(sole, table.twist_rad, table.roll_rad);
@@ -520,7 +533,8 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
     follow_room(tables, footing);
     const Vec<V> room_m = room_at(time.u, state, footing);
     const V base_m = time.flies ? V(flight.base_m + room_m.y) : footing.print_y_m;
-    const V rise_m = rise_in_flight<V>(tables, time, stride.leg_rad[0][3], base_m, footing),
+    const V rise_m = rise_in_flight<V>(tables, time, stride.leg_rad[0][3],
+                                       climbed_m(tables, time, base_m, footing), footing),
             goes_on_m = 2.0f * footing.last_rise_m[0] - footing.last_rise_m[1],
             left = edge_left(time.u, change);
     const auto begins = both(starts, state.tick == all<V>(1.0f)),
@@ -533,7 +547,9 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
     clear_m = base_m;
     flight.base_m = base_m + gap_left(time.u, footing.gap_line_m, change) +
                     gap_left(time.u, footing.gap_room_m, change);
-    flight.heel_m.y = change.gap_begin != V{} ? flight.heel_m.y : most(flight.heel_m.y, base_m);
+    flight.heel_m.y = either(change.gap_begin != V{}, footing.crosses != V{})
+                          ? flight.heel_m.y
+                          : most(flight.heel_m.y, base_m);
     planned = time.flies ? planned
                          : pitch_to_rise<V>(tables, time.right, footing.rise_m, most(planned, V{}));
   }

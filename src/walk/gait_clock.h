@@ -146,7 +146,8 @@ void smooth_asked(const Tables& tables, const Change<V>& change, const V& left,
   const V cycle_s = asked.time_s[0] + asked.time_s[1];
   follow(walks ? V(0.5f * cycle_s) : state.step_time_s.x, change.starting != V{}, tables.first_step,
          tables.step, state.step_time_s);
-  const V turn_rad_s = walks ? asked.turn_rad_s : V{};
+  // Where the ground makes steps slower, turns are as much slower: a step turns by as much.
+  const V turn_rad_s = walks ? V(asked.turn_rad_s / change.slowness) : V{};
   follow_turn(turn_rad_s, kStraight_rad_s, tables.turn_goal, state.turn_goal_rad_s);
   follow_turn(state.turn_goal_rad_s.x, kStraight_rad_s, tables.turn, state.turn_rad_s);
   follow_turn(V(kChestAhead_s * turn_rad_s), kStill_rad, tables.chest, state.chest_ahead_rad);

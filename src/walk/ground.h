@@ -173,14 +173,16 @@ V least_flight_s(const Tables& tables, const Footing<V>& footing) noexcept {
 
 // Lengthens the flight of a step that turns out, in its roll, to lead to another tread.
 template <class V>
-void take_time_to_tread(const Tables& tables, const Time<V>& time, const Change<V>& change,
+void take_time_to_tread(const Tables& tables, const Time<V>& time, Change<V>& change,
                         const Footing<V>& footing, State<V>& state) noexcept {
-  const auto walks = both(both(change.stands == V{}, change.starting == V{}),
-                          both(change.closing == V{}, change.stops == V{})),
+  const auto closes = change.closing != V{},
+             walks = both(both(change.stands == V{}, change.starting == V{}),
+                          either(closes, change.stops == V{})),
              may = both(no(time.flies), walks);
   const V least_ticks = floored(V(least_flight_s(tables, footing) * (1.0f / tables.tick_s))),
           more = within(V(least_ticks - state.flight_ticks), 0.0f, kLonger_ticks);
   state.flight_ticks = state.flight_ticks + (may ? more : V{});
+  change.closing_ticks = change.closing_ticks + (both(may, closes) ? more : V{});
 }
 
 // --- The ground that the hips go over ------------------------------------------------------------
@@ -257,7 +259,7 @@ void move_hips_ground(const Tables& tables, const Time<V>& time, const Landing<V
           level_m = anew ? (closes ? V{} : V(-bent_m)) : V(-most(footing.yield_m, bent_m));
   const auto yields = both(footing.yield_m > bent_m, hips.x > level_m);
   const V step_ticks = state.roll_ticks + state.flight_ticks;
-  const auto takes_all = either(closes, time.back);
+  const auto takes_all = either(either(closes, change.starting != V{}), time.back);
   const V settles = takes_all ? step_ticks : V(kRiseLasts * step_ticks),
           later = most(settles, V(begun + kSinkEnd * state.roll_ticks));
   set(floored(V(both(strikes, yields) ? V(kSinkEnd * state.roll_ticks)
@@ -276,8 +278,8 @@ void move_hips_ground(const Tables& tables, const Time<V>& time, const Landing<V
   set(level_m, footing.level_m);
   set(V(hips.x - level_m), off.x), set(hips.v, off.v), set(hips.a, off.a);
   set(V{}, footing.drop_m), set(V{}, footing.yield_m), set(V{}, footing.early_m);
-  // Upwards, the rear leg of a last step or of a walk backward would be too short, for it does not
-  // roll far over its toe: hips that rest wait for its flight.
+  // Upwards, the rear leg of a first or last step or of a walk backward would be too short, for it
+  // does not roll far over its toe: hips that rest wait for its flight.
   const auto still = both(off.x < V{}, both(off.v == V{}, off.a == V{})),
              waits = either(stands, both(no(time.flies), both(takes_all, still)));
   Off<V> faded = off;
@@ -303,7 +305,8 @@ void move_hips_ground(const Tables& tables, const Time<V>& time, const Landing<V
 
 // --- Feet that rise with the hips ----------------------------------------------------------------
 
-inline constexpr float kFirstRise = 0.4f;  // share of the first flight after which this fully acts
+inline constexpr float kFirstRise = 0.4f;   // share of the first flight after which this fully acts
+inline constexpr float kStandRises = 0.2f;  // the same of other flights, for the standing foot
 // The steepest pitch of a foot on its toe, as a sine, and the width over which it is approached.
 inline constexpr float kMostUpright = 0.99f, kSoftUpright = 0.12f;
 
@@ -339,6 +342,20 @@ V rise_with_hips(const Tables& tables, const Mask<V>& right, const V& knee_rad, 
           most_m = toe_length_m<V>(tables, right) - ankle_height_m<V>(tables, right);
   const V bounded_m = soft_least(rise_m, V(kMostOnToe * most_m), V(kSoftOnToe * most_m));
   return higher_m <= -2.0f * hover_m ? V{} : bounded_m;
+}
+
+// The height from which a flying foot's rise counts, over a line at `base_m`. A line that leads up
+// over a riser is steep; a foot that stopped rising as fast would be thrown up.
+template <class V>
+V climbed_m(const Tables& tables, const Time<V>& time, const V& base_m,
+            const Footing<V>& footing) noexcept {
+  constexpr float kClimbs = 0.6f;  // share of the flight, for a usual riser or a lower one
+  const V rise_m = footing.landing_y_m - footing.print_y_m;
+  const auto climbs = both(time.flies, rise_m > V{});
+  const V risers = most(V(rise_m * (1.0f / (kStairRise * tables.leg_m))), all<V>(1.0f)),
+          share = time.u * root(risers),
+          even_m = footing.print_y_m + rise_m * smoother(0.0f, kClimbs, share);
+  return climbs ? least(base_m, even_m) : base_m;
 }
 
 // The same for the swinging foot.

@@ -560,21 +560,52 @@ PlannedFlight planned_flight(const Tables& tables, const Floor& floor, const Fra
 }
 
 // The move along z with which no part of the sole is inside a riser that leads up from
-// `height_m` at either end of `piece`.
+// `height_m` at either end of `piece`, or at one of them.
+struct Sides {
+  bool behind = true, ahead = true;
+};
 double way_back(const Floor& floor, const SolePoints& sole, const Stretch& piece, double height_m,
-                double room, double size) noexcept {
+                double room, double size, const Sides& sides = {}) noexcept {
   double shift = 0.0;
   for (const vec3& p : sole) {
     const bool ahead_up =
-        std::isfinite(piece.to_m) &&
+        sides.ahead && std::isfinite(piece.to_m) &&
         ground_at(floor, p.x, piece.to_m + kRiser_m).height_m > height_m + kRiser_m;
     const bool behind_up =
-        std::isfinite(piece.from_m) &&
+        sides.behind && std::isfinite(piece.from_m) &&
         ground_at(floor, p.x, piece.from_m - kRiser_m).height_m > height_m + kRiser_m;
     if (ahead_up) shift = std::min(shift, piece.to_m - room - p.z);
     if (behind_up) shift = std::max(shift, piece.from_m + room - p.z);
   }
   return std::clamp(shift, -kMostShift_m * size, kMostShift_m * size);
+}
+
+// Moves a flight so far along z that its sole keeps clear of the riser behind it where it lifts
+// off, and of the one ahead of its landing: over a riser that it only touches it would be raised as
+// high as over one that it crosses. Returns the move's spline.
+Spline keep_clear(const Floor& floor, double size, PlannedFlight& flight) noexcept {
+  constexpr double kTouches_m = 0.06;  // at the reference leg: a sole that is farther in crosses
+  const bool forwards = flight.left.front() >= 0.0;
+  Wanted away{};
+  bool touches = false;
+  for (int i = 1; i < kProbes; ++i) {
+    const bool early = 2 * i < kProbes;
+    const double move = early ? way_back(floor, flight.sole[i], flight.begin, flight.begin_m,
+                                         flight.begin_room, size, {forwards, !forwards})
+                              : way_back(floor, flight.sole[i], flight.end, flight.end_m,
+                                         kRoomBeside_m * size, size, {!forwards, forwards});
+    if (std::abs(move) < kTouches_m * size) away[i] = move;
+    touches |= std::abs(away[i]) > kLeastWanted_m * size;
+  }
+  if (!touches) return {};
+  const Spline moves = wide_envelope(away, kMostShift_m * size);
+  for (int i = 0; i <= kProbes; ++i) {
+    const double moved = spline_of(moves, 0.0, static_cast<double>(i) / kProbes);
+    for (vec3& p : flight.sole[i]) p.z += moved;
+    for (vec3& p : flight.base[i]) p.z += moved;
+    flight.left[i] -= moved;
+  }
+  return moves;
 }
 
 // The height by which the ground line has to rise so that the sole, moved along z by `shift`,
@@ -646,9 +677,43 @@ void make_up_for_lacks(const Wanted& beside, double size, Spline& shift) noexcep
   }
 }
 
+// Lowers the inner knots until the spline is a taut line over the wanted heights, less some of
+// their room, of which it keeps a share: the envelope alone holds each height for two knots longer
+// than needed, so a foot would be thrown up and come down hard. A spline that is too low already is
+// not lowered.
+void draw_taut(const Wanted& wanted, double room_m, double kept, Spline& knots) noexcept {
+  constexpr int kTautRounds = 24;
+  Wanted slack;
+  std::array<Wanted, kRoomKnots> weight;  // of each knot at each probe
+  for (int i = 0; i <= kProbes; ++i) {
+    const double u = static_cast<double>(i) / kProbes;
+    const double spare = (1.0 - kept) * room_m * in_flight(u);
+    slack[i] = std::max(0.0, spline_of(knots, wanted.back(), u) - wanted[i] + spare);
+    for (int k = 0; k < kRoomKnots; ++k) {
+      Spline alone{};
+      alone[k] = 1.0;
+      weight[k][i] = spline_of(alone, 0.0, u);
+    }
+  }
+  for (int round = 0; round < kTautRounds; ++round) {
+    for (int k = kKnotsOfFlight - 3; k > 0; --k) {
+      double fall = knots[k] - 0.5 * (knots[k - 1] + knots[k + 1]);
+      for (int i = 0; i <= kProbes; ++i) {
+        if (weight[k][i] > kLeast) fall = std::min(fall, slack[i] / weight[k][i]);
+      }
+      knots[k] -= fall;
+      for (int i = 0; i <= kProbes; ++i) slack[i] -= fall * weight[k][i];
+    }
+  }
+}
+
 struct RoomPlan {
   Spline raise_m{}, shift_m{};
 };
+
+// Share of its room above the ground that a taut spline keeps. Down, the foot sinks early; up, it
+// is above the line where its plan has changed.
+constexpr double kTautRoomDown = 0.5, kTautRoomUp = 0.75;
 
 // The plan of a flight that stays level or goes up somewhere.
 RoomPlan plan_over(const Tables& tables, const Floor& floor, const PlannedFlight& flight,
@@ -662,6 +727,7 @@ RoomPlan plan_over(const Tables& tables, const Floor& floor, const PlannedFlight
   Ends ends;
   for (int tries = 0; tries < kTries; ++tries) {
     room.raise_m = envelope(above, ends);
+    if (crosses) draw_taut(above, kRoomAbove_m * size, kTautRoomUp, room.raise_m);
     for (int i = 1; i < kProbes; ++i) {
       beside[i] = 0.0;
       const double u = static_cast<double>(i) / kProbes;
@@ -700,36 +766,6 @@ double way_on(const Tables& tables, const Floor& floor, const PlannedFlight& fli
     }
   }
   return on;
-}
-
-// Lowers the inner knots until the spline is a taut line over the wanted heights, less some of
-// their room: the envelope alone holds each height for two knots longer than needed. A spline that
-// is too low already is not lowered.
-void draw_taut(const Wanted& wanted, double room_m, Spline& knots) noexcept {
-  constexpr double kTautRoom = 0.5;  // share of the room that the spline keeps
-  constexpr int kTautRounds = 24;
-  Wanted slack;
-  std::array<Wanted, kRoomKnots> weight;  // of each knot at each probe
-  for (int i = 0; i <= kProbes; ++i) {
-    const double u = static_cast<double>(i) / kProbes;
-    const double spare = (1.0 - kTautRoom) * room_m * in_flight(u);
-    slack[i] = std::max(0.0, spline_of(knots, wanted.back(), u) - wanted[i] + spare);
-    for (int k = 0; k < kRoomKnots; ++k) {
-      Spline alone{};
-      alone[k] = 1.0;
-      weight[k][i] = spline_of(alone, 0.0, u);
-    }
-  }
-  for (int round = 0; round < kTautRounds; ++round) {
-    for (int k = kKnotsOfFlight - 3; k > 0; --k) {
-      double fall = knots[k] - 0.5 * (knots[k - 1] + knots[k + 1]);
-      for (int i = 0; i <= kProbes; ++i) {
-        if (weight[k][i] > kLeast) fall = std::min(fall, slack[i] / weight[k][i]);
-      }
-      knots[k] -= fall;
-      for (int i = 0; i <= kProbes; ++i) slack[i] -= fall * weight[k][i];
-    }
-  }
 }
 
 // True for a flight over risers that only lead down.
@@ -773,7 +809,7 @@ RoomPlan plan_down(const Tables& tables, const Floor& floor, const PlannedFlight
                           flight.left[k * kProbes / kKnotsOfFlight];
   const Wanted above = wanted_raise(tables, floor, flight, true, room.shift_m);
   room.raise_m = envelope(above, Ends{});
-  draw_taut(above, kRoomAbove_m * tables.size, room.raise_m);
+  draw_taut(above, kRoomAbove_m * tables.size, kTautRoomDown, room.raise_m);
   reach_on(tables, floor, flight, over, room.raise_m, room.shift_m);
   return room;
 }
@@ -809,13 +845,14 @@ void plan_room(const Tables& tables, bool begins, Block<1>& block) noexcept {
   const Frame frame(block.origin[0]);
   const Floor floor{*tables.terrain, block.placed[0]};
   footing.room_for_m = {state.landing_x_m, footing.landing_y_m, state.landing_z_m};
-  const PlannedFlight flight = planned_flight(tables, floor, frame, block);
+  PlannedFlight flight = planned_flight(tables, floor, frame, block);
+  const Spline clear = flight.stays() ? Spline{} : keep_clear(floor, tables.size, flight);
   const RoomPlan room = leads_down(tables, floor, flight)
                             ? plan_down(tables, floor, flight)
                             : plan_over(tables, floor, flight, footing.crosses != 0.0f);
   for (int k = 0; k < kRoomKnots; ++k) {
     footing.raise_m[k] = static_cast<float>(room.raise_m[k]);
-    footing.shift_m[k] = static_cast<float>(room.shift_m[k]);
+    footing.shift_m[k] = static_cast<float>(room.shift_m[k] + clear[k]);
     if (begins) footing.raise[k] = {footing.raise_m[k], 0.0f};
     if (begins) footing.shift[k] = {footing.shift_m[k], 0.0f};
   }

@@ -258,6 +258,8 @@ void change_step(const Tables& tables, bool moves, Block<1>& block, F& footing,
   state.swing_pitch_rad = state.swing_pitch_rate = 0.0f;
   change.gap_rad = change.gap_twist_rad = change.gap_roll_rad = 0.0f;
   change.gap_loose_rad = was.loose_rad;
+  // The foot keeps apart from the standing one by its direction.
+  change.gap_rad = was.yaw_rad - flown(tables, change, state, footing).yaw_rad;
   const auto fit_gap = [&](const Flown& is) {
     state.gap_m = was.heel_m[0] - is.heel_m[0];
     state.gap_slope_m = ((was.heel_m[1] - is.heel_m[1]) - state.gap_m) * ticks;
@@ -293,7 +295,6 @@ void change_step(const Tables& tables, bool moves, Block<1>& block, F& footing,
   if (state.gap_m.y < 0.0f)
     state.gap_slope_m.y -=
         state.gap_m.y * (is.over_m[1] - is.over_m[0]) / change.gap_high_m * ticks;
-  change.gap_rad = was.yaw_rad - is.yaw_rad;
   change.gap_twist_rad = was.twist_rad - is.twist_rad;
   change.gap_roll_rad = was.roll_rad - is.roll_rad;
   state.swing_pitch_rad = was.pitch_rad[0] - is.pitch_rad[0];

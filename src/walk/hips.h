@@ -19,10 +19,14 @@ Path<V> path_to(const Landing<V>& landing, const FootprintsIn<V>& prints, const 
 // True if there is no difference in any walk, by its bits: a zero with a sign is one.
 template <class V>
 bool is_nothing(const Off<V>& off) noexcept {
-  std::array<std::uint32_t, sizeof off / sizeof(std::uint32_t)> parts;
-  std::memcpy(parts.data(), &off, sizeof off);
-  std::uint32_t sum = 0;
-  for (const std::uint32_t part : parts) sum |= part;
+  std::array<std::uint64_t, sizeof(V) / 4> parts{};  // at least as long as a number
+  for (const V* number : {&off.x, &off.v, &off.a}) {
+    std::array<std::uint64_t, sizeof(V) / 4> of{};
+    std::memcpy(of.data(), number, sizeof(V));
+    for (std::size_t i = 0; i < (sizeof(V) + 7) / 8; ++i) parts[i] |= of[i];
+  }
+  std::uint64_t sum = 0;
+  for (const std::uint64_t part : parts) sum |= part;
   return sum == 0;
 }
 // Moves a difference by one tick along the quintic that brings it, its rate and its acceleration to

@@ -61,8 +61,8 @@ struct Roughness {
   int stands = 0;
 };
 
-// Bounds as measured of all runs; asked are 1.2 degrees and soles that are never 4 mm deep. A turn
-// in a flight down stairs leads a heel over an edge: twice in an hour (27 and 40 mm).
+// Bounds as measured of all runs, of which one up stairs has 6.2 degrees; asked are 1.2 degrees and
+// soles that are never 4 mm deep.
 struct Country {
   const char* name;
   std::vector<SectionShape> sections;
@@ -146,9 +146,9 @@ INSTANTIATE_TEST_SUITE_P(
         Country{"level", {}, 0.0, 0.004, 3.0},
         Country{"slope_up", {SlopeSection{90.0, 0.15, 0.5}}, 0.0, 0.004, 2.2},
         Country{"slope_down", {SlopeSection{90.0, -0.15, 0.5}}, 0.0, 0.004, 2.2},
-        Country{"stairs_up", {FlatSection{0.5}, StairsSection{0.17, 0.28, 60}}, 0.0, 0.03, 4.5},
-        Country{"stairs_down", {FlatSection{0.5}, StairsSection{-0.17, 0.28, 60}}, 0.0, 0.045, 3.8},
-        Country{"terraces", kTerraces, 0.0, 0.03, 3.5}, Country{"waves", {}, 0.12, 0.004, 3.0}),
+        Country{"stairs_up", {FlatSection{0.5}, StairsSection{0.17, 0.28, 60}}, 0.0, 0.004, 4.5},
+        Country{"stairs_down", {FlatSection{0.5}, StairsSection{-0.17, 0.28, 60}}, 0.0, 0.004, 2.5},
+        Country{"terraces", kTerraces, 0.0, 0.004, 2.8}, Country{"waves", {}, 0.12, 0.004, 3.0}),
     [](const auto& info) { return std::string(info.param.name); });
 
 // Cliffs, and a ground that jumps under a walk: no foot can follow them, but nothing grows without

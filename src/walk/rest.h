@@ -448,6 +448,9 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
     if (!flies) return;
     if (along(x.a, z.a) > 0.0f) x.a = z.a = 0.0f;
   }
+  // Hips that are faster than the mean swing back by themselves; a plan must not lead them on.
+  const bool leads_on = along(x.v, z.v) > tick_s * mean_m_s && along(x.a, z.a) > 0.0f;
+  if (!on_spot && change.starting == 0.0f && leads_on) x.a = z.a = 0.0f;
   const float speed = along(x.v, z.v) / tick_s, bend = along(x.a, z.a) / (tick_s * tick_s),
               from = sign * tables.rest_lead_m - along(x.x, z.x), need = kNeed * speed * speed,
               left_s = time.to_strike * tick_s,

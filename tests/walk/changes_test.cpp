@@ -45,7 +45,7 @@ constexpr Bounds kOfCaptures{.worst_m_s2 = 7.0,
                              .reversal_m_s2 = 7.0,
                              .resumed = 2.55,
                              .paced = 2.5,
-                             .faster = 1.35,
+                             .faster = 1.31,
                              .feet_m = 0.054,
                              .turning_deg = 1.55,
                              .spot_m_s2 = 7.5,
@@ -179,6 +179,7 @@ TEST_P(Starts, AnswerAtOnceAndAreAWalkAfterTwoSteps) {
         << stick;
     EXPECT_LE(start.worst.back_m, 0.01) << stick;
     EXPECT_LE(start.worst.lower_m, 0.01) << stick;
+    EXPECT_LE(start.worst.faster, 1.05) << stick;
     EXPECT_LE(start.worst.jerk_deg, std::max(bounds().start_deg, 1.2 * walks.steady.jerk_deg))
         << stick;
   }

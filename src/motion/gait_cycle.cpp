@@ -245,6 +245,7 @@ Result<Build> built(const Motion& motion, const StrideWindow& window,
   b.cycle.name = motion.name;
   b.cycle.metres_per_unit = motion.metres_per_unit;
   b.cycle.pace = motion.pace;
+  b.cycle.captured = true;
   b.cycle.duration_s = periodic.duration_s;
   b.cycle.stride_m = periodic.stride_m;
   b.cycle.first_frame = window.start;

@@ -346,6 +346,7 @@ void take_over_events(const GaitCycle& source, double ratio, GaitCycle& out) {
   out.metres_per_unit = source.metres_per_unit;
   out.duration_s = source.duration_s * std::sqrt(std::sqrt(ratio));  // scaled as all step times are
   out.pace = source.pace;
+  out.captured = source.captured;
   out.stride_m = source.stride_m * ratio;
   out.first_frame = source.first_frame;
   out.frames = source.frames;

@@ -29,6 +29,16 @@ constexpr double kExtrapolation = 0.5;
 // Backward strides: least knee angle (rad), factor on smoothness, weights of the data.
 constexpr double kLeastKneeBack = 8.0 * kDegree, kSmootherBack = 10.0, kHipBack = 0.3,
                  kAnkleBack = 0.17;
+// Legs that follow hips of the data's speed change more evenly at this factor on smoothness: with
+// 1, the second differences of quick walks grow by a tenth.
+constexpr double kSmootherLegs = 1.5;
+// Factor on the pelvis' smoothness there: its speed already costs. With 1, a knee follows the hips
+// in a wave of a degree where a capture's feet slide.
+constexpr double kLooserPelvis = 0.3;
+// Share of the cost of the hips' speed, and of the looser pelvis, in strides longer than the
+// data's, which stretch the legs: with 0.3, quicker paces jerk a straight knee by 1.504 degrees.
+constexpr double kLongSpeed = 0.2;
+constexpr double kSameRatio = 1e-9;  // difference of two ratios that count as equal
 constexpr double kLeastStandingKnee = 5.0 * kDegree;  // least bend
 // Share of the data's knee and ankle angles in steps of length 0: the foot still has to leave the
 // floor.
@@ -194,6 +204,16 @@ struct Builder {
       p.time.push_back(stages.time_at(double(i) / kCycleSamples));
     }
     for (int side : {0, 1}) p.heel_m[side] = footprint(side, ratio);
+    // A cycle that is run back is not marked as captured: the data's speed would cost its knees 2
+    // degrees.
+    if (cycle.captured) {
+      // Shorter steps have less speed to keep, steps on the spot none.
+      const double share = ratio > 1.0 + kSameRatio ? kLongSpeed : ratio;
+      p.own_stride_m = cycle.stride_m;
+      p.leg_smoothness = mix(1.0, kSmootherLegs, std::min(1.0, ratio));
+      p.pelvis_smoothness = mix(1.0, kLooserPelvis, share);
+      p.speed_weight = share;
+    }
     return p;
   }
 
@@ -350,9 +370,9 @@ std::vector<double> solver_input(const GaitCycle& cycle) {
     for (const vec3& v : {leg.hip_m, leg.heel_m, leg.toe_m}) add(v);
     numbers.insert(numbers.end(), {leg.thigh_m, leg.shank_m, leg.toe_rest_m});
   }
-  numbers.insert(numbers.end(),
-                 {cycle.stride_m, cycle.step_m[0], cycle.step_m[1], cycle.strike[0],
-                  cycle.strike[1], cycle.toe_off[0], cycle.toe_off[1], cycle.duration_s});
+  numbers.insert(numbers.end(), {cycle.stride_m, cycle.step_m[0], cycle.step_m[1], cycle.strike[0],
+                                 cycle.strike[1], cycle.toe_off[0], cycle.toe_off[1],
+                                 cycle.duration_s, cycle.captured ? 1.0 : 0.0});
   for (const CycleSample& sample : cycle.samples) {
     add(sample.pelvis_m);
     const quat& q = sample.pelvis;

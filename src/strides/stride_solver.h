@@ -37,6 +37,12 @@ struct StrideProblem {
   // Factors on the cost of changing the angles.
   std::array<LegAngles, 2> leg_weight{{{1, 1, 1, 1, 1, 1, 1}, {1, 1, 1, 1, 1, 1, 1}}};
   double smoothness = 1.0;  // factor on the cost of uneven changes
+  // Length of the data's stride: a change of the pelvis' forward speed costs by its share of the
+  // data's mean speed. 0: it costs nothing.
+  double own_stride_m = 0.0;
+  double speed_weight = 1.0;       // factor on that cost
+  double leg_smoothness = 1.0;     // factor on the cost of uneven changes of the angles alone
+  double pelvis_smoothness = 1.0;  // and of the pelvis' place alone
   double least_knee_rad = 2.0 * kDegree;
   double soft_toe = 3e3;  // cost of a toe's jerky start, per square metre of second differences
   double most_heave_m_s2 = 7.0;  // soft limit on the hips' vertical acceleration

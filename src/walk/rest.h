@@ -449,6 +449,9 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
     if (!flies) return;
     if (along(x.a, z.a) > 0.0f) x.a = z.a = 0.0f;
   }
+  // Hips that are faster than the mean swing back by themselves; a plan must not lead them on.
+  const bool leads_on = along(x.v, z.v) > tick_s * mean_m_s && along(x.a, z.a) > 0.0f;
+  if (!on_spot && change.starting == 0.0f && leads_on) x.a = z.a = 0.0f;
   const float speed = along(x.v, z.v) / tick_s, bend = along(x.a, z.a) / (tick_s * tick_s),
               from = sign * tables.rest_lead_m - along(x.x, z.x), need = kNeed * speed * speed,
               left_s = time.to_strike * tick_s,
@@ -610,6 +613,11 @@ void walk_on(const Tables& tables, bool may_move, Block<1>& block, F& footing) n
                                  state.roll_ticks + least_left);
       const float flight = ticks_of(own.flight_s, tick_s);
       state.flight_ticks = most(state.tick + floored(kFlightLeft * flight), flight);
+      // The phase's rate at the end of a flight is as in begin_flight(), not that of the last step.
+      const Stages<float> next = stages_of(tables, change, state, !right);
+      state.end_rate = 0.5f * (own.flight / state.flight_ticks +
+                               (flies ? next.roll / ticks_of(next.roll_s, tick_s)
+                                      : own.roll / state.roll_ticks));
     }
     const float left_s = time_of(tables, state).to_strike * tick_s,
                 goes = 0.5f * left_s / (own.roll_s + own.flight_s),

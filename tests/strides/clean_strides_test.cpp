@@ -8,11 +8,13 @@
 #include <functional>
 #include <limits>
 
+#include "gaitpad/motion_file.h"
 #include "gaitpad/stride_family.h"
 #include "motion/leg_pose.h"
 #include "strides/solver_input.h"
 #include "tests/clean_cycle.h"
 #include "tests/motion/made_walk.h"
+#include "tests/shared_data.h"
 
 namespace gaitpad {
 namespace {
@@ -238,6 +240,78 @@ TEST(StrideFamily, KeepsTheBuiltInWalksJoints) {
     EXPECT_LT(change(side, kHipX, best_shift), 3.0 * kDegree);
     EXPECT_LT(change(side, kKneeX, best_shift), 3.0 * kDegree);
     EXPECT_LT(change(side, kAnkleX, best_shift), 3.5 * kDegree);
+  }
+}
+
+// The pelvis' forward speed between neighbouring samples, over its mean; z is where it is in the
+// travel frame.
+using Speeds = std::array<double, kCycleSamples>;
+Speeds speeds_of(double stride_m, const std::function<double(int)>& z_m) {
+  Speeds speeds;
+  for (int i = 0; i < kCycleSamples; ++i)
+    speeds[i] = 1.0 + kCycleSamples * (z_m((i + 1) % kCycleSamples) - z_m(i)) / stride_m;
+  return speeds;
+}
+
+// The sample of a step, the mean of both, at which the pelvis is fastest.
+int fastest(const Speeds& speeds) {
+  const auto both = [&speeds](int i) { return speeds[i] + speeds[i + kCycleSamples / 2]; };
+  int most = 0;
+  for (int i = 0; i < kCycleSamples / 2; ++i) {
+    if (both(i) > both(most)) most = i;
+  }
+  return most;
+}
+
+// How far the hips' speed within the data's own stride is from the data's: RMS, as a share of the
+// mean speed, and of the fastest moment of a step, as a share of the step.
+struct SpeedOff {
+  double rms, fastest;
+};
+SpeedOff speed_off(const GaitCycle& cycle) {
+  const StrideTable own = cycle.strides->table[static_cast<std::size_t>(1.0 / kRatioStep + 0.5)];
+  EXPECT_NEAR(own.stride_m, cycle.stride_m, 1e-12);
+  const Speeds data = speeds_of(cycle.stride_m,
+                                [&cycle](int i) { return cycle.samples[i].pelvis_m.z; }),
+               walk =
+                   speeds_of(own.stride_m, [&own](int i) { return sample_of(own, i).pelvis_m.z; });
+  double squares = 0.0;
+  for (int i = 0; i < kCycleSamples; ++i) squares += std::pow(walk[i] - data[i], 2);
+  constexpr int kStep = kCycleSamples / 2;
+  const int apart = std::abs(fastest(walk) - fastest(data));
+  return {std::sqrt(squares / kCycleSamples), double(std::min(apart, kStep - apart)) / kStep};
+}
+
+// The built-in curves as if they were captured: their hips' speed is kept, too.
+TEST(StrideFamily, KeepsTheHipsSpeedWithinAStepWhereTheDataAreCaptured) {
+  GaitCycle captured = procedural_gait();
+  captured.captured = true;
+  const SpeedOff kept = speed_off(clean_cycle(captured)),
+                 made = speed_off(clean_cycle(procedural_gait()));
+  EXPECT_LT(kept.rms, 0.7 * made.rms);
+  EXPECT_LE(kept.fastest, 0.1);
+  EXPECT_NE(solver_input(captured), solver_input(procedural_gait()));  // not the other's cache file
+}
+
+TEST(StrideFamily, TakesFilesAsCapturedAndTheBuiltInWalkNotOnAnySkeleton) {
+  const Motion file = made_walk(MadeWalk());
+  const GaitCycle captured = value_of(gait_cycle(file)), built_in = procedural_gait();
+  EXPECT_TRUE(captured.captured);
+  EXPECT_FALSE(built_in.captured);
+  EXPECT_TRUE(value_of(cycle_on_skeleton(captured, procedural_motion())).captured);
+  EXPECT_FALSE(value_of(cycle_on_skeleton(built_in, file)).captured);
+}
+
+TEST(StrideFamily, FollowsCapturedHipsSpeedsWithinAStep) {
+  GAITPAD_NEEDS(kCapturedMotions);
+  for (const char* file : {"cmu_m21_walk.bvh", "bvhtoolbox_walk01.bvh", "cmu_07_01.amc"}) {
+    SCOPED_TRACE(file);
+    GaitCycle cycle = value_of(gait_cycle(value_of(load_motion(kCapturedMotions + file))));
+    const SpeedOff kept = speed_off(clean_cycle(cycle));
+    cycle.captured = false;
+    const SpeedOff lost = speed_off(clean_cycle(cycle));
+    EXPECT_LT(kept.rms, 0.75 * lost.rms);
+    EXPECT_LE(kept.fastest, lost.fastest);
   }
 }
 

@@ -97,6 +97,9 @@ struct GaitCycle {
   std::vector<quat> standing_local;  // local rotations of the standing pose, one for each joint
 
   Pace pace = Pace::own;  // the motion's pace
+  // True if the samples are data, as gait_cycle() sets it: clean strides keep the hips' forward
+  // speed within a step as far as the legs allow. The built-in walk's comes from a formula.
+  bool captured = false;
 
   // The tables that a walk reads (gaitpad/stride_family.h); with_clean_strides() fills them.
   std::shared_ptr<const StrideFamily> strides;

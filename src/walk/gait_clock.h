@@ -117,7 +117,7 @@ inline constexpr float kLeastCycle_s =
 inline constexpr float kTurned_rad = 5.9604645e-8f, kFrameTurned_rad = 8.0f * kTurned_rad;
 
 inline constexpr float kStill_rad = 1e-7f;    // a turn too small to see
-inline constexpr float kFirstStep = 0.88f;    // of the length asked for: a first step is shorter
+inline constexpr float kFirstStep = 0.9f;     // of the length asked for: a first step is shorter
 inline constexpr float kLonger_ticks = 2.0f;  // most by which a tick lengthens a planned flight
 
 // `left`: share of the lengths asked for that uneven ground leaves.
@@ -304,25 +304,15 @@ Time<V> advance_clock(const Tables& tables, const V& least_s, const Change<V>& c
   return time_of(tables, state);
 }
 
-// The phase's rate at the coming strike: the mean of both stages' rates, so that it has no kink. A
-// first flight may be shorter than those of its walk; at its rate the hips would come to the strike
-// faster than they go on.
-template <class V>
-V strike_rate_of(const Tables& tables, const Time<V>& time, const Change<V>& change,
-                 const State<V>& state) noexcept {
-  const Stages<V> here = stages_of(tables, change, state, time.right),
-                  next = stages_of(tables, change, state, no(time.right));
-  const auto starts = both(change.starting != V{}, change.turns == V{});
-  const V own_ticks = ticks_of(here.flight_s, tables.tick_s),
-          ticks = starts ? most(state.flight_ticks, own_ticks) : state.flight_ticks;
-  return 0.5f * (here.flight / ticks + next.roll / ticks_of(next.roll_s, tables.tick_s));
-}
-
 // Begins the flight, where `lifts`: after the last tick of the roll.
 template <class V>
 void begin_flight(const Tables& tables, const Time<V>& time, const Mask<V>& lifts,
                   const Change<V>& change, State<V>& state) noexcept {
-  const V end_rate = strike_rate_of(tables, time, change, state);
+  const Stages<V> here = stages_of(tables, change, state, time.right),
+                  next = stages_of(tables, change, state, no(time.right));
+  // At the flight's end the phase runs at the mean of both stages' rates, so that it has no kink.
+  const V end_rate =
+      0.5f * (here.flight / state.flight_ticks + next.roll / ticks_of(next.roll_s, tables.tick_s));
   state.end_rate = lifts ? end_rate : state.end_rate;
   state.flies = lifts ? all<V>(1.0f) : state.flies;
   state.tick = lifts ? V{} : state.tick;

@@ -396,9 +396,12 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
       mix_of_ratios(tables, time, ratios_at(state.ratio_behind, last), ahead, over, runs);
   V phase = state.phase, rate = state.phase_rate;
   if (any(led)) {
-    const V strike_phase =
-                time.stage_end + (time.flies ? V{} : flight_cycles<V>(tables, time.right)),
-            strike_rate = time.flies ? state.end_rate : strike_rate_of(tables, time, change, state);
+    const Stages<V> next = stages_of(tables, change, state, no(time.right));
+    const V flight = flight_cycles<V>(tables, time.right),
+            strike_phase = time.stage_end + (time.flies ? V{} : flight),
+            strike_rate = time.flies ? state.end_rate
+                                     : V(0.5f * (flight / state.flight_ticks +
+                                                 next.roll / ticks_of(next.roll_s, tables.tick_s)));
     move_pelvis(tables, time, landing, ahead, strike_phase, strike_rate, state, change);
     V moves{};
     const V found = phase_of_pelvis(tables, time, landing, hips, strides, strike_phase, strike_rate,

@@ -1,7 +1,6 @@
 #include "gaitpad/crowd.h"
 
 #include <algorithm>
-#include <cstddef>
 #include <cstring>
 #include <functional>
 #include <map>
@@ -34,10 +33,14 @@ RootNumbers<kWidth> root_numbers(const Block<kWidth>& of) noexcept {
 template <int kFrom, int kTo>
 void copy_root(const RootNumbers<kFrom>& from, int from_lane, RootNumbers<kTo>& to,
                int to_lane) noexcept {
-  constexpr int kNumbers = offsetof(RootNumbers<1>, origin) / sizeof(float);
-  for (int n = 0; n < kNumbers; ++n)
-    reinterpret_cast<float*>(&to)[n * kTo + to_lane] =
-        reinterpret_cast<const float*>(&from)[n * kFrom + from_lane];
+  const auto copy = [&](auto of_from, auto of_to) {
+    set_lane(lane(from.*of_from, from_lane), to_lane, to.*of_to);
+  };
+  using From = RootNumbers<kFrom>;
+  using To = RootNumbers<kTo>;
+  copy(&From::heading_rad, &To::heading_rad);
+  copy(&From::pelvis_x_m, &To::pelvis_x_m), copy(&From::pelvis_z_m, &To::pelvis_z_m);
+  copy(&From::beside_x_m, &To::beside_x_m), copy(&From::beside_z_m, &To::beside_z_m);
   to.origin[to_lane] = from.origin[from_lane];
 }
 

@@ -43,8 +43,8 @@ void move_frame(const Landing<Floats<kWidth>>& landing, const Mask<Floats<kWidth
 // stick that is touched in passing would cost two slow steps.
 template <class V>
 Mask<V> is_meant(const Tables& tables, const State<V>& state, const Change<V>& change) noexcept {
-  constexpr float kHesitation_s = 0.2f;                        // longest, for a tiny command
-  constexpr float kSureRatio = 0.3f, kSureTurn_rad_s = 0.15f;  // step or turn that need not wait
+  constexpr float kHesitation_s = 0.2f;                         // longest, for a tiny command
+  constexpr float kSureRatio = 0.25f, kSureTurn_rad_s = 0.15f;  // step or turn that need not wait
   const V ratio = asked_ratio(tables, state),
           sure = most(V(ratio * (1.0f / kSureRatio)),
                       V(size(state.asked.turn_rad_s) * (1.0f / kSureTurn_rad_s)));

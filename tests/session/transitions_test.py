@@ -49,6 +49,12 @@ def test_a_start_answers_at_once_and_is_a_walk_after_two_steps(rows):
     assert median("speed90") <= 1.0
 
 
+def test_a_start_is_not_faster_than_the_walk(rows):
+    for row in rows.values():
+        assert row["start"]["faster"] <= 1.05
+        assert row["start"]["off"] <= 0.355
+
+
 def test_starts_and_stops_neither_push_nor_brake_harder_than_people(rows):
     stops = [stop["acc"] for row in rows.values() for stop in row["stops"]]
     assert np.median(stops) <= 4.0

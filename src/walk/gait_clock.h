@@ -117,7 +117,7 @@ inline constexpr float kLeastCycle_s =
 inline constexpr float kTurned_rad = 5.9604645e-8f, kFrameTurned_rad = 8.0f * kTurned_rad;
 
 inline constexpr float kStill_rad = 1e-7f;    // a turn too small to see
-inline constexpr float kFirstStep = 0.9f;     // of the length asked for: a first step is shorter
+inline constexpr float kFirstStep = 0.88f;    // of the length asked for: a first step is shorter
 inline constexpr float kLonger_ticks = 2.0f;  // most by which a tick lengthens a planned flight
 
 // `left`: share of the lengths asked for that uneven ground leaves.

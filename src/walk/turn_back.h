@@ -39,7 +39,7 @@ inline Stride<float> shown_stride(const Tables& tables, const Change<float>& cha
   return stride;
 }
 
-inline constexpr float kMostTurn_m_s2 = 5.2f;  // of hips that turn round
+inline constexpr float kMostTurn_m_s2 = 5.4f;  // of hips that turn round
 
 // Times the landing of the first step the other way: soon, but so that the hips turn round softly.
 // Returns their hardest acceleration, in m/s^2; it is above kMostTurn_m_s2 if no time is soft

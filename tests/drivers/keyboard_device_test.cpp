@@ -52,6 +52,8 @@ class KeyboardDeviceTest : public testing::Test {
   std::vector<Seen> steered(const vec2& wanted, const vec2& place) {
     stick_->steer(wanted);
     auto seen = seen_for(60'000, place);
+    // A last count may still come, on a busy machine later than the one before it.
+    for (const Seen& s : seen_for(30)) seen.push_back(s);
     EXPECT_EQ(seen_for(30).size(), 0u);
     EXPECT_FALSE(seen.empty());
     if (seen.empty()) seen.push_back({});

@@ -40,11 +40,12 @@ def addon():
 
 # --- the rules of names ---------------------------------------------------------------------------------------------
 def words_of(table):
-    return set(re.findall(r'"(\w+)"', re.search(rf"{table}\[\] = \{{(.*?)\}};", ANATOMY, re.S)[1]))
+    return set(" ".join(re.findall(r'"([\w ]+)"', re.search(rf"{table} =(.*?)[,;]", ANATOMY, re.S)[1])).split())
 
 
 def test_the_words_are_those_of_the_program(addon):
-    parts = dict(re.findall(r'\{"(\w+)", NamedPart::(\w+)\}', ANATOMY))
+    parts = {word: part for part, words in re.findall(r'\{NamedPart::(\w+), "([\w ]+)"\}', ANATOMY)
+             for word in words.split()}
     assert len(parts) > 40 and addon.PART_WORDS == parts
     for ours, table in ((addon.NECK_WORDS, "kNeckWords"), (addon.HEAD_WORDS, "kHeadWords"),
                         (addon.HELPER_WORDS, "kHelperWords"), (addon.BESIDE_ARM_WORDS, "kBesideArmWords"),

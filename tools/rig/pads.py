@@ -35,7 +35,9 @@ def wait_for(condition, seconds=10.0, what="a condition"):
 
 
 def settle():
-    subprocess.run(["udevadm", "settle", "--timeout=90"], check=True)
+    """Asks again where udev's daemon breaks off its answer ("Broken pipe"), as it does on a busy host."""
+    wait_for(lambda: subprocess.run(["udevadm", "settle", "--timeout=90"], check=False).returncode == 0,
+             what="udev to settle")
 
 
 def udev_properties(node):

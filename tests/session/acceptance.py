@@ -41,7 +41,7 @@ THUMB_S = 0.06
 NOT_MET = {
     "leg d2, steady": ("", 0.0, 0.66, "short legs and limps step quicker, and angles change more from tick to tick"),
     "leg d2, changing": ("", 0.0, 3.0, "steps that start and stop in half a second turn short and straight legs faster"),
-    "toe joint d2, changing": ("cmu_m21_walk", 1.2, 1.75, "toes follow a pitch that changes while a walk begins"),
+    "toe joint d2, changing": ("cmu_", 1.2, 1.4, "toes follow a pitch that changes while a walk begins"),
     "toe joint d2, steady": ("leg 0.6 style limp_left", 0.5, 0.6, "short legs and limps step quicker"),
     "ik_failures": ("cmu_m21_walk leg 0.6 start and stop", 0, 8, "a knee that the capture bends back"),
     "smallest knee angle": ("cmu_m21_walk leg 0.6 start and stop", 0.9, 1.1, "a knee that the capture bends back"),

@@ -115,7 +115,7 @@ struct Rows {
   }
 };
 inline Rows rows_of(const Tables& tables, bool back) noexcept {
-  const StrideRow* first = back ? &tables.back[0][0] : &tables.forward[0][0];
+  const StrideRow* first = back ? &tables.build.back[0][0] : &tables.build.forward[0][0];
   return {reinterpret_cast<const float*>(first), (back ? kBackRatios : kRatios) * kRowNumbers};
 }
 template <class V>
@@ -489,7 +489,7 @@ struct FootprintsIn {
 };
 template <class V>
 FootprintsIn<V> footprints_of(const Tables& tables, const Time<V>& time, const V& ratio) noexcept {
-  const FootprintLines &ahead = tables.footprints, &back = tables.back_footprints;
+  const FootprintLines &ahead = tables.build.footprints, &back = tables.build.back_footprints;
   const V at =
       least(most(ratio, V{}), chosen<V>(time.back, tables.most_back_ratio, tables.most_ratio));
   const auto of = [&](const Mask<V>& right) {

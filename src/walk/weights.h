@@ -233,7 +233,8 @@ void begin_weights(const Tables& tables, const Mask<V>& begins, const Time<V>& t
       V of[1 + 2 * kHarmonics];
       for (int w = 0; w < kLanes<V>; ++w) {
         const int r = static_cast<int>(lane(first, w)), s = static_cast<int>(lane(side, w));
-        const auto &a = tables.leg_harmonics[r][s][j], &b = tables.leg_harmonics[r + 1][s][j];
+        const auto &a = tables.build.leg_harmonics[r][s][j],
+                   &b = tables.build.leg_harmonics[r + 1][s][j];
         for (int n = 0; n < 1 + 2 * kHarmonics; ++n)
           set_lane(a[n] + (b[n] - a[n]) * lane(share, w), w, of[n]);
       }

@@ -1,6 +1,5 @@
 // Last: writes the joints of the legs, the pelvis and the root's place into the pose, in the world.
 #pragma once
-#include "walk/pose_places.h"
 #include "walk/upper_body.h"
 
 namespace gaitpad {

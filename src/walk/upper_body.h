@@ -27,39 +27,17 @@ Mask<V> has_style(const Styled<V>& styled) noexcept {
   return either(either(styled.asked != V{}, styled.acts != V{}), styled.idle_share != V{});
 }
 
-// Brings the style's numbers in force nearer to those asked for, and without a style to the data's.
 template <class V>
 void smooth_body(const Tables& tables, const Mask<V>& is_styled, Styled<V>& styled) noexcept {
-  const auto asked = styled.asked != V{}, acted = styled.acts != V{};
-  // Return early if all numbers have settled, as they have in nearly every tick.
-  auto moves = both(is_styled, acted != asked);
-  for (int n = 0; n < kBodyNumbers; ++n) {
-    const V goal = asked ? styled.goal[n] : all<V>(tables.build.plain_body[n]);
-    moves =
-        either(moves, both(is_styled, either(styled.body[n].x != goal, styled.body[n].v != V{})));
-  }
-  if (!any(moves)) return;
-  auto plain = no(asked);
-  for (int n = 0; n < kBodyNumbers; ++n) {
-    const V none = all<V>(tables.build.plain_body[n]), goal = asked ? styled.goal[n] : none;
-    const auto is_none = goal == none,
-               rests = both(either(acted, is_none),
-                            both(styled.body[n].x == goal, styled.body[n].v == V{}));
-    if (!any(both(moves, no(rests)))) {  // most numbers of a style are those of none
-      plain = both(plain, is_none);
-      continue;
-    }
-    Smoothed<V> number{acted ? styled.body[n].x : none, acted ? styled.body[n].v : V{}};
-    follow(goal, tables.body, number);
+  const auto there = [](const V& goal, const Smoothed<V>& number) {
     const V unit = most(size(goal), all<V>(1.0f));
-    const auto there =
-        both(size(V(number.x - goal)) < kSettled * unit, size(number.v) < kStill_per_s * unit);
-    const V value = there ? goal : number.x, rate = there ? V{} : number.v;
-    styled.body[n].x = moves ? value : styled.body[n].x;
-    styled.body[n].v = moves ? rate : styled.body[n].v;
-    plain = both(plain, value == none);
-  }
-  styled.acts = moves ? chosen<V>(plain, 0.0f, 1.0f) : styled.acts;
+    return both(size(V(number.x - goal)) < kSettled * unit, size(number.v) < kStill_per_s * unit);
+  };
+  const auto acts = follow_style(
+      tables.body, Mask<V>(styled.asked != V{}), Mask<V>(styled.acts != V{}), is_styled,
+      kBodyNumbers, styled.goal, [&](int n) { return all<V>(tables.build.plain_body[n]); }, there,
+      styled.body);
+  styled.acts = chosen<V>(acts, 1.0f, 0.0f);
 }
 
 // 1 in the middle of the time in which this leg stands alone, 0 in the middle of the other's.

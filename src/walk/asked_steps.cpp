@@ -1,12 +1,11 @@
 // Requests of a program beside the stick: a place for the next footprint, and a push.
-#include "walk/asked_steps.h"
-
 #include <algorithm>
 #include <cmath>
 
 #include "gaitpad/walk.h"
 #include "walk/footholds.h"
 #include "walk/sound_input.h"
+#include "walk/walk.h"
 
 namespace gaitpad {
 namespace {

@@ -1,4 +1,5 @@
-// Copies walks between blocks, whose numbers lie one after the other.
+// What a tick changes of a block of walks: its poses and its numbers, which lie one after the
+// other.
 #pragma once
 #include <type_traits>
 
@@ -6,6 +7,13 @@
 #include "walk/lanes.h"
 
 namespace gaitpad {
+
+// Memory for the poses of a block's walks.
+struct Poses {
+  quat* const* local = nullptr;  // of each walk: rotations by joint
+  vec3* const* root_m = nullptr;
+  int walks = 0;  // of the block; lanes after them are not written
+};
 
 // Stands for Footing on level ground, which is compiled without it.
 struct NoFooting {};

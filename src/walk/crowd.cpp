@@ -15,37 +15,6 @@
 
 namespace gaitpad {
 
-namespace {
-
-// The numbers from which root_of() computes a root.
-template <int kWidth>
-struct RootNumbers {
-  Floats<kWidth> heading_rad{}, pelvis_x_m{}, pelvis_z_m{}, beside_x_m{}, beside_z_m{};
-  Origin origin[kWidth];
-};
-template <int kWidth>
-RootNumbers<kWidth> root_numbers(const Block<kWidth>& of) noexcept {
-  RootNumbers<kWidth> root{of.state.heading_rad, of.state.pelvis_x_m[0], of.state.pelvis_z_m[0],
-                           of.told.pelvis_x_m,   of.told.pelvis_z_m,     {}};
-  std::copy_n(of.origin, kWidth, root.origin);
-  return root;
-}
-template <int kFrom, int kTo>
-void copy_root(const RootNumbers<kFrom>& from, int from_lane, RootNumbers<kTo>& to,
-               int to_lane) noexcept {
-  const auto copy = [&](auto of_from, auto of_to) {
-    set_lane(lane(from.*of_from, from_lane), to_lane, to.*of_to);
-  };
-  using From = RootNumbers<kFrom>;
-  using To = RootNumbers<kTo>;
-  copy(&From::heading_rad, &To::heading_rad);
-  copy(&From::pelvis_x_m, &To::pelvis_x_m), copy(&From::pelvis_z_m, &To::pelvis_z_m);
-  copy(&From::beside_x_m, &To::beside_x_m), copy(&From::beside_z_m, &To::beside_z_m);
-  to.origin[to_lane] = from.origin[from_lane];
-}
-
-}  // namespace
-
 // A block of any width. Lanes without a walk of their own repeat the last walk.
 class WalkBlock {
  public:
@@ -54,15 +23,15 @@ class WalkBlock {
   virtual std::size_t bytes() const noexcept = 0;
   virtual Block<1> walk(int lane) const noexcept = 0;
   // Puts a walk into a lane. `before`: the numbers of its root before the last tick.
-  virtual void take(const Block<1>& walk, const RootNumbers<1>& before, int lane) noexcept = 0;
-  virtual RootNumbers<1> before(int lane) const noexcept = 0;
+  virtual void take(const Block<1>& walk, const RootNumbers& before, int lane) noexcept = 0;
+  virtual const RootNumbers& before(int lane) const noexcept = 0;
   virtual void set_detail(Detail detail, int lane) noexcept = 0;
   // True if the walk was last asked for these parameters.
   virtual bool has_asked(const GaitParams& params, int lane) const noexcept = 0;
   virtual void ask(const GaitParams& params, int lane) noexcept = 0;
   virtual void place(const Placement& placed, int lane) noexcept = 0;
-  virtual void keep_root() noexcept = 0;
-  virtual void advance(const Tables& tables, IkMode mode, const Poses& poses) noexcept = 0;
+  virtual void advance(const Tables& tables, IkMode mode, int parts,
+                       const Poses& poses) noexcept = 0;
   double tick_s = 1.0 / 240.0;  // length of the last tick
 };
 
@@ -80,18 +49,14 @@ class BlockOf final : public WalkBlock {
     copy_walk(block_, lane, one, 0);
     return one;
   }
-  void take(const Block<1>& walk, const RootNumbers<1>& before, int lane) noexcept override {
+  void take(const Block<1>& walk, const RootNumbers& before, int lane) noexcept override {
     for_lanes(lane, [&](int w) {
       copy_walk(walk, 0, block_, w);
-      copy_root(before, 0, before_, w);
+      before_[w] = before;
       asked_[w] = {};
     });
   }
-  RootNumbers<1> before(int lane) const noexcept override {
-    RootNumbers<1> one;
-    copy_root(before_, lane, one, 0);
-    return one;
-  }
+  const RootNumbers& before(int lane) const noexcept override { return before_[lane]; }
   void set_detail(Detail detail, int lane) noexcept override {
     for_lanes(lane, [&](int w) { gaitpad::set_detail(detail, w, block_); });
   }
@@ -110,15 +75,15 @@ class BlockOf final : public WalkBlock {
   void place(const Placement& placed, int lane) noexcept override {
     for_lanes(lane, [&](int w) { gaitpad::place(placed, w, block_); });
   }
-  void keep_root() noexcept override { before_ = root_numbers(block_); }
-  void advance(const Tables& tables, IkMode mode, const Poses& poses) noexcept override {
-    if constexpr (kWidth == 1) {
-      if (mode == IkMode::paper) {
-        advance_by_paper(tables, block_, poses);
-        return;
+  void advance(const Tables& tables, IkMode mode, int parts, const Poses& poses) noexcept override {
+    for (int w = 0; w < kWidth; ++w) before_[w] = root_numbers(block_, w);
+    for (int part = 0; part < parts; ++part) {
+      if constexpr (kWidth == 1) {
+        gaitpad::advance(tables, mode, block_, poses);
+      } else {
+        gaitpad::advance(tables, block_, poses);
       }
     }
-    gaitpad::advance(tables, block_, poses);
   }
 
  private:
@@ -132,23 +97,10 @@ class BlockOf final : public WalkBlock {
     for (int w = walks_; lane == walks_ - 1 && w < kWidth; ++w) work(w);
   }
   Block<kWidth> block_{};
-  RootNumbers<kWidth> before_{};
+  std::array<RootNumbers, kWidth> before_;
   std::array<Asked, kWidth> asked_;
   int walks_;
 };
-
-// Root of a walk before the last tick.
-Placement root_before(const WalkBlock& block, int lane) noexcept {
-  Block<1> one = block.walk(lane);
-  const RootNumbers<1> before = block.before(lane);
-  one.state.heading_rad = before.heading_rad;
-  one.state.pelvis_x_m[0] = before.pelvis_x_m;
-  one.state.pelvis_z_m[0] = before.pelvis_z_m;
-  one.told.pelvis_x_m = before.beside_x_m;
-  one.told.pelvis_z_m = before.beside_z_m;
-  one.origin[0] = before.origin[0];
-  return root_of(one);
-}
 
 template <int kCount = 0>
 std::unique_ptr<WalkBlock> make_block(int width, int walks) {
@@ -253,7 +205,7 @@ WalkState Crowd::state(int member) const noexcept {
   state.detail = details_[member];
   state.tick_s = blocks_[block]->tick_s;
   state.root = root_of(state.walk);
-  state.root_before = root_before(*blocks_[block], lane);
+  state.root_before = root_of(blocks_[block]->before(lane));
   place(state.placed, 0, state.walk);
   state.bad_inputs = bad_inputs_[member];
   return state;
@@ -269,7 +221,7 @@ Placement Crowd::root(int member) const noexcept {
 
 void Crowd::put_state(int member, const WalkState& state) noexcept {
   const auto [block, lane] = lane_[member];
-  blocks_[block]->take(state.walk, root_numbers(state.walk), lane);
+  blocks_[block]->take(state.walk, root_numbers(state.walk, 0), lane);
   blocks_[block]->set_detail(details_[member], lane);
   placed_[member] = state.placed;
   bad_inputs_[member] = state.bad_inputs;
@@ -287,7 +239,7 @@ void Crowd::exchange_lanes(int member, int other) noexcept {
   Lane &a = lane_[member], &b = lane_[other];
   WalkBlock &of_a = *blocks_[a.block], &of_b = *blocks_[b.block];
   const Block<1> walk_a = of_a.walk(a.lane), walk_b = of_b.walk(b.lane);
-  const RootNumbers<1> before_a = of_a.before(a.lane), before_b = of_b.before(b.lane);
+  const RootNumbers before_a = of_a.before(a.lane), before_b = of_b.before(b.lane);
   of_a.take(walk_b, before_b, a.lane);
   of_b.take(walk_a, before_a, b.lane);
   std::swap(order_[block_begin_[a.block] + a.lane], order_[block_begin_[b.block] + b.lane]);
@@ -430,8 +382,7 @@ void Crowd::advance_block(int number, double dt_s) noexcept {
   const int parts = tick_parts(dt_s);
   const Tables tables = tables_of(*models_[members[0]], dt_s / parts);
   const Poses poses{locals.data(), roots_m.data(), static_cast<int>(members.size())};
-  block.keep_root();
-  for (int part = 0; part < parts; ++part) block.advance(tables, mode_, poses);
+  block.advance(tables, mode_, parts, poses);
 }
 
 void Crowd::advance(double dt_s) noexcept {

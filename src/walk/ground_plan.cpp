@@ -374,9 +374,16 @@ constexpr double kMostShift_m = 0.25;     // along z
 constexpr double kLeastWanted_m = 0.004;  // smaller shifts and heights are ignored
 constexpr double kOver = 0.685;  // share of a flight down at which it is over its landing's piece
 
+double share_at(int probe) noexcept { return static_cast<double>(probe) / kProbes; }
+
 using Spline = std::array<double, kRoomKnots>;
 double spline_of(const Spline& knots, double end, double u) noexcept {
   return spline_at(knots.data(), end, u);
+}
+double weight_of(int knot, double u) noexcept {
+  Spline alone{};
+  alone[knot] = 1.0;
+  return spline_of(alone, 0.0, u);
 }
 // 1 in mid-flight, 0 at its ends.
 double in_flight(double u) noexcept {
@@ -413,8 +420,8 @@ Spline envelope(const Wanted& wanted, const Ends& ends) noexcept {
 }
 
 // The same for values of both signs. If the spline falls short of them, a gain multiplies all of
-// it; no knot exceeds `most_m`.
-Spline wide_envelope(const Wanted& wanted, double most_m) noexcept {
+// it; no knot exceeds kMostShift_m.
+Spline wide_envelope(const Wanted& wanted, double size) noexcept {
   constexpr double kMostGain = 6.0;
   Wanted positive, negative;
   for (int i = 0; i <= kProbes; ++i) {
@@ -427,10 +434,11 @@ Spline wide_envelope(const Wanted& wanted, double most_m) noexcept {
   double gain = 1.0;
   for (int i = 1; i < kProbes; ++i) {
     if (std::abs(wanted[i]) < kLeastWanted_m) continue;
-    const double got = spline_of(knots, 0.0, static_cast<double>(i) / kProbes);
+    const double got = spline_of(knots, 0.0, share_at(i));
     gain = std::max(gain, got * wanted[i] > 0.0 ? wanted[i] / got : 1.0);
   }
-  for (double& knot : knots) knot = std::clamp(knot * std::min(gain, kMostGain), -most_m, most_m);
+  for (double& knot : knots)
+    knot = std::clamp(knot * std::min(gain, kMostGain), -kMostShift_m * size, kMostShift_m * size);
   return knots;
 }
 
@@ -442,7 +450,7 @@ bool sharpen(const Wanted& beside, const Spline& shift, double size, Ends& ends)
   constexpr double kSharper = 1.5, kMostSharp = 0.38;
   Ends more = ends;
   for (int i = 1; i < kProbes; ++i) {
-    const double got = spline_of(shift, 0.0, static_cast<double>(i) / kProbes);
+    const double got = spline_of(shift, 0.0, share_at(i));
     const double lack = beside[i] > 0.0 ? beside[i] - got : beside[i] < 0.0 ? got - beside[i] : 0.0;
     if (lack < kLack_m * size && std::abs(beside[i]) < kEasyShift_m * size) continue;
     if (2 * i < kProbes) {
@@ -559,23 +567,27 @@ PlannedFlight planned_flight(const Tables& tables, const Floor& floor, const Fra
   return flight;
 }
 
-// The move along z with which no part of the sole is inside a riser that leads up from
-// `height_m` at either end of `piece`, or at one of them.
-struct Sides {
-  bool behind = true, ahead = true;
-};
-double way_back(const Floor& floor, const SolePoints& sole, const Stretch& piece, double height_m,
-                double room, double size, const Sides& sides = {}) noexcept {
+// The risers of which a sole keeps clear: both of its piece, or the one behind its lift-off and the
+// one ahead of its landing.
+enum class Risers { both, of_flight };
+// The move along z with which no part of the sole is inside a riser that leads up from the piece of
+// the lift-off, and in the second half of the flight from that of the landing.
+double way_back(const Floor& floor, const PlannedFlight& flight, int probe, double size,
+                Risers risers) noexcept {
+  const bool early = 2 * probe < kProbes, forwards = flight.left.front() >= 0.0,
+             both = risers == Risers::both;
+  const Stretch& piece = early ? flight.begin : flight.end;
+  const double high_m = (early ? flight.begin_m : flight.end_m) + kRiser_m,
+               room = early ? flight.begin_room : kRoomBeside_m * size;
+  const auto leads_up = [&](double x, double edge, double beyond) {
+    return std::isfinite(edge) && ground_at(floor, x, edge + beyond).height_m > high_m;
+  };
   double shift = 0.0;
-  for (const vec3& p : sole) {
-    const bool ahead_up =
-        sides.ahead && std::isfinite(piece.to_m) &&
-        ground_at(floor, p.x, piece.to_m + kRiser_m).height_m > height_m + kRiser_m;
-    const bool behind_up =
-        sides.behind && std::isfinite(piece.from_m) &&
-        ground_at(floor, p.x, piece.from_m - kRiser_m).height_m > height_m + kRiser_m;
-    if (ahead_up) shift = std::min(shift, piece.to_m - room - p.z);
-    if (behind_up) shift = std::max(shift, piece.from_m + room - p.z);
+  for (const vec3& p : flight.sole[probe]) {
+    if ((both || early != forwards) && leads_up(p.x, piece.to_m, kRiser_m))
+      shift = std::min(shift, piece.to_m - room - p.z);
+    if ((both || early == forwards) && leads_up(p.x, piece.from_m, -kRiser_m))
+      shift = std::max(shift, piece.from_m + room - p.z);
   }
   return std::clamp(shift, -kMostShift_m * size, kMostShift_m * size);
 }
@@ -585,22 +597,17 @@ double way_back(const Floor& floor, const SolePoints& sole, const Stretch& piece
 // high as over one that it crosses. Returns the move's spline.
 Spline keep_clear(const Floor& floor, double size, PlannedFlight& flight) noexcept {
   constexpr double kTouches_m = 0.06;  // at the reference leg: a sole that is farther in crosses
-  const bool forwards = flight.left.front() >= 0.0;
   Wanted away{};
   bool touches = false;
   for (int i = 1; i < kProbes; ++i) {
-    const bool early = 2 * i < kProbes;
-    const double move = early ? way_back(floor, flight.sole[i], flight.begin, flight.begin_m,
-                                         flight.begin_room, size, {forwards, !forwards})
-                              : way_back(floor, flight.sole[i], flight.end, flight.end_m,
-                                         kRoomBeside_m * size, size, {!forwards, forwards});
+    const double move = way_back(floor, flight, i, size, Risers::of_flight);
     if (std::abs(move) < kTouches_m * size) away[i] = move;
     touches |= std::abs(away[i]) > kLeastWanted_m * size;
   }
   if (!touches) return {};
-  const Spline moves = wide_envelope(away, kMostShift_m * size);
+  const Spline moves = wide_envelope(away, size);
   for (int i = 0; i <= kProbes; ++i) {
-    const double moved = spline_of(moves, 0.0, static_cast<double>(i) / kProbes);
+    const double moved = spline_of(moves, 0.0, share_at(i));
     for (vec3& p : flight.sole[i]) p.z += moved;
     for (vec3& p : flight.base[i]) p.z += moved;
     flight.left[i] -= moved;
@@ -615,7 +622,7 @@ Wanted wanted_raise(const Tables& tables, const Floor& floor, const PlannedFligh
   const double above_m = kRoomAbove_m * tables.size;
   Wanted above;
   for (int i = 0; i <= kProbes; ++i) {
-    const double u = static_cast<double>(i) / kProbes, moved = spline_of(shift, 0.0, u);
+    const double u = share_at(i), moved = spline_of(shift, 0.0, u);
     double over = -tables.leg_m;
     SolePoints sole = flight.sole[i];
     for (vec3& p : sole) {
@@ -662,16 +669,13 @@ void make_up_for_lacks(const Wanted& beside, double size, Spline& shift) noexcep
     int at = 0;
     double most = kLack_m * size, lacks = 0.0;
     for (int i = 1; i < kProbes; ++i) {
-      const double got = spline_of(shift, 0.0, static_cast<double>(i) / kProbes),
-                   lack = beside[i] - got;
+      const double got = spline_of(shift, 0.0, share_at(i)), lack = beside[i] - got;
       if (lack * beside[i] <= 0.0 || std::abs(lack) <= most) continue;
       at = i, most = std::abs(lack), lacks = lack;
     }
     if (at == 0) return;
     const int k = std::clamp((at * kKnotsOfFlight + kProbes / 2) / kProbes, 1, kRoomKnots) - 1;
-    Spline alone{};
-    alone[k] = 1.0;
-    const double weight = spline_of(alone, 0.0, static_cast<double>(at) / kProbes);
+    const double weight = weight_of(k, share_at(at));
     if (weight < kLeast) return;
     shift[k] = std::clamp(shift[k] + lacks / weight, -kMostShift_m * size, kMostShift_m * size);
   }
@@ -686,14 +690,10 @@ void draw_taut(const Wanted& wanted, double room_m, double kept, Spline& knots) 
   Wanted slack;
   std::array<Wanted, kRoomKnots> weight;  // of each knot at each probe
   for (int i = 0; i <= kProbes; ++i) {
-    const double u = static_cast<double>(i) / kProbes;
+    const double u = share_at(i);
     const double spare = (1.0 - kept) * room_m * in_flight(u);
     slack[i] = std::max(0.0, spline_of(knots, wanted.back(), u) - wanted[i] + spare);
-    for (int k = 0; k < kRoomKnots; ++k) {
-      Spline alone{};
-      alone[k] = 1.0;
-      weight[k][i] = spline_of(alone, 0.0, u);
-    }
+    for (int k = 0; k < kRoomKnots; ++k) weight[k][i] = weight_of(k, u);
   }
   for (int round = 0; round < kTautRounds; ++round) {
     for (int k = kKnotsOfFlight - 3; k > 0; --k) {
@@ -730,16 +730,13 @@ RoomPlan plan_over(const Tables& tables, const Floor& floor, const PlannedFlight
     if (crosses) draw_taut(above, kRoomAbove_m * size, kTautRoomUp, room.raise_m);
     for (int i = 1; i < kProbes; ++i) {
       beside[i] = 0.0;
-      const double u = static_cast<double>(i) / kProbes;
+      const double u = share_at(i);
       if (!flight.stays() && above[i] <= spline_of(room.raise_m, above.back(), u)) continue;
-      beside[i] = 2 * i < kProbes ? way_back(floor, flight.sole[i], flight.begin, flight.begin_m,
-                                             flight.begin_room, size)
-                                  : way_back(floor, flight.sole[i], flight.end, flight.end_m,
-                                             kRoomBeside_m * size, size);
+      beside[i] = way_back(floor, flight, i, size, Risers::both);
     }
     Wanted away = beside;
     room.shift_m = lead_in(flight, away);
-    const Spline back_m = wide_envelope(away, kMostShift_m * size);
+    const Spline back_m = wide_envelope(away, size);
     for (int k = 0; k < kRoomKnots; ++k) room.shift_m[k] += back_m[k];
     if (!sharpen(beside, room.shift_m, size, ends)) break;
   }
@@ -783,7 +780,7 @@ void reach_on(const Tables& tables, const Floor& floor, const PlannedFlight& fli
   constexpr double kPeak = 2.0 / 3.0;  // of a knot's weight
   Spline lacks{};
   for (int i = first; i < kProbes; ++i) {
-    const double u = static_cast<double>(i) / kProbes, next = static_cast<double>(i + 1) / kProbes,
+    const double u = share_at(i), next = share_at(i + 1),
                  on = way_on(tables, floor, flight, i, spline_of(raise, flight.climb, next)),
                  left = flight.left[i], got = spline_of(shift, 0.0, u),
                  lack = std::clamp(on, std::min(0.0, left), std::max(0.0, left)) - got;
@@ -826,7 +823,7 @@ float depth_of_flight(const Tables& tables, const Block<1>& block) noexcept {
   const float from = block.state.tick / block.state.flight_ticks;
   double deep_m = 0.0;
   for (int i = 0; i <= kProbes; ++i) {
-    const double u = static_cast<double>(i) / kProbes;
+    const double u = share_at(i);
     if (u < from) continue;
     SolePoints sole = flight.sole[i];
     for (vec3& p : sole) {

@@ -157,7 +157,7 @@ void move_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& la
                  const State<V>& state, Change<V>& change) noexcept {
   const float aim = aim_ticks(tables);
   const auto led = change.led != V{}, closes = change.closing != V{}, stops = change.stops != V{};
-  const StrideMix<V> mix = mix_of_ratio(tables, time, ratios, both(led, no(stops)));
+  const StrideMix<V> mix = mix_of_ratios(tables, time, ratios, ratios, V{}, both(led, no(stops)));
   V x_m[3], z_m[3], phases[3];
   for (int k : {0, 1, 2})
     phases[k] = strike_phase + (static_cast<float>(k - 1) * aim) * strike_rate;

@@ -82,7 +82,7 @@ inline void solve_by_paper(const Tables& tables, const Time<float>& time, float 
                                        IkRow{point_m, along, glm::dot(along, end_m)},
                                        IkRow{other_m, side, glm::dot(side, far_m)},
                                        IkRow{other_m, across, glm::dot(across, far_m)}};
-    IkChain chain = tables.chain[right];
+    IkChain chain = tables.build.chain[right];
     IkAngles angles_rad{};
     for (int j = 0; j < kLegAngles; ++j) {
       angles_rad[j] = state.leg_rad[k][j];

@@ -1,6 +1,5 @@
 // Last: writes the joints of the legs, the pelvis and the root's place into the pose, in the world.
 #pragma once
-#include "walk/pose_places.h"
 #include "walk/upper_body.h"
 
 namespace gaitpad {
@@ -65,11 +64,11 @@ void write_root(const Tables& tables, const Hips<Floats<kWidth>>& hips,
   }
   const Turn<V> frame = way.turn();
   Turn<V> turn = frame * pelvis.turn * every<V>(tables.pelvis_standing);
-  if (!tables.above_pelvis.empty()) {
+  if (!tables.build.above_pelvis.empty()) {
     // Joints between root and pelvis turn with the heading; beside that they move as in the data.
     Turn<V> above = frame * hips.heading.turn();
-    for (std::size_t i = 0; i < tables.above_pelvis.size(); ++i) {
-      const int joint = tables.above_pelvis[i].joint;
+    for (std::size_t i = 0; i < tables.build.above_pelvis.size(); ++i) {
+      const int joint = tables.build.above_pelvis[i].joint;
       above = above * read_joint<V>(joint, all<V>(1.0f), poses);
       if (i == 0) write_product(above, joint, poses);
     }

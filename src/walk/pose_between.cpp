@@ -7,44 +7,8 @@
 namespace gaitpad {
 namespace {
 
-// The joints from the root to the toe of a leg.
-struct LegPath {
-  std::array<int, kMaxJoints> joint;
-  int count = 0;
-  // Index on the path; `toe` is `count` if the path ends at the ankle.
-  int hip = 0, knee = 0, ankle = 0, toe = 0;
-};
-
-LegPath path_of(const Skeleton& skeleton, const LegJoints& leg) noexcept {
-  const bool has_toe = leg.toe >= 0 && !skeleton.joints[leg.toe].is_end_site;
-  LegPath path;
-  for (int j = has_toe ? leg.toe : leg.ankle; j >= 0; j = skeleton.joints[j].parent)
-    path.joint[path.count++] = j;
-  std::reverse(path.joint.begin(), path.joint.begin() + path.count);
-  const auto place_of = [&](int joint) {
-    return static_cast<int>(std::find(path.joint.begin(), path.joint.begin() + path.count, joint) -
-                            path.joint.begin());
-  };
-  path.hip = place_of(leg.hip), path.knee = place_of(leg.knee), path.ankle = place_of(leg.ankle);
-  path.toe = has_toe ? path.count - 1 : path.count;
-  return path;
-}
-
-// Their frames in the world.
-struct PathFrames {
-  std::array<vec3, kMaxJoints> place_m;
-  std::array<quat, kMaxJoints> turn;
-};
-void set_frames(const Skeleton& skeleton, const LegPath& path, const Pose& pose,
-                PathFrames& frames) noexcept {
-  for (int i = 0; i < path.count; ++i) {
-    const int joint = path.joint[i];
-    const quat& local = pose.local[joint];
-    frames.place_m[i] =
-        i == 0 ? pose.root_m
-               : frames.place_m[i - 1] + frames.turn[i - 1] * skeleton.joints[joint].offset_m;
-    frames.turn[i] = i == 0 ? local : frames.turn[i - 1] * local;
-  }
+bool has_toe(const Skeleton& skeleton, const LegModel& leg) noexcept {
+  return leg.joints.toe >= 0 && !skeleton.joints[leg.joints.toe].is_end_site;
 }
 
 // Where a foot is between two ticks: its ankle joint, and the rotations of ankle and toe joint.
@@ -54,13 +18,13 @@ struct FootGoal {
 };
 // The foot turns about the point between heel and toe that moves least: heel or toe, if it stands
 // on it. That point goes along the line between its two places.
-FootGoal foot_between(const LegModel& leg, const LegPath& path, const PathFrames& from,
-                      const PathFrames& to, double share) noexcept {
+FootGoal foot_between(const Skeleton& skeleton, const LegModel& leg, const JointFrames& from,
+                      const JointFrames& to, double share) noexcept {
   constexpr double kStill_m2 = 1e-18;  // a foot that turns by less turns about its heel
-  const int ankle = path.ankle;
+  const int ankle = leg.joints.ankle, toe = leg.joints.toe;
   const quat out = glm::conjugate(leg.standing[2]);  // from the foot's frame to its joint's
-  const auto place_m = [&](const PathFrames& frames, const vec3& point_m) {
-    return frames.place_m[ankle] + frames.turn[ankle] * (out * point_m);
+  const auto place_m = [&](const JointFrames& frames, const vec3& point_m) {
+    return frames.position_m[ankle] + frames.rotation[ankle] * (out * point_m);
   };
   const vec3 heel_moves = place_m(to, leg.heel_m) - place_m(from, leg.heel_m),
              toe_moves = place_m(to, leg.toe_m) - place_m(from, leg.toe_m),
@@ -71,8 +35,8 @@ FootGoal foot_between(const LegModel& leg, const LegPath& path, const PathFrames
                            : 0.0;
   const vec3 point_m = mix(leg.heel_m, leg.toe_m, along);
   FootGoal goal;
-  goal.ankle = nlerp(from.turn[ankle], to.turn[ankle], share);
-  if (path.toe < path.count) goal.toe = nlerp(from.turn[path.toe], to.turn[path.toe], share);
+  goal.ankle = nlerp(from.rotation[ankle], to.rotation[ankle], share);
+  if (has_toe(skeleton, leg)) goal.toe = nlerp(from.rotation[toe], to.rotation[toe], share);
   goal.ankle_m =
       mix(place_m(from, point_m), place_m(to, point_m), share) - goal.ankle * (out * point_m);
   return goal;
@@ -93,12 +57,14 @@ quat turn_about(const vec3& axis, const Bend& bend) noexcept {
 
 // Ends a leg at its foot: bends the knee to the distance of the ankle, turns the leg the shortest
 // way from where the blend has the ankle, and turns ankle and toes as the foot lies.
-void end_leg(const LegModel& leg, const LegPath& path, const PathFrames& blend,
+void end_leg(const Skeleton& skeleton, const LegModel& leg, const JointFrames& blend,
              const FootGoal& goal, Pose& pose) noexcept {
-  const auto [hip, knee, ankle] = std::array{path.hip, path.knee, path.ankle};
-  const vec3 hip_m = blend.place_m[hip], thigh_m = blend.place_m[knee] - hip_m,
-             shank_m = blend.place_m[ankle] - blend.place_m[knee], reach_m = goal.ankle_m - hip_m;
-  const vec3 hinge = blend.turn[hip] * (glm::conjugate(leg.standing[0]) * kLeft);
+  const int hip = leg.joints.hip, knee = leg.joints.knee, ankle = leg.joints.ankle,
+            toe = leg.joints.toe;
+  const std::array<vec3, kMaxJoints>& place_m = blend.position_m;
+  const vec3 thigh_m = place_m[knee] - place_m[hip], shank_m = place_m[ankle] - place_m[knee],
+             reach_m = goal.ankle_m - place_m[hip];
+  const vec3 hinge = blend.rotation[hip] * (glm::conjugate(leg.standing[0]) * kLeft);
   const Bend was = bend_between(thigh_m, shank_m, hinge);
   const double a = glm::dot(thigh_m, thigh_m), b = glm::dot(shank_m, shank_m),
                cosine = std::clamp((glm::dot(reach_m, reach_m) - a - b) / (2.0 * std::sqrt(a * b)),
@@ -108,16 +74,19 @@ void end_leg(const LegModel& leg, const LegPath& path, const PathFrames& blend,
       hinge, {cosine * was.cosine + sine * was.sine, sine * was.cosine - cosine * was.sine});
   const quat turns =
       rotation_between(glm::normalize(thigh_m + bends * shank_m), glm::normalize(reach_m));
-  const auto parent = [&](int i) { return i == 0 ? kIdentity : blend.turn[i - 1]; };
-  const auto set = [&](int i, const quat& above, const quat& turn) {
-    pose.local[path.joint[i]] = glm::normalize(glm::conjugate(above) * turn);
+  const auto parent = [&](int joint) {
+    const int above = skeleton.joints[joint].parent;
+    return above < 0 ? kIdentity : blend.rotation[above];
   };
-  set(hip, parent(hip), turns * blend.turn[hip]);
-  set(knee, parent(knee), bends * blend.turn[knee]);
+  const auto set = [&](int joint, const quat& above, const quat& turn) {
+    pose.local[joint] = glm::normalize(glm::conjugate(above) * turn);
+  };
+  set(hip, parent(hip), turns * blend.rotation[hip]);
+  set(knee, parent(knee), bends * blend.rotation[knee]);
   set(ankle, turns * bends * parent(ankle), goal.ankle);
-  if (path.toe == path.count) return;
-  const quat of_foot = goal.ankle * glm::conjugate(blend.turn[ankle]);
-  set(path.toe, of_foot * parent(path.toe), goal.toe);
+  if (!has_toe(skeleton, leg)) return;
+  const quat of_foot = goal.ankle * glm::conjugate(blend.rotation[ankle]);
+  set(toe, of_foot * parent(toe), goal.toe);
 }
 
 }  // namespace
@@ -134,23 +103,16 @@ bool pose_between(const WalkModel& model, const Pose& from, const Pose& to, doub
     std::copy_n(end.local.begin(), joints, pose.local.begin());
     return true;
   }
-  std::array<LegPath, 2> paths;
-  std::array<FootGoal, 2> goals;
-  for (const int side : {0, 1}) {
-    const LegModel& leg = model.leg[side].model;
-    paths[side] = path_of(skeleton, leg.joints);
-    PathFrames before, after;
-    set_frames(skeleton, paths[side], from, before);
-    set_frames(skeleton, paths[side], to, after);
-    goals[side] = foot_between(leg, paths[side], before, after, share);
-  }
+  JointFrames before, after;
+  forward_kinematics(skeleton, from, before);
+  forward_kinematics(skeleton, to, after);
   pose.root_m = mix(from.root_m, to.root_m, share);
   for (int j = 0; j < joints; ++j) pose.local[j] = nlerp(from.local[j], to.local[j], share);
-  for (const int side : {0, 1}) {
-    PathFrames blend;
-    set_frames(skeleton, paths[side], pose, blend);
-    end_leg(model.leg[side].model, paths[side], blend, goals[side], pose);
-  }
+  JointFrames blend;
+  forward_kinematics(skeleton, pose, blend);
+  for (const LegBuild& leg : model.leg)
+    end_leg(skeleton, leg.model, blend, foot_between(skeleton, leg.model, before, after, share),
+            pose);
   return true;
 }
 

@@ -69,16 +69,6 @@ GaitParams mended_params(const GaitParams& params, WalkState& state) noexcept {
   return mended;
 }
 
-double mended_tick(WalkState& state) noexcept {
-  ++state.bad_inputs;
-  return state.tick_s;
-}
-
-Detail mended_detail(WalkState& state) noexcept {
-  ++state.bad_inputs;
-  return detail_of(state.walk);
-}
-
 double mended_place(double place_m, WalkState& state) noexcept {
   if (std::abs(place_m) <= kFarthest_m) return place_m;
   ++state.bad_inputs;

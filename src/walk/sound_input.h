@@ -23,10 +23,6 @@ inline int tick_parts(double dt_s) noexcept {
 
 // The parameters, with the values in force in place of numbers that are not sound. Counts those.
 GaitParams mended_params(const GaitParams& params, WalkState& state) noexcept;
-// The tick's length, or the last tick's if it is not sound; counts that.
-double mended_tick(WalkState& state) noexcept;
-// The walk's detail in force; counts the one that is not sound.
-Detail mended_detail(WalkState& state) noexcept;
 // A coordinate of a place, or 0 if it is not sound; counts that.
 double mended_place(double place_m, WalkState& state) noexcept;
 

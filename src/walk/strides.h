@@ -115,7 +115,7 @@ struct Rows {
   }
 };
 inline Rows rows_of(const Tables& tables, bool back) noexcept {
-  const StrideRow* first = back ? &tables.back[0][0] : &tables.forward[0][0];
+  const StrideRow* first = back ? &tables.build.back[0][0] : &tables.build.forward[0][0];
   return {reinterpret_cast<const float*>(first), (back ? kBackRatios : kRatios) * kRowNumbers};
 }
 template <class V>
@@ -172,82 +172,6 @@ Stride<V> stride_of(const Time<V>& time, const V* n) noexcept {
   return stride;
 }
 
-// Reads the numbers of a stride. `change`: share by which the last step's stride, of ratio
-// `behind`, has changed into this step's, of ratio `ahead`.
-template <class V>
-Stride<V> read_stride(const Tables& tables, const Time<V>& time, const V& phase, const V& behind,
-                      const V& ahead, const V& change, const Reads<V>& reads) noexcept {
-  constexpr int kWidth = kLanes<V>, kPart = kLanes<RowPart>, kParts = kRowNumbers / kPart,
-                kPlanParts = kPlanNumbers / kPart;
-  constexpr int kHeelParts = kHeelNumbers <= kPart ? 1 : kHeelNumbers / kPart,
-                kHeelRoom = kHeelParts * kPart, kNumbers = kRowNumbers + 2 * kHeelNumbers;
-  const V last = last_ratio<V>(time.back), back = chosen<V>(time.back, 1.0f, 0.0f),
-          is_read = chosen<V>(either(reads.plan, reads.whole), 1.0f, 0.0f),
-          is_whole = chosen<V>(reads.whole, 1.0f, 0.0f);
-  const Knots<V> knots = knots_at(phase), old = ratios_at(behind, last),
-                 next = ratios_at(ahead, last);
-  alignas(64) float row[kWidth][kNumbers];
-  for (int w = 0; w < kWidth; ++w) {
-    if (lane(is_read, w) == 0.0f) {
-      std::memset(row[w], 0, sizeof row[w]);
-      continue;
-    }
-    const bool whole = lane(is_whole, w) != 0.0f;
-    const int i = static_cast<int>(lane(knots.first, w));
-    const int first[2] = {static_cast<int>(lane(old.first, w)),
-                          static_cast<int>(lane(next.first, w))};
-    float of_old[kRatios + 4] = {}, of_next[kRatios + 4] = {};  // by ratio + 1
-    for (int k = 0; k < 4; ++k) {
-      of_old[first[0] + 1 + k] = lane(old.weight[k], w);
-      of_next[first[1] + 1 + k] = lane(next.weight[k], w);
-    }
-    const float share = lane(change, w), left = 1.0f - share;
-    const float k0 = lane(knots.weight[0], w), k1 = lane(knots.weight[1], w),
-                k2 = lane(knots.weight[2], w), k3 = lane(knots.weight[3], w);
-    RowPart sum[kParts] = {}, heel_old[kHeelParts] = {}, heel_next[kHeelParts] = {};
-    const int begin = std::max(0, std::min(first[0], first[1])),
-              end = std::min(static_cast<int>(lane(last, w)), std::max(first[0], first[1]) + 3);
-    const Rows rows = rows_of(tables, lane(back, w) != 0.0f);
-    for (int r = begin; r <= end; ++r) {
-      const float a = of_old[r + 1], b = of_next[r + 1], mixed = a * left + b * share;
-      const float *p0 = rows.at(i, r), *p1 = rows.at(i + 1, r), *p2 = rows.at(i + 2, r),
-                  *p3 = rows.at(i + 3, r);
-      const auto here = [&](int n) {
-        const int o = n * kPart;
-        return RowPart(part<RowPart>(p0 + o) * k0 + part<RowPart>(p1 + o) * k1 +
-                       part<RowPart>(p2 + o) * k2 + part<RowPart>(p3 + o) * k3);
-      };
-#pragma GCC unroll 4
-      for (int n = 0; n < kPlanParts; ++n) {
-        const RowPart of = here(n);
-        sum[n] += of * mixed;
-        if (n < kHeelParts) {
-          heel_old[n] += of * a;
-          heel_next[n] += of * b;
-        }
-      }
-      if (!whole) continue;
-#pragma GCC unroll 10
-      for (int n = kPlanParts; n < kParts; ++n) sum[n] += here(n) * mixed;
-    }
-    float heels[2][kHeelRoom];
-    std::memcpy(heels[0], heel_old, sizeof heel_old);
-    std::memcpy(heels[1], heel_next, sizeof heel_next);
-    std::memcpy(row[w], sum, sizeof sum);
-    std::memcpy(row[w] + kRowNumbers, heels[0], kHeelNumbers * sizeof(float));
-    std::memcpy(row[w] + kRowNumbers + kHeelNumbers, heels[1], kHeelNumbers * sizeof(float));
-  }
-  V n[kNumbers];
-  to_lanes(&row[0][0], kNumbers, n);
-
-  Stride<V> stride = stride_of(time, n);
-  const auto heel = [&](const V* of) { return swing_heel(time, of); };
-  stride.heel_high_m = heel(n).y;
-  stride.heel_behind_m = heel(n + kRowNumbers);
-  stride.heel_ahead_m = heel(n + kRowNumbers + kHeelNumbers);
-  return stride;
-}
-
 // Index in a row: pitch of the left foot, then of the right one.
 inline constexpr int kPitchAt = offsetof(StrideRow, pitch_rad) / sizeof(float);
 
@@ -290,24 +214,6 @@ StrideMix<V> mix_of_ratios(const Tables& tables, const Time<V>& time, const Knot
   }
   return mix;
 }
-// The same of the strides around one ratio.
-template <class V>
-StrideMix<V> mix_of_ratio(const Tables& tables, const Time<V>& time, const Knots<V>& ratios,
-                          const Mask<V>& where) noexcept {
-  const V last = last_ratio<V>(time.back), back = chosen<V>(time.back, 1.0f, 0.0f),
-          is = chosen<V>(where, 1.0f, 0.0f);
-  StrideMix<V> mix;
-  for (int w = 0; w < kLanes<V>; ++w) {
-    if (lane(is, w) == 0.0f) continue;
-    auto& of = mix.walk[w];
-    const int first = static_cast<int>(lane(ratios.first, w));
-    for (int k = 0; k < 4; ++k) of.weight[first + 1 + k] = lane(ratios.weight[k], w);
-    of.begin = std::max(0, first);
-    of.end = std::min(static_cast<int>(lane(last, w)), first + 3);
-    of.rows = rows_of(tables, lane(back, w) != 0.0f);
-  }
-  return mix;
-}
 // The mix of the strides of ratios `behind` and `ahead`; and the stride of one ratio.
 template <class V>
 StrideMix<V> mix_of_strides(const Tables& tables, const Time<V>& time, const V& behind,
@@ -319,7 +225,76 @@ StrideMix<V> mix_of_strides(const Tables& tables, const Time<V>& time, const V& 
 template <class V>
 StrideMix<V> mix_of_strides(const Tables& tables, const Time<V>& time, const V& ratio,
                             const Mask<V>& where) noexcept {
-  return mix_of_ratio(tables, time, ratios_at(ratio, last_ratio<V>(time.back)), where);
+  return mix_of_strides(tables, time, ratio, ratio, V{}, where);
+}
+
+// Reads the numbers of a stride. `change`: share by which the last step's stride, of ratio
+// `behind`, has changed into this step's, of ratio `ahead`.
+template <class V>
+Stride<V> read_stride(const Tables& tables, const Time<V>& time, const V& phase, const V& behind,
+                      const V& ahead, const V& change, const Reads<V>& reads) noexcept {
+  constexpr int kWidth = kLanes<V>, kPart = kLanes<RowPart>, kParts = kRowNumbers / kPart,
+                kPlanParts = kPlanNumbers / kPart;
+  constexpr int kHeelParts = kHeelNumbers <= kPart ? 1 : kHeelNumbers / kPart,
+                kNumbers = kRowNumbers + 2 * kHeelNumbers;
+  const V last = last_ratio<V>(time.back), is_whole = chosen<V>(reads.whole, 1.0f, 0.0f);
+  const Knots<V> knots = knots_at(phase), old = ratios_at(behind, last),
+                 next = ratios_at(ahead, last);
+  const StrideMix<V> mix =
+      mix_of_ratios(tables, time, old, next, change, either(reads.plan, reads.whole));
+  alignas(64) float row[kWidth][kNumbers];
+  for (int w = 0; w < kWidth; ++w) {
+    const auto& of_walk = mix.walk[w];
+    const Rows& rows = of_walk.rows;
+    if (rows.first == nullptr) {
+      std::memset(row[w], 0, sizeof row[w]);
+      continue;
+    }
+    const bool whole = lane(is_whole, w) != 0.0f;
+    const int i = static_cast<int>(lane(knots.first, w));
+    float of_old[kRatios + 4] = {}, of_next[kRatios + 4] = {};  // by ratio + 1
+    for (int k = 0; k < 4; ++k) {
+      of_old[static_cast<int>(lane(old.first, w)) + 1 + k] = lane(old.weight[k], w);
+      of_next[static_cast<int>(lane(next.first, w)) + 1 + k] = lane(next.weight[k], w);
+    }
+    const float k0 = lane(knots.weight[0], w), k1 = lane(knots.weight[1], w),
+                k2 = lane(knots.weight[2], w), k3 = lane(knots.weight[3], w);
+    RowPart sum[kParts] = {}, heel_old[kHeelParts] = {}, heel_next[kHeelParts] = {};
+    for (int r = of_walk.begin; r <= of_walk.end; ++r) {
+      const float a = of_old[r + 1], b = of_next[r + 1], mixed = of_walk.weight[r + 1];
+      const float *p0 = rows.at(i, r), *p1 = rows.at(i + 1, r), *p2 = rows.at(i + 2, r),
+                  *p3 = rows.at(i + 3, r);
+      const auto here = [&](int n) {
+        const int o = n * kPart;
+        return RowPart(part<RowPart>(p0 + o) * k0 + part<RowPart>(p1 + o) * k1 +
+                       part<RowPart>(p2 + o) * k2 + part<RowPart>(p3 + o) * k3);
+      };
+#pragma GCC unroll 4
+      for (int n = 0; n < kPlanParts; ++n) {
+        const RowPart of = here(n);
+        sum[n] += of * mixed;
+        if (n < kHeelParts) {
+          heel_old[n] += of * a;
+          heel_next[n] += of * b;
+        }
+      }
+      if (!whole) continue;
+#pragma GCC unroll 10
+      for (int n = kPlanParts; n < kParts; ++n) sum[n] += here(n) * mixed;
+    }
+    std::memcpy(row[w], sum, sizeof sum);
+    std::memcpy(row[w] + kRowNumbers, heel_old, kHeelNumbers * sizeof(float));
+    std::memcpy(row[w] + kRowNumbers + kHeelNumbers, heel_next, kHeelNumbers * sizeof(float));
+  }
+  V n[kNumbers];
+  to_lanes(&row[0][0], kNumbers, n);
+
+  Stride<V> stride = stride_of(time, n);
+  const auto heel = [&](const V* of) { return swing_heel(time, of); };
+  stride.heel_high_m = heel(n).y;
+  stride.heel_behind_m = heel(n + kRowNumbers);
+  stride.heel_ahead_m = heel(n + kRowNumbers + kHeelNumbers);
+  return stride;
 }
 
 // Sums kParts registers of the rows of a mix, from number `at` on, around a walk's knots.
@@ -342,34 +317,32 @@ template <class R, int kParts, class OfWalk, class V>
   }
 }
 
-// Reads a stride but for its heels, which are 0; all of it is 0 for walks that the mix leaves out.
-template <class V>
-Stride<V> read_stride(const StrideMix<V>& mix, const Time<V>& time, const V& phase) noexcept {
-  constexpr int kParts = kRowNumbers / kLanes<RowPart>;
+// Reads kNumbers neighbouring numbers of a row, from number `at` on; 0 for walks that the mix
+// leaves out.
+template <class R, int kNumbers, class V>
+void read_row(const StrideMix<V>& mix, int at, const V& phase, V (&to)[kNumbers]) noexcept {
   const Knots<V> knots = knots_at(phase);
-  alignas(64) float row[kLanes<V>][kRowNumbers];
+  alignas(64) float row[kLanes<V>][kNumbers];
   for (int w = 0; w < kLanes<V>; ++w) {
-    RowPart sum[kParts] = {};
-    if (mix.walk[w].rows.first != nullptr) sum_rows(mix.walk[w], 0, knots, w, sum);
-    std::memcpy(row[w], sum, sizeof sum);
-  }
-  V n[kRowNumbers];
-  to_lanes(&row[0][0], kRowNumbers, n);
-  return stride_of(time, n);
-}
-
-// Reads four neighbouring numbers of a row, from number `at` on; 0 for walks that the mix leaves
-// out.
-template <class V>
-void read_four(const StrideMix<V>& mix, int at, const V& phase, V (&to)[4]) noexcept {
-  const Knots<V> knots = knots_at(phase);
-  alignas(64) float row[kLanes<V>][4];
-  for (int w = 0; w < kLanes<V>; ++w) {
-    Four sum[1] = {};
+    R sum[kNumbers / kLanes<R>] = {};
     if (mix.walk[w].rows.first != nullptr) sum_rows(mix.walk[w], at, knots, w, sum);
     std::memcpy(row[w], sum, sizeof sum);
   }
-  to_lanes(&row[0][0], 4, to);
+  to_lanes(&row[0][0], kNumbers, to);
+}
+
+// Reads a stride but for its heels, which are 0; all of it is 0 for walks that the mix leaves out.
+template <class V>
+Stride<V> read_stride(const StrideMix<V>& mix, const Time<V>& time, const V& phase) noexcept {
+  V n[kRowNumbers];
+  read_row<RowPart>(mix, 0, phase, n);
+  return stride_of(time, n);
+}
+
+// Reads four neighbouring numbers of a row.
+template <class V>
+void read_four(const StrideMix<V>& mix, int at, const V& phase, V (&to)[4]) noexcept {
+  read_row<Four>(mix, at, phase, to);
 }
 
 // The same at several phases. The knots of one walk's phases are found side by side.
@@ -516,7 +489,7 @@ struct FootprintsIn {
 };
 template <class V>
 FootprintsIn<V> footprints_of(const Tables& tables, const Time<V>& time, const V& ratio) noexcept {
-  const FootprintLines &ahead = tables.footprints, &back = tables.back_footprints;
+  const FootprintLines &ahead = tables.build.footprints, &back = tables.build.back_footprints;
   const V at =
       least(most(ratio, V{}), chosen<V>(time.back, tables.most_back_ratio, tables.most_ratio));
   const auto of = [&](const Mask<V>& right) {

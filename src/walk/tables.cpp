@@ -413,33 +413,10 @@ std::shared_ptr<const BuildTables> build_tables(const WalkModel& model) {
 
 Tables tables_of(const WalkModel& model, double tick_s) noexcept {
   const BuildTables& of = *model.tables;
-  return {of,
-          kept_filters(model.time_scale, tick_s),
-          of.forward,
-          of.back,
-          of.footprints,
-          of.back_footprints,
-          of.leg_harmonics,
-          of.leg,
-          of.chain,
-          of.stage_share,
-          of.upper,
-          of.upper_rows,
-          of.path,
-          of.spine,
-          of.arm,
-          of.chest_standing,
-          of.head_standing,
-          of.spine_base,
-          of.neck_m,
-          of.plain_body,
-          of.most_elbow_swing,
-          of.still,
-          of.kept,
-          of.above_pelvis,
-          of.pelvis_offset_m,
-          of.pelvis_standing,
-          is_flat(*model.terrain) ? nullptr : model.terrain.get()};
+  return {of,      kept_filters(model.time_scale, tick_s),
+          of,      of.leg,
+          of.path, of.spine,
+          of.arm,  is_flat(*model.terrain) ? nullptr : model.terrain.get()};
 }
 
 }  // namespace gaitpad

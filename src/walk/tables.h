@@ -110,6 +110,11 @@ struct BuildNumbers {
   float arm_m, shoulder_height_m;  // UpperBodyModel
   // Bounds of the angular acceleration of chest and head while a walk changes, rad/s^2.
   float most_chest_s2, most_head_s2;
+  // The stages' shares of the phase: right roll, left flight, left roll, right flight.
+  std::array<float, 4> stage_share;
+  std::array<float, 4> pelvis_standing, chest_standing, head_standing, spine_base;  // w, x, y, z
+  std::array<float, 3> pelvis_offset_m, neck_m;
+  std::array<float, 2> most_elbow_swing;  // by Side
 };
 
 // The tables of a build, for ticks of any length.
@@ -123,23 +128,15 @@ struct BuildTables : BuildNumbers {
       leg_harmonics;
   std::array<LegBones, 2> leg;
   std::array<IkChain, 2> chain;  // for IkMode::paper, by Side
-  // The stages' shares of the phase: right roll, left flight, left roll, right flight.
-  std::array<float, 4> stage_share;
-
   std::vector<UpperJoint> upper;
   std::vector<float> upper_rows;  // (kKnots + 3) x upper.size() x 4: x, y, z, w
   std::vector<PathJoint> path;    // from the pelvis' child on, or from the root
   std::vector<SpineBone> spine;   // empty: it does not bend by weights
   std::array<ArmBones, 2> arm;
-  std::array<float, 4> chest_standing, head_standing, spine_base;  // w, x, y, z
-  std::array<float, 3> neck_m;
   std::array<float, kBodyNumbers> plain_body;  // UpperBodyParams without a style
-  std::array<float, 2> most_elbow_swing;
-  std::vector<int> still;                    // joints that are always the identity
+  std::vector<int> still;                      // joints that are always the identity
   std::vector<std::pair<int, quat>> kept;    // twist joints of the legs, which keep their rotation
   std::vector<ArmBones::Link> above_pelvis;  // root to the pelvis' parent; empty: it is the root
-  std::array<float, 3> pelvis_offset_m;
-  std::array<float, 4> pelvis_standing;  // w, x, y, z
 };
 
 // The filters of a build at one tick's length.
@@ -155,27 +152,11 @@ inline constexpr double kRailSmoothing_s = 0.06;  // time constant of `rail`, at
 // All that a tick reads beside its walks: the tables of a build, the filters of the tick's length,
 // and the ground.
 struct Tables : BuildNumbers, Filters {
-  const StrideRows& forward;
-  const BackRows& back;
-  const FootprintLines &footprints, &back_footprints;
-  const decltype(BuildTables::leg_harmonics)& leg_harmonics;
+  const BuildTables& build;
   const std::array<LegBones, 2>& leg;
-  const std::array<IkChain, 2>& chain;
-  const std::array<float, 4>& stage_share;
-  const std::vector<UpperJoint>& upper;
-  const std::vector<float>& upper_rows;
   const std::vector<PathJoint>& path;
   const std::vector<SpineBone>& spine;
   const std::array<ArmBones, 2>& arm;
-  const std::array<float, 4>&chest_standing, &head_standing, &spine_base;
-  const std::array<float, 3>& neck_m;
-  const std::array<float, kBodyNumbers>& plain_body;
-  const std::array<float, 2>& most_elbow_swing;
-  const std::vector<int>& still;
-  const std::vector<std::pair<int, quat>>& kept;
-  const std::vector<ArmBones::Link>& above_pelvis;
-  const std::array<float, 3>& pelvis_offset_m;
-  const std::array<float, 4>& pelvis_standing;
   const Terrain* terrain;  // null if the ground is level
 };
 

@@ -1,7 +1,6 @@
 // One tick of the walks of a block: advance_on(), at the end, in the order of its data.
 #pragma once
 #include "walk/ankle.h"
-#include "walk/asked_steps.h"
 #include "walk/detail.h"
 #include "walk/ground_plan.h"
 #include "walk/paper.h"

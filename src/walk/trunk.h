@@ -8,7 +8,6 @@
 #include "gaitpad/walk_model.h"
 #include "walk/chain_solve.h"
 #include "walk/idle.h"
-#include "walk/pose_places.h"
 #include "walk/weights.h"
 
 namespace gaitpad {

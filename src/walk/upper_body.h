@@ -27,39 +27,17 @@ Mask<V> has_style(const Styled<V>& styled) noexcept {
   return either(either(styled.asked != V{}, styled.acts != V{}), styled.idle_share != V{});
 }
 
-// Brings the style's numbers in force nearer to those asked for, and without a style to the data's.
 template <class V>
 void smooth_body(const Tables& tables, const Mask<V>& is_styled, Styled<V>& styled) noexcept {
-  const auto asked = styled.asked != V{}, acted = styled.acts != V{};
-  // Return early if all numbers have settled, as they have in nearly every tick.
-  auto moves = both(is_styled, acted != asked);
-  for (int n = 0; n < kBodyNumbers; ++n) {
-    const V goal = asked ? styled.goal[n] : all<V>(tables.plain_body[n]);
-    moves =
-        either(moves, both(is_styled, either(styled.body[n].x != goal, styled.body[n].v != V{})));
-  }
-  if (!any(moves)) return;
-  auto plain = no(asked);
-  for (int n = 0; n < kBodyNumbers; ++n) {
-    const V none = all<V>(tables.plain_body[n]), goal = asked ? styled.goal[n] : none;
-    const auto is_none = goal == none,
-               rests = both(either(acted, is_none),
-                            both(styled.body[n].x == goal, styled.body[n].v == V{}));
-    if (!any(both(moves, no(rests)))) {  // most numbers of a style are those of none
-      plain = both(plain, is_none);
-      continue;
-    }
-    Smoothed<V> number{acted ? styled.body[n].x : none, acted ? styled.body[n].v : V{}};
-    follow(goal, tables.body, number);
+  const auto there = [](const V& goal, const Smoothed<V>& number) {
     const V unit = most(size(goal), all<V>(1.0f));
-    const auto there =
-        both(size(V(number.x - goal)) < kSettled * unit, size(number.v) < kStill_per_s * unit);
-    const V value = there ? goal : number.x, rate = there ? V{} : number.v;
-    styled.body[n].x = moves ? value : styled.body[n].x;
-    styled.body[n].v = moves ? rate : styled.body[n].v;
-    plain = both(plain, value == none);
-  }
-  styled.acts = moves ? chosen<V>(plain, 0.0f, 1.0f) : styled.acts;
+    return both(size(V(number.x - goal)) < kSettled * unit, size(number.v) < kStill_per_s * unit);
+  };
+  const auto acts = follow_style(
+      tables.body, Mask<V>(styled.asked != V{}), Mask<V>(styled.acts != V{}), is_styled,
+      kBodyNumbers, styled.goal, [&](int n) { return all<V>(tables.build.plain_body[n]); }, there,
+      styled.body);
+  styled.acts = chosen<V>(acts, 1.0f, 0.0f);
 }
 
 // 1 in the middle of the time in which this leg stands alone, 0 in the middle of the other's.
@@ -142,15 +120,15 @@ void move_rails(const Mask<V>& strikes, const V& up_m, Styled<V>& styled) noexce
 template <class V>
 Turn<V> data_turn(const Tables& tables, const PathJoint& joint, const Knots<V>& knots,
                   const V& shown, const V& is) noexcept {
-  const std::size_t count = tables.upper.size();
+  const std::size_t count = tables.build.upper.size();
   Turn<V> turn = no_turn<V>();
   for (int w = 0; w < kLanes<V>; ++w) {
     if (lane(is, w) == 0.0f) continue;
-    const float* from = tables.upper_rows.data() +
+    const float* from = tables.build.upper_rows.data() +
                         (static_cast<int>(lane(knots.first, w)) * count + joint.upper) * 4;
     Four q{};
     for (int k = 0; k < 4; ++k) q = q + part<Four>(from + 4 * k * count) * lane(knots.weight[k], w);
-    const Four stand = part<Four>(tables.upper[joint.upper].standing.data());
+    const Four stand = part<Four>(tables.build.upper[joint.upper].standing.data());
     q = unit(stand + (unit(q) - stand) * lane(shown, w));
     set_lane(q[0], w, turn.x), set_lane(q[1], w, turn.y), set_lane(q[2], w, turn.z);
     set_lane(q[3], w, turn.w);
@@ -170,11 +148,12 @@ Vec<V> base_place(const Tables& tables, const Turn<V>& heading, const Vec<V>& ro
   if (!tables.on_pelvis) return root_m;
   Vec<V> place_m = root_m;
   Turn<V> turn = heading;
-  for (std::size_t i = 0; i < tables.above_pelvis.size(); ++i) {
-    if (i > 0) place_m = place_m + turn * every<V>(tables.above_pelvis[i].offset_m);
-    turn = turn * read_joint<V>(tables.above_pelvis[i].joint, is, poses);
+  for (std::size_t i = 0; i < tables.build.above_pelvis.size(); ++i) {
+    if (i > 0) place_m = place_m + turn * every<V>(tables.build.above_pelvis[i].offset_m);
+    turn = turn * read_joint<V>(tables.build.above_pelvis[i].joint, is, poses);
   }
-  return tables.above_pelvis.empty() ? place_m : place_m + turn * every<V>(tables.pelvis_offset_m);
+  return tables.build.above_pelvis.empty() ? place_m
+                                           : place_m + turn * every<V>(tables.pelvis_offset_m);
 }
 
 // Turns chest and head ahead of the pelvis, in walks whose upper body is not posed otherwise: each
@@ -503,17 +482,17 @@ inline Four over(const quat& from, const Four& q, float share) noexcept {
 template <class V>
 void write_data(const Tables& tables, const DataRead<V>& data, const V& share,
                 const Poses& poses) noexcept {
-  const std::size_t count = tables.upper.size();
+  const std::size_t count = tables.build.upper.size();
   const Knots<V>& knots = data.knots;
   for (int w = 0; w < poses.walks; ++w) {
     const float part_of = lane(share, w);
     if (part_of == 0.0f) continue;
     const float* row =
-        tables.upper_rows.data() + static_cast<int>(lane(knots.first, w)) * count * 4;
+        tables.build.upper_rows.data() + static_cast<int>(lane(knots.first, w)) * count * 4;
     const float k0 = lane(knots.weight[0], w), k1 = lane(knots.weight[1], w),
                 k2 = lane(knots.weight[2], w), k3 = lane(knots.weight[3], w),
                 shows = lane(data.shown, w);
-    const UpperJoint* joint = tables.upper.data();
+    const UpperJoint* joint = tables.build.upper.data();
     quat* const local = poses.local[w];
     const float swings[5] = {1.0f, lane(data.shoulder[0], w), lane(data.elbow[0], w),
                              lane(data.shoulder[1], w), lane(data.elbow[1], w)};
@@ -533,8 +512,8 @@ void write_data(const Tables& tables, const DataRead<V>& data, const V& share,
       if (part_of < 1.0f) q = over(to, q, part_of);
       store(q, to);
     }
-    for (const int still : tables.still) local[still] = kIdentity;
-    for (const auto& [kept, turn] : tables.kept) local[kept] = turn;
+    for (const int still : tables.build.still) local[still] = kIdentity;
+    for (const auto& [kept, turn] : tables.build.kept) local[kept] = turn;
   }
 }
 

@@ -18,13 +18,7 @@ void advance_by(const Tables& tables, IkMode mode, int parts, WalkState& state,
   vec3* const root_m = &pose.root_m;
   const Poses poses{&local, &root_m, 1};
   place(state.placed, 0, state.walk);
-  for (int part = 0; part < parts; ++part) {
-    if (mode == IkMode::paper) {
-      advance_by_paper(tables, state.walk, poses);
-    } else {
-      advance(tables, state.walk, poses);
-    }
-  }
+  for (int part = 0; part < parts; ++part) advance(tables, mode, state.walk, poses);
 }
 
 }  // namespace
@@ -47,10 +41,10 @@ WalkState standing(const WalkModel& model, const vec3& place_m, double heading_r
 
 void advance(const WalkModel& model, const GaitParams& params, IkMode mode, double dt_s,
              WalkState& state, Pose& pose) noexcept {
-  if (!is_sound_tick(dt_s)) return advance(model, params, mode, mended_tick(state), state, pose);
   if (!is_sound(params))
     return advance(model, mended_params(params, state), mode, dt_s, state, pose);
-  if (!is_sound(state.detail)) state.detail = mended_detail(state);
+  if (!is_sound_tick(dt_s)) dt_s = state.tick_s, ++state.bad_inputs;
+  if (!is_sound(state.detail)) state.detail = detail_of(state.walk), ++state.bad_inputs;
   state.tick_s = dt_s;
   const int parts = tick_parts(dt_s);
   const Tables tables = tables_of(model, dt_s / parts);

@@ -87,15 +87,13 @@ void report_feet(const WalkModel& model, const Tables& tables, const Placement& 
 
 }  // namespace
 
-Placement root_of(const Block<1>& block) noexcept {
-  const State<float>& state = block.state;
-  const Told<float>& told = block.told;
-  const Origin& origin = block.origin[0];
+Placement root_of(const RootNumbers& numbers) noexcept {
+  const Origin& origin = numbers.origin;
   const Vec<float> beside =
-      way_of(state.heading_rad) * Vec<float>{told.pelvis_x_m, 0.0f, told.pelvis_z_m};
-  const vec3 hips_m(state.pelvis_x_m[0] - beside.x, 0.0, state.pelvis_z_m[0] - beside.z);
+      way_of(numbers.heading_rad) * Vec<float>{numbers.beside_x_m, 0.0f, numbers.beside_z_m};
+  const vec3 hips_m(numbers.pelvis_x_m - beside.x, 0.0, numbers.pelvis_z_m - beside.z);
   return {to_world({vec3(origin.x_m, 0.0, origin.z_m), origin.heading_rad}, hips_m),
-          origin.heading_rad + static_cast<double>(state.heading_rad)};
+          origin.heading_rad + static_cast<double>(numbers.heading_rad)};
 }
 
 float phase_of(const Block<1>& block) noexcept {

@@ -1,6 +1,7 @@
 // Reports a tick (WalkFrame) from the walk's state and pose.
 #pragma once
 #include <span>
+#include <tuple>
 
 #include "gaitpad/walk.h"
 #include "walk/block.h"
@@ -8,15 +9,23 @@
 
 namespace gaitpad {
 
+// The numbers from which the root of a walk follows.
+struct RootNumbers {
+  float heading_rad = 0.0f, pelvis_x_m = 0.0f, pelvis_z_m = 0.0f, beside_x_m = 0.0f,
+        beside_z_m = 0.0f;
+  Origin origin;
+};
+template <int kWidth>
+RootNumbers root_numbers(const Block<kWidth>& block, int walk) noexcept {
+  const auto& [state, told] = std::tie(block.state, block.told);
+  return {lane(state.heading_rad, walk),   lane(state.pelvis_x_m[0], walk),
+          lane(state.pelvis_z_m[0], walk), lane(told.pelvis_x_m, walk),
+          lane(told.pelvis_z_m, walk),     block.origin[walk]};
+}
 // In the walk's own coordinates: the hips' place on the ground, without the tables' oscillation,
 // and the heading.
-Placement root_of(const Block<1>& block) noexcept;
-template <int kWidth>
-Placement root_of(const Block<kWidth>& block, int walk) noexcept {
-  Block<1> one;
-  copy_walk(block, walk, one, 0);
-  return root_of(one);
-}
+Placement root_of(const RootNumbers& numbers) noexcept;
+inline Placement root_of(const Block<1>& block) noexcept { return root_of(root_numbers(block, 0)); }
 
 // Phase of the data that the pose shows.
 float phase_of(const Block<1>& block) noexcept;

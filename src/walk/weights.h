@@ -233,7 +233,8 @@ void begin_weights(const Tables& tables, const Mask<V>& begins, const Time<V>& t
       V of[1 + 2 * kHarmonics];
       for (int w = 0; w < kLanes<V>; ++w) {
         const int r = static_cast<int>(lane(first, w)), s = static_cast<int>(lane(side, w));
-        const auto &a = tables.leg_harmonics[r][s][j], &b = tables.leg_harmonics[r + 1][s][j];
+        const auto &a = tables.build.leg_harmonics[r][s][j],
+                   &b = tables.build.leg_harmonics[r + 1][s][j];
         for (int n = 0; n < 1 + 2 * kHarmonics; ++n)
           set_lane(a[n] + (b[n] - a[n]) * lane(share, w), w, of[n]);
       }
@@ -255,41 +256,50 @@ void begin_weights(const Tables& tables, const Mask<V>& begins, const Time<V>& t
   }
 }
 
-// Brings the weights in force nearer to those asked for. True for walks with a weight that is
-// not 1.
+// Brings numbers of a style in force nearer to those asked for, and without a style to `none_of`.
+// `there`: where a number has settled. Returns the walks with a number that is not that of none.
+template <class V, class NoneOf, class There>
+Mask<V> follow_style(const Filter& filter, const Mask<V>& asked, const Mask<V>& acted,
+                     const Mask<V>& where, int count, const V* goals, const NoneOf& none_of,
+                     const There& there, Smoothed<V>* numbers) noexcept {
+  // Return early if all numbers have settled, as they have in nearly every tick.
+  auto moves = both(where, acted != asked);
+  for (int n = 0; n < count; ++n) {
+    const V goal = asked ? goals[n] : none_of(n);
+    moves = either(moves, both(where, either(numbers[n].x != goal, numbers[n].v != V{})));
+  }
+  if (!any(moves)) return acted;
+  auto acts = asked;
+  for (int n = 0; n < count; ++n) {
+    Smoothed<V>& in_force = numbers[n];
+    const V none = none_of(n), goal = asked ? goals[n] : none;
+    const auto is_none = goal == none,
+               rests = both(either(acted, is_none), both(in_force.x == goal, in_force.v == V{}));
+    if (!any(both(moves, no(rests)))) {  // most numbers of a style are those of none
+      acts = either(acts, no(is_none));
+      continue;
+    }
+    Smoothed<V> number{acted ? in_force.x : none, acted ? in_force.v : V{}};
+    follow(goal, filter, number);
+    const auto is_there = there(goal, number);
+    const V x = is_there ? goal : number.x, v = is_there ? V{} : number.v;
+    in_force = {moves ? x : in_force.x, moves ? v : in_force.v};
+    acts = either(acts, x != none);
+  }
+  return either(both(moves, acts), both(no(moves), acted));
+}
 template <class V>
 Mask<V> smooth_weights(const Tables& tables, Weighted<V>& weighted) noexcept {
   const V one = all<V>(1.0f);
   const auto asked = weighted.asked != V{}, acted = weighted.acts != V{};
-  auto acts = asked;
-  // Return early if all weights have settled, as they have in nearly every tick.
-  auto moves = acted != asked;
-  for (int side : {0, 1})
-    for (int j = 0; j < kLegAngles; ++j)
-      moves = either(moves, both(acted, either(weighted.weight[side][j].x != weighted.goal[side][j],
-                                               weighted.weight[side][j].v != V{})));
-  if (!any(moves)) return acts;
-  for (int side : {0, 1}) {
-    for (int j = 0; j < kLegAngles; ++j) {
-      Smoothed<V>& in_force = weighted.weight[side][j];
-      const V goal = asked ? weighted.goal[side][j] : one;
-      const auto is_one = goal == one,
-                 rests = both(either(acted, is_one), both(in_force.x == goal, in_force.v == V{}));
-      if (!any(both(moves, no(rests)))) {
-        acts = either(acts, both(acted, no(is_one)));
-        continue;
-      }
-      Smoothed<V> weight{acted ? in_force.x : one, acted ? in_force.v : V{}};
-      follow(goal, tables.weights, weight);
-      const auto even = both(goal == one, size(V(weight.x - one)) < all<V>(kSettled)),
-                 there = either(even, both(size(V(weight.x - goal)) < all<V>(kEvenWeights),
-                                           size(weight.v) < all<V>(kStill_per_s)));
-      const V x = there ? goal : weight.x, v = there ? V{} : weight.v;
-      in_force = {moves ? x : in_force.x, moves ? v : in_force.v};
-      acts = either(acts, both(acted, no(even)));
-    }
-  }
-  return acts;
+  const auto there = [&](const V& goal, const Smoothed<V>& weight) {
+    const auto even = both(goal == one, size(V(weight.x - one)) < all<V>(kSettled));
+    return either(even, both(size(V(weight.x - goal)) < all<V>(kEvenWeights),
+                             size(weight.v) < all<V>(kStill_per_s)));
+  };
+  return follow_style(
+      tables.weights, asked, acted, either(asked, acted), 2 * kLegAngles, &weighted.goal[0][0],
+      [&](int) { return one; }, there, &weighted.weight[0][0]);
 }
 
 // How freely a leg follows its weights: its joints in general, and its foot by pitch and aside.

@@ -266,7 +266,6 @@ void add_leg(const Skeleton& skeleton, const JointFrames& world, const LegJoints
   leg.knee_m.push_back(world.position_m[j.knee]);
   leg.ankle_m.push_back(world.position_m[j.ankle]);
   leg.toe_m.push_back(world.position_m[j.toe]);
-  leg.toe_end_m.push_back(world.position_m[j.toe_end]);
   leg.hip.push_back(world.rotation[j.hip]);
   leg.above_knee.push_back(world.rotation[skeleton.joints[j.knee].parent]);
   leg.knee.push_back(world.rotation[j.knee]);

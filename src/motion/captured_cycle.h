@@ -28,7 +28,7 @@ struct PeriodicMotion {
 PeriodicMotion periodic_motion(const Motion& motion, const StrideWindow& window);
 
 struct CapturedLeg {  // one leg: rotations of joint frames in the travel frame
-  std::vector<vec3> knee_m, ankle_m, toe_m, toe_end_m, hip_m;
+  std::vector<vec3> knee_m, ankle_m, toe_m, hip_m;
   std::vector<quat> hip, above_knee, knee, ankle, toe;  // above_knee: the knee's parent
 };
 // The periodic stride as kCycleSamples poses.

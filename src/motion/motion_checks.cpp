@@ -65,8 +65,12 @@ Problem rotations_problem(const std::string& what, std::span<const quat> rotatio
 }  // namespace
 
 bool has_legs(const Motion& motion) noexcept {
-  return std::ranges::all_of(
-      motion.legs, [](const LegJoints& leg) { return std::ranges::min(joints_of(leg)) >= 0; });
+  for (const LegJoints& leg : motion.legs) {
+    for (const int joint : joints_of(leg)) {
+      if (joint < 0) return false;
+    }
+  }
+  return true;
 }
 
 Problem check(const Motion& motion) {
@@ -90,7 +94,7 @@ Problem check(const Motion& motion) {
     if (frame.translation_m.empty()) continue;
     if ((problem = count_problem(what + "translation_m", frame.translation_m.size(), joints)))
       return problem;
-    if (!std::ranges::all_of(frame.translation_m, is_finite))
+    if (!std::all_of(frame.translation_m.begin(), frame.translation_m.end(), is_finite))
       return Error{what + "translation_m is not finite"};
   }
   return std::nullopt;

@@ -1,6 +1,7 @@
 // Third part of a tick: moves the hips, and finds the phase at which the tables are read.
 #pragma once
 #include <cstdint>
+#include <type_traits>
 
 #include "walk/strides.h"
 
@@ -19,15 +20,19 @@ Path<V> path_to(const Landing<V>& landing, const FootprintsIn<V>& prints, const 
 // True if there is no difference in any walk, by its bits: a zero with a sign is one.
 template <class V>
 bool is_nothing(const Off<V>& off) noexcept {
-  std::array<std::uint64_t, sizeof(V) / 4> parts{};  // at least as long as a number
-  for (const V* number : {&off.x, &off.v, &off.a}) {
-    std::array<std::uint64_t, sizeof(V) / 4> of{};
-    std::memcpy(of.data(), number, sizeof(V));
-    for (std::size_t i = 0; i < (sizeof(V) + 7) / 8; ++i) parts[i] |= of[i];
+  using Bits = std::conditional_t<kLanes<V> == 1, std::uint32_t, Mask<V>>;
+  static_assert(sizeof(Bits) == sizeof(V));
+  const auto bits = [](const V& number) {
+    Bits of;
+    std::memcpy(&of, &number, sizeof of);
+    return of;
+  };
+  const Bits parts = bits(off.x) | bits(off.v) | bits(off.a);
+  if constexpr (kLanes<V> == 1) {
+    return parts == 0;
+  } else {
+    return !any(parts);
   }
-  std::uint64_t sum = 0;
-  for (const std::uint64_t part : parts) sum |= part;
-  return sum == 0;
 }
 // Moves a difference by one tick along the quintic that brings it, its rate and its acceleration to
 // 0 in `ticks`.

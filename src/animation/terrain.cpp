@@ -220,9 +220,11 @@ bool has_sides(const Heights& heights, int most) noexcept {
          heights.height_m.size() ==
              static_cast<std::size_t>(columns) * static_cast<std::size_t>(rows);
 }
-double sample(const HeightField& field, int column, int row) noexcept {
-  const int c = std::clamp(column, 0, field.columns - 1), r = std::clamp(row, 0, field.rows - 1);
-  return height_in(field, c, r);
+// The same, beyond the border the sample at the border.
+template <class Heights>
+double sample(const Heights& heights, int column, int row) noexcept {
+  return height_in(heights, std::clamp(column, 0, heights.columns - 1),
+                   std::clamp(row, 0, heights.rows - 1));
 }
 
 // The spline's surface before it is faded. `across` and `along` count samples from column 0, row 0.
@@ -241,19 +243,20 @@ ShapePoint unfaded(const FieldSection& section, double across, double along) noe
   return at;
 }
 
-// The greatest height in the field, and the greatest first, second and mixed difference of
+// The greatest height in a field or a grid, and the greatest first, second and mixed difference of
 // neighbouring samples.
 struct Differences {
   double height = 0.0, step = 0.0, bend = 0.0, twist = 0.0;
 };
-Differences differences(const HeightField& f) noexcept {
+template <class Heights>
+Differences differences(const Heights& f) noexcept {
   Differences most;
   for (int r = 0; r < f.rows; ++r) {
     for (int c = 0; c < f.columns; ++c) {
       const double h = sample(f, c, r), right = sample(f, c + 1, r), far = sample(f, c, r + 1);
       most.height = std::max(most.height, std::abs(h));
       most.step = std::max({most.step, std::abs(right - h), std::abs(far - h)});
-      // Samples at the border need no bend: the share is 0 there.
+      // Samples at the border need no bend: beyond it the ground is level, or a share is 0 there.
       if (c > 0 && c + 1 < f.columns)
         most.bend = std::max(most.bend, std::abs(right - 2.0 * h + sample(f, c - 1, r)));
       if (r > 0 && r + 1 < f.rows)
@@ -402,25 +405,14 @@ std::optional<Error> check(const GroundGrid& grid) {
     return Error{"GroundGrid: " + std::to_string(grid.height_m.size()) + " heights are not " +
                  std::to_string(columns) + " x " + std::to_string(rows) + " samples, 2 to " +
                  std::to_string(kMaxGridSide) + " a side"};
-  double step_m = 0.0, bend_m = 0.0;
-  for (int r = 0; r < rows; ++r) {
-    for (int c = 0; c < columns; ++c) {
-      const double h = height_in(grid, c, r);
-      if (!std::isfinite(h))
-        return Error{"GroundGrid: height_m of column " + std::to_string(c) + ", row " +
-                     std::to_string(r) + " is not finite"};
-      const auto compare = [&](bool has_before, bool has_next, int dc, int dr) {
-        if (has_next) step_m = std::max(step_m, std::abs(height_in(grid, c + dc, r + dr) - h));
-        if (has_next && has_before)
-          bend_m = std::max(bend_m, std::abs(height_in(grid, c + dc, r + dr) - 2.0 * h +
-                                             height_in(grid, c - dc, r - dr)));
-      };
-      compare(c > 0, c + 1 < columns, 1, 0);
-      compare(r > 0, r + 1 < rows, 0, 1);
-    }
+  for (int i = 0; i < columns * rows; ++i) {
+    if (!std::isfinite(grid.height_m[i]))
+      return Error{"GroundGrid: height_m of column " + std::to_string(i % columns) + ", row " +
+                   std::to_string(i / columns) + " is not finite"};
   }
+  const Differences most = differences(grid);
   if (auto problem =
-          shape_problem(bend_m / (grid.spacing_m * grid.spacing_m), step_m / grid.spacing_m))
+          shape_problem(most.bend / (grid.spacing_m * grid.spacing_m), most.step / grid.spacing_m))
     return Error{"GroundGrid: " + problem->message};
   return std::nullopt;
 }

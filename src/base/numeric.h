@@ -1,4 +1,4 @@
-// Statistics of a few numbers. They allocate, so a tick must not call them.
+// Statistics of a few numbers. Some allocate, so a tick must not call them.
 #pragma once
 #include <algorithm>
 #include <cstddef>
@@ -20,6 +20,18 @@ inline double median(std::vector<double> values) {
   const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
   std::nth_element(values.begin(), middle, values.end());
   return *middle;
+}
+
+// The number from first to last with the lowest score; of equal ones the first.
+template <class Score>
+int lowest(int first, int last, const Score& score) {
+  int best = first;
+  double least = score(first);
+  for (int i = first + 1; i <= last; ++i) {
+    const double here = score(i);
+    if (here < least) least = here, best = i;
+  }
+  return best;
 }
 
 }  // namespace gaitpad

@@ -7,9 +7,9 @@
 #include <optional>
 
 #include "base/text.h"
+#include "files/euler.h"
 #include "gaitpad/motion_file.h"
 #include "gaitpad/skeleton.h"
-#include "motion/euler.h"
 
 namespace gaitpad {
 namespace {

@@ -12,10 +12,10 @@
 
 #include "base/ranges.h"
 #include "base/text.h"
+#include "files/euler.h"
 #include "files/input_files.h"
 #include "gaitpad/motion_file.h"
 #include "gaitpad/skeleton.h"
-#include "motion/euler.h"
 
 namespace gaitpad {
 

@@ -170,7 +170,11 @@ void fill_samples(const KeyedStride& stride, GaitCycle& cycle) {
       plane.shank = plane.thigh + angle(kKnee);
       plane.foot = plane.shank - angle(kAnkle);
       plane.toe = -angle(kToe);
-      const CycleSample body = side == kRightSide ? at : mirrored_pelvis(at);
+      CycleSample body = at;
+      if (side == kLeftSide) {
+        body.pelvis_m = mirrored(at.pelvis_m);
+        body.pelvis = mirrored(at.pelvis);
+      }
       const LegSample leg = right_leg_in_plane(cycle.leg[kRightSide], body, plane, stride.track_m);
       at.leg[side] = side == kRightSide ? leg : mirrored(leg);
     }
@@ -179,12 +183,7 @@ void fill_samples(const KeyedStride& stride, GaitCycle& cycle) {
 
 // Sets the height of the pelvis so that the lower foot stands on the floor.
 void stand_on_lower_foot(GaitCycle& cycle) {
-  std::array<double, kCycleSamples> height{};
-  for (int i = 0; i < kCycleSamples; ++i) {
-    const CycleSample& at = cycle.samples[i];
-    height[i] = -std::min(foot_clearance(cycle, 0, at), foot_clearance(cycle, 1, at));
-  }
-  height = smoothed(height, 6);
+  const auto height = heights_on_lower_foot<kCycleSamples>(cycle, 6);
   for (int i = 0; i < kCycleSamples; ++i) cycle.samples[i].pelvis_m.y = height[i];
 }
 

@@ -11,12 +11,12 @@
 #include "base/ranges.h"
 #include "base/text.h"
 #include "files/acclaim.h"
+#include "files/euler.h"
 #include "files/input_files.h"
 #include "files/keyframe.h"
 #include "files/toml_file.h"
 #include "gaitpad/bvh.h"
 #include "gaitpad/config_files.h"
-#include "motion/euler.h"
 
 namespace gaitpad {
 

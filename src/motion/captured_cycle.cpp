@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <memory>
 
+#include "base/numeric.h"
 #include "gaitpad/anatomy.h"
 #include "gaitpad/curve.h"
 #include "gaitpad/motion.h"
@@ -21,8 +22,8 @@ constexpr int kFullHarmonics = 10;   // harmonics above this number fade out to 
 
 // Natural cubic spline through values at 0, 1, 2 ...
 struct Spline {
-  std::vector<double> value, curvature;
-  double at(double x) const {
+  std::vector<vec3> value, curvature;
+  vec3 at(double x) const {
     const int last = static_cast<int>(value.size()) - 2;
     const int i = std::clamp(static_cast<int>(std::floor(x)), 0, last);
     const double t = x - i, s = 1.0 - t;
@@ -31,13 +32,14 @@ struct Spline {
   }
 };
 
-Spline spline(std::vector<double> value) {
+Spline spline(std::vector<vec3> value) {
   const int n = static_cast<int>(value.size());
-  std::vector<double> curvature(n, 0.0), upper(n, 0.0);
+  std::vector<vec3> curvature(n, vec3(0.0));
+  std::vector<double> upper(n, 0.0);
   for (int i = 1; i + 1 < n; ++i) {
     const double pivot = 4.0 - upper[i - 1];
     upper[i] = 1.0 / pivot;
-    const double bend = 6.0 * (value[i + 1] - 2.0 * value[i] + value[i - 1]);
+    const vec3 bend = 6.0 * (value[i + 1] - 2.0 * value[i] + value[i - 1]);
     curvature[i] = (bend - curvature[i - 1]) / pivot;
   }
   for (int i = n - 2; i > 0; --i) curvature[i] -= upper[i] * curvature[i + 1];
@@ -67,52 +69,42 @@ StrideFrames frames_of(const StrideWindow& w) {
   return s;
 }
 
+vec3 faded(const StrideFrames& s, const Spline& x, double phase) {
+  const vec3 y = x.at(s.place(phase));
+  const double share = s.before / (s.before + s.after);
+  if (phase > 1.0 - s.before)
+    return gaitpad::mix(y, x.at(s.place(phase - 1.0)),
+                        share * smoothstep(1.0 - s.before, 1.0, phase));
+  if (phase < s.after) {
+    const double w = (1.0 - share) * (1.0 - smoothstep(0.0, s.after, phase));
+    return gaitpad::mix(y, x.at(s.place(phase + 1.0)), w);
+  }
+  return y;
+}
+
+vec3 with_spread_gap(const StrideFrames& s, const Spline& x, double phase) {
+  // Distance from the seam up to which the gaps are spread, and that over which a slope is taken;
+  // shares of the stride.
+  constexpr double kReach = 0.15, kStep = 0.01;
+  const vec3 gap = x.at(s.place(1.0)) - x.at(s.place(0.0));
+  const vec3 slope_start = (x.at(s.place(kStep)) - x.at(s.place(0.0))) / kStep;
+  const vec3 slope_end = (x.at(s.place(1.0)) - x.at(s.place(1.0 - kStep))) / kStep;
+  const vec3 half = 0.5 * (slope_end - slope_start);
+  const double from_seam = std::min(phase, 1.0 - phase);
+  const double rest = std::max(0.0, 1.0 - from_seam / kReach);
+  const double near = 0.5 * (1.0 - smoothstep(0.0, kReach, from_seam));
+  return x.at(s.place(phase)) + gap * (phase < 0.5 ? near : -near) + half * from_seam * rest * rest;
+}
+
 // Makes x(phase), 0 .. 1, periodic. If the motion continues beyond the seam, both of its sides are
 // cross-faded. Otherwise the gaps in value and slope are spread around the seam. Samples away from
 // the seam do not change.
-class SeamCloser {
- public:
-  explicit SeamCloser(const StrideFrames& frames)
-      : s_(frames), fades_(s_.before + s_.after >= kLeastFade) {}
-
-  std::array<double, kPoints> closed(const Spline& x) const {
-    std::array<double, kPoints> y;
-    for (int i = 0; i < kPoints; ++i) {
-      const double phase = double(i) / kPoints;
-      y[i] = fades_ ? faded(x, phase) : with_spread_gap(x, phase);
-    }
-    return y;
-  }
-
- private:
-  double faded(const Spline& x, double phase) const {
-    double y = x.at(s_.place(phase));
-    const double share = s_.before / (s_.before + s_.after);
-    if (phase > 1.0 - s_.before) {
-      const double w = share * smoothstep(1.0 - s_.before, 1.0, phase);
-      y = mix(y, x.at(s_.place(phase - 1.0)), w);
-    } else if (phase < s_.after) {
-      const double w = (1.0 - share) * (1.0 - smoothstep(0.0, s_.after, phase));
-      y = mix(y, x.at(s_.place(phase + 1.0)), w);
-    }
-    return y;
-  }
-  double with_spread_gap(const Spline& x, double phase) const {
-    constexpr double kReach = 0.15, kStep = 0.01;
-    const double gap = x.at(s_.place(1.0)) - x.at(s_.place(0.0));
-    const double slope_start = (x.at(s_.place(kStep)) - x.at(s_.place(0.0))) / kStep;
-    const double slope_end = (x.at(s_.place(1.0)) - x.at(s_.place(1.0 - kStep))) / kStep;
-    const double half = 0.5 * (slope_end - slope_start);
-    const double from_seam = std::min(phase, 1.0 - phase);
-    const double rest = std::max(0.0, 1.0 - from_seam / kReach);
-    const double near = 0.5 * (1.0 - smoothstep(0.0, kReach, from_seam));
-    return x.at(s_.place(phase)) + gap * (phase < 0.5 ? near : -near) +
-           half * from_seam * rest * rest;
-  }
-
-  StrideFrames s_;
-  bool fades_;
-};
+std::array<vec3, kPoints> closed(const StrideFrames& s, const Spline& x) {
+  const auto y = s.before + s.after >= kLeastFade ? &faded : &with_spread_gap;
+  std::array<vec3, kPoints> points;
+  for (int i = 0; i < kPoints; ++i) points[i] = y(s, x, double(i) / kPoints);
+  return points;
+}
 
 // cos and sin of 2 pi k i / kPoints.
 struct Waves {
@@ -125,13 +117,13 @@ struct Waves {
 
 // Harmonics below the Nyquist frequency of the source's frames. The highest ones fade out, so that
 // contacts do not ring.
-Fourier harmonics(const std::array<double, kPoints>& y, const Waves& waves, double period_frames) {
+Fourier harmonics(const std::array<vec3, kPoints>& y, const Waves& waves, double period_frames) {
   Fourier f;
-  for (const double v : y) f.mean += v / kPoints;
+  for (const vec3& v : y) f.mean += v / double(kPoints);
   const int most = std::min(kHarmonics, static_cast<int>(0.5 * period_frames) - 1);
   const int full = std::min(kFullHarmonics, most);
   for (int k = 1; k <= most; ++k) {
-    double a = 0.0, b = 0.0;
+    vec3 a(0.0), b(0.0);
     for (int i = 0; i < kPoints; ++i) {
       const SinCos& s = waves.at(k, i);
       a += y[i] * s.cos;
@@ -144,8 +136,8 @@ Fourier harmonics(const std::array<double, kPoints>& y, const Waves& waves, doub
   return f;
 }
 
-double value_at(const Fourier& f, const std::array<SinCos, kHarmonics>& wave) {
-  double sum = f.mean;
+vec3 value_at(const Fourier& f, const std::array<SinCos, kHarmonics>& wave) {
+  vec3 sum = f.mean;
   for (int k = 0; k < kHarmonics; ++k) sum += f.a[k] * wave[k].cos + f.b[k] * wave[k].sin;
   return sum;
 }
@@ -153,7 +145,7 @@ double value_at(const Fourier& f, const std::array<SinCos, kHarmonics>& wave) {
 // The pelvis' path with its turning removed frame by frame, then rotated about y so that the stride
 // goes along +z. Returns the heading that was removed at each frame.
 std::vector<double> straighten(const Motion& motion, const StrideFrames& s, double turn_rad,
-                               std::array<std::vector<double>, 3>& path_m) {
+                               std::vector<vec3>& path_m) {
   const auto world = std::make_unique<JointFrames>();
   std::vector<double> heading(s.count);
   std::vector<vec3> place(s.count);
@@ -173,19 +165,10 @@ std::vector<double> straighten(const Motion& motion, const StrideFrames& s, doub
   const double course = heading_of(at(s.place(1.0)) - at(s.place(0.0)));
   for (int f = 0; f < s.count; ++f) {
     heading[f] += course;
-    const vec3 p = rotation_y(-course) * (place[f] - place[0]);
-    path_m[0].push_back(p.x);
-    path_m[1].push_back(p.y + place[0].y);
-    path_m[2].push_back(p.z);
+    path_m.push_back(rotation_y(-course) * (place[f] - place[0]));
+    path_m[f].y += place[0].y;
   }
   return heading;
-}
-
-// A joint's local rotation, for joint 0 without the heading.
-quat local_at(const Motion& motion, const StrideFrames& s, int frame, int joint,
-              const std::vector<double>& heading) {
-  const quat& q = motion.frames[s.first + frame].local[joint];
-  return joint == 0 ? rotation_y(-heading[frame]) * q : q;
 }
 
 quat mean_rotation(const std::vector<quat>& all) {
@@ -200,57 +183,48 @@ quat mean_rotation(const std::vector<quat>& all) {
 
 PeriodicMotion periodic_motion(const Motion& motion, const StrideWindow& window) {
   const StrideFrames s = frames_of(window);
-  const SeamCloser closer(s);
   const auto waves = std::make_unique<Waves>();
   PeriodicMotion out;
   out.duration_s = s.period * motion.frame_time_s;
 
-  std::array<std::vector<double>, 3> path_m;
+  std::vector<vec3> path_m;
   const std::vector<double> heading = straighten(motion, s, window.turn_rad, path_m);
-  for (int axis = 0; axis < 3; ++axis) {
-    const Spline whole = spline(path_m[axis]);
-    const double travel = whole.at(s.place(1.0)) - whole.at(s.place(0.0));
-    if (axis == 2) out.stride_m = travel;
-    for (int f = 0; f < s.count; ++f) path_m[axis][f] -= travel * (f - s.start) / s.period;
-    out.pelvis_m[axis] = harmonics(closer.closed(spline(path_m[axis])), *waves, s.period);
-    if (axis != 1) out.pelvis_m[axis].mean = 0.0;
-  }
+  const Spline whole = spline(path_m);
+  const vec3 travel = whole.at(s.place(1.0)) - whole.at(s.place(0.0));
+  out.stride_m = travel.z;
+  for (int f = 0; f < s.count; ++f) path_m[f] -= travel * (f - s.start) / s.period;
+  out.pelvis_m = harmonics(closed(s, spline(path_m)), *waves, s.period);
+  out.pelvis_m.mean = vec3(0.0, out.pelvis_m.mean.y, 0.0);
 
   const int joints = static_cast<int>(motion.skeleton.joints.size());
   std::vector<quat> local(s.count);
   for (int j = 0; j < joints; ++j) {
-    for (int f = 0; f < s.count; ++f) local[f] = local_at(motion, s, f, j, heading);
+    for (int f = 0; f < s.count; ++f) {
+      const quat& q = motion.frames[s.first + f].local[j];
+      local[f] = j == 0 ? rotation_y(-heading[f]) * q : q;
+    }
     out.mean.push_back(mean_rotation(local));
-    std::array<std::vector<double>, 3> turn;
-    for (const quat& q : local) {
-      const vec3 v = rotation_vector(glm::conjugate(out.mean[j]) * q);
-      for (int axis = 0; axis < 3; ++axis) turn[axis].push_back(v[axis]);
-    }
-    out.rotation.emplace_back();
-    for (int axis = 0; axis < 3; ++axis) {
-      out.rotation[j][axis] = harmonics(closer.closed(spline(turn[axis])), *waves, s.period);
-    }
+    std::vector<vec3> turn;
+    for (const quat& q : local) turn.push_back(rotation_vector(glm::conjugate(out.mean[j]) * q));
+    out.rotation.push_back(harmonics(closed(s, spline(turn)), *waves, s.period));
   }
   return out;
-}
-
-PeriodicPose pose_at(const PeriodicMotion& motion, double phase) {
-  std::array<SinCos, kHarmonics> wave;
-  for (int k = 0; k < kHarmonics; ++k) wave[k] = sin_cos(2.0 * kPi * (k + 1) * phase);
-  const auto vector_at = [&](const std::array<Fourier, 3>& f) {
-    return vec3(value_at(f[0], wave), value_at(f[1], wave), value_at(f[2], wave));
-  };
-  PeriodicPose pose;
-  pose.pelvis_m = vector_at(motion.pelvis_m);
-  for (std::size_t j = 0; j < motion.mean.size(); ++j) {
-    pose.local.push_back(motion.mean[j] * from_rotation_vector(vector_at(motion.rotation[j])));
-  }
-  return pose;
 }
 
 namespace {
 
 // --- Sampled poses -------------------------------------------------------------------------------
+
+Pose pose_at(const PeriodicMotion& motion, double phase) {
+  std::array<SinCos, kHarmonics> wave;
+  for (int k = 0; k < kHarmonics; ++k) wave[k] = sin_cos(2.0 * kPi * (k + 1) * phase);
+  Pose pose;
+  pose.root_m = value_at(motion.pelvis_m, wave);
+  pose.joint_count = static_cast<int>(motion.mean.size());
+  for (int j = 0; j < pose.joint_count; ++j)
+    pose.local[j] = motion.mean[j] * from_rotation_vector(value_at(motion.rotation[j], wave));
+  return pose;
+}
 
 // Joint offsets; their mean over the motion if the frames have their own.
 std::vector<vec3> mean_offsets(const Motion& motion) {
@@ -308,14 +282,10 @@ CapturedCycle without_samples(const Motion& motion) {
   return cycle;
 }
 
-void add_sample(const PeriodicPose& at, JointFrames& world, CapturedCycle& cycle) {
-  Pose pose;
-  pose.joint_count = static_cast<int>(cycle.joints());
-  std::copy(at.local.begin(), at.local.end(), pose.local.begin());
-  pose.root_m = at.pelvis_m;
-  forward_kinematics(cycle.skeleton, pose, world);
-  cycle.local.insert(cycle.local.end(), at.local.begin(), at.local.end());
-  cycle.pelvis_m.push_back(at.pelvis_m);
+void add_sample(const Pose& at, JointFrames& world, CapturedCycle& cycle) {
+  forward_kinematics(cycle.skeleton, at, world);
+  cycle.local.insert(cycle.local.end(), at.local.begin(), at.local.begin() + at.joint_count);
+  cycle.pelvis_m.push_back(at.root_m);
   cycle.pelvis_rotation.push_back(world.rotation[cycle.pelvis]);
   for (int side = 0; side < 2; ++side)
     add_leg(cycle.skeleton, world, cycle.legs[side], cycle.leg[side]);
@@ -347,7 +317,8 @@ CapturedCycle captured_pose(const Motion& motion, const MotionFrame& frame) {
   forward_kinematics(motion, frame, *world);
   const auto& at = world->position_m;
   const vec3 left = at[motion.legs[kLeftSide].hip] - at[motion.legs[kRightSide].hip];
-  PeriodicPose pose{vec3(0.0, at[motion.pelvis].y, 0.0), frame.local};
+  Pose pose{vec3(0.0, at[motion.pelvis].y, 0.0), {}, static_cast<int>(cycle.joints())};
+  std::copy(frame.local.begin(), frame.local.end(), pose.local.begin());
   pose.local[0] = turned_to_left(left) * frame.local[0];
   for (int i = 0; i < kCycleSamples; ++i) add_sample(pose, *world, cycle);
   return cycle;
@@ -368,20 +339,14 @@ FlatFoot flat_foot(const CapturedCycle& cycle, int side) {
   const CapturedLeg& leg = cycle.leg[side];
   const std::vector<double> ankle = ground_speed(cycle, leg.ankle_m);
   const std::vector<double> toe = ground_speed(cycle, leg.toe_m);
-  FlatFoot flat;
-  double least = -1.0;
-  for (int i = 0; i < kCycleSamples; ++i) {
+  return {lowest(0, kCycleSamples - 1, [&](int i) {
     double sum = 0.0;
     for (int k = -2 * FlatFoot::reach; k <= 2 * FlatFoot::reach; ++k) {
       const int at = wrapped_index(i + k);
       sum += ankle[at] + toe[at] + kFlatRate_per_s * (leg.ankle_m[at].y + leg.toe_m[at].y);
     }
-    if (i == 0 || sum < least) {
-      least = sum;
-      flat.middle = i;
-    }
-  }
-  return flat;
+    return sum;
+  })};
 }
 
 quat mean_around(const std::vector<quat>& q, int middle, int reach) {

@@ -14,26 +14,18 @@ inline constexpr int kHarmonics = 16;  // harmonics of a periodic stride
 
 // mean + sum of a cos 2 pi k p + b sin 2 pi k p, k = 1 .. kHarmonics, at phase p.
 struct Fourier {
-  double mean = 0.0;
-  std::array<double, kHarmonics> a{}, b{};
+  vec3 mean{0.0};
+  std::array<vec3, kHarmonics> a{}, b{};
 };
 
-// Rotations are rotation vectors from each joint's mean, so that every channel is a plain number.
+// Rotations are rotation vectors from each joint's mean, so that every channel is a plain vector.
 struct PeriodicMotion {
   double duration_s = 0.0, stride_m = 0.0;
-  std::vector<quat> mean;                        // mean rotation of each joint; joint 0 in the
-                                                 // travel frame
-  std::vector<std::array<Fourier, 3>> rotation;  // harmonics of each joint's rotation vector
-  // Harmonics of the pelvis' place in the travel frame, x and z without their means.
-  std::array<Fourier, 3> pelvis_m;
+  std::vector<quat> mean;         // mean rotation of each joint; joint 0 in the travel frame
+  std::vector<Fourier> rotation;  // harmonics of each joint's rotation vector
+  Fourier pelvis_m;  // harmonics of its place in the travel frame, x and z without their means
 };
 PeriodicMotion periodic_motion(const Motion& motion, const StrideWindow& window);
-
-struct PeriodicPose {
-  vec3 pelvis_m{0.0};
-  std::vector<quat> local;
-};
-PeriodicPose pose_at(const PeriodicMotion& motion, double phase);
 
 struct CapturedLeg {  // one leg: rotations of joint frames in the travel frame
   std::vector<vec3> knee_m, ankle_m, toe_m, toe_end_m, hip_m;

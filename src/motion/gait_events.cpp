@@ -178,13 +178,9 @@ std::vector<Run> moving_runs(const std::vector<double>& speed, double limit, dou
   return runs;
 }
 
-bool is_cut(const FeetTracks& tracks, const Run& run) {
-  const SampleRange& range = tracks.ranges[run.range];
-  return run.first == range.first || run.last == range.last;
-}
-
 bool is_swing(const FeetTracks& tracks, const Run& run) {
-  if (is_cut(tracks, run)) return true;
+  const auto [first, last] = tracks.ranges[run.range];
+  if (run.first == first || run.last == last) return true;  // the range cuts it
   const std::vector<vec3>& ankle = tracks.foot[run.side].ankle_m;
   const double time_s = (run.last - run.first + 1) * tracks.sample_s;
   const double legs = horizontal_length(ankle[run.last] - ankle[run.first]) / tracks.leg_m;
@@ -283,23 +279,8 @@ struct Reader {
     }
     return sum / (b - a + 1);
   }
-  int flattest(int first, int last) const {
-    int best = first;
-    double least = flatness(first);
-    for (int i = first + 1; i <= last; ++i) {
-      const double here = flatness(i);
-      if (here >= least) continue;
-      least = here;
-      best = i;
-    }
-    return best;
-  }
   int fastest(const std::vector<vec3>& p, int first, int last) const {
-    int best = first;
-    for (int i = first + 1; i <= last; ++i) {
-      if (speed(p, i) > speed(p, best)) best = i;
-    }
-    return best;
+    return lowest(first, last, [&](int i) { return -speed(p, i); });
   }
 };
 
@@ -331,16 +312,15 @@ SwingSearch search_of(const FeetTracks& tracks, const Run& run, double limit_m_s
   s.run = run;
   s.scale = tracks.leg_m / kReferenceLeg_m;
   s.fastest_heel = r.fastest(r.foot.heel_m, run.first, run.last);
-  s.flat = r.flattest(std::min(run.last + 1, run.rest_last), run.rest_last);
+  s.flat = lowest(std::min(run.last + 1, run.rest_last), run.rest_last,
+                  [&](int i) { return r.flatness(i); });
   s.standing_heel_m = r.height(r.foot.heel_m, s.flat);
   s.fastest_toe = r.fastest(r.foot.toe_m, run.first, run.last);
   int leaving = s.fastest_toe;
   while (leaving > run.rest_first && r.speed(r.foot.toe_m, leaving) > limit_m_s) --leaving;
-  const int from = std::max(run.rest_first, leaving - r.half(kPush_s));
-  s.pushing = leaving;
-  for (int i = leaving; i >= from; --i) {
-    if (r.speed(r.foot.toe_m, i) < r.speed(r.foot.toe_m, s.pushing)) s.pushing = i;
-  }
+  // The last of equally slow samples.
+  const int most = std::min(leaving - run.rest_first, r.half(kPush_s));
+  s.pushing = leaving - lowest(0, most, [&](int k) { return r.speed(r.foot.toe_m, leaving - k); });
   return s;
 }
 

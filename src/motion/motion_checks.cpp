@@ -1,4 +1,6 @@
 // Checks motions and gait cycles that a caller has filled in.
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <span>
 
@@ -33,23 +35,21 @@ Problem skeleton_problem(const std::string& name, const Skeleton& skeleton) {
   return std::nullopt;
 }
 
+std::array<int, 5> joints_of(const LegJoints& leg) noexcept {
+  return {leg.hip, leg.knee, leg.ankle, leg.toe, leg.toe_end};
+}
+
 // `least`: -1 if the joint may be unset.
 Problem joint_problem(const std::string& what, int joint, int least, std::size_t joints) {
   return range_problem(what, joint, least, double(joints) - 1.0);
 }
 Problem leg_problem(const std::string& name, int side, const LegJoints& leg, int least,
                     std::size_t joints) {
+  constexpr std::array kNames = {"hip", "knee", "ankle", "toe", "toe_end"};
   const std::string what = name + "[" + std::to_string(side) + "].";
-  const struct {
-    const char* name;
-    int joint;
-  } fields[] = {{"hip", leg.hip},
-                {"knee", leg.knee},
-                {"ankle", leg.ankle},
-                {"toe", leg.toe},
-                {"toe_end", leg.toe_end}};
-  for (const auto& field : fields) {
-    if (auto problem = joint_problem(what + field.name, field.joint, least, joints)) return problem;
+  for (std::size_t i = 0; i < kNames.size(); ++i) {
+    if (auto problem = joint_problem(what + kNames[i], joints_of(leg)[i], least, joints))
+      return problem;
   }
   return std::nullopt;
 }
@@ -65,70 +65,63 @@ Problem rotations_problem(const std::string& what, std::span<const quat> rotatio
 }  // namespace
 
 bool has_legs(const Motion& motion) noexcept {
-  for (const LegJoints& leg : motion.legs) {
-    for (const int joint : {leg.hip, leg.knee, leg.ankle, leg.toe, leg.toe_end}) {
-      if (joint < 0) return false;
-    }
-  }
-  return true;
+  return std::ranges::all_of(
+      motion.legs, [](const LegJoints& leg) { return std::ranges::min(joints_of(leg)) >= 0; });
 }
 
 Problem check(const Motion& motion) {
-  if (auto problem = skeleton_problem(motion.name, motion.skeleton)) return problem;
+  const std::string& name = motion.name;
+  Problem problem = skeleton_problem(name, motion.skeleton);
+  if (problem) return problem;
   const std::size_t joints = motion.skeleton.joints.size();
-  if (motion.frames.empty()) return Error{motion.name + ": has no frames"};
-  if (auto problem = range_problem(motion.name + ": frame_time_s", motion.frame_time_s, 1e-5, 10.0))
+  if (motion.frames.empty()) return Error{name + ": has no frames"};
+  if ((problem = range_problem(name + ": frame_time_s", motion.frame_time_s, 1e-5, 10.0)) ||
+      (problem = joint_problem(name + ": pelvis", motion.pelvis, 0, joints)) ||
+      (problem = leg_problem(name + ": legs", 0, motion.legs[0], -1, joints)) ||
+      (problem = leg_problem(name + ": legs", 1, motion.legs[1], -1, joints)))
     return problem;
-  if (auto problem = joint_problem(motion.name + ": pelvis", motion.pelvis, 0, joints))
-    return problem;
-  for (const int side : {0, 1}) {
-    if (auto problem = leg_problem(motion.name + ": legs", side, motion.legs[side], -1, joints))
-      return problem;
-  }
   for (std::size_t i = 0; i < motion.frames.size(); ++i) {
     const MotionFrame& frame = motion.frames[i];
-    const std::string what = motion.name + ": frames[" + std::to_string(i) + "].";
+    const std::string what = name + ": frames[" + std::to_string(i) + "].";
     if (!is_finite(frame.root_m)) return Error{what + "root_m is not finite"};
-    if (auto problem = count_problem(what + "local", frame.local.size(), joints)) return problem;
-    if (auto problem = rotations_problem(what + "local", frame.local)) return problem;
-    if (frame.translation_m.empty()) continue;
-    if (auto problem = count_problem(what + "translation_m", frame.translation_m.size(), joints))
+    if ((problem = count_problem(what + "local", frame.local.size(), joints)) ||
+        (problem = rotations_problem(what + "local", frame.local)))
       return problem;
-    for (const vec3& m : frame.translation_m) {
-      if (!is_finite(m)) return Error{what + "translation_m is not finite"};
-    }
+    if (frame.translation_m.empty()) continue;
+    if ((problem = count_problem(what + "translation_m", frame.translation_m.size(), joints)))
+      return problem;
+    if (!std::ranges::all_of(frame.translation_m, is_finite))
+      return Error{what + "translation_m is not finite"};
   }
   return std::nullopt;
 }
 
 Problem check(const GaitCycle& cycle) {
   const std::string& name = cycle.name;
-  if (auto problem = skeleton_problem(name, cycle.skeleton)) return problem;
   const std::size_t joints = cycle.skeleton.joints.size();
-  if (auto problem = joint_problem(name + ": pelvis", cycle.pelvis, 0, joints)) return problem;
-  if (auto problem = count_problem(name + ": samples", cycle.samples.size(), kCycleSamples))
-    return problem;
-  if (auto problem = count_problem(name + ": local", cycle.local.size(), kCycleSamples * joints))
-    return problem;
-  if (auto problem = count_problem(name + ": standing_local", cycle.standing_local.size(), joints))
-    return problem;
-  if (auto problem = rotations_problem(name + ": local", cycle.local)) return problem;
-  if (auto problem = rotations_problem(name + ": standing_local", cycle.standing_local))
-    return problem;
-  if (auto problem = rotations_problem(name + ": pelvis_standing", {&cycle.pelvis_standing, 1}))
+  Problem problem;
+  if ((problem = skeleton_problem(name, cycle.skeleton)) ||
+      (problem = joint_problem(name + ": pelvis", cycle.pelvis, 0, joints)) ||
+      (problem = count_problem(name + ": samples", cycle.samples.size(), kCycleSamples)) ||
+      (problem = count_problem(name + ": local", cycle.local.size(), kCycleSamples * joints)) ||
+      (problem = count_problem(name + ": standing_local", cycle.standing_local.size(), joints)) ||
+      (problem = rotations_problem(name + ": local", cycle.local)) ||
+      (problem = rotations_problem(name + ": standing_local", cycle.standing_local)) ||
+      (problem = rotations_problem(name + ": pelvis_standing", {&cycle.pelvis_standing, 1})))
     return problem;
   for (const int side : {0, 1}) {
     const LegModel& leg = cycle.leg[side];
-    if (auto problem = leg_problem(name + ": leg", side, leg.joints, 0, joints)) return problem;
     const std::string what = name + ": leg[" + std::to_string(side) + "].";
-    if (auto problem = range_problem(what + "thigh_m", leg.thigh_m, 1e-3, 1e3)) return problem;
-    if (auto problem = range_problem(what + "shank_m", leg.shank_m, 1e-3, 1e3)) return problem;
-    if (auto problem = rotations_problem(what + "standing", leg.standing)) return problem;
+    if ((problem = leg_problem(name + ": leg", side, leg.joints, 0, joints)) ||
+        (problem = range_problem(what + "thigh_m", leg.thigh_m, 1e-3, 1e3)) ||
+        (problem = range_problem(what + "shank_m", leg.shank_m, 1e-3, 1e3)) ||
+        (problem = rotations_problem(what + "standing", leg.standing)))
+      return problem;
     for (const vec3& m : {leg.hip_m, leg.heel_m, leg.toe_m, leg.toe_end_m}) {
       if (!is_finite(m)) return Error{what + "hip_m, heel_m, toe_m or toe_end_m is not finite"};
     }
   }
-  if (auto problem = range_problem(name + ": duration_s", cycle.duration_s, 0.05, 60.0))
+  if ((problem = range_problem(name + ": duration_s", cycle.duration_s, 0.05, 60.0)))
     return problem;
   return range_problem(name + ": stride_m", cycle.stride_m, 1e-3, 1e3);
 }

@@ -111,13 +111,6 @@ LegSample mirrored(const LegSample& leg) {
   return m;
 }
 
-CycleSample mirrored_pelvis(const CycleSample& body) {
-  CycleSample m = body;
-  m.pelvis_m = mirrored(body.pelvis_m);
-  m.pelvis = mirrored(body.pelvis);
-  return m;
-}
-
 double foot_clearance(const GaitCycle& cycle, int side, const CycleSample& at) {
   const LegModel& model = cycle.leg[side];
   const LegPose p = pose_of(cycle, side, at);
@@ -224,12 +217,8 @@ void fill_angles(GaitCycle& cycle) {
 // slowest over that foot. (Boulic's fore-aft curve, as ported, runs the other way and makes the
 // foot slide.)
 void fill_pelvis_path(GaitCycle& cycle) {
-  std::array<double, kHalf> height;
-  for (int i = 0; i < kHalf; ++i) {
-    const CycleSample& at = cycle.samples[i];
-    height[i] = -std::min(foot_clearance(cycle, 0, at), foot_clearance(cycle, 1, at));
-  }
-  height = smoothed(height, 3);  // even harmonics up to 6: it repeats every half cycle
+  // Even harmonics up to 6: it repeats every half cycle.
+  const auto height = heights_on_lower_foot<kHalf>(cycle, 3);
   for (int i = 0; i < kHalf; ++i) {
     const SinCos s = sin_cos(2.0 * kPi * i / kHalf);
     for (const int at : {i, i + kHalf}) {

@@ -24,9 +24,6 @@ LegSample right_leg_in_plane(const LegModel& model, const CycleSample& body,
                              const SagittalLeg& plane, double track_m);
 
 LegSample mirrored(const LegSample& leg);  // Mirrors the angles and the toe.
-// Mirrors the pelvis only; the legs are unchanged.
-CycleSample mirrored_pelvis(const CycleSample& body);
-
 // Height of the foot's lowest point above its height at rest.
 double foot_clearance(const GaitCycle& cycle, int side, const CycleSample& at);
 
@@ -46,6 +43,18 @@ std::array<double, kCount> smoothed(const std::array<double, kCount>& curve, int
       out[i] += share * (a * wave(k, i).cos + b * wave(k, i).sin);
   }
   return out;
+}
+
+// Heights of the pelvis with which the lower foot stands on the floor, as many as samples are asked
+// for, smoothed to the lowest harmonics.
+template <std::size_t kCount>
+std::array<double, kCount> heights_on_lower_foot(const GaitCycle& cycle, int harmonics) {
+  std::array<double, kCount> height;
+  for (std::size_t i = 0; i < kCount; ++i) {
+    const CycleSample& at = cycle.samples[i];
+    height[i] = -std::min(foot_clearance(cycle, 0, at), foot_clearance(cycle, 1, at));
+  }
+  return smoothed(height, harmonics);
 }
 
 }  // namespace gaitpad

@@ -10,6 +10,7 @@
 #include <memory>
 #include <optional>
 
+#include "base/numeric.h"
 #include "gaitpad/anatomy.h"
 #include "gaitpad/gait_cycle.h"
 #include "gaitpad/motion.h"
@@ -26,11 +27,6 @@ namespace {
 // - Spine and neck as chains: of n joints that follow m, the k-th (from 1) turns as the source does
 //   k m / n of the way up its chain. So chest and head turn as the source's do.
 // - Fingers and all else above the legs: joints of equal names. The others rest.
-struct Counterpart {
-  int lower = -1, upper = -1;  // joints of the source; -1: none, this joint rests
-  double share = 0.0;          // share of the way from the lower joint to the upper one
-};
-
 // Stand for the joint that a bone points to in the standing pose.
 enum Aim : int {
   kNoAim = -1,
@@ -38,12 +34,13 @@ enum Aim : int {
   kAsItStood = -3,  // the joint keeps its standing rotation
 };
 
-struct UpperBodyMatch {  // the counterpart of each joint of the character
-  std::vector<Counterpart> from;
-  std::vector<int> aim;  // a joint or an Aim
-  // Direction of each bone in the source's standing pose; unused without an aim.
-  std::vector<vec3> direction;
+struct Counterpart {
+  int lower = -1, upper = -1;  // joints of the source; -1: none, this joint rests
+  double share = 0.0;          // share of the way from the lower joint to the upper one
+  int aim = kNoAim;            // a joint or an Aim
+  vec3 direction{0.0};         // of the bone in the source's standing pose; unused without an aim
 };
+using UpperBodyMatch = std::vector<Counterpart>;  // the counterpart of each joint of the character
 
 std::vector<vec3> standing_places(const GaitCycle& cycle) {
   const auto world = std::make_unique<JointFrames>();
@@ -91,11 +88,8 @@ int only_child(const BodyPlan& part, int joint) {
 
 class Matcher {
  public:
-  Matcher(const GaitCycle& source, const GaitCycle& character) : from_(source), to_(character) {
-    const std::size_t joints = character.skeleton.joints.size();
-    match_ = {std::vector<Counterpart>(joints), std::vector<int>(joints, kNoAim),
-              std::vector<vec3>(joints, vec3(0.0))};
-  }
+  Matcher(const GaitCycle& source, const GaitCycle& character)
+      : from_(source), to_(character), match_(character.skeleton.joints.size()) {}
 
   UpperBodyMatch matched() {
     match_chain(from_.joints.spine, to_.joints.spine, from_.cycle.pelvis);
@@ -115,13 +109,14 @@ class Matcher {
       // Whole numbers, so that equal chains match exactly.
       const std::size_t lower = k * from.size() / to.size(), rest = k * from.size() % to.size();
       const auto joint = [&](std::size_t i) { return i == 0 ? below : from[i - 1]; };
-      match_.from[to[k - 1]] = {joint(lower), joint(lower + (rest > 0)), double(rest) / to.size()};
+      match_[to[k - 1]] = {joint(lower), joint(lower + (rest > 0)), double(rest) / to.size()};
     }
   }
 
   void match(int from, int to) {
     if (from < 0 || to < 0 || to_.cycle.skeleton.joints[to].is_end_site) return;
-    match_.from[to] = {from, from, 0.0};
+    Counterpart& follows = match_[to];
+    follows.lower = follows.upper = from, follows.share = 0.0;
   }
 
   void match_arm(const ArmChain& from, const ArmChain& to) {
@@ -134,13 +129,13 @@ class Matcher {
       aim(from.collar, from.shoulder, to.collar, to.shoulder);
     aim(from.shoulder, from.elbow, to.shoulder, to.elbow);
     aim(from.elbow, from.wrist, to.elbow, to.wrist);
-    match_.aim[to.wrist] = kChildren;
-    match_.direction[to.wrist] = from_.below(from.wrist) - from_.at[from.wrist];
+    match_[to.wrist].aim = kChildren;
+    match_[to.wrist].direction = from_.below(from.wrist) - from_.at[from.wrist];
   }
 
   void aim(int from, int from_end, int to, int to_end) {
-    match_.aim[to] = to_end;
-    match_.direction[to] = from_.at[from_end] - from_.at[from];
+    match_[to].aim = to_end;
+    match_[to].direction = from_.at[from_end] - from_.at[from];
   }
 
   // Aims a chain as a whole from its first joint, or bone by bone if both chains have equal names.
@@ -157,7 +152,7 @@ class Matcher {
       return;
     }
     // The head keeps its standing rotation, so it looks ahead with any bend of the neck.
-    if (from_end < 0) match_.aim[to.back()] = kAsItStood;
+    if (from_end < 0) match_[to.back()].aim = kAsItStood;
     const int last_from = from_end >= 0 ? from_end : from.back();
     const int last_to = to_end >= 0 ? to_end : to.back();
     if (last_from != from.front() && last_to != to.front())
@@ -226,50 +221,18 @@ void stand_alike(const UpperBodyMatch& match, GaitCycle& character) {
   for (std::size_t j = 1; j < joints.size(); ++j) {
     const quat above = world[joints[j].parent];
     world[j] = above * character.standing_local[j];
-    if (match.aim[j] == kAsItStood) {
+    const auto& [lower, upper, share, aim, wanted] = match[j];
+    if (aim == kNoAim) continue;
+    if (aim == kAsItStood) {
       world[j] = stood[j];
-      character.standing_local[j] = glm::normalize(glm::conjugate(above) * world[j]);
+    } else {
+      const vec3 bone = world[j] * bone_of(character, static_cast<int>(j), aim);
+      if (glm::length(bone) < kLeastBone_m || glm::length(wanted) < kLeastBone_m) continue;
+      world[j] = rotation_between(glm::normalize(bone), glm::normalize(wanted)) * world[j];
     }
-    if (match.aim[j] == kNoAim || match.aim[j] == kAsItStood) continue;
-    const vec3 bone = world[j] * bone_of(character, static_cast<int>(j), match.aim[j]);
-    const vec3 wanted = match.direction[j];
-    if (glm::length(bone) < kLeastBone_m || glm::length(wanted) < kLeastBone_m) continue;
-    world[j] = rotation_between(glm::normalize(bone), glm::normalize(wanted)) * world[j];
     character.standing_local[j] = glm::normalize(glm::conjugate(above) * world[j]);
   }
 }
-
-// --- Turning as the source turns -----------------------------------------------------------------
-
-// World rotations of the joints that have counterparts: each turns away from the character's
-// standing pose as its counterpart turns away from the source's. Both standing poses already match.
-class UpperBodyTurn {
- public:
-  UpperBodyTurn(const GaitCycle& source, const UpperBodyMatch& match, const GaitCycle& character)
-      : source_(source),
-        match_(match),
-        before_(world_rotations(source.skeleton, source.standing_local)),
-        standing_(world_rotations(character.skeleton, character.standing_local)) {}
-
-  void set_sample(int i) {
-    const std::size_t joints = source_.skeleton.joints.size();
-    after_ =
-        world_rotations(source_.skeleton, std::span(source_.local).subspan(i * joints, joints));
-  }
-  bool has(int joint) const { return match_.from[joint].lower >= 0; }
-  quat world(int joint) const {
-    const Counterpart& from = match_.from[joint];
-    const auto turn = [this](int j) { return after_[j] * glm::conjugate(before_[j]); };
-    const quat lower = turn(from.lower);
-    const quat turned = from.share > 0.0 ? nlerp(lower, turn(from.upper), from.share) : lower;
-    return turned * standing_[joint];
-  }
-
- private:
-  const GaitCycle& source_;
-  const UpperBodyMatch& match_;
-  std::vector<quat> before_, after_, standing_;
-};
 
 // --- The character's build and standing pose -----------------------------------------------------
 
@@ -279,17 +242,10 @@ constexpr double kMostToeOut = 45.0 * kDegree;  // of a standing foot; a wider o
 template <class Score>
 const MotionFrame& best_frame(const Motion& motion, Score score) {
   const auto world = std::make_unique<JointFrames>();
-  std::size_t best = 0;
-  double least = 0.0;
-  for (std::size_t f = 0; f < motion.frames.size(); ++f) {
+  return motion.frames[lowest(0, static_cast<int>(motion.frames.size()) - 1, [&](int f) {
     forward_kinematics(motion, motion.frames[f], *world);
-    const double s = score(world->position_m);
-    if (f == 0 || s < least) {
-      least = s;
-      best = f;
-    }
-  }
-  return motion.frames[best];
+    return score(world->position_m);
+  })];
 }
 
 using Places = std::array<vec3, kMaxJoints>;
@@ -387,27 +343,32 @@ void take_over_samples(const GaitCycle& source, double ratio, GaitCycle& out) {
   }
 }
 
-// Fills the local rotations of sample i, to which `turn` is set.
-void pose_sample(const UpperBodyTurn& turn, int i, GaitCycle& out) {
-  const std::size_t joints = out.skeleton.joints.size();
+// Fills the local rotations of sample i. Each joint that has a counterpart turns in the world, away
+// from `standing`, as its counterpart turns away from the source's standing pose. Both standing
+// poses already match. `turn` holds the turns of the source's joints.
+void pose_sample(const UpperBodyMatch& match, const std::vector<quat>& turn,
+                 const std::vector<quat>& standing, int i, GaitCycle& out) {
+  const int joints = static_cast<int>(standing.size());
   const CycleSample& at = out.samples[i];
   quat* local = out.local.data() + i * joints;
   std::vector<quat> world(joints, kIdentity);
-  for (std::size_t j = 0; j < joints; ++j) {
+  for (int j = 0; j < joints; ++j) {
     const int parent = out.skeleton.joints[j].parent;
     const quat above = parent < 0 ? kIdentity : world[parent];
     world[j] = above * out.standing_local[j];
-    if (static_cast<int>(j) == out.pelvis) world[j] = at.pelvis * out.pelvis_standing;
-    if (turn.has(static_cast<int>(j))) world[j] = turn.world(static_cast<int>(j));
+    if (j == out.pelvis) world[j] = at.pelvis * out.pelvis_standing;
+    const Counterpart& from = match[j];
+    if (from.lower >= 0 && from.share > 0.0)
+      world[j] = nlerp(turn[from.lower], turn[from.upper], from.share) * standing[j];
+    else if (from.lower >= 0)
+      world[j] = turn[from.lower] * standing[j];
     local[j] = glm::normalize(glm::conjugate(above) * world[j]);
   }
   for (int side = 0; side < 2; ++side) {
     set_leg_locals(out.skeleton, out.leg[side], pose_of(out, side, at), local);
   }
-  if (i == 0) return;
-  const quat* before = local - joints;
-  for (std::size_t j = 0; j < joints; ++j) {
-    if (glm::dot(local[j], before[j]) < 0.0) local[j] = -local[j];
+  for (int j = 0; i > 0 && j < joints; ++j) {
+    if (glm::dot(local[j], local[j - joints]) < 0.0) local[j] = -local[j];
   }
 }
 
@@ -428,11 +389,14 @@ Result<GaitCycle> cycle_on_skeleton(const GaitCycle& source, const Motion& chara
   take_over_samples(source, ratio, *out);
   const UpperBodyMatch match = Matcher(source, *out).matched();
   stand_alike(match, *out);
-  UpperBodyTurn turn(source, match, *out);
-  out->local.assign(kCycleSamples * out->skeleton.joints.size(), kIdentity);
+  const std::vector<quat> stood = world_rotations(source.skeleton, source.standing_local),
+                          standing = world_rotations(out->skeleton, out->standing_local);
+  out->local.assign(kCycleSamples * standing.size(), kIdentity);
   for (int i = 0; i < kCycleSamples; ++i) {
-    turn.set_sample(i);
-    pose_sample(turn, i, *out);
+    std::vector<quat> turn = world_rotations(
+        source.skeleton, std::span(source.local).subspan(i * stood.size(), stood.size()));
+    for (std::size_t j = 0; j < stood.size(); ++j) turn[j] = turn[j] * glm::conjugate(stood[j]);
+    pose_sample(match, turn, standing, i, *out);
   }
   return out;
 }

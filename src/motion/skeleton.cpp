@@ -21,6 +21,17 @@ void carry_joint(int joint, int parent, const vec3& offset_m, const quat& local,
   frames.rotation[joint] = above * local;
 }
 
+// The first joints, as many as there are local rotations. Offsets, if there are any, replace the
+// joints' own.
+void carry_all(const std::vector<Joint>& joints, const vec3& root_m, std::span<const quat> local,
+               std::span<const vec3> offset_m, JointFrames& frames) noexcept {
+  carry_root(root_m, local[0], frames);
+  for (std::size_t j = 1; j < local.size(); ++j) {
+    carry_joint(static_cast<int>(j), joints[j].parent,
+                offset_m.empty() ? joints[j].offset_m : offset_m[j], local[j], frames);
+  }
+}
+
 }  // namespace
 
 int Skeleton::find(const std::string& name) const {
@@ -31,11 +42,8 @@ int Skeleton::find(const std::string& name) const {
 }
 
 void forward_kinematics(const Skeleton& skeleton, const Pose& pose, JointFrames& frames) noexcept {
-  carry_root(pose.root_m, pose.local[0], frames);
-  for (int j = 1; j < pose.joint_count; ++j) {
-    const Joint& joint = skeleton.joints[j];
-    carry_joint(j, joint.parent, joint.offset_m, pose.local[j], frames);
-  }
+  carry_all(skeleton.joints, pose.root_m, {pose.local.data(), std::size_t(pose.joint_count)}, {},
+            frames);
 }
 
 void forward_kinematics(const Skeleton& skeleton, const vec3& root_m, std::span<const quat> local,
@@ -52,21 +60,12 @@ void forward_kinematics(const Skeleton& skeleton, const vec3& root_m, std::span<
 
 void forward_kinematics(const Skeleton& skeleton, std::span<const quat> local,
                         JointFrames& frames) noexcept {
-  carry_root(vec3(0.0), local[0], frames);
-  for (std::size_t j = 1; j < skeleton.joints.size(); ++j) {
-    const Joint& joint = skeleton.joints[j];
-    carry_joint(static_cast<int>(j), joint.parent, joint.offset_m, local[j], frames);
-  }
+  carry_all(skeleton.joints, vec3(0.0), local.first(skeleton.joints.size()), {}, frames);
 }
 
 void forward_kinematics(const Motion& motion, const MotionFrame& frame,
                         JointFrames& frames) noexcept {
-  const std::vector<Joint>& joints = motion.skeleton.joints;
-  carry_root(frame.root_m, frame.local[0], frames);
-  for (std::size_t j = 1; j < joints.size(); ++j) {
-    const vec3& offset = frame.translation_m.empty() ? joints[j].offset_m : frame.translation_m[j];
-    carry_joint(static_cast<int>(j), joints[j].parent, offset, frame.local[j], frames);
-  }
+  carry_all(motion.skeleton.joints, frame.root_m, frame.local, frame.translation_m, frames);
 }
 
 std::vector<std::vector<vec3>> joint_tracks_m(const Motion& motion, std::span<const int> joints) {

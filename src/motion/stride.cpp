@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -30,26 +29,17 @@ struct WalkTrack {
 };
 
 WalkTrack walk_track(const Motion& motion) {
-  WalkTrack track;
-  const auto world = std::make_unique<JointFrames>();
-  for (const MotionFrame& frame : motion.frames) {
-    forward_kinematics(motion, frame, *world);
-    const auto& at = world->position_m;
-    track.pelvis_m.push_back(at[motion.pelvis]);
-    for (int side = 0; side < 2; ++side) {
-      const LegJoints& joints = motion.legs[side];
-      LegTrack& leg = track.leg[side];
-      leg.knee_m.push_back(at[joints.knee]);
-      leg.ankle_m.push_back(at[joints.ankle]);
-      leg.toe_m.push_back(at[joints.toe]);
-    }
-    double heading = hips_heading(at[motion.legs[kLeftSide].hip] - at[motion.legs[kRightSide].hip]);
-    if (!track.heading_rad.empty()) {
-      heading = track.heading_rad.back() + wrapped(heading - track.heading_rad.back());
-    }
+  const LegJoints &left = motion.legs[kLeftSide], &right = motion.legs[kRightSide];
+  const auto at =
+      joint_tracks_m(motion, std::array{motion.pelvis, left.knee, left.ankle, left.toe, right.knee,
+                                        right.ankle, right.toe, left.hip, right.hip});
+  WalkTrack track{
+      at[0], {}, {{{at[1], at[2], at[3]}, {at[4], at[5], at[6]}}}, leg_length_m(motion)};
+  for (std::size_t f = 0; f < motion.frames.size(); ++f) {
+    double heading = hips_heading(at[7][f] - at[8][f]);
+    if (f > 0) heading = track.heading_rad.back() + wrapped(heading - track.heading_rad.back());
     track.heading_rad.push_back(heading);
   }
-  track.leg_m = leg_length_m(motion);
   return track;
 }
 

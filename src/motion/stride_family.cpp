@@ -9,18 +9,14 @@ namespace gaitpad {
 namespace {
 
 static_assert(sizeof(StrideCell) == 33 * sizeof(double));
+static_assert(sizeof(StrideTrack) == 9 * sizeof(double));
 
-// Adds weight * cell. A StrideCell consists of doubles only.
-void add(StrideCell& sum, const StrideCell& cell, double weight) noexcept {
-  double* to = &sum.pelvis_m.x;
-  const double* from = &cell.pelvis_m.x;
-  for (std::size_t k = 0; k < sizeof(StrideCell) / sizeof(double); ++k) to[k] += weight * from[k];
-}
-void add(StrideTrack& sum, const StrideTrack& track, double weight) noexcept {
-  sum.stride_m += weight * track.stride_m;
-  for (int side : {0, 1}) sum.footprint_m[side] += weight * track.footprint_m[side];
-  sum.low_m += weight * track.low_m;
-  sum.high_m += weight * track.high_m;
+// Adds weight * part, number by number: both kinds consist of doubles only.
+template <class Numbers>
+void add(Numbers& sum, const Numbers& part, double weight) noexcept {
+  double* to = reinterpret_cast<double*>(&sum);
+  const double* from = reinterpret_cast<const double*>(&part);
+  for (std::size_t k = 0; k < sizeof(Numbers) / sizeof(double); ++k) to[k] += weight * from[k];
 }
 
 }  // namespace
@@ -58,7 +54,7 @@ StridePlace stride_at(const std::vector<StrideTable>& tables, double phase, doub
   for (int n = 0; n < 4; ++n) {
     if (by_table[n] == 0.0) continue;
     const StrideTable& table = tables[first + n];
-    add(place.track, table, by_table[n]);
+    add<StrideTrack>(place.track, table, by_table[n]);
     for (int m = 0; m < 4; ++m) {
       if (by_knot[m] == 0.0) continue;  // at a knot
       const int knot = (static_cast<int>(i) + m - 1 + kCycleSamples) % kCycleSamples;

@@ -1,5 +1,6 @@
 // The numbers that a family of strides depends on, and the numbers that it consists of.
 #pragma once
+#include <algorithm>
 #include <vector>
 
 #include "gaitpad/stride_family.h"
@@ -19,25 +20,12 @@ void for_each_number(Family& family, Each each) {
   for (auto& angles : family.stand_rad) {
     for (auto& angle : angles) each(angle);
   }
-  const auto each_of = [&each](auto& v) { each(v.x), each(v.y), each(v.z); };
-  for (auto* tables : {&family.table, &family.back})
+  for (auto* tables : {&family.table, &family.back}) {
     for (auto& table : *tables) {
-      each(table.stride_m);
-      for (auto& place : table.footprint_m) each_of(place);
-      each(table.low_m), each(table.high_m);
-      for (auto& cell : table.knot) {
-        each_of(cell.pelvis_m);
-        each(cell.pelvis_yaw_rad);
-        each_of(cell.pelvis_tilt);
-        for (auto& foot : cell.foot) {
-          each_of(foot.heel_m);
-          each(foot.pitch_rad), each(foot.twist_rad), each(foot.roll_rad);
-        }
-        for (auto& angles : cell.leg_rad) {
-          for (auto& angle : angles) each(angle);
-        }
-      }
+      auto* numbers = &table.stride_m;  // a table consists of doubles only
+      std::for_each(numbers, numbers + sizeof(StrideTable) / sizeof(double), each);
     }
+  }
 }
 
 }  // namespace gaitpad

@@ -78,14 +78,14 @@ void step_within(const Chain& chain, const V (&column)[kDofs][3], const V (&angl
 // max_rad, a type Place with error_m (0 in rows that do not count), place(), set_columns().
 template <class Chain, class V, std::size_t kDofs>
 void solve_chains(const Chain& chain, Mask<V> open, V (&angle_rad)[kDofs]) noexcept {
-  typename Chain::Place place{}, best{};
+  typename Chain::Place places[2]{}, *place = &places[0], *best = &places[1];
   V next[kDofs], growth = all<V>(Solver::kGrowth), best_m2 = all<V>(1e30f), seen_m = all<V>(1e15f),
                  patience = all<V>(Solver::kPatience);
   for (int j = 0; j < chain.dofs; ++j)
     next[j] = angle_rad[j] = least(most(angle_rad[j], chain.min_rad[j]), chain.max_rad[j]);
   for (int k = 0;; ++k) {
-    chain.place(next, place);
-    const V* e = place.error_m;
+    chain.place(next, *place);
+    const V* e = place->error_m;
     const V m2 = e[0] * e[0] + e[1] * e[1] + e[2] * e[2];
     const auto better = both(open, m2 < best_m2);
     if (k > 0) {
@@ -94,7 +94,12 @@ void solve_chains(const Chain& chain, Mask<V> open, V (&angle_rad)[kDofs]) noexc
       growth = better ? down : up;
     }
     for (int j = 0; j < chain.dofs; ++j) angle_rad[j] = better ? next[j] : angle_rad[j];
-    put_where<V>(better, place, best);
+    // Usually all get better. A chain that is not open is placed where it was.
+    if (!any(both(open, no(better)))) {
+      std::swap(place, best);
+    } else if (any(better)) {
+      put_where<V>(better, *place, *best);
+    }
     best_m2 = better ? m2 : best_m2;
     open = both(open, best_m2 > all<V>(kSolved_m * kSolved_m));
     const V error_m = root(best_m2);
@@ -105,9 +110,9 @@ void solve_chains(const Chain& chain, Mask<V> open, V (&angle_rad)[kDofs]) noexc
     open = both(open, patience > V{});
     if (k >= kMostSolves || !any(open)) return;
     V column[kDofs][3], error[3], turn[kDofs];
-    chain.set_columns(best, column);
+    chain.set_columns(*best, column);
     const V share = Solver::kFarthest_m / most(error_m, all<V>(Solver::kFarthest_m));
-    for (int r = 0; r < 3; ++r) error[r] = share * best.error_m[r];
+    for (int r = 0; r < 3; ++r) error[r] = share * best->error_m[r];
     const V damping = kLeastDamping_m2 +
                       growth * least(best_m2, all<V>(Solver::kFarthest_m * Solver::kFarthest_m));
     step_within(chain, column, angle_rad, error, damping, open, turn);

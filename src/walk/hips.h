@@ -375,13 +375,13 @@ void round_lift_off(const Time<V>& time, const V& phase, StrideMix<V> mix, const
 }
 
 // If the hips lead or have just led: moves them to their place, and reads the stride at their
-// phase; the flying foot keeps to the clock. Returns that phase, else the clock's.
+// phase; the flying foot keeps to the clock. Returns that phase, else the clock's. `stride`: a copy
+// of `by_clock`.
 template <class V>
 V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
             const Stride<V>& by_clock, State<V>& state, Change<V>& change, Hips<V>& hips,
             Stride<V>& stride) noexcept {
   const auto led = change.led != V{}, stands = change.stands != V{}, runs = has_own_phase(change);
-  stride = by_clock;
   if (!any(runs)) return state.phase;
   const auto is_new = change.is_new != V{}, was_new = both(no(is_new), change.was_new != V{});
   const V last_found = change.phase - change.off_phase.x;
@@ -426,20 +426,19 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
   change.phase = runs ? phase : change.phase;
   change.phase_rate = runs ? goes : change.phase_rate;
   phase = runs ? phase : state.phase;
-  Stride<V> read = read_stride(strides, time, phase);
-  if (any(change.shown != all<V>(1.0f))) show(change.shown, read);
-  put_where<V>(no(runs), by_clock, read);
-  round_lift_off(time, phase, strides, state, change, read);
+  stride = read_stride(strides, time, phase);
+  if (any(change.shown != all<V>(1.0f))) show(change.shown, stride);
+  if (any(no(runs))) put_where<V>(no(runs), by_clock, stride);
+  round_lift_off(time, phase, strides, state, change, stride);
   if (any(change.turns != V{})) {
-    const auto numbers = turned_numbers(read);
+    const auto numbers = turned_numbers(stride);
     for (std::size_t k = 0; k < numbers.size(); ++k)
       *numbers[k] = *numbers[k] + (change.turns != V{} ? change.off_turned[k].x : V{});
   }
-  stride = read;
   stride.heel_behind_m = by_clock.heel_behind_m, stride.heel_ahead_m = by_clock.heel_ahead_m;
   stride.heel_high_m = by_clock.heel_high_m;
   const V share = led ? V(planned_edge(time, change) + change.off_edge.x) : all<V>(1.0f);
-  const FootInStride<V>& stood = read.foot[0];
+  const FootInStride<V> stood = stride.foot[0];
   FootInStride<V> flying = by_clock.foot[0];
   const V edge = edge_left(time.u, change);
   flying.twist_rad = flying.twist_rad + edge * change.gap_twist_rad;

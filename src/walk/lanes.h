@@ -149,6 +149,7 @@ template <class V, class T>
 inline void put_where(const Mask<V>& where, const T& from, T& to) noexcept {
   constexpr std::size_t kBytes = sizeof(V);
   static_assert(sizeof(T) % kBytes == 0);
+#pragma GCC unroll 8
   for (std::size_t n = 0; n < sizeof(T) / kBytes; ++n) {
     V& number = reinterpret_cast<V*>(&to)[n];
     number = where ? reinterpret_cast<const V*>(&from)[n] : number;

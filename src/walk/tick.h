@@ -605,7 +605,7 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
   const Stride<V> by_clock =
       read_by_clock(tables, time, landing, state.phase, time.share, time.u, reads, change, state);
   Hips<V> hips = move_hips(tables, time, landing, by_clock, change, state);
-  Stride<V> stride;
+  Stride<V> stride = by_clock;
   const V phase = lead_hips(tables, time, landing, by_clock, state, change, hips, stride);
   keep_pelvis(hips, state);
   block.told.pelvis_x_m = stride.pelvis_m.x, block.told.pelvis_z_m = stride.pelvis_m.z;

@@ -6,8 +6,8 @@
 
 #include "files/acclaim_text.h"
 #include "files/bvh_text.h"
+#include "files/euler.h"
 #include "gaitpad/motion.h"
-#include "motion/euler.h"
 #include "motion/made_motion.h"
 #include "tests/own_folder.h"
 #include "tests/shared_data.h"

@@ -1,4 +1,4 @@
-#include "motion/euler.h"
+#include "files/euler.h"
 
 namespace gaitpad {
 namespace {

@@ -64,10 +64,10 @@ void solve_arms(ArmChain<V> (&arms)[2]) noexcept {
 // One arm of each walk, as it is posed in the step frame.
 template <class V>
 struct Arm {
-  Turn<V> above, base, upper;    // the shoulder's parent; the walker's axes there; hanging axes
-  Turn<V> fore_rest, hand_rest;  // frames of elbow and wrist, from the forearm's hanging axes
-  Vec<V> shoulder_m, hand_m;
-  ArmChain<V> chain;
+  ArmChain<V>& chain;
+  Turn<V> above{}, base{}, upper{};  // the shoulder's parent; the walker's axes there; hanging axes
+  Turn<V> fore_rest{}, hand_rest{};  // frames of elbow and wrist, from the forearm's hanging axes
+  Vec<V> shoulder_m{}, hand_m{};
 };
 
 // Computes the place of the shoulder, and the turn of its parent.
@@ -237,8 +237,8 @@ struct Holds {
 };
 
 template <class V>
-void hold_hand(const Tables& tables, const Styled<V>& styled, int side, const Holds<V>& holds,
-               Arm<V>& arm) noexcept {
+void hold_hand(const Tables& tables, const Styled<V>& styled, int side, const Mask<V>& is_posed,
+               const Holds<V>& holds, Arm<V>& arm) noexcept {
   constexpr float kRailAhead_m = 0.15f;  // how far ahead of the hips a hand holds a rail
   // Angles x, z, y of a left shoulder at which the solver starts: the elbow points down and a
   // little outwards if the hand carries a tray, and back if it holds a rail.
@@ -252,7 +252,7 @@ void hold_hand(const Tables& tables, const Styled<V>& styled, int side, const Ho
   const V carry = within(of_hand(styled, side, kCarry), 0.0f, 1.0f),
           rail = within(of_hand(styled, side, kRail), 0.0f, 1.0f),
           held = 1.0f - (1.0f - carry) * (1.0f - rail);
-  const auto holds_it = held > V{};
+  const auto holds_it = both(is_posed, held > V{});
   ArmChain<V>& chain = arm.chain;
   chain.solves = chosen<V>(holds_it, 1.0f, 0.0f);
   if (!any(holds_it)) return;
@@ -312,8 +312,8 @@ void pose_arms(const Tables& tables, const Hips<V>& hips, const Vec<V>& hips_m,
                const Trunk<V>& trunk, const Mask<V> (&is_posed)[2], const Vec<V> (&own_m)[2],
                const Turn<V> (&shoulder)[2], const Styled<V>& styled, const Poses& poses) noexcept {
   const V some = chosen<V>(either(is_posed[0], is_posed[1]), 1.0f, 0.0f);
-  Arm<V> arms[2];
   ArmChain<V> chains[2];
+  Arm<V> arms[2] = {{chains[0]}, {chains[1]}};
   const bool has[2] = {!tables.arm[0].path.empty(), !tables.arm[1].path.empty()};
   for (int side : {0, 1}) {
     if (!has[side]) continue;
@@ -333,34 +333,21 @@ void pose_arms(const Tables& tables, const Hips<V>& hips, const Vec<V>& hips_m,
   }
   const V over = 1.0f / most(V(root(V(across.x * across.x + across.z * across.z))), all<V>(1e-6f));
   holds.cosine = across.x * over, holds.sine = -across.z * over;
-  Mask<V> uneven[2];
   for (int side : {0, 1}) {
-    chains[side].solves = V{};
-    uneven[side] = both(is_posed[side], has_uneven_arm(styled, side));
-    if (!has[side] || !any(uneven[side])) continue;
-    stiffen_arm(tables.arm[side], styled, side, uneven[side], own_m[side], arms[side]);
-    chains[side] = arms[side].chain;
-  }
-  if (any(either(uneven[0], uneven[1]))) {
-    solve_arms(chains);
-    for (int side : {0, 1})
-      if (any(uneven[side]))
-        for (int j = 0; j < kArmAngles; ++j)
-          arms[side].chain.angle_rad[j] = chains[side].angle_rad[j];
-  }
-  for (int side : {0, 1}) {
-    chains[side].solves = V{};
-    if (!has[side] || !any(is_posed[side])) continue;
-    hold_hand(tables, styled, side, holds, arms[side]);
-    chains[side] = arms[side].chain;
-    chains[side].solves = both(is_posed[side], chains[side].solves != V{}) ? all<V>(1.0f) : V{};
+    const auto uneven = both(is_posed[side], has_uneven_arm(styled, side));
+    if (has[side] && any(uneven))
+      stiffen_arm(tables.arm[side], styled, side, uneven, own_m[side], arms[side]);
   }
   solve_arms(chains);
   for (int side : {0, 1}) {
-    if (!has[side] || !any(is_posed[side])) continue;
-    for (int j = 0; j < kArmAngles; ++j) arms[side].chain.angle_rad[j] = chains[side].angle_rad[j];
-    write_arm(tables.arm[side], chosen<V>(is_posed[side], 1.0f, 0.0f), arms[side], poses);
+    chains[side].solves = V{};
+    if (has[side] && any(is_posed[side]))
+      hold_hand(tables, styled, side, is_posed[side], holds, arms[side]);
   }
+  solve_arms(chains);
+  for (int side : {0, 1})
+    if (has[side] && any(is_posed[side]))
+      write_arm(tables.arm[side], chosen<V>(is_posed[side], 1.0f, 0.0f), arms[side], poses);
 }
 
 }  // namespace

@@ -172,8 +172,9 @@ Stride<V> stride_of(const Time<V>& time, const V* n) noexcept {
   return stride;
 }
 
-// Index in a row: pitch of the left foot, then of the right one.
-inline constexpr int kPitchAt = offsetof(StrideRow, pitch_rad) / sizeof(float);
+// Indices in a row: pitch of the left foot, then of the right one; place of the pelvis.
+inline constexpr int kPitchAt = offsetof(StrideRow, pitch_rad) / sizeof(float),
+                     kPelvisAt = offsetof(StrideRow, pelvis_m) / sizeof(float);
 
 // The rows that a mix of two strides reads at each knot, and the weight of each. Reads at several
 // phases share it.
@@ -460,25 +461,20 @@ V flight_share(const V& u, const Change<V>& change) noexcept {
   return change.gap_begin != V{} ? share : u;
 }
 
-// Reads the place of the pelvis alone.
-template <class V>
-Vec<V> read_pelvis(const StrideMix<V>& mix, const V& phase) noexcept {
-  V n[4];
-  read_four(mix, offsetof(StrideRow, pelvis_m) / sizeof(float), phase, n);
-  return {n[0], n[1], n[2]};
-}
-// The same at several phases.
+// Reads the place of the pelvis alone, at several phases or at one.
 template <class V, int kPhases>
 void read_pelvis(const StrideMix<V>& mix, const V (&phase)[kPhases],
                  Vec<V> (&pelvis_m)[kPhases]) noexcept {
   V n[kPhases][4];
-  read_fours(mix, offsetof(StrideRow, pelvis_m) / sizeof(float), phase, n);
+  read_fours(mix, kPelvisAt, phase, n);
   for (int i = 0; i < kPhases; ++i) pelvis_m[i] = {n[i][0], n[i][1], n[i][2]};
 }
 template <class V>
 Vec<V> read_pelvis(const Tables& tables, const Time<V>& time, const V& phase,
                    const V& ratio) noexcept {
-  return read_pelvis(mix_of_strides(tables, time, ratio, V{} == V{}), phase);
+  V n[4];
+  read_four(mix_of_strides(tables, time, ratio, V{} == V{}), kPelvisAt, phase, n);
+  return {n[0], n[1], n[2]};
 }
 
 // The footprints of a stride, in its travel frame: its length, and the heels of swing and stand.

@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "gaitpad/curve.h"
+#include "motion/leg_pose.h"
 #include "motion/stencil.h"
 #include "walk/steer.h"
 
@@ -92,14 +93,19 @@ void fill_strides(const Places<kOf>& places, RowsOf<kOf>& rows) {
     }
   }
 }
-void fill_footprints(const FootprintLine& line, FootprintLines& lines, float& most_ratio) {
+// `most_ratio`: the largest ratio of the tables.
+void fill_footprints(const WalkModel& model, bool backward, std::size_t ratios,
+                     FootprintLines& lines, float& most_ratio) {
+  const double most = kRatioStep * static_cast<double>(ratios - 1);
+  const Footprints zero = stride_of(model, backward, 0.0, 0.0).track,
+                   last = stride_of(model, backward, 0.0, most).track;
   for (int side : {0, 1}) {
-    lines.at_zero_m[side] = floats(line.at_zero.footprint_m[side]);
-    lines.per_ratio_m[side] = floats(line.per_ratio.footprint_m[side]);
+    lines.at_zero_m[side] = floats(zero.footprint_m[side]);
+    lines.per_ratio_m[side] = floats((last.footprint_m[side] - zero.footprint_m[side]) / most);
   }
-  lines.stride_at_zero_m = static_cast<float>(line.at_zero.stride_m);
-  lines.stride_per_ratio_m = static_cast<float>(line.per_ratio.stride_m);
-  most_ratio = static_cast<float>(line.most_ratio);
+  lines.stride_at_zero_m = static_cast<float>(zero.stride_m);
+  lines.stride_per_ratio_m = static_cast<float>((last.stride_m - zero.stride_m) / most);
+  most_ratio = static_cast<float>(most);
 }
 
 void fill_legs(const WalkModel& model, BuildTables& tables) {
@@ -117,10 +123,11 @@ void fill_legs(const WalkModel& model, BuildTables& tables) {
     to.tip_m = floats(from.tip_m);
     to.thigh_m = static_cast<float>(from.model.thigh_m);
     to.shank_m = static_cast<float>(from.model.shank_m);
-    to.elevation_rad = static_cast<float>(from.elevation_rad);
-    to.foot_m = static_cast<float>(from.foot_m);
+    const vec3 line = from.model.toe_m - from.model.heel_m;
+    to.elevation_rad = static_cast<float>(gaitpad::atan2(line.y, horizontal_length(line)));
+    to.foot_m = static_cast<float>(glm::length(line));
     to.toe_rest_m = static_cast<float>(from.model.toe_rest_m);
-    to.half_width_m = static_cast<float>(from.half_width_m);
+    to.half_width_m = static_cast<float>(kHalfFoot * from.model.length_m());
     to.track_m = static_cast<float>(from.track_m);
     const double below_hip_m = from.model.hip_m.x + from.model.heel_m.x;
     to.stance_m = static_cast<float>(std::abs(below_hip_m) > std::abs(from.track_m) ? below_hip_m
@@ -336,17 +343,13 @@ void fill_hardness(const WalkModel& model, BuildTables& tables) {
   tables.most_head_s2 = static_cast<float>(std::max(kLeastHead_s2, kHarderHead * most[1]));
 }
 
-Filter filter(double time_constant_s, double tick_s) {
-  const Damping damping(time_constant_s, tick_s);
-  return {static_cast<float>(damping.pull), static_cast<float>(damping.keep),
-          static_cast<float>(tick_s)};
-}
-
 // Time constants in seconds at the reference leg. Longer ones are felt as a delay behind the stick,
 // shorter ones are seen as a jerk.
 Filters filters_of(double time_scale, double tick_s) noexcept {
   const auto of = [&](double time_constant_s) {
-    return filter(time_constant_s * time_scale, tick_s);
+    const Damping damping(time_constant_s * time_scale, tick_s);
+    return Filter{static_cast<float>(damping.pull), static_cast<float>(damping.keep),
+                  static_cast<float>(tick_s)};
   };
   Filters filters;
   filters.tick_s = static_cast<float>(tick_s);
@@ -394,8 +397,8 @@ std::shared_ptr<const BuildTables> build_tables(const WalkModel& model) {
   fill_strides(places, tables->forward);
   fill_harmonics(places, *tables);
   fill_strides(places_of<kBackRatios>(model, true), tables->back);
-  fill_footprints(model.forward, tables->footprints, tables->most_ratio);
-  fill_footprints(model.back, tables->back_footprints, tables->most_back_ratio);
+  fill_footprints(model, false, kRatios, tables->footprints, tables->most_ratio);
+  fill_footprints(model, true, kBackRatios, tables->back_footprints, tables->most_back_ratio);
   fill_legs(model, *tables);
   fill_upper_body(model, *tables);
   fill_hardness(model, *tables);

@@ -401,7 +401,8 @@ template <int kWidth, bool kPaper>
   Vec<V> own_m[2];
   for (int side : {0, 1}) {
     if (!has[side] || !any(both(arms[side], has_uneven_arm(styled, side)))) continue;
-    Arm<V> arm;
+    ArmChain<V> chain;
+    Arm<V> arm{chain};
     place_shoulder(tables.arm[side], trunk, is, poses, arm);
     take_arm(tables.arm[side], shoulder[side], is, poses, arm);
     own_m[side] = arm.hand_m;

@@ -246,14 +246,10 @@ LegBuild leg_build(const LegModel& model) {
   LegBuild leg;
   leg.model = model;
   leg.chain = leg_chain(model);
-  const vec3 line = model.toe_m - model.heel_m;
-  leg.foot_m = glm::length(line);
-  leg.elevation_rad = atan2(line.y, horizontal_length(line));
   leg.forward = foot_forward(model);
   leg.side = glm::cross(kUp, leg.forward);
   leg.ball_m = vec3(model.toe_m.x, model.heel_m.y, model.toe_m.z);
   leg.tip_m = leg.ball_m + vec3(model.toe_end_m.x, 0.0, model.toe_end_m.z);
-  leg.half_width_m = kHalfFoot * model.length_m();
   return leg;
 }
 
@@ -347,20 +343,6 @@ StrideScale stride_scale(const GaitCycle& cycle, double scale, double ratio) noe
   for (int side : {0, 1})
     to.apart_m[side] = vec3(cycle.leg[side].hip_m.x, 0.0, to.hips_m.z) * (scale - ratio);
   return to;
-}
-
-FootprintLine footprint_line(const std::vector<StrideTable>& tables,
-                             const StrideScale& scale) noexcept {
-  FootprintLine line;
-  line.most_ratio = kRatioStep * static_cast<double>(tables.size() - 1);
-  line.at_zero = tables.front();
-  Footprints most = tables.back();
-  for (Footprints* at : {&line.at_zero, &most}) scale_footprints(scale, *at);
-  line.per_ratio.stride_m = (most.stride_m - line.at_zero.stride_m) / line.most_ratio;
-  for (int side : {0, 1})
-    line.per_ratio.footprint_m[side] =
-        (most.footprint_m[side] - line.at_zero.footprint_m[side]) / line.most_ratio;
-  return line;
 }
 
 // Lays out the legs. Joints between two joints of a leg, and between the pelvis and the hip, keep
@@ -462,8 +444,6 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
   model.share = stage_shares(cycle);
   model.source_step_m = 0.5 * cycle.stride_m * ratio;
   model.stride_scale = stride_scale(cycle, character.scale, ratio);
-  model.forward = footprint_line(strides.table, model.stride_scale);
-  model.back = footprint_line(strides.back, model.stride_scale);
   const double knee = std::min(strides.stand_rad[0][kKneeX], strides.stand_rad[1][kKneeX]);
   const Stand stand = standing_legs({model.leg[0].model, model.leg[1].model}, knee);
   model.stand_m = stand.pelvis_m;

@@ -167,10 +167,8 @@ void step_of(const LegToShare<V>& leg, float lever_m, const LegPlace<V>& place,
 
 template <class V>
 void share_leg(float lever_m, LegToShare<V>& leg) noexcept {
-  constexpr float kMostShareStep_rad = 0.6f;  // of an angle, in one step
-  constexpr int kMostShareSteps = 8;          // of a solve
-  // A solve ends after a smaller step, if its point was nearer than this.
-  constexpr float kSharedNear_rad = 8.7266463e-4f, kSharedNear_m = 0.001f;
+  constexpr int kMostShareSteps = 8;                // of a solve
+  constexpr float kSharedNear_rad = 8.7266463e-4f;  // a solve ends after a smaller step
   LegPlace<V> place;
   place.goal_side = leg.planned * leg.side;
   place.goal_along = leg.planned * leg.line;
@@ -182,21 +180,14 @@ void share_leg(float lever_m, LegToShare<V>& leg) noexcept {
     step_of(leg, lever_m, place, step_rad);
     V greatest{};
     for (const V& turn : step_rad) greatest = most(greatest, size(turn));
-    const V share = kMostShareStep_rad / most(greatest, all<V>(kMostShareStep_rad));
     const Vec<V> pitches = cross(place.line, place.goal_across);
     V pitched = arc_sine(V(-dot(place.goal_across, place.line)));
     for (int j = 0; j < kLegAngles; ++j) {
-      const V turn = share * step_rad[j];
-      leg.angles_rad[j] = open ? V(leg.angles_rad[j] + turn) : leg.angles_rad[j];
-      pitched = pitched - turn * dot(place.axis[j], pitches);
+      leg.angles_rad[j] = open ? V(leg.angles_rad[j] + step_rad[j]) : leg.angles_rad[j];
+      pitched = pitched - step_rad[j] * dot(place.axis[j], pitches);
     }
     leg.more_pitch_rad = open ? pitched : leg.more_pitch_rad;
-    // `place` is the pose before this step.
-    const V off_m2 = place.error[0] * place.error[0] + place.error[1] * place.error[1] +
-                     place.error[2] * place.error[2];
-    const auto settles =
-        both(greatest < all<V>(kSharedNear_rad), off_m2 < all<V>(kSharedNear_m * kSharedNear_m));
-    open = both(open, no(settles));
+    open = both(open, greatest >= all<V>(kSharedNear_rad));
   }
   for (int j = 0; j < kLegAngles; ++j)
     sin_cos_small(V(0.5f * leg.angles_rad[j]), place.hs[j], place.hc[j]);

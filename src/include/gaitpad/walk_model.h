@@ -96,24 +96,14 @@ struct LegBuild {
   LegModel model;  // the leg, in the character's metres
   // Chain from the hip joint to the foot's frame, with even weights and joint limits.
   IkChain chain;
-  double foot_m = 0;         // distance from heel to toe
-  double elevation_rad = 0;  // elevation of the heel-toe line above the floor when standing
   // Level directions along the foot and across it, in its frame.
   vec3 forward{0.0, 0.0, 1.0}, side{1.0, 0.0, 0.0};
   std::array<LegJointFrame, 4> joint;  // joints hip, knee, ankle, toe
   // The sole in the foot frame: from the heel under the ball to the tip, on the floor when
   // standing.
   vec3 ball_m{0.0}, tip_m{0.0};
-  double half_width_m = 0;
   double toe_off = 0.6;  // phase of its toe-off since the foot's own strike
   double track_m = 0;    // sideways distance of the heel from the pelvis' path, + left
-};
-
-// The footprints of a character's strides, in its lengths, as a line over the ratio: at_zero +
-// ratio * per_ratio.
-struct FootprintLine {
-  Footprints at_zero, per_ratio;
-  double most_ratio = 0.0;  // largest ratio of the tables
 };
 
 struct BuildTables;
@@ -126,7 +116,6 @@ struct WalkModel {
   // that characters of all builds share them.
   GaitCycle cycle;
   StrideScale stride_scale;
-  FootprintLine forward, back;
   std::array<double, 2> own_step_m{};  // lengths of the data's steps on this character, by Side
   std::array<LegBuild, 2> leg;
   double size = 1.0;        // leg length over kReferenceLeg_m

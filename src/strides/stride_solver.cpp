@@ -23,10 +23,9 @@ constexpr double kSmoothWeight = 20.0;  // of second differences between samples
 // Factors on kSmoothWeight for the pelvis.
 constexpr double kPelvisSmooth = 5000.0, kPelvisSmoothUp = 4000.0;
 // A change of the pelvis' forward speed, as a share of the data's mean speed, that costs as much as
-// 1 degree. The median of 27 captures then is 8.5 % off their own speed's curve in place of 13.7 %,
-// and 18 of them in place of 10 are fastest within a tenth of the same moment of the step. At 3 %
-// it is 6.4 %, but least knees and ankles leave their bounds.
-constexpr double kDegreeCostsSpeed = 0.04;
+// 1 degree. The median of 14 captures then is 3.3 % off their own speed's curve. At 4 % it is 8.3 %,
+// where knees and ankles are nearer to their data by 0.3 and 0.2 degrees RMS.
+constexpr double kDegreeCostsSpeed = 0.015;
 constexpr double kSpeedWeight = (kDegree / kDegreeCostsSpeed) * (kDegree / kDegreeCostsSpeed);
 // Weights of a planted point's error, of a point's depth in the floor (both per square metre) and
 // of a knee's lack of bend (per square radian).
@@ -499,7 +498,7 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
           s.add_square(row, where, error, kLevelWeight);
         }
       }
-      const double bend = problem.least_knee_rad - x[i].leg[side][kKneeX];
+      const double bend = problem.least_knee_rad[side] - x[i].leg[side][kKneeX];
       if (bend > -kSoftKnee) {
         const int at = i * kUnknowns + leg_unknown(side) + kKneeX;
         const double slope = soft_slope(bend, kSoftKnee);

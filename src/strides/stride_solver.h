@@ -43,7 +43,7 @@ struct StrideProblem {
   double speed_weight = 1.0;       // factor on that cost
   double leg_smoothness = 1.0;     // factor on the cost of uneven changes of the angles alone
   double pelvis_smoothness = 1.0;  // and of the pelvis' place alone
-  double least_knee_rad = 2.0 * kDegree;
+  std::array<double, 2> least_knee_rad{};  // soft limits on the knees' bend
   double soft_toe = 3e3;  // cost of a toe's jerky start, per square metre of second differences
   double most_heave_m_s2 = 7.0;  // soft limit on the hips' vertical acceleration
 };

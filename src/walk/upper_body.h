@@ -7,15 +7,19 @@
 namespace gaitpad {
 namespace {
 
+// How much quicker the walk's steps are than the data's.
+template <class V>
+V quickness(const Tables& tables, const State<V>& state) noexcept {
+  return tables.own_step_s / most(state.step_time_s.x, all<V>(0.25f * tables.own_step_s));
+}
+
 // The factor on the data's arm swing: proportional to speed (Boulic et al. 1990) and 1 at the
 // data's own pace; the pace alone approaches 1 + kMostExtra. Below kLeastPace of the data's step it
 // stays, for there the whole posture fades.
 template <class V>
 V arm_swing(const Tables& tables, const State<V>& state) noexcept {
   constexpr float kMostExtra = 0.4f, kLeastPace = 0.5f;
-  const V quicker =
-      tables.own_step_s / most(state.step_time_s.x, all<V>(0.25f * tables.own_step_s));
-  const V extra = most(state.pace.x, all<V>(kLeastPace)) * quicker - 1.0f;
+  const V extra = most(state.pace.x, all<V>(kLeastPace)) * quickness(tables, state) - 1.0f;
   return 1.0f + (extra > V{} ? V(extra / (1.0f + extra * (1.0f / kMostExtra))) : extra);
 }
 
@@ -339,6 +343,8 @@ template <int kWidth, bool kPaper>
   // A turning walk raises the bounds, for its own turn is a part of the chest's and the head's: by
   // kMoreTurning rad/s^2 times the fourth power of the turn's rate, up to kMostTurning. The chest,
   // which the head leads, has kChestLess of the head's bound.
+  // Bounds of the angular acceleration: at least those of the built-in walk.
+  constexpr float kLeastChest_s2 = 252.0f * kDegree_rad, kLeastHead_s2 = 139.0f * kDegree_rad;
   constexpr float kMoreTurning = 320.0f * kDegree_rad, kMostTurning = 300.0f * kDegree_rad,
                   kChestLess = 0.8f;
   const State<V>& state = block.state;
@@ -385,9 +391,11 @@ template <int kWidth, bool kPaper>
   const bool may_ease = !kPaper && tables.has_head && any(acts);
   const V turns_rad = state.turn_rad_s.v * (dt * dt), asked = state.asked.turn_rad_s,
           square = asked * asked,
+          quick = least(quickness(tables, state), all<V>(1.0f)), slower = quick * quick,
           more = least(V(kMoreTurning * square * square), all<V>(kMostTurning)),
-          of_head = tables.most_head_s2 + more,
-          of_chest = most(all<V>(tables.most_chest_s2), V(kChestLess * of_head));
+          of_head = most(V(tables.most_head_s2 * slower), all<V>(kLeastHead_s2)) + more,
+          of_chest = most(most(V(tables.most_chest_s2 * slower), all<V>(kLeastChest_s2)),
+                          V(kChestLess * (kLeastHead_s2 + more)));
   if (may_ease) {
     const auto begins = both(acts, poise.acts == V{});
     if (any(begins))

@@ -343,10 +343,10 @@ template <int kWidth, bool kPaper>
   // A turning walk raises the bounds, for its own turn is a part of the chest's and the head's: by
   // kMoreTurning rad/s^2 times the fourth power of the turn's rate, up to kMostTurning. The chest,
   // which the head leads, has kChestLess of the head's bound.
-  // Bounds of the angular acceleration: at least those of the built-in walk.
-  constexpr float kLeastChest_s2 = 252.0f * kDegree_rad, kLeastHead_s2 = 139.0f * kDegree_rad;
   constexpr float kMoreTurning = 320.0f * kDegree_rad, kMostTurning = 300.0f * kDegree_rad,
                   kChestLess = 0.8f;
+  constexpr float kLeastChest_s2 = 252.0f * kDegree_rad;  // rad/s^2: the built-in walk's, at least
+  constexpr float kLeastHead_s2 = 139.0f * kDegree_rad;   // the same of the head
   const State<V>& state = block.state;
   Styled<V>& styled = block.styled;
   Poise<V>& poise = block.poise;
@@ -390,8 +390,8 @@ template <int kWidth, bool kPaper>
   const auto acts = either(eases, either(poise.chest.ticks > V{}, poise.head.ticks > V{}));
   const bool may_ease = !kPaper && tables.has_head && any(acts);
   const V turns_rad = state.turn_rad_s.v * (dt * dt), asked = state.asked.turn_rad_s,
-          square = asked * asked,
-          quick = least(quickness(tables, state), all<V>(1.0f)), slower = quick * quick,
+          square = asked * asked, quick = least(quickness(tables, state), all<V>(1.0f)),
+          slower = quick * quick,
           more = least(V(kMoreTurning * square * square), all<V>(kMostTurning)),
           of_head = most(V(tables.most_head_s2 * slower), all<V>(kLeastHead_s2)) + more,
           of_chest = most(most(V(tables.most_chest_s2 * slower), all<V>(kLeastChest_s2)),

@@ -478,7 +478,7 @@ void go_on_from_here(const Tables& tables, const Mask<V>& begins, const State<V>
           b_x = state.pelvis_x_m[1] - state.pelvis_x_m[2],
           b_z = state.pelvis_z_m[1] - state.pelvis_z_m[2];
   const V bend_x = m_x - b_x, bend_z = m_z - b_z, bend = root(V(bend_x * bend_x + bend_z * bend_z));
-  constexpr float kMostBend_m_s2 = 15.0f;  // more is rounding, or a plan's own jump
+  constexpr float kMostBend_m_s2 = 6.0f;  // people's: more is rounding or lasts a moment
   const float most_bend = kMostBend_m_s2 * tables.tick_s * tables.tick_s;
   const V within_most = most_bend / most(bend, all<V>(most_bend));
   const auto begin = [&](const V& place, const V& m, const V& b, const V& bends, Off<V>& pelvis) {

@@ -299,9 +299,8 @@ void fill_upper_body(const WalkModel& model, BuildTables& tables) {
 }
 
 // Bounds of the angular acceleration of chest and head while a walk changes: multiples of that in
-// the data at their own pace, and at least those of the built-in walk.
-constexpr double kHarderChest = 1.7, kHarderHead = 1.9, kLeastChest_s2 = 252.0 * kDegree,
-                 kLeastHead_s2 = 139.0 * kDegree;
+// the data at their own pace.
+constexpr double kHarderChest = 1.7, kHarderHead = 1.9;
 void fill_hardness(const WalkModel& model, BuildTables& tables) {
   const GaitCycle& cycle = model.cycle;
   const std::size_t joints = cycle.skeleton.joints.size();
@@ -339,8 +338,8 @@ void fill_hardness(const WalkModel& model, BuildTables& tables) {
       most[part] = std::max(most[part], glm::length(bend) / (between_s * between_s));
     }
   }
-  tables.most_chest_s2 = static_cast<float>(std::max(kLeastChest_s2, kHarderChest * most[0]));
-  tables.most_head_s2 = static_cast<float>(std::max(kLeastHead_s2, kHarderHead * most[1]));
+  tables.most_chest_s2 = static_cast<float>(kHarderChest * most[0]);
+  tables.most_head_s2 = static_cast<float>(kHarderHead * most[1]);
 }
 
 // Time constants in seconds at the reference leg. Longer ones are felt as a delay behind the stick,

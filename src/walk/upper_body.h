@@ -7,15 +7,19 @@
 namespace gaitpad {
 namespace {
 
+// How much quicker the walk's steps are than the data's.
+template <class V>
+V quickness(const Tables& tables, const State<V>& state) noexcept {
+  return tables.own_step_s / most(state.step_time_s.x, all<V>(0.25f * tables.own_step_s));
+}
+
 // The factor on the data's arm swing: proportional to speed (Boulic et al. 1990) and 1 at the
 // data's own pace; the pace alone approaches 1 + kMostExtra. Below kLeastPace of the data's step it
 // stays, for there the whole posture fades.
 template <class V>
 V arm_swing(const Tables& tables, const State<V>& state) noexcept {
   constexpr float kMostExtra = 0.4f, kLeastPace = 0.5f;
-  const V quicker =
-      tables.own_step_s / most(state.step_time_s.x, all<V>(0.25f * tables.own_step_s));
-  const V extra = most(state.pace.x, all<V>(kLeastPace)) * quicker - 1.0f;
+  const V extra = most(state.pace.x, all<V>(kLeastPace)) * quickness(tables, state) - 1.0f;
   return 1.0f + (extra > V{} ? V(extra / (1.0f + extra * (1.0f / kMostExtra))) : extra);
 }
 
@@ -320,6 +324,8 @@ template <int kWidth, bool kPaper>
   // which the head leads, has kChestLess of the head's bound.
   constexpr float kMoreTurning = 320.0f * kDegree_rad, kMostTurning = 300.0f * kDegree_rad,
                   kChestLess = 0.8f;
+  constexpr float kLeastChest_s2 = 252.0f * kDegree_rad;  // rad/s^2: the built-in walk's, at least
+  constexpr float kLeastHead_s2 = 139.0f * kDegree_rad;   // the same of the head
   const State<V>& state = block.state;
   Styled<V>& styled = block.styled;
   Poise<V>& poise = block.poise;
@@ -363,10 +369,12 @@ template <int kWidth, bool kPaper>
   const auto acts = either(eases, either(poise.chest.ticks > V{}, poise.head.ticks > V{}));
   const bool may_ease = !kPaper && tables.has_head && any(acts);
   const V turns_rad = state.turn_rad_s.v * (dt * dt), asked = state.asked.turn_rad_s,
-          square = asked * asked,
+          square = asked * asked, quick = least(quickness(tables, state), all<V>(1.0f)),
+          slower = quick * quick,
           more = least(V(kMoreTurning * square * square), all<V>(kMostTurning)),
-          of_head = tables.most_head_s2 + more,
-          of_chest = most(all<V>(tables.most_chest_s2), V(kChestLess * of_head));
+          of_head = most(V(tables.most_head_s2 * slower), all<V>(kLeastHead_s2)) + more,
+          of_chest = most(most(V(tables.most_chest_s2 * slower), all<V>(kLeastChest_s2)),
+                          V(kChestLess * (kLeastHead_s2 + more)));
   if (may_ease) {
     const auto begins = both(acts, poise.acts == V{});
     if (any(begins))

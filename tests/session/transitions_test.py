@@ -15,9 +15,7 @@ NARROW = {"12": "mocap/cmu_12_01_walk.bvh", "female": "mocap/cmu_m21_female_walk
 
 
 # Of captured motions: transitions.py prints by how much these bounds are missed.
-NOT_MET = {("the_hips_neither_dip_nor_go_back", "m21"), ("chest_and_head_do_not_jump", "m21"),
-           ("chest_and_head_do_not_jump", "walk01"), ("a_stop_at_full_stick_takes_less_than_a_metre", "walk01"),
-           ("starts_and_stops_neither_push_nor_brake_harder_than_people", "07")}
+NOT_MET = {("the_hips_neither_dip_nor_go_back", "m21"), ("a_stop_at_full_stick_takes_less_than_a_metre", "walk01")}
 
 
 @pytest.fixture(scope="module", name="player", params=list(CLIPS))
@@ -75,7 +73,14 @@ def test_the_hips_neither_dip_nor_go_back(rows):
 def test_chest_and_head_do_not_jump(rows):
     for row in rows.values():
         for change in (row["start"], *row["stops"]):
-            assert max(change["chest"], change["head"]) <= 2.05
+            assert max(change["chest"], change["head"]) <= 2
+
+
+@pytest.mark.parametrize("clip", ("dpr_walk_simple", "cmu_12_01_walk"))
+def test_chest_and_head_of_slow_captures_do_not_jump(program, tmp_path, clip):
+    row = transitions.measure(player_on(program, tmp_path, f"mocap/{clip}.bvh"), 0.3)
+    for change in (row["start"], *row["stops"]):
+        assert max(change["chest"], change["head"]) <= 2
 
 
 def test_a_stop_at_full_stick_takes_less_than_a_metre(rows):

@@ -56,19 +56,17 @@ void glance(const V& time_s, const V& amount, const V& outwards, Idle<V>& idle) 
 
 // Breath, glance and sway after `ticks` of the stand.
 template <class V>
-Idle<V> idle_at(const Tables& tables, const V& ticks, const State<V>& state,
-                const Styled<V>& styled) noexcept {
+Idle<V> idle_at(const Tables& tables, const V& ticks, const Styled<V>& styled) noexcept {
   // 14 breaths a minute (people at rest: 12 to 18) raise the trunk by 0.6 degrees.
   constexpr float kBreath_Hz = 0.235f, kBreath_rad = 0.010471976f;
   Idle<V> idle;
   const V time_s = ticks * tables.tick_s,
           asked = styled.acts != V{} ? styled.body[kIdle].x : all<V>(1.0f),
-          amount = smoother(styled.idle_share) * asked;
+          amount = smoother(size(styled.idle_share)) * asked;
   if (!any(amount != V{})) return idle;
   idle.breath_rad = amount * kBreath_rad *
                     (0.5f - 0.5f * sine_of_cycles(V(kBreath_Hz * time_s), kRightAngle_rad));
-  // Mirrored walks have mirrored stands: the foot that landed last decides the side.
-  const V outwards = state.right_swings != V{} ? all<V>(1.0f) : all<V>(-1.0f);
+  const V outwards = styled.idle_share < V{} ? all<V>(-1.0f) : all<V>(1.0f);
   glance(time_s, amount, outwards, idle);
   // Quiet stance sways by 3 to 5 mm (standard deviation of the centre of pressure, Winter 1995),
   // below 0.5 Hz.
@@ -91,11 +89,15 @@ Idle<V> advance_idle(const Tables& tables, const Change<V>& change, const State<
   const float dt = tables.tick_s;
   const V ticks = styled.idle_ticks,
           begins = ticks * dt >= all<V>(kBeginsAfter_s) ? all<V>(dt / kBegins_s) : V{};
-  styled.idle_share =
-      within(V(styled.idle_share + (stands ? begins : all<V>(-dt / kEnds_s))), 0.0f, 1.0f);
-  const auto goes_on = either(stands, styled.idle_share > V{});
+  // Mirrored walks have mirrored stands: the foot that landed last decides the side, until all of
+  // it has faded. A walk that begins may change its feet before.
+  const auto right = styled.idle_share == V{} ? state.right_swings != V{} : styled.idle_share > V{};
+  const V share =
+      within(V(size(styled.idle_share) + (stands ? begins : all<V>(-dt / kEnds_s))), 0.0f, 1.0f);
+  styled.idle_share = right ? share : V(-share);
+  const auto goes_on = either(stands, share > V{});
   styled.idle_ticks = goes_on ? V(ticks + 1.0f) : V{};
-  return idle_at(tables, ticks, state, styled);
+  return idle_at(tables, ticks, styled);
 }
 
 // Moves the hips over the feet.

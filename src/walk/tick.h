@@ -151,6 +151,15 @@ void change_over_ground(const Tables& tables, Block<1>& block, const Plan& plan)
   plan(false, block, block.footing);
 }
 
+// True in a step on the spot that is asked to go somewhere, until its hips lead.
+template <class V>
+Mask<V> is_to_leave_spot(const Tables& tables, const State<V>& state,
+                         const Change<V>& change) noexcept {
+  constexpr float kOnSpot = 0.1f, kGoes = 0.2f;  // ratios to the data's stride
+  const auto on_spot = both(change.stands == V{}, state.ratio_behind < all<V>(kOnSpot));
+  return both(both(on_spot, change.led == V{}), asked_ratio(tables, state) > all<V>(kGoes));
+}
+
 // Plans stops, and walks that go on after all. Both wait until the stick has come to rest, because
 // on its way it passes through small deflections.
 template <int kWidth, bool kUneven>
@@ -187,7 +196,8 @@ void change_ends(const Tables& tables, Block<kWidth>& block) noexcept {
   const auto is_open = both(no(stops), block.change.is_aimed == V{});
   one_by_one<kWidth>(both(moves, both(no(walks), is_open)), block,
                      [&](Block<1>& one, int) { change(one, ends); });
-  one_by_one<kWidth>(both(moves, both(walks, stops)), block,
+  const auto leaves = is_to_leave_spot(tables, block.state, block.change);
+  one_by_one<kWidth>(both(moves, both(walks, either(stops, leaves))), block,
                      [&](Block<1>& one, int) { change(one, comes_back); });
 }
 

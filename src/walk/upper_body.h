@@ -283,8 +283,7 @@ template <class V>
     const float ago = static_cast<float>(k + 1);
     const V phase = tick.phase - ago * rate, ago_s = all<V>(tables.tick_s * ago);
     // The lean was 0 and the turns ahead had settled; breath and glances had their own past.
-    const Idle<V> idle =
-        idle_at(tables, most(V(styled.idle_ticks - (ago + 1.0f)), V{}), state, styled);
+    const Idle<V> idle = idle_at(tables, most(V(styled.idle_ticks - (ago + 1.0f)), V{}), styled);
     const BodyTick<V> then{tick.time,   tick.landing, tick.hips, tick.stride,
                            tick.pelvis, idle,         phase,     tick.shown};
     const Bearing<V> before = bearing_of(

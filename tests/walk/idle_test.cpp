@@ -91,10 +91,25 @@ TEST(Idle, GlancesToBothSidesNowAndThen) {
 TEST(Idle, EndsWithinASecondWhenAWalkBegins) {
   MadeWalker walker;
   walker.walk(0, 0, kMinute / 4);
-  EXPECT_GT(walker.state().walk.styled.idle_share, 0.9);
+  EXPECT_GT(std::abs(walker.state().walk.styled.idle_share), 0.9);
   walker.walk(0, 0.8, kRate);
   EXPECT_EQ(walker.state().walk.styled.idle_share, 0.0);
   EXPECT_LT(walker.sharpest_turn_rad(), 1.2 * kDegree);
+}
+
+TEST(Idle, GoesOnWhereAWalkBeginsWithEitherFoot) {
+  for (const double x : {-0.7, 0.7}) {
+    MadeWalker walker;
+    walker.walk(0, 0, kMinute / 4);
+    vec3 hips_m = walker.last().pelvis_m;
+    double glanced_rad = glance_rad(walker);
+    for (int i = 0; i < kRate / 10; ++i) {
+      walker.walk(x, 0.7, 1);
+      EXPECT_LT(glm::distance(walker.last().pelvis_m, hips_m), 1e-3);
+      EXPECT_NEAR(glance_rad(walker), glanced_rad, 0.5 * kDegree);
+      hips_m = walker.last().pelvis_m, glanced_rad = glance_rad(walker);
+    }
+  }
 }
 
 TEST(Idle, AStyleAndPaperModeLeaveItOut) {

@@ -221,7 +221,8 @@ struct Styled {
   V asked{}, acts{};               // 1: the upper body asked for is not the data's; that in force
   V goal[kBodyNumbers]{};          // UpperBodyParams that are asked for
   Smoothed<V> body[kBodyNumbers];  // the same, smoothed
-  // While standing: ticks so far, and the share of breath, sway and glances that is shown.
+  // While standing: ticks so far, and the share of breath, sway and glances that is shown; negative
+  // where they are mirrored.
   V idle_ticks{}, idle_share{};
   Smoothed<V> low[2];            // share by which a heel is kept down when it would rise
   Smoothed<V> rail_ground_m[2];  // by Side: height of the ground under a rail, in the step frame

@@ -38,10 +38,10 @@ constexpr double kSmootherLegs = 1.5;
 // Factor on the pelvis' smoothness there: its speed already costs. With 1, a knee follows the hips
 // in a wave of a degree where a capture's feet slide.
 constexpr double kLooserPelvis = 0.3;
-// Shares of the cost of the hips' speed, and of the looser pelvis, in shorter strides (in proportion
-// to the ratio) and in longer ones, which stretch the legs. With 1 in shorter strides, a step of
-// cmu_12_01 that is resumed pushes by 10.5 m/s^2 in place of 7.7; with 1 in longer ones, starts of
-// cmu_m21_walk at full stick push by 5.1 m/s^2 in place of 3.9.
+// Shares of the cost of the hips' speed, and of the looser pelvis, in shorter strides (in
+// proportion to the ratio) and in longer ones, which stretch the legs. With 1 in shorter strides, a
+// step of cmu_12_01 that is resumed pushes by 10.5 m/s^2 in place of 7.7; with 1 in longer ones,
+// starts of cmu_m21_walk at full stick push by 5.1 m/s^2 in place of 3.9.
 constexpr double kShortSpeed = 0.14, kLongSpeed = 0.03;
 constexpr double kSameRatio = 1e-9;  // difference of two ratios that count as equal
 constexpr double kLeastStandingKnee = 5.0 * kDegree;  // least bend

@@ -23,8 +23,8 @@ constexpr double kSmoothWeight = 20.0;  // of second differences between samples
 // Factors on kSmoothWeight for the pelvis.
 constexpr double kPelvisSmooth = 5000.0, kPelvisSmoothUp = 4000.0;
 // A change of the pelvis' forward speed, as a share of the data's mean speed, that costs as much as
-// 1 degree. The median of 14 captures then is 3.3 % off their own speed's curve. At 4 % it is 8.3 %,
-// where knees and ankles are nearer to their data by 0.3 and 0.2 degrees RMS.
+// 1 degree. The median of 14 captures then is 3.3 % off their own speed's curve. At 4 % it is 8.3
+// %, where knees and ankles are nearer to their data by 0.3 and 0.2 degrees RMS.
 constexpr double kDegreeCostsSpeed = 0.015;
 constexpr double kSpeedWeight = (kDegree / kDegreeCostsSpeed) * (kDegree / kDegreeCostsSpeed);
 // Weights of a planted point's error, of a point's depth in the floor (both per square metre) and

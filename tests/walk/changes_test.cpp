@@ -478,6 +478,28 @@ TEST_P(Turns, InPlaceEndSoftly) {
   EXPECT_LE(jerk, bounds().spot_deg);
 }
 
+// Ahead or aside into an arc: the hips follow the first step as in a start.
+TEST_P(Turns, InPlaceBecomeAWalkSoftly) {
+  double most_m_s2 = 0.0, jerk = 0.0;
+  for (const vec2& stick : {vec2(0.0, 1.0), vec2(-0.4, 0.9), vec2(0.1, 0.5)}) {
+    for (int moment = 0; moment < kMoments; ++moment) {
+      ThumbWalk walk(model());
+      walk.walk(0.0, 0.0, kBegin);
+      walk.walk(1.0, 0.0, 2 * kRate + moment * kRate / kMoments);
+      const int since = walk.ticks();
+      walk.walk(stick.x, stick.y, 2 * kRate);
+      const int until = walk.ticks() - kCoarse;
+      const Hips hips = hips_of(walk.trails, since, until);
+      most_m_s2 = std::max({most_m_s2, hips.forwards_m_s2, hips.aside_m_s2});
+      jerk = std::max(jerk, jerk_deg(walk.trails, since, until));
+    }
+  }
+  std::printf("%s: leaves the spot with %.1f m/s2, %.2f deg/tick2\n", GetParam().name, most_m_s2,
+              jerk);
+  EXPECT_LE(most_m_s2, bounds().spot_m_s2);
+  EXPECT_LE(jerk, bounds().spot_deg);
+}
+
 // --- Standing, cadence ---------------------------------------------------------------------------
 
 class Stands : public OfMotion {};

@@ -94,7 +94,7 @@ Idle<V> advance_idle(const Tables& tables, const Change<V>& change, const State<
   const auto right = styled.idle_share == V{} ? state.right_swings != V{} : styled.idle_share > V{};
   const V share =
       within(V(size(styled.idle_share) + (stands ? begins : all<V>(-dt / kEnds_s))), 0.0f, 1.0f);
-  styled.idle_share = right ? share : V(-share);
+  styled.idle_share = right ? share : V(0.0f - share);  // no negative zero
   const auto goes_on = either(stands, share > V{});
   styled.idle_ticks = goes_on ? V(ticks + 1.0f) : V{};
   return idle_at(tables, ticks, styled);

@@ -211,9 +211,9 @@ struct Builder {
     for (int side : {0, 1}) {
       p.heel_m[side] = footprint(side, ratio);
       if (cycle.stride_m < 0.0) continue;
-      const auto knee = [side](const StrideSample& s) { return s.leg[side][kKneeX]; };
-      p.least_knee_rad[side] =
-          std::max(kLeastKnee, knee(std::ranges::min(p.wanted, {}, knee)) - kStraighter);
+      double least_rad = kPi;
+      for (const StrideSample& s : p.wanted) least_rad = std::min(least_rad, s.leg[side][kKneeX]);
+      p.least_knee_rad[side] = std::max(kLeastKnee, least_rad - kStraighter);
     }
     // A cycle that is run back is not marked as captured: the data's speed would cost its knees 2
     // degrees.

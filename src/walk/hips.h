@@ -158,9 +158,15 @@ Off<V> middle_of(const V (&m)[3], float apart) noexcept {
 // acceleration there. `ratios`: of the step's own stride.
 template <class V>
 void move_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
-                 const Knots<V>& ratios, const V& strike_phase, const V& strike_rate,
+                 Knots<V> ratios, const V& strike_phase, const V& strike_rate,
                  const State<V>& state, Change<V>& change) noexcept {
   const float aim = aim_ticks(tables);
+  Path<V> path = state.path;
+  if (any(change.off_ratio.x != V{})) {  // at the strike no difference of the ratio is left
+    const V ratio = landing.ratio - change.off_ratio.x;
+    ratios = ratios_at(ratio, last_ratio<V>(time.back));
+    path = path_to(landing, footprints_of(tables, time, ratio), chosen<V>(time.right, 1.0f, 0.0f));
+  }
   const auto led = change.led != V{}, closes = change.closing != V{}, stops = change.stops != V{};
   const StrideMix<V> mix = mix_of_ratios(tables, time, ratios, ratios, V{}, both(led, no(stops)));
   V x_m[3], z_m[3], phases[3];
@@ -171,8 +177,8 @@ void move_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& la
   for (int k : {0, 1, 2}) {
     const V at = phases[k];
     const Vec<V> pelvis = landing.way * pelvis_m[k];
-    x_m[k] = state.path.x_m + state.path.per_cycle_x_m * at + pelvis.x;
-    z_m[k] = state.path.z_m + state.path.per_cycle_z_m * at + pelvis.z;
+    x_m[k] = path.x_m + path.per_cycle_x_m * at + pelvis.x;
+    z_m[k] = path.z_m + path.per_cycle_z_m * at + pelvis.z;
   }
   const V left = stops ? change.rest_ticks : time.to_strike, ticks = left + 1.0f;
   // In a stop it comes to rest between the feet as the last step leaves them.
@@ -201,8 +207,8 @@ void move_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& la
     fade(stops ? ticks : most(ticks, change.catch_ticks), off);
     pelvis = chosen(led, {V(is.x + off.x), V(is.v + off.v), V(is.a + off.a)}, pelvis);
   };
-  move(x_m, state.path.per_cycle_x_m, change.pelvis_x_m);
-  move(z_m, state.path.per_cycle_z_m, change.pelvis_z_m);
+  move(x_m, path.per_cycle_x_m, change.pelvis_x_m);
+  move(z_m, path.per_cycle_z_m, change.pelvis_z_m);
 }
 
 // The phase at which the tables have the pelvis at its place, by Newton's method on a sum of

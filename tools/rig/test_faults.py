@@ -96,7 +96,8 @@ def test_unplugged_while_walking_and_plugged_in_again(case):
     neutral_in_time(frames, removals, 0.0)  # at the tick that learns of it
     time_ns = tick_times_ns(session.lines())
     took_s = sorted((time_ns(tick) - ns) / 1e9 for tick, ns in zip(removals, unplugged_ns))
-    assert len(took_s) == times + 1 and took_s[0] > 0, took_s
+    # By the ticks' due times: a loop that is late on a busy machine takes a removal in a tick that was due before it.
+    assert len(took_s) == times + 1, took_s
     bare_s = statistics.median((bare - ns) / 1e9 for bare, ns in zip(bare_ns, unplugged_ns))
     # From the moment the pad lets go of the bus: most of it is the kernel's hub driver.
     assert statistics.median(took_s) < max(NEUTRAL_S, bare_s + OVER_BARE_S), (took_s, bare_s)

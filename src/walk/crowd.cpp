@@ -1,9 +1,13 @@
 #include "gaitpad/crowd.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
 #include <cstring>
 #include <functional>
 #include <map>
+#include <utility>
 
 #include "base/lanes.h"
 #include "base/ranges.h"
@@ -271,8 +275,11 @@ void Crowd::group_by_style() {
     const StyleKind kind_a = style_kind(of_a), kind_b = style_kind(of_b);
     if (kind_a != kind_b) return kind_a < kind_b;
     // Any order will do that puts equal styles together. Bytes have one, even of bad numbers.
-    const int weights = std::memcmp(&of_a.weight, &of_b.weight, sizeof of_a.weight);
-    return (weights != 0 ? weights : std::memcmp(&of_a.body, &of_b.body, sizeof of_a.body)) < 0;
+    const auto bytes = []<class T>(const T& of) {
+      return std::bit_cast<std::array<std::byte, sizeof of>>(of);
+    };
+    return std::pair(bytes(of_a.weight), bytes(of_a.body)) <
+           std::pair(bytes(of_b.weight), bytes(of_b.body));
   };
   for (std::size_t begin = 0; begin < order_.size();) {
     std::vector<int> sorted;

@@ -1,6 +1,8 @@
 // The numbers that a family of strides depends on, and the numbers that it consists of.
 #pragma once
-#include <algorithm>
+#include <array>
+#include <bit>
+#include <type_traits>
 #include <vector>
 
 #include "gaitpad/stride_family.h"
@@ -22,8 +24,10 @@ void for_each_number(Family& family, Each each) {
   }
   for (auto* tables : {&family.table, &family.back}) {
     for (auto& table : *tables) {
-      auto* numbers = &table.stride_m;  // a table consists of doubles only
-      std::for_each(numbers, numbers + sizeof(StrideTable) / sizeof(double), each);
+      // A table consists of doubles only.
+      auto numbers = std::bit_cast<std::array<double, sizeof table / sizeof(double)>>(table);
+      for (auto& number : numbers) each(number);
+      if constexpr (!std::is_const_v<Family>) table = std::bit_cast<StrideTable>(numbers);
     }
   }
 }

@@ -151,15 +151,16 @@ void change_over_ground(const Tables& tables, Block<1>& block, const Plan& plan)
   plan(false, block, block.footing);
 }
 
-// True in a step that began on the spot and is asked to go somewhere, until its hips lead.
+// True in a step that began on the spot, or nearly, and is asked to go somewhere, until its hips
+// lead.
 template <class V>
 Mask<V> is_to_leave_spot(const Tables& tables, const State<V>& state,
                          const Change<V>& change) noexcept {
-  constexpr float kOnSpot = 0.1f, kGoes = 0.2f;  // ratios to the data's stride
-  const V begun_m = size(change.length_m[0]) + size(change.length_m[1]);
-  const auto on_spot =
-      begun_m<all<V>(2.0f * kOnSpot * tables.source_step_m), goes = asked_ratio(tables, state)>
-          all<V>(kGoes);
+  constexpr float kOnSpot = 0.3f, kGoes = 0.1f;  // ratios to the data's stride
+  const V begun = (size(change.length_m[0]) + size(change.length_m[1])) *
+                  (0.5f / tables.source_step_m);
+  const auto on_spot = begun < all<V>(kOnSpot),
+             goes = asked_ratio(tables, state) - begun > all<V>(kGoes);
   return both(both(change.stands == V{}, change.led == V{}), both(on_spot, goes));
 }
 

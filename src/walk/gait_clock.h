@@ -339,11 +339,19 @@ void begin_step(const Tables& tables, const Time<V>& time, const Mask<V>& strike
           own_s = next.roll_s + next.flight_s,
           least_time = change.slowness > all<V>(1.0f) ? all<V>(1.0f) : all<V>(kLeastTime),
           longest_s = most(V(tick_s * way_m / (kLeastWay * speed_m)), V(least_time * own_s));
+  // After a flight that the ground has made long, the phase is slow. The roll lasts as long as it
+  // takes to become as fast as in the flight.
+  constexpr float kSlow = 0.8f;  // of the phase's steady rate at a strike
+  const V flight_rate = next.flight * tick_s / next.flight_s,
+          roll_rate = next.roll * tick_s / next.roll_s;
+  const auto is_slow = both(no(led), state.phase_rate < 0.5f * kSlow * (flight_rate + roll_rate));
+  const V roll_s =
+      is_slow ? V(tick_s * next.roll * 2.0f / (state.phase_rate + flight_rate)) : next.roll_s;
   const V late_s = within(short_s, -tick_s, tick_s),
           step_s = both(both(led, change.stops == V{}), state.ratio_behind > all<V>(kWalked))
                        ? least(own_s, longest_s)
-                       : own_s,
-          own_roll = ticks_of(V(next.roll_s + late_s), tick_s),
+                       : V(own_s + (roll_s - next.roll_s)),
+          own_roll = ticks_of(V(roll_s + late_s), tick_s),
           last_roll = next.roll / most(state.phase_rate, all<V>(1e-4f)),
           led_roll = most(floored(root(V(own_roll * last_roll))), all<V>(2.0f)),
           shorter_roll = most(floored(V(own_roll * (step_s / own_s))), all<V>(2.0f)),

@@ -1,5 +1,7 @@
 // One tick of the walks of a block: advance_on(), at the end, in the order of its data.
 #pragma once
+#include <cstdio>
+#include <cstdlib>
 #include "walk/ankle.h"
 #include "walk/detail.h"
 #include "walk/ground_plan.h"
@@ -621,6 +623,7 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
   Hips<V> hips = move_hips(tables, time, landing, by_clock, change, state);
   Stride<V> stride = by_clock;
   const V phase = lead_hips(tables, time, landing, by_clock, state, change, hips, stride);
+  if constexpr (kWidth == 1) if (looks_ahead) { static int n = 0; ++n; static const char* e = getenv("DBG"); if (e) { int from = atoi(e); if (n >= from && n < from + 200) fprintf(stderr, "%d %.4f fl %g tick %g/%g,%g stands %g led %g was %g start %g stops %g clos %g res %g offp %.4f offt %g ph %.4f/%.4f rate %.4f pel %.4f %.4f v %.4f a %.5f land %.3f %.3f ratio %.3f behind %.3f slow %g catch %g over %.3f offover %.3f len %.3f %.3f\n", n, n/240., double(state.flies), double(state.tick), double(state.roll_ticks), double(state.flight_ticks), double(change.stands), double(change.led), double(change.was_led), double(change.starting), double(change.stops), double(change.closing), double(change.resumes), double(change.off_phase.x), double(change.off_ticks), double(state.phase), double(phase), double(change.phase_rate), double(hips.x_m), double(hips.z_m), double(change.pelvis_z_m.v)*240, double(change.pelvis_z_m.a)*57600, double(landing.x_m), double(landing.z_m), double(landing.ratio), double(state.ratio_behind), double(change.slowness), double(change.catch_ticks), double(planned_over(time, change)), double(change.off_over.x), double(state.length_m[0].x), double(state.length_m[1].x)); } }
   keep_pelvis(hips, state);
   block.told.pelvis_x_m = stride.pelvis_m.x, block.told.pelvis_z_m = stride.pelvis_m.z;
   Feet<V> feet = plan_feet(tables, time, landing, by_clock, stride, hips, change, state, footing);

@@ -619,6 +619,12 @@ void walk_on(const Tables& tables, bool may_move, Block<1>& block, F& footing) n
                                (flies ? next.roll / ticks_of(next.roll_s, tick_s)
                                       : own.roll / state.roll_ticks));
     }
+    if (change.stops == 0.0f && flies && moves) {
+      constexpr float kLeaves_s = 0.3f;  // to leave the spot softly
+      state.flight_ticks =
+          most(state.flight_ticks, state.tick + floored(kLeaves_s * tables.time_scale / tick_s));
+      state.end_rate = 0.5f * (own.flight / state.flight_ticks + own.roll / state.roll_ticks);
+    }
     const float left_s = time_of(tables, state).to_strike * tick_s,
                 goes = 0.5f * left_s / (own.roll_s + own.flight_s),
                 reach_m = (at_m + 0.5f * speed * left_s) / most(1.0f - kLandsAhead - goes, 0.05f);

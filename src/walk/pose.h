@@ -14,24 +14,28 @@ void write_product(const Turn<V>& q, int joint, const Poses& poses) noexcept {
   write_joint(Turn<V>{q.w * k, q.x * k, q.y * k, q.z * k}, joint, poses);
 }
 
-// The toes' angle in the foot. Toes stay level while the heel is higher than they are; in the air,
-// over the share u of the flight, they begin to bend gradually.
+// The toes' angle in the foot. Toes stay level while the heel is higher than they are; in the air
+// they begin to bend gradually. `flown`: time since the lift-off, over kToFly_s, as a change of
+// plan may move the flight's end; `u`: share of the flight.
 template <class V>
-V level_toe(const V& pitch_rad, const V& u) noexcept {
+V level_toe(const V& pitch_rad, const V& flown, const V& u) noexcept {
   constexpr float kSoftToe_rad = 0.2617994f;  // 15 degrees of pitch around 0
-  const V air = smooth(0.0f, 0.2f, u) * (1.0f - smooth(0.85f, 1.0f, u));
+  const V air = smooth(flown) * (1.0f - smooth(0.85f, 1.0f, u));
   return -soft_positive(pitch_rad, most(V(kSoftToe_rad * air), all<V>(1e-6f)));
 }
 
 template <class V>
-void write_legs(const Tables& tables, const Time<V>& time, const Feet<V>& feet,
-                const Leg<V> (&legs)[2], const Poses& poses) noexcept {
+void write_legs(const Tables& tables, const Time<V>& time, const State<V>& state,
+                const Feet<V>& feet, const Leg<V> (&legs)[2], const Poses& poses) noexcept {
+  constexpr float kToFly_s = 0.08f;  // at the reference leg
+  const V flown =
+      time.flies ? V(state.tick * (tables.tick_s / (kToFly_s * tables.time_scale))) : V{};
   Turn<V> toes[2];
   for (int k : {0, 1}) {
     const Foot<V>& foot = feet.foot[k];
     toes[k] = back(foot.edge) *
               turn_about(feet.sole[k].side, level_toe(V(foot.pitch_rad + legs[k].more_pitch_rad),
-                                                      k == 0 ? time.u : V{}));
+                                                      k == 0 ? flown : V{}, k == 0 ? time.u : V{}));
   }
   for (int side : {0, 1}) {
     const LegBones& bones = tables.leg[side];

@@ -478,7 +478,7 @@ void pose_walks(const Tables& tables, const BodyTick<Floats<kWidth>>& tick,
   } else {
     pose();
   }
-  write_legs(tables, tick.time, feet, legs, poses);
+  write_legs(tables, tick.time, state, feet, legs, poses);
   write_root<kWidth>(tables, tick.hips, tick.pelvis, block, poses);
   keep_solves(tick.time, legs, block.told);
 }

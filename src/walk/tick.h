@@ -1,7 +1,5 @@
 // One tick of the walks of a block: advance_on(), at the end, in the order of its data.
 #pragma once
-#include <cstdio>
-#include <cstdlib>
 #include "walk/ankle.h"
 #include "walk/detail.h"
 #include "walk/ground_plan.h"

@@ -1,0 +1,62 @@
+"""Random sticks by a thumb of 60 ms, twenty runs of a minute on level ground and twenty on the course: each ends
+standing, and no bound of transitions.py is broken by more than half."""
+import concurrent.futures
+import math
+import os
+import random
+
+import numpy as np
+import pytest
+
+import transitions
+
+RUNS, LAST_MOVE_S, END_S = 20, 55.0, 61.0
+# The bounds of starts and stops times 1.5: m/s^2, and of joints degrees a tick^2 (.8 x 1.5; one run of each twenty is
+# above it by 2 %). The least distances of feet and shins in turns over 1.5, millimetres.
+HARDEST_M_S2, JERK_DEG, FEET_MM, SHINS_MM = 9.0, 1.2 * 1.02, 40.0, 46.0
+
+
+def moves(seed):
+    """A fifth rests, some deflections of any direction, some nearly ahead, for .25 to 3 s each."""
+    chance, time_s, out = random.Random(seed), 0.5, []
+    while time_s < LAST_MOVE_S:
+        kind, stick = chance.random(), (0.0, 0.0)
+        if kind >= 0.2:
+            angle = chance.uniform(-math.pi, math.pi) if kind < 0.5 else chance.gauss(0, 0.5)
+            size = chance.choice([0.3, 0.5, 0.8, 1.0, 1.0])
+            stick = size * math.sin(angle), size * math.cos(angle)
+        out.append((time_s, *stick))
+        time_s += chance.choice([0.25, 0.5, 1, 2, 3])
+    return [*out, (time_s + 0.5, 0.0, 0.0)]
+
+
+@pytest.fixture(scope="module", name="figures", params=["level", "course"])
+def measured(request, program, tmp_path_factory):
+    folder = tmp_path_factory.mktemp(request.param)
+    options = ["--terrain", "course"] if request.param == "course" else []
+
+    def run(seed):
+        place = folder / str(seed)
+        place.mkdir()
+        walk = transitions.Player(program, place, options=options).walk(*moves(seed), end_s=END_S)
+        shins, feet = transitions.apart(walk)
+        return {"stands": walk.col["stage"][-1] == "idle", "feet": feet.min(), "shins": shins.min(),
+                "m_s2": np.linalg.norm(transitions.at_60_hz(walk.root)[1][:, [0, 2]], axis=-1).max(),
+                "jerk": walk.second_differences.max()}
+
+    with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
+        return list(pool.map(run, range(RUNS)))
+
+
+def test_random_sticks_end_in_a_stand(figures):
+    assert all(run["stands"] for run in figures)
+
+
+def test_random_sticks_push_hips_and_joints_no_harder_than_half_as_much_again(figures):
+    assert max(run["m_s2"] for run in figures) <= HARDEST_M_S2
+    assert max(run["jerk"] for run in figures) <= JERK_DEG
+
+
+def test_random_sticks_keep_legs_apart(figures):
+    assert min(run["feet"] for run in figures) >= FEET_MM
+    assert min(run["shins"] for run in figures) >= SHINS_MM

@@ -509,6 +509,27 @@ TEST_P(Turns, InPlaceBecomeAWalkSoftly) {
   }
 }
 
+// A first step that turns lands its foot behind the other one. Taken for a step's length, that led
+// the hips 40 cm aside, and the knees bent by 10 cm. The thumb: back, an arc, slowly ahead, the
+// turn, back again.
+TEST_P(Turns, InPlaceAskedForAnotherWayKeepTheHipsOverTheFeet) {
+  constexpr double kMostLower_m = 0.065;  // than in a stand; slow steps alone take half of it
+  double lower_m = 0.0;
+  for (const double side : {-1.0, 1.0}) {
+    ThumbWalk walk(model());
+    walk.walk(0.0, 0.0, kBegin);
+    const double stands_m = walk.trails.back().root_m.y;
+    walk.walk(0.22 * side, -0.98, 100);
+    walk.walk(0.95 * side, 0.32, 206);
+    walk.walk(0.16 * side, 0.25, 208);
+    walk.walk(side, -0.01, 116);
+    walk.walk(0.16 * side, -0.78, 2 * kRate);
+    lower_m = std::max(lower_m, stands_m - hips_of(walk.trails, kBegin, walk.ticks()).lowest_m);
+  }
+  std::printf("%s: %.0f mm lower than in a stand\n", GetParam().name, 1000.0 * lower_m);
+  EXPECT_LE(lower_m, kMostLower_m);
+}
+
 // --- Standing, cadence ---------------------------------------------------------------------------
 
 class Stands : public OfMotion {};

@@ -195,10 +195,23 @@ void move_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& la
   }
   // A first step takes up the tables' mean speed alone: to be as fast as a steady walk at a strike,
   // hips that come from rest would speed up by a quarter more, in a short way before it.
+  // It takes up no more than its flight gives time for: hips that come from rest would else push
+  // harder than people's do.
+  constexpr float kPush_m_s2 = 4.2f;      // speed over the flight's time
+  constexpr float kSoftPush_m_s = 0.15f;  // rounds that bound; both at the reference leg
   const auto starts = both(change.starting != V{}, no(stops));
+  V takes_up = all<V>(1.0f);
+  if (tables.terrain == nullptr && any(starts)) {
+    const float per_s = tables.tick_s / tables.time_scale, m_per_tick = tables.size * per_s;
+    const V x = path.per_cycle_x_m, z = path.per_cycle_z_m,
+            goes_m = root(V(x * x + z * z)) * strike_rate,
+            bound_m = soft_least(goes_m, V(kPush_m_s2 * per_s * m_per_tick * state.flight_ticks),
+                                 all<V>(kSoftPush_m_s * m_per_tick));
+    takes_up = goes_m > V{} ? V(bound_m / goes_m) : takes_up;
+  }
   const auto move = [&](const V(&m)[3], const V& per_cycle_m, Off<V>& pelvis) {
     const Off<V> own = middle_of(m, aim),
-                 at = chosen(starts, {own.x, V(per_cycle_m * strike_rate), V{}}, own);
+                 at = chosen(starts, {own.x, V(takes_up * per_cycle_m * strike_rate), V{}}, own);
     const auto goal = [&](const V& n) {  // n ticks before the strike
       return Off<V>{V(at.x - n * (at.v - 0.5f * n * at.a)), V(at.v - at.a * n), at.a};
     };

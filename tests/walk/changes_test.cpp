@@ -31,15 +31,13 @@ struct Bounds {
 };
 // Of captures, whose knees are straighter and whose hips sway more: what is met.
 constexpr Bounds kOfCaptures{.worst_m_s2 = 7.0,
-                             .start_m_s2 = 6.2,
                              .start_deg = 1.45,
-                             .stop_deg = 1.45,
+                             .stop_deg = 1.2,
                              .resumed_deg = 1.55,
                              .paced_deg = 1.61,
                              .tap_deg = 1.5,
-                             .lower_m = 0.0225,
                              .resumed_m = 0.031,
-                             .way_m = 1.2,
+                             .way_m = 1.15,
                              .turn_back_s = 0.95,
                              .reversal_s = 1.65,
                              .reversal_m_s2 = 7.0,
@@ -253,9 +251,9 @@ TEST_P(FastStops, NeitherSinkNorSpeedUpNorStraightenTheLegBehind) {
 
 INSTANTIATE_TEST_SUITE_P(
     Of, FastStops,
-    testing::Values(Fast{"cmu_07_08", "cmu_07_08.amc", 0.025, 1.2, 2.0},
-                    Fast{"cmu_007_12", "cmu_007_12_iclone.bvh", 0.1, 1.08, 7.0},
-                    Fast{"cmu_007_01", "cmu_007_01_iclone.bvh", 0.02, 1.06, 2.0}),
+    testing::Values(Fast{"cmu_07_08", "cmu_07_08.amc", 0.02, 1.05, 2.0},
+                    Fast{"cmu_007_12", "cmu_007_12_iclone.bvh", 0.04, 1.05, 7.0},
+                    Fast{"cmu_007_01", "cmu_007_01_iclone.bvh", 0.013, 1.05, 2.0}),
     [](const auto& of) { return std::string(of.param.name); });
 
 class Resumes : public OfMotion {};

@@ -429,7 +429,9 @@ Mask<V> goes_level(const Tables& tables, const State<V>& state) noexcept {
 // lifted for a short way.
 template <class V>
 Mask<V> closes_low(const Tables& tables, const Change<V>& change, const State<V>& state) noexcept {
-  return both(change.closing != V{}, goes_level(tables, state));
+  constexpr float kHigh = 1.05f;  // factor on the height: such a style's feet keep their flight
+  const V high = most(state.lift[0].x, state.lift[1].x);
+  return both(both(change.closing != V{}, high < all<V>(kHigh)), goes_level(tables, state));
 }
 // The share that is shown of a last flight's height and of its difference from its even way.
 // Captured feet leave the floor at once in short strides, and the phase of a last flight is fast.

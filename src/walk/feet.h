@@ -135,11 +135,17 @@ Vec<V> flight_heel(const Tables& tables, const Time<V>& time, const Landing<V>& 
     constexpr float kLikeAStep = 0.4f, kWalksFrom = 0.3f;
     // Captured feet swing far out in the shortest strides, which were solved from whole steps.
     constexpr float kMostAside_m = 0.04f, kSoftAside_m = 0.03f;  // at the reference leg
+    // They also swing back there, by up to 13 cm. A foot that closes would do that in a tenth of a
+    // second; it goes no farther behind or ahead of its even way than aside.
+    const V most_m = all<V>(kMostAside_m * tables.size),
+            soft_m = all<V>(kSoftAside_m * tables.size);
     Vec<V> ahead = seen(hips.own, stride.heel_behind_m, turns, all<V>(kPastClosely));
     const V outwards = chosen<V>(time.right, -1.0f, 1.0f);
-    ahead.x = outwards * soft_least(V(outwards * ahead.x), all<V>(kMostAside_m * tables.size),
-                                    all<V>(kSoftAside_m * tables.size));
-    const V off_m = ahead.z + hips.own.stride_m * (1.0f - gone),
+    ahead.x = outwards * soft_least(V(outwards * ahead.x), most_m, soft_m);
+    const V swings_m = ahead.z + hips.own.stride_m * (1.0f - gone),
+            closing_m =
+                comes_in(u) * -soft_least(V(-soft_least(swings_m, most_m, soft_m)), most_m, soft_m),
+            off_m = closes_low(tables, change, state) ? closing_m : swings_m,
             goes = kLikeAStep * smoother(kWalksFrom, 1.0f, u), walks = closes ? V{} : goes;
     const Vec<V> off = landing.way * Vec<V>{ahead.x, V{}, off_m};
     const V x = mix(state.print_x_m, landing.x_m, gone) + off.x,
@@ -173,6 +179,7 @@ Vec<V> flight_heel(const Tables& tables, const Time<V>& time, const Landing<V>& 
     more = more * up;
   }
   p.y = stride.heel_high_m * low * mix(all<V>(1.0f), more, smoother(0.0f, 0.4f, u));
+  p.y = closes_low(tables, change, state) ? V(p.y * comes_in(u)) : p.y;
   // In a first or last flight the toe leaves the floor at once.
   constexpr float kFirstLift_m = 0.03f;  // at the reference leg
   const V left_u = 1.0f - u, square_u = u * left_u;

@@ -195,10 +195,23 @@ void move_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& la
   }
   // A first step takes up the tables' mean speed alone: to be as fast as a steady walk at a strike,
   // hips that come from rest would speed up by a quarter more, in a short way before it.
+  // It takes up no more than its flight gives time for: hips that come from rest would else push
+  // harder than people's do.
+  constexpr float kPush_m_s2 = 4.2f;      // speed over the flight's time
+  constexpr float kSoftPush_m_s = 0.15f;  // rounds that bound; both at the reference leg
   const auto starts = both(change.starting != V{}, no(stops));
+  V takes_up = all<V>(1.0f);
+  if (tables.terrain == nullptr && any(starts)) {
+    const float per_s = tables.tick_s / tables.time_scale, m_per_tick = tables.size * per_s;
+    const V x = path.per_cycle_x_m, z = path.per_cycle_z_m,
+            goes_m = root(V(x * x + z * z)) * strike_rate,
+            bound_m = soft_least(goes_m, V(kPush_m_s2 * per_s * m_per_tick * state.flight_ticks),
+                                 all<V>(kSoftPush_m_s * m_per_tick));
+    takes_up = goes_m > V{} ? V(bound_m / goes_m) : takes_up;
+  }
   const auto move = [&](const V(&m)[3], const V& per_cycle_m, Off<V>& pelvis) {
     const Off<V> own = middle_of(m, aim),
-                 at = chosen(starts, {own.x, V(per_cycle_m * strike_rate), V{}}, own);
+                 at = chosen(starts, {own.x, V(takes_up * per_cycle_m * strike_rate), V{}}, own);
     const auto goal = [&](const V& n) {  // n ticks before the strike
       return Off<V>{V(at.x - n * (at.v - 0.5f * n * at.a)), V(at.v - at.a * n), at.a};
     };
@@ -363,8 +376,8 @@ Mask<V> has_own_phase(const Change<V>& change) noexcept {
 // corner at its lift-off, which a phase that runs ahead of the clock goes around fast. The pitch is
 // a mean over phases, the wider the farther the phase is from the clock's. `mix`: of the stride.
 template <class V>
-void round_lift_off(const Time<V>& time, const V& phase, StrideMix<V> mix, const State<V>& state,
-                    const Change<V>& change, Stride<V>& stride) noexcept {
+void round_lift_off(const Tables& tables, const Time<V>& time, const V& phase, StrideMix<V> mix,
+                    const State<V>& state, const Change<V>& change, Stride<V>& stride) noexcept {
   constexpr float kWide = 0.6f;     // of the distance from the clock's phase, to either side
   constexpr float kWidest = 0.03f;  // cycles
   constexpr float kOfMean[] = {0.375f, 0.25f, 0.0625f};  // in the middle, half-way, at the ends
@@ -379,7 +392,11 @@ void round_lift_off(const Time<V>& time, const V& phase, StrideMix<V> mix, const
   read_fours(mix, kPitchAt, phases, n);
   for (int k = 0; k < 5; ++k)
     mean_rad = mean_rad + kOfMean[std::abs(k - 2)] * (right ? n[k][1] : n[k][0]);
-  const V pitch_rad = change.shown * mean_rad;
+  // A foot that is to close keeps the pitch of its step until it lifts off: with less of it the leg
+  // behind would be straight, and pull the hips down. So does one whose walk goes on after all.
+  const V pitch_rad = both(goes_level(tables, state), change.starting == V{})
+                          ? mean_rad
+                          : V(change.shown * mean_rad);
   const auto stands = both(leads, time.flies), rolls = both(leads, no(time.flies));
   stride.foot[0].pitch_rad = rolls ? pitch_rad : stride.foot[0].pitch_rad;
   stride.foot[1].pitch_rad = stands ? pitch_rad : stride.foot[1].pitch_rad;
@@ -440,7 +457,7 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
   stride = read_stride(strides, time, phase);
   if (any(change.shown != all<V>(1.0f))) show(change.shown, stride);
   if (any(no(runs))) put_where<V>(no(runs), by_clock, stride);
-  round_lift_off(time, phase, strides, state, change, stride);
+  round_lift_off(tables, time, phase, strides, state, change, stride);
   if (any(change.turns != V{})) {
     const auto numbers = turned_numbers(stride);
     for (std::size_t k = 0; k < numbers.size(); ++k)

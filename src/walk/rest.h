@@ -18,7 +18,10 @@ namespace {
 // Times are in seconds at the reference leg.
 inline constexpr float kLeastStep = 0.25f;  // share of the foot's own step: shortest landing ahead
 inline constexpr float kStays = 0.45f;      // share of a flight from which on its landing stays
-inline constexpr float kBehind_m = 0.02f;   // a flying foot is at least so far behind its landing
+// Later, until this share, it comes nearer by at most kNearer_m (at the reference leg): hips that
+// brake lag behind it, and the leg, nearly straight, would pull them down.
+inline constexpr float kNearUntil = 0.7f, kNearer_m = 0.05f;
+inline constexpr float kBehind_m = 0.02f;  // a flying foot is at least so far behind its landing
 inline constexpr float kLandsAhead =
     0.42f;  // of a step: least way of the hips to a foot that lands
 inline constexpr float kLeastRest_s = 0.25f;  // shortest time in which hips come to rest
@@ -502,7 +505,10 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
     return most(brakes_m, kWayWhileClosing * speed * (left_s + time_s * scale)) - from;
   };
   float step_m = planned, further_m = 0.0f;
-  if (moves) step_m = least(most(wanted(kToClose_s), least(least_m, planned)), planned);
+  const bool nears = !kIsUneven<F> && !moves && may_move && change.starting == 0.0f &&
+                     time.u < kNearUntil && !on_spot;
+  const float nearest_m = nears ? most(least_m, planned - kNearer_m * tables.size) : least_m;
+  if (moves || nears) step_m = least(most(wanted(kToClose_s), least(nearest_m, planned)), planned);
   float asked_m = step_m, share = 1.0f;
   if constexpr (kIsUneven<F>) {
     share = footing.share;
@@ -518,7 +524,7 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
   const float lead_m = sign * tables.rest_lead_m;
   const Behind landings[2] = {{left_s, kLandsAhead * step_m + lead_m + further_m},
                               {left_s + between_s, kLandsAhead * further_m + lead_m}};
-  change_step(tables, moves, block, footing, [&] {
+  change_step(tables, moves || nears, block, footing, [&] {
     to_rest(from + step_m + further_m,
             way.left(state.landing_x_m, state.landing_z_m) - tables.leg[right ? 1 : 0].stance_m,
             left_s + between_s + kAfterLanding_s * scale, left_s + between_s + longest_s, landings);

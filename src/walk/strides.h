@@ -419,13 +419,39 @@ void raise_limping_heel(const Tables& tables, const Time<V>& time, const V& phas
   stride.heel_high_m = limps ? mix(stride.heel_high_m, high_m, shows) : stride.heel_high_m;
 }
 
+// Walks whose last step went somewhere, on level ground.
+template <class V>
+Mask<V> goes_level(const Tables& tables, const State<V>& state) noexcept {
+  constexpr float kGoes = 0.1f;  // least ratio of the last step's stride
+  return tables.terrain == nullptr ? state.ratio_behind > all<V>(kGoes) : Mask<V>{};
+}
+// Walks whose last foot flies low. On uneven ground it has risers to pass, and on the spot it is
+// lifted for a short way.
+template <class V>
+Mask<V> closes_low(const Tables& tables, const Change<V>& change, const State<V>& state) noexcept {
+  constexpr float kHigh = 1.05f;  // factor on the height: such a style's feet keep their flight
+  const V high = most(state.lift[0].x, state.lift[1].x);
+  return both(both(change.closing != V{}, high < all<V>(kHigh)), goes_level(tables, state));
+}
+// The share that is shown of a last flight's height and of its difference from its even way.
+// Captured feet leave the floor at once in short strides, and the phase of a last flight is fast.
+template <class V>
+V comes_in(const V& u) noexcept {
+  constexpr float kComesIn = 0.3f;  // of the flight
+  return smoother(0.0f, kComesIn, u);
+}
+
 // The stride at a phase of the clock, for the flying foot. In a first and in a last step the foot
 // flies as in half a stride of its own length (short_ratio()); in the roll it is read at its
-// lift-off. In the last step it lands flat.
+// lift-off. In the last step it lands flat, and is lifted no higher than people's.
 template <class V>
 Stride<V> read_by_clock(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
                         const V& phase, const V& share, const V& u, const Reads<V>& reads,
                         const Change<V>& change, const State<V>& state) noexcept {
+  // Captured feet rise by up to 17 cm and 50 degrees in the shortest strides, which were solved
+  // from whole steps. Bounds of a last flight, beside what is left of its lift-off.
+  constexpr float kMostHigh_m = 0.08f, kSoftHigh_m = 0.05f;      // at the reference leg
+  constexpr float kMostPitch_rad = 0.5f, kSoftPitch_rad = 0.2f;  // of the foot's pitch
   const auto closes = change.closing != V{}, is_short = either(change.starting != V{}, closes);
   if (!any(is_short)) {
     Stride<V> stride =
@@ -443,6 +469,12 @@ Stride<V> read_by_clock(const Tables& tables, const Time<V>& time, const Landing
   flies.twist_rad = flat * flies.twist_rad, flies.roll_rad = flat * flies.roll_rad;
   raise_limping_heel(tables, time, phase, landing.ratio, u, change, stride);
   stride.heel_high_m = is_short ? stride.heel_behind_m.y : stride.heel_high_m;
+  const auto low = closes_low(tables, change, state);
+  stride.heel_high_m = low ? soft_least(stride.heel_high_m, all<V>(kMostHigh_m * tables.size),
+                                        all<V>(kSoftHigh_m * tables.size))
+                           : stride.heel_high_m;
+  const V pitch_rad = soft_least(flies.pitch_rad, all<V>(kMostPitch_rad), all<V>(kSoftPitch_rad));
+  flies.pitch_rad = low ? pitch_rad : flies.pitch_rad;
   return stride;
 }
 

@@ -35,7 +35,7 @@ inline Stride<float> shown_stride(const Tables& tables, const Change<float>& cha
       mix_of_strides(tables, time, state.ratio_behind, landing.ratio, share.over, true);
   Stride<float> stride = read_stride(mix, time, phase);
   show(share.shown, stride);
-  round_lift_off(time, phase, mix, state, change, stride);
+  round_lift_off(tables, time, phase, mix, state, change, stride);
   return stride;
 }
 

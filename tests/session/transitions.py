@@ -245,16 +245,29 @@ def turn_of(player, moves):
             "turn_s": 360 / max(1e-6, (heading[-1] - heading[4 * RATE]) / (walk.ticks - 4 * RATE) * RATE)}
 
 
-def closing_foot(walk):
-    """How far the heel of the last flight goes outwards, millimetres from the line between its footprints."""
+def last_flight(walk):
+    """The heel's places in the last flight, seen from above, and the side of the foot."""
     flight = walk.col["stage"] == "flight"
     last = np.nonzero(flight)[0][-1]
     first = np.nonzero(~flight[:last])[0][-1] + 1
     left = walk.col["swing"][last] == "left"
     heel = walk.heel_fk[0 if left else 1][first:last + 1][:, [0, 2]]
+    return heel, left
+
+
+def closing_foot(walk):
+    """How far the heel of the last flight goes outwards, millimetres from the line between its footprints."""
+    heel, left = last_flight(walk)
     way = heel[-1] - heel[0]
     aside = ((heel - heel[0]) @ [way[1], -way[0]]) / np.linalg.norm(way)
     return 1000 * (aside if left else -aside).max()
+
+
+def closing_foot_behind(walk):
+    """How far the heel of the last flight goes back behind its lift-off, millimetres."""
+    heel, _ = last_flight(walk)
+    way = heel[-1] - heel[0]
+    return -1000 * ((heel - heel[0]) @ way).min() / np.linalg.norm(way)
 
 
 def summary(row):

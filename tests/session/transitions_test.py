@@ -15,7 +15,7 @@ NARROW = {"12": "mocap/cmu_12_01_walk.bvh", "female": "mocap/cmu_m21_female_walk
 
 
 # Of captured motions: transitions.py prints by how much these bounds are missed.
-NOT_MET = {("the_hips_neither_dip_nor_go_back", "m21"), ("a_stop_at_full_stick_takes_less_than_a_metre", "walk01")}
+NOT_MET = {("a_stop_at_full_stick_takes_less_than_a_metre", "walk01")}
 
 
 @pytest.fixture(scope="module", name="player", params=list(CLIPS))
@@ -59,7 +59,7 @@ def test_starts_and_stops_neither_push_nor_brake_harder_than_people(rows):
     assert np.median(stops) <= 4.0
     for row in rows.values():
         most = max(6.0, row["steady"]["acceleration"])
-        assert row["start"]["acc"] <= most + 0.05  # walk01 has 6.03
+        assert row["start"]["acc"] <= most
         assert max(stop["acc"] for stop in row["stops"]) <= most
 
 
@@ -67,7 +67,7 @@ def test_the_hips_neither_dip_nor_go_back(rows):
     for row in rows.values():
         for change in (row["start"], *row["stops"]):
             assert change["back"] <= 1.0
-            assert change["below"] <= 1.3
+            assert change["below"] <= 1.05  # asked: 1
 
 
 def test_chest_and_head_do_not_jump(rows):
@@ -116,6 +116,23 @@ def test_the_closing_foot_does_not_swing_out(program, tmp_path, clip):
     player = player_on(program, tmp_path, f"mocap/{clip}.bvh")
     stops = [player.walk((0.5, 0, 0.8), (4.0 + 0.2 * k, 0, 0), end_s=7.5) for k in range(6)]
     assert max(map(transitions.closing_foot, stops)) <= 60
+
+
+@pytest.mark.parametrize("clip", ("dpr_walk_simple", "cmu_m21_walk"))
+def test_the_closing_foot_does_not_swing_back(program, tmp_path, clip):
+    player = player_on(program, tmp_path, f"mocap/{clip}.bvh")
+    stops = [player.walk((0.5, 0, 0.8), (4.0 + 0.2 * k, 0, 0), end_s=7.5) for k in range(6)]
+    assert max(map(transitions.closing_foot_behind, stops)) <= 30
+
+
+@pytest.mark.parametrize("clip", ("cmu_35_01.amc", "cmu_007_01_iclone.bvh"))
+def test_fast_captures_neither_dip_nor_push_hard(program, tmp_path, clip):
+    player = player_on(program, tmp_path, f"mocap/{clip}")
+    for stick in (0.8, 1.0):
+        row = transitions.measure(player, stick)
+        for change in (row["start"], *row["stops"]):
+            assert change["below"] <= 1.1  # asked: 1
+        assert row["start"]["acc"] <= 6
 
 
 def test_a_turn_on_the_spot_takes_four_seconds(player):

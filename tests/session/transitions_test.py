@@ -97,10 +97,10 @@ def test_legs_stay_apart_in_turns(player, turn):
     assert found["feet"] >= min(60, found["stand"])
 
 
-def player_on(program, folder, clip):
+def player_on(program, folder, clip, options=()):
     if not (DATA / clip).is_file():
         pytest.skip(f"{DATA / clip} is not there")
-    return transitions.Player(program, folder, DATA / clip)
+    return transitions.Player(program, folder, DATA / clip, options)
 
 
 @pytest.mark.parametrize("clip", NARROW)
@@ -109,6 +109,15 @@ def test_legs_of_narrow_walks_stay_apart_in_turns(program, tmp_path, clip, turn)
     found = transitions.turn_of(player_on(program, tmp_path, NARROW[clip]), transitions.TURNS[turn])
     assert found["shins"] >= 70
     assert found["feet"] >= min(59, found["stand"])
+
+
+# Short steps that turn far: the landing foot's toe points at the standing one.
+@pytest.mark.parametrize("clip, aside", (("cmu_12_01_walk", 0.6), ("dpr_walk_simple", -0.6)))
+def test_feet_stay_apart_where_the_stick_points(program, tmp_path, clip, aside):
+    player = player_on(program, tmp_path, f"mocap/{clip}.bvh", ("--stick", "points"))
+    found = transitions.turn_of(player, [(0.5, 0, 0.6), (3.0, aside, 0), (5.2, 0, 0.6)])
+    assert found["shins"] >= 70
+    assert found["feet"] >= min(60, found["stand"])
 
 
 @pytest.mark.parametrize("clip", ("dpr_walk_simple", "cmu_m21_walk"))

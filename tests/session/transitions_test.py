@@ -15,7 +15,7 @@ NARROW = {"12": "mocap/cmu_12_01_walk.bvh", "female": "mocap/cmu_m21_female_walk
 
 
 # Of captured motions: transitions.py prints by how much these bounds are missed.
-NOT_MET = {("the_hips_neither_dip_nor_go_back", "m21"), ("a_stop_at_full_stick_takes_less_than_a_metre", "walk01")}
+NOT_MET = {("the_hips_neither_dip_nor_go_back", "m21")}
 
 
 @pytest.fixture(scope="module", name="player", params=list(CLIPS))
@@ -88,6 +88,22 @@ def test_a_stop_at_full_stick_takes_less_than_a_metre(rows):
     assert np.median([stop["time"] for stop in stops]) <= 0.9
     assert np.median([stop["way"] for stop in stops]) <= 0.9
     assert all(stop["stands"] for row in rows.values() for stop in row["stops"])
+
+
+def spread_m(row):
+    """By how much a player misses a mark who has learnt the mean way of a stop."""
+    return np.std([stop["way"] for stop in row["stops"]])
+
+
+def test_a_stop_ends_on_a_mark_whenever_the_stick_is_let_go(rows):
+    for row in rows.values():
+        assert spread_m(row) <= 0.1
+
+
+def test_a_fast_capture_stops_on_a_mark(program, tmp_path):
+    player = player_on(program, tmp_path, "mocap/cmu_007_01_iclone.bvh")
+    for stick in (0.8, 1.0):
+        assert spread_m(transitions.measure(player, stick)) <= 0.1
 
 
 @pytest.mark.parametrize("turn", transitions.TURNS)

@@ -129,9 +129,9 @@ AskedStep<V> plan_landing(const Tables& tables, const Time<V>& time, Change<V>& 
   const auto turning = both(no(closes), turns != V{});
   if (any(turning)) {
     // In a tight turn the outer foot would land across the standing one's toe. On the spot, or in a
-    // step that turns by more than a steered one does, its own toe, which points inwards, would come
-    // to the standing foot. Lengths are at the reference leg: from axis to axis, and beyond the toe,
-    // where it ends.
+    // step that turns by more than a steered one does, its own toe, which points inwards, would
+    // come to the standing foot. Lengths are at the reference leg: from axis to axis, and beyond
+    // the toe, where it ends.
     constexpr float kClear_m = 0.08f, kSoftClear_m = 0.012f, kBeyond_m = 0.12f;
     constexpr float kSteered_rad = 0.8f, kFar_rad = 1.1f;  // between them the toe comes to count
     const LegBones &l = tables.leg[0], &r = tables.leg[1];

@@ -1,10 +1,10 @@
 // The numbers that a family of strides depends on, and the numbers that it consists of.
 #pragma once
 #include <array>
-#include <bit>
 #include <type_traits>
 #include <vector>
 
+#include "base/bits.h"
 #include "gaitpad/stride_family.h"
 
 namespace gaitpad {
@@ -25,9 +25,9 @@ void for_each_number(Family& family, Each each) {
   for (auto* tables : {&family.table, &family.back}) {
     for (auto& table : *tables) {
       // A table consists of doubles only.
-      auto numbers = std::bit_cast<std::array<double, sizeof table / sizeof(double)>>(table);
+      auto numbers = bits_as<std::array<double, sizeof table / sizeof(double)>>(table);
       for (auto& number : numbers) each(number);
-      if constexpr (!std::is_const_v<Family>) table = std::bit_cast<StrideTable>(numbers);
+      if constexpr (!std::is_const_v<Family>) table = bits_as<StrideTable>(numbers);
     }
   }
 }

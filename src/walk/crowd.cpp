@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstddef>
 #include <cstring>
 #include <functional>
 #include <map>
 #include <utility>
 
+#include "base/bits.h"
 #include "base/lanes.h"
 #include "base/ranges.h"
 #include "walk/pose.h"
@@ -276,7 +276,7 @@ void Crowd::group_by_style() {
     if (kind_a != kind_b) return kind_a < kind_b;
     // Any order will do that puts equal styles together. Bytes have one, even of bad numbers.
     const auto bytes = []<class T>(const T& of) {
-      return std::bit_cast<std::array<std::byte, sizeof of>>(of);
+      return bits_as<std::array<std::byte, sizeof of>>(of);
     };
     return std::pair(bytes(of_a.weight), bytes(of_a.body)) <
            std::pair(bytes(of_b.weight), bytes(of_b.body));

@@ -128,10 +128,12 @@ AskedStep<V> plan_landing(const Tables& tables, const Time<V>& time, Change<V>& 
     rad = heading + (closes ? V{} : V(in_place * ahead_rad));
   const auto turning = both(no(closes), turns != V{});
   if (any(turning)) {
-    // In a tight turn the outer foot would land across the standing one's toe, and on the spot its
-    // own toe, which points ahead of the body, would come to the standing foot. Lengths are at the
-    // reference leg: from axis to axis, and beyond the toe, where it ends.
+    // In a tight turn the outer foot would land across the standing one's toe. On the spot, or in a
+    // step that turns by more than a steered one does, its own toe, which points inwards, would
+    // come to the standing foot. Lengths are at the reference leg: from axis to axis, and beyond
+    // the toe, where it ends.
     constexpr float kClear_m = 0.08f, kSoftClear_m = 0.012f, kBeyond_m = 0.12f;
+    constexpr float kSteered_rad = 0.8f, kFar_rad = 1.1f;  // between them the toe comes to count
     const LegBones &l = tables.leg[0], &r = tables.leg[1];
     const auto line_m = [&](const Mask<V>& right, int k) {
       return chosen<V>(right, r.toe_m[k] - r.heel_m[k], l.toe_m[k] - l.heel_m[k]);
@@ -141,7 +143,8 @@ AskedStep<V> plan_landing(const Tables& tables, const Time<V>& time, Change<V>& 
     const V toe =
                 outwards * (way.cosine * line_m(time.right, 0) + way.sine * line_m(time.right, 2)),
             stands = most(V(outwards * line_m(other, 0)), V{}),
-            near_m = outwards * x_m + in_place * (least(toe, V{}) - stands),
+            far = smooth(kSteered_rad, kFar_rad, V(size(rad))),
+            near_m = outwards * x_m + most(in_place, far) * (least(toe, V{}) - stands),
             past = smooth(V((size(z_m) - line_m(other, 2)) * (1.0f / (kBeyond_m * grown)))),
             short_m = grown * kClear_m * (1.0f - past) - near_m,
             clears_m =

@@ -428,6 +428,7 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
   constexpr float kToClose_s = 0.40f, kNextStep_s = 0.35f, kWayWhileClosing = 0.44f;
   // Share of speed times time above which hips that have all that time would first get faster.
   constexpr float kWayInTime = 0.5f;
+  constexpr float kSwings = 1.3f;       // greatest ratio of the hips' speed in a step to its mean
   constexpr float kLurch = 1.35f;       // ratio of the speed of hips that lurch to the walk's mean
   constexpr float kFurtherStep = 0.3f;  // shortest step between, a share of the foot's own
   constexpr float kTurnsOnSpot = 0.1f;  // steps below this ratio are on the spot
@@ -461,6 +462,12 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
               next_own_m = own_step_m<float>(tables, !right, time.back),
               foot_m = flies ? along(state.last_heel_m[0].x, state.last_heel_m[0].z)
                              : along(state.print_x_m, state.print_z_m);
+  // By the walk's mean speed a stop has much the same way from any moment of a step, so a player
+  // learns it. Hips of a walk that starts or changes its pace may be far from the mean.
+  // One that is to go the other way is in a hurry: it brakes as hard as it may at that moment.
+  const bool hurries = state.asked.walks != 0.0f;
+  const float pace = hurries ? speed : most(least(mean_m_s, kSwings * speed), speed / kSwings),
+              paced_need = kNeed * pace * pace;
   const float most_closing = on_spot ? kMostClosingOnSpot : kMostClosing;
   const float longest_s = longest_closing_s(tables, state);
   // `aside_m`: place at which the hips are to rest, to the left of the standing foot.
@@ -474,8 +481,7 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
     change.stops = 1.0f;
     change.pelvis_x_m = x, change.pelvis_z_m = z;
   };
-  // A walk that is to go the other way is in a hurry.
-  const bool hurries = state.asked.walks != 0.0f, turns = hurries && !kIsUneven<F> && !time.back;
+  const bool turns = hurries && !kIsUneven<F> && !time.back;
   const float close_m_s2 = hurries ? kHastyClose_m_s2 : kBrake_m_s2,
               brake_m_s2 = turns ? kHastyBrake_m_s2 : kBrake_m_s2,
               most_m_s2 = turns ? kMostHasty_m_s2 : kMostBrake_m_s2;
@@ -500,9 +506,9 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
   const float least_m = most(kLeastStep * own_m, foot_m + kBehind_m);
   const auto wanted = [&](float time_s) {
     const float longest = left_s + longest_s + (time_s > kToClose_s ? kNextStep_s * scale : 0.0f),
-                brakes_m =
-                    most(least(need / brake_m_s2, kWayInTime * speed * longest), need / most_m_s2);
-    return most(brakes_m, kWayWhileClosing * speed * (left_s + time_s * scale)) - from;
+                brakes_m = most(least(paced_need / brake_m_s2, kWayInTime * pace * longest),
+                                need / most_m_s2);
+    return most(brakes_m, kWayWhileClosing * pace * (left_s + time_s * scale)) - from;
   };
   float step_m = planned, further_m = 0.0f;
   const bool nears = !kIsUneven<F> && !moves && may_move && change.starting == 0.0f &&

@@ -14,10 +14,6 @@ NARROW = {"12": "mocap/cmu_12_01_walk.bvh", "female": "mocap/cmu_m21_female_walk
           "sample": "mocap/bvhparser_sample.bvh"}
 
 
-# Of captured motions: transitions.py prints by how much these bounds are missed.
-NOT_MET = {("a_stop_at_full_stick_takes_less_than_a_metre", "walk01")}
-
-
 @pytest.fixture(scope="module", name="player", params=list(CLIPS))
 def player_of(request, program, tmp_path_factory):
     clip = CLIPS[request.param]
@@ -26,13 +22,6 @@ def player_of(request, program, tmp_path_factory):
     player = transitions.Player(program, tmp_path_factory.mktemp(request.param), clip and DATA / clip)
     player.is_built_in = clip is None
     return player
-
-
-@pytest.fixture(autouse=True)
-def expect_what_is_not_met(request):
-    case = request.node.name.removeprefix("test_").removesuffix("]")
-    if tuple(case.split("[")) in NOT_MET:
-        request.applymarker(pytest.mark.xfail(reason="not met by this captured motion yet", strict=True))
 
 
 @pytest.fixture(scope="module", name="rows")
@@ -90,6 +79,22 @@ def test_a_stop_at_full_stick_takes_less_than_a_metre(rows):
     assert all(stop["stands"] for row in rows.values() for stop in row["stops"])
 
 
+def spread_m(row):
+    """By how much a player misses a mark who has learnt the mean way of a stop."""
+    return np.std([stop["way"] for stop in row["stops"]])
+
+
+def test_a_stop_ends_on_a_mark_whenever_the_stick_is_let_go(rows):
+    for row in rows.values():
+        assert spread_m(row) <= 0.1
+
+
+def test_a_fast_capture_stops_on_a_mark(program, tmp_path):
+    player = player_on(program, tmp_path, "mocap/cmu_007_01_iclone.bvh")
+    for stick in (0.8, 1.0):
+        assert spread_m(transitions.measure(player, stick)) <= 0.1
+
+
 @pytest.mark.parametrize("turn", transitions.TURNS)
 def test_legs_stay_apart_in_turns(player, turn):
     found = transitions.turn_of(player, transitions.TURNS[turn])
@@ -97,10 +102,10 @@ def test_legs_stay_apart_in_turns(player, turn):
     assert found["feet"] >= min(60, found["stand"])
 
 
-def player_on(program, folder, clip):
+def player_on(program, folder, clip, options=()):
     if not (DATA / clip).is_file():
         pytest.skip(f"{DATA / clip} is not there")
-    return transitions.Player(program, folder, DATA / clip)
+    return transitions.Player(program, folder, DATA / clip, options)
 
 
 @pytest.mark.parametrize("clip", NARROW)
@@ -109,6 +114,15 @@ def test_legs_of_narrow_walks_stay_apart_in_turns(program, tmp_path, clip, turn)
     found = transitions.turn_of(player_on(program, tmp_path, NARROW[clip]), transitions.TURNS[turn])
     assert found["shins"] >= 70
     assert found["feet"] >= min(59, found["stand"])
+
+
+# Short steps that turn far: the landing foot's toe points at the standing one.
+@pytest.mark.parametrize("clip, aside", (("cmu_12_01_walk", 0.6), ("dpr_walk_simple", -0.6)))
+def test_feet_stay_apart_where_the_stick_points(program, tmp_path, clip, aside):
+    player = player_on(program, tmp_path, f"mocap/{clip}.bvh", ("--stick", "points"))
+    found = transitions.turn_of(player, [(0.5, 0, 0.6), (3.0, aside, 0), (5.2, 0, 0.6)])
+    assert found["shins"] >= 70
+    assert found["feet"] >= min(60, found["stand"])
 
 
 @pytest.mark.parametrize("clip", ("dpr_walk_simple", "cmu_m21_walk"))
@@ -149,5 +163,5 @@ def test_it_walks_back_soon_after_it_walked_ahead(player):
 @pytest.mark.parametrize("clip", ("dpr_walk_simple", "cmu_007_01_iclone"))
 def test_fast_captures_walk_back_soon(program, tmp_path, clip):
     median, worst = transitions.reversal(player_on(program, tmp_path, f"mocap/{clip}.bvh"))
-    assert median <= 1.24  # asked: 1.2
+    assert median <= 1.2
     assert worst <= 1.5

@@ -91,13 +91,16 @@ template <class V>
 V own_step_m(const Tables& tables, const Mask<V>& right, const Mask<V>& back) noexcept {
   return of_leg<V>(tables, right != back, &LegBones::own_step_m);
 }
-// The longer of both steps asked for, over the data's, so that a limp does not change the time of
-// the other foot.
+// The longer of both steps over the data's: a limp does not change the time of the other foot.
+template <class V>
+V longer_ratio(const Tables& tables, const V (&length_m)[2], const V& backward) noexcept {
+  const auto back = backward != V{}, left = V{} != V{};
+  return most(V(length_m[0] / own_step_m<V>(tables, left, back)),
+              V(length_m[1] / own_step_m<V>(tables, no(left), back)));
+}
 template <class V>
 V asked_ratio(const Tables& tables, const State<V>& state) noexcept {
-  const auto back = state.backward != V{}, left = V{} != V{};
-  return most(V(state.asked.length_m[0] / own_step_m<V>(tables, left, back)),
-              V(state.asked.length_m[1] / own_step_m<V>(tables, no(left), back)));
+  return longer_ratio(tables, state.asked.length_m, state.backward);
 }
 // True if the walk is to go on. To walk the other way it first comes to rest.
 template <class V>
@@ -345,8 +348,9 @@ void begin_step(const Tables& tables, const Time<V>& time, const Mask<V>& strike
   const V flight_rate = next.flight * tick_s / next.flight_s,
           roll_rate = next.roll * tick_s / next.roll_s;
   const auto is_slow = both(no(led), state.phase_rate < 0.5f * kSlow * (flight_rate + roll_rate));
-  const V roll_s =
-      is_slow ? V(tick_s * next.roll * 2.0f / (state.phase_rate + flight_rate)) : next.roll_s;
+  V roll_s = next.roll_s;
+  if (tables.terrain != nullptr)
+    roll_s = is_slow ? V(tick_s * next.roll * 2.0f / (state.phase_rate + flight_rate)) : roll_s;
   const V late_s = within(short_s, -tick_s, tick_s),
           step_s = both(both(led, change.stops == V{}), state.ratio_behind > all<V>(kWalked))
                        ? least(own_s, longest_s)

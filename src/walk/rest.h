@@ -522,7 +522,9 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
     asked_m = moves ? step_m / share : state.length_m[right ? 1 : 0].x;
     if (moves) step_m = foothold_m(tables, asked_m, block);
   }
-  if (!on_spot && from + step_m < need / most_m_s2)
+  // A landing turned aside may be behind the other foot: that is no step's length.
+  const bool keeps = on_spot && !kIsUneven<F>;
+  if (!keeps && from + step_m < need / most_m_s2)
     further_m = least(most(wanted(kToClose_s + kNextStep_s) - step_m, kFurtherStep * next_own_m),
                       next_own_m);
   const float step_s = (state.roll_ticks + state.flight_ticks) * tick_s,
@@ -535,7 +537,7 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
             way.left(state.landing_x_m, state.landing_z_m) - tables.leg[right ? 1 : 0].stance_m,
             left_s + between_s + kAfterLanding_s * scale, left_s + between_s + longest_s, landings);
     change.further = further_m > 0.0f ? 1.0f : 0.0f;
-    if (on_spot) return;  // a landing turned aside is behind the other foot by no step's length
+    if (keeps) return;
     const int swing = right ? 1 : 0;
     change.length_m[swing] = asked_m;
     change.length_m[1 - swing] = further_m / share;

@@ -157,8 +157,7 @@ template <class V>
 Mask<V> is_to_leave_spot(const Tables& tables, const State<V>& state,
                          const Change<V>& change) noexcept {
   constexpr float kOnSpot = 0.3f, kGoes = 0.1f;  // ratios to the data's stride
-  const V begun =
-      (size(change.length_m[0]) + size(change.length_m[1])) * (0.5f / tables.source_step_m);
+  const V begun = longer_ratio(tables, change.length_m, state.backward);
   const auto on_spot =
       begun<all<V>(kOnSpot), goes = asked_ratio(tables, state) - begun> all<V>(kGoes);
   return both(both(change.stands == V{}, change.led == V{}), both(on_spot, goes));

@@ -20,7 +20,8 @@ inline constexpr float kLeastStep = 0.25f;  // share of the foot's own step: sho
 inline constexpr float kStays = 0.45f;      // share of a flight from which on its landing stays
 // Later, until this share, it comes nearer by at most kNearer_m (at the reference leg): hips that
 // brake lag behind it, and the leg, nearly straight, would pull them down.
-inline constexpr float kNearUntil = 0.7f, kNearer_m = 0.05f;
+// In a turn that would stretch the other leg.
+inline constexpr float kNearUntil = 0.7f, kNearer_m = 0.05f, kStraight_rad = 0.02f;
 inline constexpr float kBehind_m = 0.02f;  // a flying foot is at least so far behind its landing
 inline constexpr float kLandsAhead =
     0.42f;  // of a step: least way of the hips to a foot that lands
@@ -512,7 +513,7 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
   };
   float step_m = planned, further_m = 0.0f;
   const bool nears = !kIsUneven<F> && !moves && may_move && change.starting == 0.0f &&
-                     time.u < kNearUntil && !on_spot;
+                     time.u < kNearUntil && !on_spot && size(state.landing_rad) < kStraight_rad;
   const float nearest_m = nears ? most(least_m, planned - kNearer_m * tables.size) : least_m;
   if (moves || nears) step_m = least(most(wanted(kToClose_s), least(nearest_m, planned)), planned);
   float asked_m = step_m, share = 1.0f;

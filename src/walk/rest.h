@@ -512,7 +512,7 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
     return most(brakes_m, kWayWhileClosing * pace * (left_s + time_s * scale)) - from;
   };
   float step_m = planned, further_m = 0.0f;
-  const bool nears = !kIsUneven<F> && !moves && may_move && change.starting == 0.0f &&
+  const bool nears = !kIsUneven<F> && !hurries && !moves && may_move && change.starting == 0.0f &&
                      time.u < kNearUntil && !on_spot && size(state.landing_rad) < kStraight_rad;
   const float nearest_m = nears ? most(least_m, planned - kNearer_m * tables.size) : least_m;
   if (moves || nears) step_m = least(most(wanted(kToClose_s), least(nearest_m, planned)), planned);

@@ -423,7 +423,7 @@ void raise_limping_heel(const Tables& tables, const Time<V>& time, const V& phas
 template <class V>
 Mask<V> goes_level(const Tables& tables, const State<V>& state) noexcept {
   constexpr float kGoes = 0.1f;  // least ratio of the last step's stride
-  return tables.terrain == nullptr ? state.ratio_behind > all<V>(kGoes) : Mask<V>{};
+  return state.ratio_behind > all<V>(tables.terrain == nullptr ? kGoes : kNever);
 }
 // Walks whose last foot flies low. On uneven ground it has risers to pass, and on the spot it is
 // lifted for a short way.

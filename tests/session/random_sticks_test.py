@@ -1,5 +1,5 @@
 """Random sticks by a thumb of 60 ms, twenty runs of a minute on level ground and twenty on the course: each ends
-standing, and no bound of transitions.py is broken by more than half, but for what is named."""
+standing, and no bound of transitions.py is broken by more than half, but for legs on stairs."""
 import concurrent.futures
 import math
 import os
@@ -11,10 +11,8 @@ import pytest
 import transitions
 
 RUNS, LAST_MOVE_S, END_S = 20, 55.0, 61.0
-# The bounds of starts and stops times 1.5: m/s^2, and of joints degrees a tick^2 (.8 x 1.5; two runs are above it,
-# by 7 % at most).
-# On the course one run steps on stairs with every other step a third shorter: its hips reach 10.4 m/s^2.
-HARDEST_M_S2, HARDEST_ON_STAIRS_M_S2, JERK_DEG = 9.0, 10.5, 1.2 * 1.07
+# The bounds of starts and stops times 1.5: m/s^2, and of joints degrees a tick^2 (.8 x 1.5; one run is above it by 4 %).
+HARDEST_M_S2, JERK_DEG = 9.0, 1.2 * 1.05
 FEET_MM, SHINS_MM = 40.0, 46.0  # the least distances in turns over 1.5; not met yet by turns on stairs
 
 
@@ -56,9 +54,8 @@ def test_random_sticks_end_in_a_stand(figures):
 
 
 def test_random_sticks_push_hips_and_joints_no_harder_than_half_as_much_again(figures):
-    is_level, runs = figures
-    assert max(run["m_s2"] for run in runs) <= (HARDEST_M_S2 if is_level else HARDEST_ON_STAIRS_M_S2)
-    assert max(run["jerk"] for run in runs) <= JERK_DEG
+    assert max(run["m_s2"] for run in figures[1]) <= HARDEST_M_S2
+    assert max(run["jerk"] for run in figures[1]) <= JERK_DEG
 
 
 def test_random_sticks_keep_legs_apart_on_level_ground(figures):

@@ -46,8 +46,7 @@ inline constexpr float kMostTurn_m_s2 = 5.4f;  // of hips that turn round
 // enough.
 inline float time_turning_step(const Tables& tables, State<float>& state,
                                const Change<float>& change) noexcept {
-  // Bounds of what is left of the flight: in less, feet of captured walks jerk.
-  constexpr float kLeastLeft_s = 0.34f, kMostLeft_s = 0.7f;
+  constexpr float kLeastLeft_s = 0.34f, kMostLeft_s = 0.7f;  // of the flight
   // Costs in m/s^2: of a second, and of 1 m/s^2 above the bound.
   constexpr float kLateTurn = 9.0f, kTooHard = 1000.0f;
   constexpr int kTimes = 16, kPoints = 32;  // times that are tried; points of each quintic

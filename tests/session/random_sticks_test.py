@@ -58,8 +58,9 @@ def test_random_sticks_push_hips_and_joints_no_harder_than_half_as_much_again(fi
     assert max(run["jerk"] for run in figures[1]) <= JERK_DEG
 
 
-def test_random_sticks_keep_legs_apart_on_level_ground(figures):
+def test_random_sticks_keep_legs_apart(figures):
     is_level, runs = figures
-    if is_level:
-        assert min(run["feet"] for run in runs) >= FEET_MM
-        assert min(run["shins"] for run in runs) >= SHINS_MM
+    if not is_level:
+        pytest.skip("feet pass each other in some turns on stairs: not met yet")
+    assert min(run["feet"] for run in runs) >= FEET_MM
+    assert min(run["shins"] for run in runs) >= SHINS_MM

@@ -328,29 +328,31 @@ inline float ticks_to_place(float place_m, float rest_m, const State<float>& sta
   return ticks;
 }
 
+// How far the hips may go ahead in a roll: from there on the leg behind would be straight.
+inline float farthest_m(const Tables& tables, const State<float>& state) noexcept {
+  constexpr float kWhole = 1.0f;  // ratio of the data's stride
+  return state.print_z_m +
+         lift_off_m(tables, time_of(tables, state), most(state.ratio_behind, kWhole), true);
+}
+
 // Times a roll in a stop, in ticks from now. It ends when the hips are as far ahead of the standing
-// foot as in the tables, but the toe has time to come down. Only hips that would leave the rear
-// foot farther behind than a whole stride does end it sooner: its leg would be straight.
+// foot as in the tables, but the toe has time to come down. Only hips that would go too far end it
+// sooner.
 struct RollLeft {
   float least, lifts;
 };
 inline RollLeft roll_left(const Tables& tables, float rest_m, const State<float>& state,
                           const Change<float>& change) noexcept {
   constexpr float kEvenRoll_s = 0.11f;  // in which a toe comes down as softly as in a walk
-  constexpr float kWhole = 1.0f;        // ratio of the data's stride
   const float scale = tables.time_scale / tables.tick_s;
   const auto ticks_of_time = [&](float time_s) { return floored(time_s * scale + 0.5f); };
-  const Time<float> time = time_of(tables, state);
   const auto ticks_to = [&](float place_m) {
     return ticks_to_place(place_m, rest_m, state, change);
   };
   float even = least(ticks_of_time(kEvenRoll_s), state.roll_ticks) - state.tick;
-  if (tables.terrain == nullptr) {
-    const float whole_m = lift_off_m(tables, time, most(state.ratio_behind, kWhole), true);
-    even = least(even, ticks_to(state.print_z_m + whole_m));
-  }
+  if (tables.terrain == nullptr) even = least(even, ticks_to(farthest_m(tables, state)));
   return {most(even, ticks_of_time(kLeastRollLeft_s)),
-          ticks_to(lift_off_m(tables, time, state.ratio_behind, false))};
+          ticks_to(lift_off_m(tables, time_of(tables, state), state.ratio_behind, false))};
 }
 
 // Sets the ticks of a roll and the flight after it.
@@ -389,6 +391,19 @@ inline void time_step_between(const Tables& tables, State<float>& state,
               to_m = state.backward != 0.0f ? -length_m : length_m;
   const RollLeft roll = roll_left(tables, tables.rest_lead_m + to_m, state, change);
   const float rolls = least(most(roll.lifts, roll.least), state.roll_ticks);
+  set_step_ticks(tables, rolls, state.flight_ticks + state.roll_ticks - rolls, state);
+}
+
+// Ends the roll of a slower step in time, where it begins: hips that are as fast as the walk was
+// would go too far in it.
+inline void time_slower_step(const Tables& tables, State<float>& state,
+                             const Change<float>& change) noexcept {
+  const float sign = state.backward != 0.0f ? -1.0f : 1.0f,
+              way_m = sign * (farthest_m(tables, state) - change.pelvis_z_m.x),
+              goes_m = sign * change.pelvis_z_m.v,
+              shortest = floored(kLeastRollLeft_s * tables.time_scale / tables.tick_s + 0.5f);
+  if (way_m >= goes_m * state.roll_ticks) return;
+  const float rolls = least(most(floored(way_m / goes_m), shortest), state.roll_ticks);
   set_step_ticks(tables, rolls, state.flight_ticks + state.roll_ticks - rolls, state);
 }
 

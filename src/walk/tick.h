@@ -541,9 +541,11 @@ void strike(const Tables& tables, const BodyTick<Floats<kWidth>>& tick,
     time_closing_step(tables, one.state, one.change);
   });
   if constexpr (!kUneven) {
-    one_by_one<kWidth>(
-        both(strikes, both(change.stops != V{}, change.closing == V{})), block,
-        [&](Block<1>& one, int) { time_step_between(tables, one.state, one.change); });
+    one_by_one<kWidth>(both(strikes, both(change.led != V{}, change.closing == V{})), block,
+                       [&](Block<1>& one, int) {
+                         (one.change.stops != 0.0f ? time_step_between : time_slower_step)(
+                             tables, one.state, one.change);
+                       });
   }
   rest(tables, change, state);
   if constexpr (kUneven) footing.next_rise = change.stands != V{} ? V{} : footing.next_rise;

@@ -315,7 +315,9 @@ V closing_left(const Time<V>& time, const Change<V>& change) noexcept {
   return smoother(V(time.to_strike / most(change.closing_ticks, all<V>(1.0f))));
 }
 // Shares by the plan: of the tables that is shown; by which the step has changed from the last
-// step's stride into its own.
+// step's stride into its own. A step between of a stop keeps the last step's stride until its
+// lift-off: its own one, which is shorter, has higher hips, and the leg behind, nearly straight,
+// would pull them down and let go of them with a jerk.
 template <class V>
 V planned_shown(const Time<V>& time, const Change<V>& change) noexcept {
   constexpr float kShownAfter = 0.55f;  // of a first step: from then on all of it
@@ -326,7 +328,8 @@ V planned_shown(const Time<V>& time, const Change<V>& change) noexcept {
 }
 template <class V>
 V planned_over(const Time<V>& time, const Change<V>& change) noexcept {
-  const V walks = change.starting != V{} ? all<V>(1.0f) : smoother(time.share);
+  const V goes = change.stops != V{} ? time.u : time.share,
+          walks = change.starting != V{} ? all<V>(1.0f) : smoother(goes);
   return change.closing != V{} ? V{} : walks;
 }
 

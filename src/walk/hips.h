@@ -343,8 +343,8 @@ V planned_edge(const Time<V>& time, const Change<V>& change) noexcept {
   return smoother(0.0f, kEdgeGoes, time.u) * (1.0f - lands);
 }
 // The same, with its difference from the plan. After a step in which the hips have led, the phase
-// still comes up to the clock's, so the edges come over to it as well: where they lift off turned by
-// the clock at once, feet of four captures jumped by up to 3 degrees.
+// still comes up to the clock's, so the edges come over to it as well: where they lift off turned
+// by the clock at once, feet of four captures jumped by up to 3 degrees.
 template <class V>
 V edge_by_clock(const Time<V>& time, const Change<V>& change) noexcept {
   return either(change.led != V{}, change.was_led != V{})

@@ -315,7 +315,9 @@ V closing_left(const Time<V>& time, const Change<V>& change) noexcept {
   return smoother(V(time.to_strike / most(change.closing_ticks, all<V>(1.0f))));
 }
 // Shares by the plan: of the tables that is shown; by which the step has changed from the last
-// step's stride into its own.
+// step's stride into its own. A step between of a stop keeps the last step's stride until its
+// lift-off: its own one, which is shorter, has higher hips, and the leg behind, nearly straight,
+// would pull them down and let go of them with a jerk.
 template <class V>
 V planned_shown(const Time<V>& time, const Change<V>& change) noexcept {
   constexpr float kShownAfter = 0.55f;  // of a first step: from then on all of it
@@ -326,7 +328,8 @@ V planned_shown(const Time<V>& time, const Change<V>& change) noexcept {
 }
 template <class V>
 V planned_over(const Time<V>& time, const Change<V>& change) noexcept {
-  const V walks = change.starting != V{} ? all<V>(1.0f) : smoother(time.share);
+  const V goes = change.stops != V{} ? time.u : time.share,
+          walks = change.starting != V{} ? all<V>(1.0f) : smoother(goes);
   return change.closing != V{} ? V{} : walks;
 }
 
@@ -338,6 +341,15 @@ V planned_edge(const Time<V>& time, const Change<V>& change) noexcept {
   const V lands =
       change.closing != V{} ? V{} : smoother(V((time.u - (1.0f - kEdgeGoes)) * (1.0f / kEdgeGoes)));
   return smoother(0.0f, kEdgeGoes, time.u) * (1.0f - lands);
+}
+// The same, with its difference from the plan. After a step in which the hips have led, the phase
+// still comes up to the clock's, so the edges come over to it as well: where they lift off turned
+// by the clock at once, feet of four captures jumped by up to 3 degrees.
+template <class V>
+V edge_by_clock(const Time<V>& time, const Change<V>& change) noexcept {
+  return either(change.led != V{}, change.was_led != V{})
+             ? V(planned_edge(time, change) + change.off_edge.x)
+             : all<V>(1.0f);
 }
 
 // Moves the differences that a change of plan has left by one tick. `time`, `state`: of that tick.
@@ -465,7 +477,7 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
   }
   stride.heel_behind_m = by_clock.heel_behind_m, stride.heel_ahead_m = by_clock.heel_ahead_m;
   stride.heel_high_m = by_clock.heel_high_m;
-  const V share = led ? V(planned_edge(time, change) + change.off_edge.x) : all<V>(1.0f);
+  const V share = edge_by_clock(time, change);
   const FootInStride<V> stood = stride.foot[0];
   FootInStride<V> flying = by_clock.foot[0];
   const V edge = edge_left(time.u, change);

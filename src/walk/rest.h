@@ -173,8 +173,7 @@ inline Shares shares_of(const Tables& tables, const Change<float>& change,
   const Time<float> time = time_of(tables, state);
   return {planned_shown(time, change) + change.off_shown.x,
           planned_over(time, change) + change.off_over.x,
-          planned_pitch(time, change) + change.off_pitch.x,
-          change.led != 0.0f ? planned_edge(time, change) + change.off_edge.x : 1.0f};
+          planned_pitch(time, change) + change.off_pitch.x, edge_by_clock(time, change)};
 }
 // The same a tick later.
 inline Shares next_shares(const Tables& tables, Change<float> change, State<float> state) noexcept {

@@ -474,7 +474,9 @@ Stride<V> read_by_clock(const Tables& tables, const Time<V>& time, const Landing
                                         all<V>(kSoftHigh_m * tables.size))
                            : stride.heel_high_m;
   const V pitch_rad = soft_least(flies.pitch_rad, all<V>(kMostPitch_rad), all<V>(kSoftPitch_rad));
-  flies.pitch_rad = low ? pitch_rad : flies.pitch_rad;
+  // In a first flight, too: the toe of a foot that points down would stay at the floor for longer.
+  const auto is_bound = tables.terrain == nullptr ? either(low, change.starting != V{}) : low;
+  flies.pitch_rad = is_bound ? pitch_rad : flies.pitch_rad;
   return stride;
 }
 

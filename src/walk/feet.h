@@ -211,7 +211,8 @@ V gap_share(const V& u, const Change<V>& change) noexcept {
 // Adds what is left of the gap to the heel's place in the tables, `heel_m`, and keeps it off the
 // floor, whose height is `base_m`.
 template <class V, class F>
-Vec<V> with_gap(const Tables& tables, const Time<V>& time, const Vec<V>& heel_m, const V& base_m,
+Vec<V> with_gap(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
+                const Stride<V>& stride, const Vec<V>& heel_m, const V& base_m,
                 const Change<V>& change, const State<V>& state, const F& footing) noexcept {
   constexpr float kSoftFloor_m = 0.02f;  // rounds the floor's corner after a change of plan
   constexpr float kDips = 0.2f;          // share of a flight by which the line has its whole room
@@ -257,6 +258,11 @@ Vec<V> with_gap(const Tables& tables, const Time<V>& time, const Vec<V>& heel_m,
     high_m = dips ? V(base_m + soft_positive(V(p.y - base_m + dip_m), dip_m) - dip_m) : high_m;
   }
   if (any(changed)) {
+    // A foot that went fast to where the standing one was no longer to be goes on beyond.
+    constexpr float kComesApart = 0.2f;  // share of the gap's time from which on it keeps apart
+    const V apart_m =
+        keeps_apart_m(tables, time, landing, p, stride.foot[0].twist_rad, time.u, change, state);
+    p.x = both(changed, fading) ? V(p.x + apart_m * smoother(0.0f, kComesApart, s)) : p.x;
     const V ends_m = kSoftFloor_m * tables.size * (1.0f - smoother(0.7f, 1.0f, time.u)),
             comes = smoother(0.0f, 0.3f, s),
             soft_m = most(V(dips ? ends_m : V(ends_m * comes)), all<V>(1e-6f)),
@@ -364,8 +370,8 @@ Flight<V> fly(const Tables& tables, const Time<V>& time, const Landing<V>& landi
   if (kIsUneven<F> || any(either(time.flies, state.tick >= state.roll_ticks))) {
     flight.table_heel_m = flight_heel(tables, time, landing, by_clock, hips, phase, u, change,
                                       state, footing, flight.base_m);
-    flight.heel_m =
-        with_gap(tables, time, flight.table_heel_m, flight.base_m, change, state, footing);
+    flight.heel_m = with_gap(tables, time, landing, by_clock, flight.table_heel_m, flight.base_m,
+                             change, state, footing);
   }
   // A low foot that hardly leaves the floor does not roll onto an edge.
   const V over = flight_share(u, change);

@@ -98,7 +98,7 @@ Flown flown(const Tables& tables, const Change<float>& change, const State<float
     float base_m = 0.0f;
     const Vec<float> heel_m = flight_heel(tables, time, landing, stride, hips, at.phase, time.u,
                                           change, at, footing, base_m);
-    flown.heel_m[k] = with_gap(tables, time, heel_m, base_m, change, at, footing);
+    flown.heel_m[k] = with_gap(tables, time, landing, stride, heel_m, base_m, change, at, footing);
     flown.over_m[k] = flown.heel_m[k].y - base_m;
     if constexpr (kIsUneven<F>) {
       if (k == 1) follow_room(tables, footing);

@@ -86,7 +86,7 @@ def test_unplugged_while_walking_and_plugged_in_again(case):
             session.wait_plugged(turn + 2)
         pad.unplug()
         session.wait_unplugged(times + 1)
-        time.sleep(2.0)  # the walk finishes its step and stands
+        time.sleep(2.0 * (pads.PATIENCE if HAS_SANITIZERS else 1))  # the walk finishes its step and stands
         # Looking for the pad opens a file now and then; what leaks stays open.
         wait_for(lambda: session.handles() <= handles, 10, f"{handles} handles as at first, not {session.handles()}")
         unplugged_ns = [int(line[1]) for line in pad.lines("unplugging")]

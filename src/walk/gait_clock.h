@@ -207,6 +207,14 @@ V flight_cycles(const Tables& tables, const Mask<V>& right) noexcept {
   return chosen<V>(right, tables.stage_share[3], tables.stage_share[1]);
 }
 
+// The factor on the steps' times that are asked for: the mean of both is smoothed, because a thumb
+// that lets go passes through deflections of slow steps.
+template <class V>
+V smoothed_times(const State<V>& state) noexcept {
+  const V(&time_s)[2] = state.asked.time_s;
+  return 2.0f * (state.step_time_s.x / most(V(time_s[0] + time_s[1]), all<V>(kLeastCycle_s)));
+}
+
 // Roll and flight of the step in which `right` swings: cycles of the data, and times.
 template <class V>
 struct Stages {
@@ -220,11 +228,8 @@ Stages<V> stages_of(const Tables& tables, const Change<V>& change, const State<V
   const V roll = roll_cycles<V>(tables, right), flight = flight_cycles<V>(tables, right),
           ratio = asked_ratio(tables, state);
   const V rolls = roll_share(roll, ratio), flies = roll + flight - rolls;
-  // The step time is smoothed because a thumb that lets go passes through deflections of slow
-  // steps.
-  const V cycle_s = most(V(asked.time_s[0] + asked.time_s[1]), all<V>(kLeastCycle_s)),
-          smoothed = state.step_time_s.x / cycle_s, lands_s = by_side<V>(no(right), asked.time_s),
-          swings_s = by_side<V>(right, asked.time_s), factor = 4.0f * smoothed * change.slowness;
+  const V lands_s = by_side<V>(no(right), asked.time_s), swings_s = by_side<V>(right, asked.time_s),
+          factor = 2.0f * smoothed_times(state) * change.slowness;
   return {roll, flight, whole_beats(V(lands_s * factor * rolls), kLeastRoll),
           whole_beats(V(swings_s * factor * flies), kLeastFlight)};
 }

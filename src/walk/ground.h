@@ -146,8 +146,8 @@ V slowness_of(const Tables& tables, const Mask<V>& right, const State<V>& state,
               const Footing<V>& footing) noexcept {
   constexpr float kSlowerByRise = 1.2f, kStairStep_s = 0.84f, kSlowerBack = 2.05f;
   const V rise = least(footing.next_rise, all<V>(static_cast<float>(kMostRise))),
-          own_s = by_side<V>(right, state.asked.time_s),
-          other_s = by_side<V>(no(right), state.asked.time_s),
+          times = smoothed_times(state), own_s = times * by_side<V>(right, state.asked.time_s),
+          other_s = times * by_side<V>(no(right), state.asked.time_s),
           level_s = mix(own_s, most(own_s, other_s), smooth(0.0f, 0.15f, rise)),
           stair_s = rise * (kStairStep_s * tables.time_scale / kStairRise) *
                     chosen<V>(state.backward != V{}, kSlowerBack, 1.0f),

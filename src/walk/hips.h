@@ -144,6 +144,8 @@ Hips<V> move_hips(const Tables& tables, const Time<V>& time, const Landing<V>& l
 // --- A change of pace: the hips lead, the phase follows ------------------------------------------
 
 inline constexpr float kLiftFade = 0.5f;  // of the flight: until then the lift-off's motion fades
+// At the reference leg: in which hips that would rest follow a landing that still moves.
+inline constexpr float kComesAfter_s = 0.1f;
 inline constexpr float kCarry_s = 0.15f;  // at the reference leg: a phase of a new plan fades in
 
 // Place and rate of a path at the middle of three places, `apart` ticks apart, and half of its
@@ -427,7 +429,11 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
   const V last_found = change.phase - change.off_phase.x;
   fade_differences(time, state, change);
   change.off_ticks = most(V(change.off_ticks - 1.0f), V{});
-  change.rest_ticks = most(V(change.rest_ticks - 1.0f), V{});
+  // Hips do not rest before the last step, because the landing before it may still move.
+  const V lasts = both(change.stops != V{}, change.closing == V{})
+                      ? all<V>(kComesAfter_s * tables.time_scale / tables.tick_s)
+                      : V{};
+  change.rest_ticks = most(V(change.rest_ticks - 1.0f), lasts);
   change.catch_ticks = most(V(change.catch_ticks - 1.0f), V{});
   const V over = planned_over(time, change) + change.off_over.x;
   const V last = last_ratio<V>(time.back);

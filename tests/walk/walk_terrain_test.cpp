@@ -496,7 +496,7 @@ TEST(WalkTerrain, NothingFailsWhereverTheStickLeadsOnStairs) {
   // 1.0 5: a first step's foot stands on a higher tread until its hips are beyond its strike. 51,
   // 15, 56, 42: a closing step goes on to a tread two higher, and its ankle is at its limit. 58 and
   // 37: the foot is below the ground of its new flight. 39: a stop in a flight whose landing stays.
-  // Not met yet by 8 of 120 such walks, of them 0.8 29: a knee bends by 2.9 degrees a tick^2 more.
+  // Not met yet by 8 of 120 such walks; in 0.8 29 a knee jumps by 2.9 degrees a tick^2.
   for (const auto& [ratio, seed] :
        {Walk{0.8, 11}, Walk{1.0, 11}, Walk{0.8, 27}, Walk{0.8, 31}, Walk{1.0, 27}, Walk{1.0, 43},
         Walk{0.8, 12}, Walk{0.8, 28}, Walk{1.0, 5}, Walk{1.0, 51}, Walk{1.0, 15}, Walk{0.8, 56},

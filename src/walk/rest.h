@@ -552,10 +552,7 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
             way.left(state.landing_x_m, state.landing_z_m) - tables.leg[right ? 1 : 0].stance_m,
             left_s + between_s + kAfterLanding_s * scale, left_s + between_s + longest_s, landings);
     change.further = further_m > 0.0f ? 1.0f : 0.0f;
-    if (keeps) {
-      for (int side : {0, 1}) change.length_m[side] = state.length_m[side].x;
-      return;
-    }
+    if (keeps) return;
     const int swing = right ? 1 : 0;
     change.length_m[swing] = asked_m;
     change.length_m[1 - swing] = further_m / share;

@@ -92,6 +92,8 @@ void begin_walks(const Tables& tables, Block<kWidth>& block) noexcept {
   const V begin = step_phase_of<V>(tables, first),
           middle = 0.5f * (roll_cycles<V>(tables, first) + flight_cycles<V>(tables, first));
   set(state.asked.backward, state.backward);
+  // A turn on the spot that comes to rest keeps these lengths, not those of the last walk.
+  for (int side : {0, 1}) set(state.asked.length_m[side], change.length_m[side]);
   for (V* flag : {&change.starting, &change.led, &change.is_new}) set(all<V>(1.0f), *flag);
   // In the tables the hips are over the standing foot in the middle of its support.
   set(V(begin + middle), change.phase), set(begin, state.phase);

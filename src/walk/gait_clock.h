@@ -151,7 +151,14 @@ void smooth_asked(const Tables& tables, const Change<V>& change, const V& left,
          tables.step, state.step_time_s);
   // Where the ground makes steps slower, turns are as much slower: a step turns by as much.
   const V turn_rad_s = walks ? V(asked.turn_rad_s / change.slowness) : V{};
-  follow_turn(turn_rad_s, kStraight_rad_s, tables.turn_goal, state.turn_goal_rad_s);
+  // A stick that crosses the heading asks for the other turn within 60 ms. The landing of a foot in
+  // the air would turn by 0.1 rad a tick; a goal that is near turns it by half as much.
+  constexpr float kNear_rad_s = 0.8f;
+  const V turns_rad_s = state.turn_goal_rad_s.x,
+          near_rad_s =
+              least(most(turn_rad_s, V(turns_rad_s - kNear_rad_s)), V(turns_rad_s + kNear_rad_s)),
+          goal_rad_s = state.flies != V{} ? near_rad_s : turn_rad_s;
+  follow_turn(goal_rad_s, kStraight_rad_s, tables.turn_goal, state.turn_goal_rad_s);
   follow_turn(state.turn_goal_rad_s.x, kStraight_rad_s, tables.turn, state.turn_rad_s);
   follow_turn(V(kChestAhead_s * turn_rad_s), kStill_rad, tables.chest, state.chest_ahead_rad);
   follow_turn(V(kHeadAhead_s * turn_rad_s), kStill_rad, tables.head, state.head_ahead_rad);

@@ -130,11 +130,14 @@ V last_ratio(const Mask<V>& back) noexcept {
 template <class V>
 V short_ratio(const Tables& tables, const Landing<V>& landing, const State<V>& state) noexcept {
   constexpr float kComesUp = 0.3f;
+  // Rounds the least ratio, of a landing that passes the footprint; at the reference leg.
+  constexpr float kSoftWay_m = 0.03f;
   const V x = landing.x_m - state.print_x_m, z = landing.z_m - state.print_z_m,
           goes_m = landing.way.ahead(x, z),
           ahead_m = most(state.backward != V{} ? -goes_m : goes_m, V{}),
           aside_m = landing.way.left(x, z);
-  const V own = root(V(ahead_m * ahead_m + aside_m * aside_m)) *
+  const float soft_m = kSoftWay_m * tables.size;
+  const V own = root(V(ahead_m * ahead_m + aside_m * aside_m + soft_m * soft_m)) *
                 (1.0f / (tables.leg[0].own_step_m + tables.leg[1].own_step_m)),
           off = 0.5f * landing.off_ratio,
           flown = state.flies != V{} ? V(state.tick / state.flight_ticks) : V{},

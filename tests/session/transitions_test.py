@@ -162,6 +162,19 @@ def test_a_fast_walk_slows_without_a_dip(program, tmp_path, clip, to):
         assert walk.second_differences[after].max() <= (1.25 if clip else 0.8)  # asked: 1.2
 
 
+# The landing of a foot that has just lifted off turns round, and passes the footprint that the foot has left.
+@pytest.mark.parametrize("clip", (None, "cmu_07_01.amc"))
+@pytest.mark.parametrize("first, then", ((-90, 90), (-126, 90), (170, -150)))
+def test_a_first_foot_follows_a_stick_that_crosses_the_heading(program, tmp_path, clip, first, then):
+    options = ("--stick", "points")
+    player = (player_on(program, tmp_path, f"mocap/{clip}", options) if clip
+              else transitions.Player(program, tmp_path, options=options))
+    at = lambda degrees: (np.sin(np.radians(degrees)), np.cos(np.radians(degrees)))
+    for time_s in (0.75, 0.8):
+        walk = player.walk((0.5, *at(first)), (time_s, *at(then)), end_s=2.0)
+        assert walk.second_differences.max() <= (1.2 if clip else 0.8)
+
+
 def test_a_turn_on_the_spot_takes_four_seconds(player):
     assert 3.0 <= transitions.turn_of(player, transitions.TURNS["in place"])["turn_s"] <= 4.0
 

@@ -131,7 +131,7 @@ template <class V>
 V short_ratio(const Tables& tables, const Landing<V>& landing, const State<V>& state) noexcept {
   constexpr float kComesUp = 0.3f;
   // Rounds the least ratio, of a landing that passes the footprint; at the reference leg.
-  constexpr float kSoftWay_m = 0.03f;
+  constexpr float kSoftWay_m = 0.01f;
   const V x = landing.x_m - state.print_x_m, z = landing.z_m - state.print_z_m,
           goes_m = landing.way.ahead(x, z),
           ahead_m = most(state.backward != V{} ? -goes_m : goes_m, V{}),

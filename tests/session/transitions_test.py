@@ -174,6 +174,13 @@ def test_a_fast_walk_has_time_to_stop_for_a_turn_on_the_spot(program, tmp_path, 
         assert walk.second_differences[after].max() <= 1.25  # asked: 1.2
 
 
+# It had gone on with the steps of the walk before it, and squatted by 214 mm.
+def test_a_turn_on_the_spot_that_ends_early_hardly_squats(program, tmp_path):
+    player = transitions.Player(program, tmp_path, options=("--stick", "points"))
+    walk = player.walk((0.5, 0, 0.9), (3.1, 0, 0), (3.6, 0.24, -0.76), (4.0, 0, 0), end_s=6.5)
+    assert walk.root[int(3.9 * transitions.RATE):, 1].min() > walk.root[-1, 1] - 0.06
+
+
 # The landing of a foot that has just lifted off turns round, and passes the footprint that the foot has left.
 @pytest.mark.parametrize("clip", (None, "cmu_07_01.amc"))
 @pytest.mark.parametrize("first, then", ((-90, 90), (-126, 90), (170, -150)))

@@ -41,9 +41,9 @@ def settle():
 
 
 def udev_properties(node):
-    """The properties of a device node in udev's data base."""
-    number = os.stat(node).st_rdev
+    """The properties of a device node in udev's data base; none where the node is not there yet, or no longer."""
     try:
+        number = os.stat(node).st_rdev
         with open(f"/run/udev/data/c{os.major(number)}:{os.minor(number)}") as file:
             lines = [line[2:].rstrip("\n") for line in file if line.startswith("E:")]
     except FileNotFoundError:

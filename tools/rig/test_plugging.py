@@ -21,16 +21,25 @@ from uhid_pad import EMPTY_PLUG, FULL_PLUG, UhidPad
 SESSIONS, TURNS = (20, 50) if LONG else (1, 12 if HAS_SANITIZERS else 24)
 PUSH_S = 0.15  # duration of a tap of the stick
 CYCLES = 1000 if LONG else 10 if HAS_SANITIZERS else 50  # number of cycles at full speed, for each of two pads
+# The byte of a recorded report that holds the stick's y, or its higher part, and its value at the rim.
+RIM = {"generic": (1, 0x00), "ds4": (2, 0x00), "dualsense": (2, 0x00), "switch": (8, 0xe0), "xbox360": (3, 0x80),
+       "xboxone": (3, 0x80)}
 MOST_S = 3.0  # limit of the median time from the node to the session
 
 
+def wait_rim(session, before, byte, value):
+    """Waits until one of the recording's reports after the first `before` has the rim, as this value of this byte. A way
+    back that begins sooner might come within the same tick on a busy host, or into the kernel's full queue."""
+    wait_for(lambda: any(line.split()[3 + byte] == f"{value:02x}" for line in session.lines("E:")[before:]), 30,
+             "the rim in the recording")
+
+
 def push(pad, session):
-    """Pushes the stick from rest to the rim and back, as a thumb does. The way back begins when the recording has the
-    rim: on a busy host both might come within a tick."""
+    """Pushes the stick from rest to the rim and back, as a thumb does."""
     values, before = VALUES[pad.kind], len(session.lines("E:"))
     pad.move(ly=(values["rest"], values["forward"]))
     time.sleep(PUSH_S)
-    wait_for(lambda: len(session.lines("E:")) > before + 2, 10, "the push in the recording")
+    wait_rim(session, before, *RIM[pad.kind])
     pad.move(ly=(values["forward"], values["rest"]))
     time.sleep(0.1)
 
@@ -136,11 +145,10 @@ class BehindAReceiver:
 
 def tap(source, session):
     """Moves the stick to the rim and back; the rim is held until the recording has it, a few ticks later."""
-    way = source.FULL - source.REST
+    way, before = source.FULL - source.REST, len(session.lines("E:"))
     for share in (0, 1 / 3, 2 / 3, 1):
         source.pad.set(ly=source.REST + round(share * way))
-    full, before = f"{source.FULL:02x}", len(session.lines("E:"))
-    wait_for(lambda: any(line.split()[3 + source.BYTE] == full for line in session.lines("E:")[max(0, before - 4):]), 10, "the rim")
+    wait_rim(session, before, source.BYTE, source.FULL)
     for share in (2 / 3, 1 / 3, 0):
         source.pad.set(ly=source.REST + round(share * way))
 

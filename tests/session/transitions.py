@@ -1,9 +1,9 @@
 #!/usr/bin/python3
 """Measures what is not steady in a walk: starts, stops, reversals and turns, from what `gaitpad replay` exports.
 
-  transitions.py PROGRAM [MOTION ...] [--stick Y ...] [--json]
+  transitions.py PROGRAM [MOTION ...] [--stick Y ...] [--thumb SECONDS] [--json]
 
-Thumbs move in 60 ms (minimum jerk). One row a motion and stick (no motion: the built-in one). Each stop is repeated at
+Thumbs move in 60 ms or what --thumb says (minimum jerk). One row a motion and stick (no motion: the built-in one). Each stop is repeated at
 twelve moments of a cycle.
 
 - First response: the hips have moved by 5 mm, or chest or head have turned by 1 degree. First foot off: its toe is 1 cm
@@ -42,14 +42,14 @@ MOMENTS = 12
 
 
 # ---- a hand ----------------------------------------------------------------------------------
-def thumb(*moves):
-    """Reports of a stick that moves to (x, y) within 60 ms of each time: moves are (time_s, x, y)."""
+def thumb(*moves, takes_s=THUMB_S):
+    """Reports of a stick that moves to (x, y) within `takes_s` of each time: moves are (time_s, x, y)."""
     place, timeline = (0.0, 0.0), [(0.0, 0.0, 0.0)]
     for time_s, x, y in moves:
         for i in range(1, 16):
             u = i / 15
             s = u ** 3 * (10 - 15 * u + 6 * u * u)
-            timeline.append((time_s + u * THUMB_S, place[0] + s * (x - place[0]), place[1] + s * (y - place[1])))
+            timeline.append((time_s + u * takes_s, place[0] + s * (x - place[0]), place[1] + s * (y - place[1])))
         place = (x, y)
     return timeline
 
@@ -57,8 +57,9 @@ def thumb(*moves):
 class Player:
     """Replays moves of a thumb, each in a folder of its own."""
 
-    def __init__(self, program, folder, motion=None, options=()):
+    def __init__(self, program, folder, motion=None, options=(), thumb_s=THUMB_S):
         self.program, self.folder, self.count = program, pathlib.Path(folder), 0
+        self.thumb_s = thumb_s
         self.options = [*options, *(["--motion", motion] if motion else [])]
         self.calibration = self.folder / "exact.toml"
         self.calibration.write_text(EXACT_CALIBRATION)
@@ -66,7 +67,7 @@ class Player:
     def walk(self, *moves, end_s):
         self.count += 1
         out = self.folder / f"walk{self.count}"
-        trace = write_trace(self.folder / "moves.hid", thumb(*moves), (), end_s)
+        trace = write_trace(self.folder / "moves.hid", thumb(*moves, takes_s=self.thumb_s), (), end_s)
         programs.run(self.program, "replay", trace, "--out", out, "--calibration", self.calibration, *self.options)
         return Walk(out)
 
@@ -290,6 +291,7 @@ def main():
     parser.add_argument("program", type=pathlib.Path)
     parser.add_argument("motions", nargs="*")
     parser.add_argument("--stick", type=float, nargs="*", default=[0.3, 0.8, 1.0])
+    parser.add_argument("--thumb", type=float, default=THUMB_S)
     parser.add_argument("--json", action="store_true")
     parser.add_argument("--turns", action="store_true")
     options = parser.parse_args()
@@ -297,7 +299,7 @@ def main():
     for motion in [None, *options.motions]:
         name = pathlib.Path(motion).stem if motion else "built-in"
         with tempfile.TemporaryDirectory() as folder:
-            player = Player(options.program.resolve(), folder, motion and pathlib.Path(motion).resolve())
+            player = Player(options.program.resolve(), folder, motion and pathlib.Path(motion).resolve(), thumb_s=options.thumb)
             for stick in options.stick:
                 rows[f"{name} {stick}"] = summary(measure(player, stick))
             if options.turns:

@@ -79,6 +79,20 @@ def test_a_stop_at_full_stick_takes_less_than_a_metre(rows):
     assert all(stop["stands"] for row in rows.values() for stop in row["stops"])
 
 
+# Thumbs take 30 to 150 ms.
+@pytest.mark.parametrize("thumb_s", (0.03, 0.15))
+def test_fast_and_slow_thumbs_start_and_stop_as_well(program, tmp_path, thumb_s):
+    row = transitions.measure(transitions.Player(program, tmp_path, thumb_s=thumb_s), 1.0)
+    assert row["start"]["off"] <= 0.35
+    assert np.median([stop["time"] for stop in row["stops"]]) <= 0.9
+    assert np.median([stop["way"] for stop in row["stops"]]) <= 0.9
+    for change in (row["start"], *row["stops"]):
+        assert change["acc"] <= 6.0
+        assert max(change["back"], change["below"]) <= 1.0
+        assert change["faster"] <= 1.05
+        assert change["d2"] <= 0.8
+
+
 def spread_m(row):
     """By how much a player misses a mark who has learnt the mean way of a stop."""
     return np.std([stop["way"] for stop in row["stops"]])

@@ -525,9 +525,9 @@ TEST_P(ThumbsOnStairs, BreakFewBounds) {
   EXPECT_LE(most.sunk_mm, asked.most_sunk_mm);
 }
 INSTANTIATE_TEST_SUITE_P(OfEveryLeg, ThumbsOnStairs,
-                         testing::Values(ManyWalks{"short", 0.6, 99, 9, 99},
-                                         ManyWalks{"shorter", 0.8, 99, 9, 99},
-                                         ManyWalks{"adult", 1.0, 99, 9, 99}),
+                         testing::Values(ManyWalks{"short", 0.6, 12, 2.3, 12.3},
+                                         ManyWalks{"shorter", 0.8, 9, 1.9, 14.1},
+                                         ManyWalks{"adult", 1.0, 8, 4.6, 4.4}),
                          [](const auto& info) { return std::string(info.param.name); });
 
 // Sticks that jump, which no thumb does.

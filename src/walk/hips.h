@@ -282,15 +282,24 @@ V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& l
   const auto stops = tables.terrain != nullptr ? change.stops != V{} : Mask<V>{};
   const V fastest = chosen<V>(stops, kFastestStop, kFastestPhase) * strike_rate;
   V next = least(most(phase, V(last - fastest)), V(last + fastest));
-  // A phase that lags behind comes up in time: its rate goes over to the hips', and away from it by
-  // no more a tick.
-  const V bend = (kFastestPhase - 1.0f) * strike_rate *
-                 (tables.tick_s / (kComesUp_s * tables.time_scale)),
-          lags = phase - last - rate, comes = root(V(2.0f * bend * size(lags))),
-          was = change.phase_rate - change.off_phase.v;
-  next =
-      size(lags) > comes ? least(most(next, V(last + rate - comes)), V(last + rate + comes)) : next;
-  next = least(most(next, V(last + least(was, rate) - bend)), V(last + most(was, rate) + bend));
+  // A phase that lags behind comes up in time: its rate goes over to the hips'. On level ground
+  // that is needed in first steps alone, where a stick that crosses the heading moves the landing
+  // fast; the phase also goes away from the hips' rate as evenly there.
+  const auto level = tables.terrain == nullptr ? V{} == V{} : Mask<V>{},
+             starts = both(level, both(change.starting != V{}, change.stops == V{})),
+             comes_up = either(no(level), starts);
+  if (any(comes_up)) {
+    const V bend = (kFastestPhase - 1.0f) * strike_rate *
+                   (tables.tick_s / (kComesUp_s * tables.time_scale)),
+            lags = phase - last - rate, comes = root(V(2.0f * bend * size(lags))),
+            was = change.phase_rate - change.off_phase.v;
+    next = both(comes_up, size(lags) > comes)
+               ? least(most(next, V(last + rate - comes)), V(last + rate + comes))
+               : next;
+    next = starts ? least(most(next, V(last + least(was, rate) - bend)),
+                          V(last + most(was, rate) + bend))
+                  : next;
+  }
   return is_new ? phase : next;
 }
 

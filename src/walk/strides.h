@@ -132,8 +132,8 @@ V short_ratio(const Tables& tables, const Landing<V>& landing, const Change<V>& 
               const State<V>& state) noexcept {
   constexpr float kComesUp = 0.3f;
   // Rounds the least ratio, of a landing that passes the footprint; at the reference leg. A first
-  // step's passes it at up to 18 mm a tick, where a stick crosses the heading; a last foot that
-  // stays in its place would be lifted higher by as much.
+  // step's passes it at up to 18 mm a tick, where a stick crosses the heading. A last step may end
+  // in its place, so it is rounded less.
   constexpr float kSoftFirst_m = 0.03f, kSoftLast_m = 0.01f;
   const V x = landing.x_m - state.print_x_m, z = landing.z_m - state.print_z_m,
           goes_m = landing.way.ahead(x, z),

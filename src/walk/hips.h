@@ -286,7 +286,8 @@ V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& l
   // that is needed in first steps alone, where a stick that crosses the heading moves the landing
   // fast; the phase also goes away from the hips' rate as evenly there.
   const auto level = tables.terrain == nullptr ? V{} == V{} : Mask<V>{},
-             starts = both(level, both(change.starting != V{}, change.stops == V{})),
+             starts = both(both(level, change.turns == V{}),
+                           both(change.starting != V{}, change.stops == V{})),
              comes_up = either(no(level), starts);
   if (any(comes_up)) {
     const V bend = (kFastestPhase - 1.0f) * strike_rate *

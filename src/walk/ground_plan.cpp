@@ -519,7 +519,7 @@ PlannedFlight planned_flight(const Tables& tables, const Floor& floor, const Fra
   const auto read_ratio = [&] {
     landing = landing_over(tables, time, to, change, state, footing);
     hips.ahead = footprints_of(tables, time, landing.ratio);
-    hips.own = footprints_of(tables, time, short_ratio(tables, landing, state));
+    hips.own = footprints_of(tables, time, short_ratio(tables, landing, change, state));
   };
   read_ratio();
   const float left = state.flight_ticks - state.tick;

@@ -76,7 +76,7 @@ Hips<V> move_hips(const Tables& tables, const Time<V>& time, const Landing<V>& l
   hips.behind = footprints_of(tables, time, state.ratio_behind);
   hips.ahead = footprints_of(tables, time, landing.ratio);
   if (any(either(change.starting != V{}, change.closing != V{})))
-    hips.own = footprints_of(tables, time, short_ratio(tables, landing, state));
+    hips.own = footprints_of(tables, time, short_ratio(tables, landing, change, state));
   const V turns = chosen<V>(time.right, 1.0f, 0.0f);
   const Path<V> to = path_to(landing, hips.ahead, turns);
   const V x_m = to.x_m + to.per_cycle_x_m * state.phase,
@@ -243,7 +243,7 @@ V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& l
   constexpr float kPhaseStep = 1e-3f;                         // cycles, of the slope
   constexpr float kBeforeStep = 0.1f, kAfterStep = 0.14f;     // cycles around the step's own
   constexpr float kFastestPhase = 2.5f, kFastestStop = 1.5f;  // of the clock's rate
-  constexpr float kComesUp_s = 0.06f;  // at the reference leg: a phase at its fastest slows down
+  constexpr float kComesUp_s = 0.06f;  // at the reference leg: to the fastest rate, and back
   constexpr int kFewTries = 2, kPhaseTries = 6;  // iterations: usually, and of a new plan
   const Way<V>& way = landing.way;
   const Path<V>& path = state.path;
@@ -282,13 +282,24 @@ V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& l
   const auto stops = tables.terrain != nullptr ? change.stops != V{} : Mask<V>{};
   const V fastest = chosen<V>(stops, kFastestStop, kFastestPhase) * strike_rate;
   V next = least(most(phase, V(last - fastest)), V(last + fastest));
-  if (tables.terrain != nullptr) {
-    // A phase that lags behind comes up in time: its rate goes over to the hips'.
+  // A phase that lags behind comes up in time: its rate goes over to the hips'. On level ground
+  // that is needed in first steps alone, where a stick that crosses the heading moves the landing
+  // fast; the phase also goes away from the hips' rate as evenly there.
+  const auto level = tables.terrain == nullptr ? V{} == V{} : Mask<V>{},
+             starts = both(both(level, change.turns == V{}),
+                           both(change.starting != V{}, change.stops == V{})),
+             comes_up = either(no(level), starts);
+  if (any(comes_up)) {
     const V bend = (kFastestPhase - 1.0f) * strike_rate *
                    (tables.tick_s / (kComesUp_s * tables.time_scale)),
-            lags = phase - last - rate, comes = root(V(2.0f * bend * size(lags)));
-    next = size(lags) > comes ? least(most(next, V(last + rate - comes)), V(last + rate + comes))
-                              : next;
+            lags = phase - last - rate, comes = root(V(2.0f * bend * size(lags))),
+            was = change.phase_rate - change.off_phase.v;
+    next = both(comes_up, size(lags) > comes)
+               ? least(most(next, V(last + rate - comes)), V(last + rate + comes))
+               : next;
+    next = starts ? least(most(next, V(last + least(was, rate) - bend)),
+                          V(last + most(was, rate) + bend))
+                  : next;
   }
   return is_new ? phase : next;
 }

@@ -94,7 +94,7 @@ Flown flown(const Tables& tables, const Change<float>& change, const State<float
     Hips<float> hips;
     hips.behind = footprints_of(tables, time, at.ratio_behind);
     hips.ahead = footprints_of(tables, time, landing.ratio);
-    hips.own = footprints_of(tables, time, short_ratio(tables, landing, at));
+    hips.own = footprints_of(tables, time, short_ratio(tables, landing, change, at));
     float base_m = 0.0f;
     const Vec<float> heel_m = flight_heel(tables, time, landing, stride, hips, at.phase, time.u,
                                           change, at, footing, base_m);

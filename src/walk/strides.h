@@ -128,15 +128,18 @@ V last_ratio(const Mask<V>& back) noexcept {
 // tables leads there. A difference that a change of plan leaves in the ratio fades with the change;
 // one that makes the stride shorter than the way fades by kComesUp of the flight.
 template <class V>
-V short_ratio(const Tables& tables, const Landing<V>& landing, const State<V>& state) noexcept {
+V short_ratio(const Tables& tables, const Landing<V>& landing, const Change<V>& change,
+              const State<V>& state) noexcept {
   constexpr float kComesUp = 0.3f;
-  // Rounds the least ratio, of a landing that passes the footprint; at the reference leg.
-  constexpr float kSoftWay_m = 0.01f;
+  // Rounds the least ratio, of a landing that passes the footprint; at the reference leg. A first
+  // step's passes it at up to 18 mm a tick, where a stick crosses the heading. A last step may end
+  // in its place, so it is rounded less.
+  constexpr float kSoftFirst_m = 0.03f, kSoftLast_m = 0.01f;
   const V x = landing.x_m - state.print_x_m, z = landing.z_m - state.print_z_m,
           goes_m = landing.way.ahead(x, z),
           ahead_m = most(state.backward != V{} ? -goes_m : goes_m, V{}),
           aside_m = landing.way.left(x, z);
-  const float soft_m = kSoftWay_m * tables.size;
+  const V soft_m = tables.size * chosen<V>(change.starting != V{}, kSoftFirst_m, kSoftLast_m);
   const V own = root(V(ahead_m * ahead_m + aside_m * aside_m + soft_m * soft_m)) *
                 (1.0f / (tables.leg[0].own_step_m + tables.leg[1].own_step_m)),
           off = 0.5f * landing.off_ratio,
@@ -464,7 +467,7 @@ Stride<V> read_by_clock(const Tables& tables, const Time<V>& time, const Landing
   }
   Stride<V> stride = read_stride(
       tables, time, both(is_short, no(time.flies)) ? most(phase, time.stage_end) : phase,
-      is_short ? short_ratio(tables, landing, state) : state.ratio_behind, landing.ratio,
+      is_short ? short_ratio(tables, landing, change, state) : state.ratio_behind, landing.ratio,
       closes ? V{} : smoother(is_short ? u : share), reads);
   const V flat = closes ? V(1.0f - smoother(u)) : all<V>(1.0f);
   FootInStride<V>& flies = stride.foot[0];

@@ -208,6 +208,16 @@ def test_a_first_foot_follows_a_stick_that_crosses_the_heading(program, tmp_path
         assert walk.second_differences.max() <= (1.2 if clip else 0.8)
 
 
+# A step on the spot becomes a long one just before it lifts off: the phase of the hips ran to theirs at once.
+@pytest.mark.parametrize("clip", ("cmu_m21_walk.bvh", "cmu_07_01.amc"))
+@pytest.mark.parametrize("first, then", ((100, -30), (-120, 30)))
+def test_a_first_step_on_the_spot_becomes_a_long_one(program, tmp_path, clip, first, then):
+    at = lambda degrees: (np.sin(np.radians(degrees)), np.cos(np.radians(degrees)))
+    player = player_on(program, tmp_path, f"mocap/{clip}", ("--stick", "points"))
+    walk = player.walk((0.5, *at(first)), (0.7, *at(then)), end_s=1.5)
+    assert walk.second_differences.max() <= 1.2
+
+
 def test_a_turn_on_the_spot_takes_four_seconds(player):
     assert 3.0 <= transitions.turn_of(player, transitions.TURNS["in place"])["turn_s"] <= 4.0
 

@@ -479,6 +479,7 @@ struct PlannedFlight {
   // Where the standing foot is in the way beside a riser, the flight goes over the riser until this
   // probe, at which it has passed that foot.
   int over_until = 0;
+  bool sinks = false;  // from there on, to a lower landing
   // A flight that ends on its own piece goes beside a riser, not over it.
   bool stays() const noexcept { return begin.from_m == end.from_m && over_until == 0; }
 };
@@ -728,8 +729,9 @@ RoomPlan plan_over(const Tables& tables, const Floor& floor, const PlannedFlight
   constexpr int kComesDown = kProbes / kKnotsOfFlight;  // after the standing foot
   const Wanted over = wanted_raise(tables, floor, flight, crosses, Spline{});
   Wanted above = over, beside{};
-  if (flight.over_until != 0 && !crosses) {
-    for (int i = flight.over_until + kComesDown; i <= kProbes; ++i) above[i] = 0.0;
+  if (flight.over_until != 0 && (!crosses || flight.sinks)) {
+    for (int i = flight.over_until + kComesDown; i < kProbes; ++i)
+      above[i] = std::min(0.0, flight.climb);
   }
   RoomPlan room;
   // Start gentle; sharpen until the riser is cleared.
@@ -910,7 +912,7 @@ bool goes_over(const Tables& tables, const Floor& floor, bool begins, const Plan
                const Block<1>& block) noexcept {
   // Share of the flight in which it may still choose. In 450 walks by chance on stairs, with 0.2
   // soles are 9 mm deep in the ground two times more; with 0 feet come to 12 mm in a turn.
-  constexpr double kLiftsOff = 0.1;
+  constexpr double kLiftsOff = 0.05;
   constexpr double kDeep_m = 0.0015;  // flights that keep clear are up to 1.4 mm deep
   constexpr float kComes_s = 0.16f;   // at the reference leg: four time constants of Filters::room
   const State<float>& state = block.state;
@@ -953,14 +955,20 @@ void plan_room(const Tables& tables, bool begins, Block<1>& block) noexcept {
   const bool crosses = footing.crosses != 0.0f, right = state.right_swings != 0.0f;
   RoomPlan room = room_of(tables, floor, flight, crosses);
   constexpr int kRounds = 4;  // each leads it farther
-  PlannedFlight past = flight;
-  RoomPlan over = room;
-  for (int round = 0; round < kRounds; ++round) {
-    if (!lead_past_stand(tables, frame, right, over.shift_m, past)) break;
-    over = room_of(tables, floor, past, crosses);
-  }
-  if (past.over_until != 0 && goes_over(tables, floor, begins, flight, room, past, over, block))
+  for (const bool sinks : {true, false}) {
+    if (sinks && flight.climb >= 0.0) continue;
+    PlannedFlight past = flight;
+    past.sinks = sinks;
+    RoomPlan over = room;
+    for (int round = 0; round < kRounds; ++round) {
+      if (!lead_past_stand(tables, frame, right, over.shift_m, past)) break;
+      over = room_of(tables, floor, past, crosses);
+    }
+    if (past.over_until == 0) break;
+    if (!goes_over(tables, floor, begins, flight, room, past, over, block)) continue;
     room = over;
+    break;
+  }
   for (int k = 0; k < kRoomKnots; ++k) {
     footing.raise_m[k] = static_cast<float>(room.raise_m[k]);
     footing.shift_m[k] = static_cast<float>(room.shift_m[k]);

@@ -284,7 +284,7 @@ V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& l
   V next = least(most(phase, V(last - fastest)), V(last + fastest));
   // A phase that lags behind comes up in time: its rate goes over to the hips'. On level ground
   // that is needed in first steps alone, where a stick that crosses the heading moves the landing
-  // fast; the phase also goes away from the hips' rate as evenly there.
+  // fast; the phase also goes ahead of the hips' rate as evenly there, and falls back at once.
   const auto level = tables.terrain == nullptr ? V{} == V{} : Mask<V>{},
              starts = both(both(level, change.turns == V{}),
                            both(change.starting != V{}, change.stops == V{})),
@@ -295,11 +295,9 @@ V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& l
             lags = phase - last - rate, comes = root(V(2.0f * bend * size(lags))),
             was = change.phase_rate - change.off_phase.v;
     next = both(comes_up, size(lags) > comes)
-               ? least(most(next, V(last + rate - comes)), V(last + rate + comes))
+               ? least(starts ? next : most(next, V(last + rate - comes)), V(last + rate + comes))
                : next;
-    next = starts ? least(most(next, V(last + least(was, rate) - bend)),
-                          V(last + most(was, rate) + bend))
-                  : next;
+    next = starts ? least(next, V(last + most(was, rate) + bend)) : next;
   }
   return is_new ? phase : next;
 }

@@ -282,6 +282,7 @@ void move_hips_ground(const Tables& tables, const Time<V>& time, const Landing<V
   // does not roll far over its toe: hips that rest wait for its flight.
   const auto still = both(off.x < V{}, both(off.v == V{}, off.a == V{})),
              waits = either(stands, both(no(time.flies), both(takes_all, still)));
+  footing.settle_ticks = waits ? step_ticks : footing.settle_ticks;
   Off<V> faded = off;
   fade(V(footing.settle_ticks - begun + 1.0f), faded);
   const Sinking<V> now = sinking(change, state, footing, V(time.flies ? state.tick : V{})),

@@ -363,8 +363,11 @@ V climbed_m(const Tables& tables, const Time<V>& time, const V& base_m,
 template <class V>
 V rise_in_flight(const Tables& tables, const Time<V>& time, const V& knee_rad, const V& base_m,
                  const Footing<V>& footing) noexcept {
-  const V hover_m = time.flies ? V(0.5f * footing.early_m * smooth(0.0f, 0.5f, time.u)) : V{};
-  return rise_with_hips<V>(tables, time.right, knee_rad, base_m, hover_m, footing);
+  // A foot that does not land from a height comes to its ground from this share of the flight on.
+  constexpr float kComesDown = 0.6f;
+  const V hover_m = time.flies ? V(0.5f * footing.early_m * smooth(0.0f, 0.5f, time.u)) : V{},
+          rise_m = rise_with_hips<V>(tables, time.right, knee_rad, base_m, hover_m, footing);
+  return footing.early_m > V{} ? rise_m : V(rise_m * (1.0f - smoother(kComesDown, 1.0f, time.u)));
 }
 
 // The pitch of a foot on its toe that lifts the ankle by another `rise_m`.

@@ -237,6 +237,20 @@ Mask<V> leaves_stairs(const Change<V>& change, const Footing<V>& footing) noexce
   return both(change.slowness > all<V>(1.0f), next_is_level(footing));
 }
 
+// True in a flight whose step has another length or another rise than the last one. Without
+// it, legs jumped by up to 2.4 degrees in walks by chance over the course.
+template <class V>
+Mask<V> is_other_step(const Tables& tables, const State<V>& state,
+                      const Footing<V>& footing) noexcept {
+  constexpr float kLonger = 0.05f, kHigher = 0.01f;  // legs
+  const auto far = [](const V& x, const V& z) { return root(V(x * x + z * z)); };
+  const V longer_m =
+              far(state.landing_x_m, state.landing_z_m) - far(state.print_x_m, state.print_z_m),
+          higher_m = footing.landing_y_m + footing.print_y_m;
+  return both(state.flies != V{}, either(size(longer_m) > all<V>(kLonger * tables.leg_m),
+                                         size(higher_m) > all<V>(kHigher * tables.leg_m)));
+}
+
 // Chooses a foothold where the landing on level ground has moved.
 template <int kWidth>
 void choose_footholds(const Tables& tables, const Time<Floats<kWidth>>& time,
@@ -566,9 +580,12 @@ void look_where_needed(const Tables& tables, const Time<Floats<kWidth>>& time,
   const auto half = is_half_seen(tables, state);
   auto changes = is_unsteady, again = either(lifts, strikes), paces = Mask<V>{};
   if constexpr (kUneven) {
-    // Any change of pace may ask more of a leg.
-    const auto sinks = either(change.led != V{}, change.sink_ticks != V{});
-    changes = either(either(is_unsteady, sinks), leaves_stairs(change, block.footing));
+    // On changing ground a step may ask more of a leg than the one before it did, and on stairs
+    // each one does.
+    const auto sinks = both(change.sink_ticks != V{}, block.footing.crosses != V{});
+    changes = either(
+        either(is_unsteady, either(change.led != V{}, sinks)),
+        either(leaves_stairs(change, block.footing), is_other_step(tables, state, block.footing)));
     again = either(again, half);
   } else {
     // Hips must have begun to sink when a step of another pace begins.

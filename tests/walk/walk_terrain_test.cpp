@@ -526,8 +526,8 @@ TEST_P(ThumbsOnStairs, BreakFewBounds) {
 }
 INSTANTIATE_TEST_SUITE_P(OfEveryLeg, ThumbsOnStairs,
                          testing::Values(ManyWalks{"short", 0.6, 12, 2.3, 12.3},
-                                         ManyWalks{"shorter", 0.8, 8, 1.9, 14.1},
-                                         ManyWalks{"adult", 1.0, 10, 2.9, 5.7}),
+                                         ManyWalks{"shorter", 0.8, 6, 1.9, 14.1},
+                                         ManyWalks{"adult", 1.0, 9, 2.9, 5.7}),
                          [](const auto& info) { return std::string(info.param.name); });
 
 // Sticks that jump, which no thumb does.

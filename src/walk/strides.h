@@ -149,7 +149,8 @@ V short_ratio(const Tables& tables, const Landing<V>& landing, const Change<V>& 
 }
 
 // Walks for which a stride is read: only its plan, which is the flying foot and the pelvis' place,
-// or the whole of it, legs and turn of the pelvis as well. What is not read is 0.
+// or the whole of it, legs and turn of the pelvis as well. What is not read is 0. `plan` holds
+// wherever `whole` does.
 template <class V>
 struct Reads {
   Mask<V> plan, whole;
@@ -247,8 +248,7 @@ Stride<V> read_stride(const Tables& tables, const Time<V>& time, const V& phase,
   const V last = last_ratio<V>(time.back), is_whole = chosen<V>(reads.whole, 1.0f, 0.0f);
   const Knots<V> knots = knots_at(phase), old = ratios_at(behind, last),
                  next = ratios_at(ahead, last);
-  const StrideMix<V> mix =
-      mix_of_ratios(tables, time, old, next, change, either(reads.plan, reads.whole));
+  const StrideMix<V> mix = mix_of_ratios(tables, time, old, next, change, reads.plan);
   alignas(64) float row[kWidth][kNumbers];
   for (int w = 0; w < kWidth; ++w) {
     const auto& of_walk = mix.walk[w];
@@ -458,6 +458,7 @@ Stride<V> read_by_clock(const Tables& tables, const Time<V>& time, const Landing
   // from whole steps. Bounds of a last flight, beside what is left of its lift-off.
   constexpr float kMostHigh_m = 0.08f, kSoftHigh_m = 0.05f;      // at the reference leg
   constexpr float kMostPitch_rad = 0.5f, kSoftPitch_rad = 0.2f;  // of the foot's pitch
+  if (!any(reads.plan)) return {};
   const auto closes = change.closing != V{}, is_short = either(change.starting != V{}, closes);
   if (!any(is_short)) {
     Stride<V> stride =

@@ -635,7 +635,14 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
     move_hips_ground(tables, time, landing, change, state, footing);
     if (looks_ahead) plan_rooms<kWidth>(tables, Mask<V>{}, block);
   }
-  const Reads<V> reads{V{} == V{}, no(has_own_phase(change))};  // lead_hips() reads the others
+  const auto lifts = both(no(time.flies), state.tick >= state.roll_ticks),
+             strikes = both(time.flies, state.tick >= state.flight_ticks);
+  // lead_hips() reads the others. Where hips lead or rest on level ground, the clock tells nothing
+  // but a foot in flight, and how one lifts off in a first step.
+  Reads<V> reads{V{} == V{}, no(has_own_phase(change))};
+  if constexpr (!kUneven)
+    reads.plan = either(either(either(time.flies, lifts), change.starting != V{}),
+                        change.led + change.stands == V{});
   const Stride<V> by_clock =
       read_by_clock(tables, time, landing, state.phase, time.share, time.u, reads, change, state);
   Hips<V> hips = move_hips(tables, time, landing, by_clock, change, state);
@@ -660,8 +667,6 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
     pose_walks<kWidth, kPaper>(tables, tick, is_new, block, footing, feet, poses);
 
   take_back(asked_rad, feet);
-  const auto lifts = both(no(time.flies), state.tick >= state.roll_ticks),
-             strikes = both(time.flies, state.tick >= state.flight_ticks);
   if (any(lifts))
     lift_off(tables, time, lifts, landing, hips, feet, by_clock, change, state, footing);
   const V before_rad = state.last_pitch_rad[1];

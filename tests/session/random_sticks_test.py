@@ -1,4 +1,4 @@
-"""Random sticks by a thumb of 60 ms, twenty runs of a minute on level ground and twenty on the course: each ends
+"""Random sticks by a thumb of 60 ms, runs of a minute, twenty on level ground and 26 on the course: each ends
 standing, and no bound of transitions.py is broken by more than half."""
 import concurrent.futures
 import math
@@ -10,7 +10,9 @@ import pytest
 
 import transitions
 
-RUNS, LAST_MOVE_S, END_S = 20, 55.0, 61.0
+LAST_MOVE_S, END_S = 55.0, 61.0
+# Twenty runs, and those over the course in which legs once jumped by 1.7 to 11 degrees a tick^2.
+SEEDS = {"level": range(20), "course": (*range(20), 28, 38, 47, 87, 109, 125)}
 # The bounds of starts and stops times 1.5: m/s^2, and of joints degrees a tick^2 (.8 x 1.5; one run is above it by 4 %).
 HARDEST_M_S2, JERK_DEG = 9.0, 1.2 * 1.05
 FEET_MM, SHINS_MM = 40.0, 46.0  # the least distances in turns over 1.5
@@ -46,7 +48,7 @@ def measured(request, program, tmp_path_factory):
                 "jerk": walk.second_differences.max()}
 
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        return list(pool.map(run, range(RUNS)))
+        return list(pool.map(run, SEEDS[request.param]))
 
 
 def test_random_sticks_end_in_a_stand(figures):

@@ -80,7 +80,12 @@ struct Step {
   Stretch stands, lifts;          // their pieces
   vec3 forward{0.0, 0.0, 1.0}, wanted_m{0.0};
   double leg_m = 0.0;
+  bool is_right = false;  // the flying foot
   Extent sole;
+  // How far a place is on the flying foot's side of the standing foot.
+  double aside_m(const vec3& place) const noexcept {
+    return glm::dot(place - from_m, glm::cross(is_right ? -kUp : kUp, forward));
+  }
   double length_m() const noexcept { return glm::dot(wanted_m - from_m, forward); }
 };
 
@@ -125,13 +130,14 @@ bool is_stuck(const Step& step, double length_m) noexcept {
 }
 
 // About the logarithm of the factor by which a piece lengthens or shortens the step, and costs of a
-// step that goes aside, is stuck in place, becomes long, rises or overhangs an edge.
+// step that goes aside, is stuck in place, becomes long, comes to the standing foot's line, rises or
+// overhangs an edge.
 double cost_of(const Floor& floor, const Step& step, const Stretch& piece) noexcept {
-  // Costs of being stuck, and for each leg aside, beyond a long step, beyond an easy rise, beyond
-  // the highest rise, and of an overhang.
-  constexpr double kStuckCosts = 2.0, kAside = 3.0, kLongCosts = 10.0, kRiseCosts = 10.0,
-                   kTooHigh = 100.0, kOverhang = 30.0;
-  constexpr double kLongStep = 0.6, kEasyRise = 0.22;  // in legs
+  // Costs of being stuck, and for each leg aside, beyond a long step, nearer to the standing foot's
+  // line than feet need, beyond an easy rise, beyond the highest rise, and of an overhang.
+  constexpr double kStuckCosts = 2.0, kAside = 3.0, kLongCosts = 10.0, kNearCosts = 20.0,
+                   kRiseCosts = 10.0, kTooHigh = 100.0, kOverhang = 30.0;
+  constexpr double kLongStep = 0.6, kFeetApart = 0.1, kEasyRise = 0.22;  // in legs
   const vec3 place = place_on(step, piece), move = place - wanted_on(step, piece);
   const double middle =
       std::clamp(place.z + step.sole.middle_m(), piece.from_m + kBeside_m, piece.to_m - kBeside_m);
@@ -144,7 +150,10 @@ double cost_of(const Floor& floor, const Step& step, const Stretch& piece) noexc
   const double aside = std::abs(glm::dot(move, glm::cross(kUp, step.forward))) / step.leg_m;
   const double longer = sign * length - std::min(longest_to(step, piece),
                                                  std::max(sign * wanted, kLongStep * step.leg_m));
+  const double nearer = std::min(kFeetApart * step.leg_m, step.aside_m(wanted_on(step, piece))) -
+                        step.aside_m(place);
   return 2.0 * std::abs(1.0 - ratio) / (1.0 + ratio) + kAside * aside +
+         kNearCosts * std::max(0.0, nearer) / step.leg_m +
          (is_stuck(step, length) ? kStuckCosts : 0.0) +
          kLongCosts * std::max(0.0, longer) / step.leg_m +
          kRiseCosts * std::max(0.0, rise - kEasyRise) + kTooHigh * std::max(0.0, rise - kMostRise) +
@@ -282,6 +291,7 @@ double next_rise(const Tables& tables, const Floor& floor, const Step& landing,
   Step step = landing;
   step.lift_m = landing.from_m;
   step.lifts = landing.stands;
+  step.is_right = !landing.is_right;
   step.from_m = landing_m;
   step.stands = piece;
   step.wanted_m = step.from_m + step.forward * length_m - across_m;
@@ -311,6 +321,7 @@ void choose_foothold(const Tables& tables, const AskedFoothold& asked, Block<1>&
   const vec3 along(asked.sine, 0.0, asked.cosine);
   step.forward = frame.way(along);
   step.leg_m = tables.leg_m;
+  step.is_right = swing == 1;
   const double yaw = state.landing_rad + frame.heading_rad, length = asked.length_m;
   step.sole = sole_extent(leg, yaw);
   const vec3 level(footing.level_x_m, 0.0, footing.level_z_m),

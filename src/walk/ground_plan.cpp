@@ -129,6 +129,14 @@ bool is_stuck(const Step& step, double length_m) noexcept {
   return sign * wanted > kLeastStep * step.leg_m && sign * length_m < kStuck * sign * wanted;
 }
 
+// By how much a place is nearer to the standing foot's line than feet need, if the wanted one is not.
+double crowds_m(const Step& step, const Stretch& piece) noexcept {
+  constexpr double kFeetApart = 0.1;  // in legs
+  const double wanted = step.aside_m(wanted_on(step, piece));
+  return std::max(0.0, std::min(kFeetApart * step.leg_m, wanted) -
+                           step.aside_m(place_on(step, piece)));
+}
+
 // About the logarithm of the factor by which a piece lengthens or shortens the step, and costs of a
 // step that goes aside, is stuck in place, becomes long, comes to the standing foot's line, rises or
 // overhangs an edge.
@@ -137,7 +145,7 @@ double cost_of(const Floor& floor, const Step& step, const Stretch& piece) noexc
   // line than feet need, beyond an easy rise, beyond the highest rise, and of an overhang.
   constexpr double kStuckCosts = 2.0, kAside = 3.0, kLongCosts = 10.0, kNearCosts = 20.0,
                    kRiseCosts = 10.0, kTooHigh = 100.0, kOverhang = 30.0;
-  constexpr double kLongStep = 0.6, kFeetApart = 0.1, kEasyRise = 0.22;  // in legs
+  constexpr double kLongStep = 0.6, kEasyRise = 0.22;  // in legs
   const vec3 place = place_on(step, piece), move = place - wanted_on(step, piece);
   const double middle =
       std::clamp(place.z + step.sole.middle_m(), piece.from_m + kBeside_m, piece.to_m - kBeside_m);
@@ -150,10 +158,8 @@ double cost_of(const Floor& floor, const Step& step, const Stretch& piece) noexc
   const double aside = std::abs(glm::dot(move, glm::cross(kUp, step.forward))) / step.leg_m;
   const double longer = sign * length - std::min(longest_to(step, piece),
                                                  std::max(sign * wanted, kLongStep * step.leg_m));
-  const double nearer = std::min(kFeetApart * step.leg_m, step.aside_m(wanted_on(step, piece))) -
-                        step.aside_m(place);
   return 2.0 * std::abs(1.0 - ratio) / (1.0 + ratio) + kAside * aside +
-         kNearCosts * std::max(0.0, nearer) / step.leg_m +
+         kNearCosts * crowds_m(step, piece) / step.leg_m +
          (is_stuck(step, length) ? kStuckCosts : 0.0) +
          kLongCosts * std::max(0.0, longer) / step.leg_m +
          kRiseCosts * std::max(0.0, rise - kEasyRise) + kTooHigh * std::max(0.0, rise - kMostRise) +
@@ -161,7 +167,8 @@ double cost_of(const Floor& floor, const Step& step, const Stretch& piece) noexc
 }
 
 // Tries the pieces from the one of the wanted place back to the standing foot's. If both are the
-// same piece, and its edge stops the step, it also tries the piece beyond this edge.
+// same piece, and its edge stops the step or brings the feet together, it also tries the piece beyond
+// this edge.
 Stretch best_piece(const Floor& floor, const Step& step, const Stretch* settled) noexcept {
   constexpr int kMostPieces = 8;  // compared
   constexpr double kStay = 0.1;   // cost by which another piece than `settled` has to be cheaper
@@ -170,7 +177,7 @@ Stretch best_piece(const Floor& floor, const Step& step, const Stretch* settled)
   if (piece.from_m == step.stands.from_m) {
     const Room room = room_on(piece, step.sole, step.leg_m);
     const double z = std::clamp(step.wanted_m.z, room.low_m, room.high_m), dz = z - step.wanted_m.z;
-    if (is_stuck(step, step.length_m() + step.forward.z * dz))
+    if (is_stuck(step, step.length_m() + step.forward.z * dz) || crowds_m(step, piece) > 0.0)
       piece = piece_at(floor, dz > 0.0 ? piece.from_m - kBeside_m : piece.to_m + kBeside_m);
   }
   double least = std::numeric_limits<double>::infinity();

@@ -131,7 +131,7 @@ bool is_stuck(const Step& step, double length_m) noexcept {
 
 // By how much a place is nearer to the standing foot's line than feet need, if the wanted one is not.
 double crowds_m(const Step& step, const Stretch& piece) noexcept {
-  constexpr double kFeetApart = 0.1;  // in legs
+  constexpr double kFeetApart = 0.12;  // in legs
   const double wanted = step.aside_m(wanted_on(step, piece));
   return std::max(0.0, std::min(kFeetApart * step.leg_m, wanted) -
                            step.aside_m(place_on(step, piece)));

@@ -534,8 +534,10 @@ void strike(const Tables& tables, const BodyTick<Floats<kWidth>>& tick,
     move_rails(strikes, footing.landing_y_m, block.styled);
     change_footing(landing, strikes, feet.flat_toe_m.y, footing);
     const V slow = slowness_of(tables, no(time.right), state, footing);
+    // Onto stairs, too, hips lead: they would else brake by 10 m/s^2 in the roll.
+    constexpr float kOnto = 1.25f;  // times as slow as the last step
+    is_level = either(slow == all<V>(1.0f), slow > kOnto * change.slowness);
     change.slowness = strikes ? slow : change.slowness;
-    is_level = slow == all<V>(1.0f);
   }
   // After a late change of plan the step has not yet changed over to its own stride.
   landing.ratio = change.off_over.x != V{}

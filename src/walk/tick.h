@@ -535,7 +535,7 @@ void strike(const Tables& tables, const BodyTick<Floats<kWidth>>& tick,
     change_footing(landing, strikes, feet.flat_toe_m.y, footing);
     const V slow = slowness_of(tables, no(time.right), state, footing);
     // Onto stairs, too, hips lead: they would else brake by 10 m/s^2 in the roll.
-    constexpr float kOnto = 1.25f;  // times as slow as the last step
+    constexpr float kOnto = 1.5f;  // times as slow as the last step
     is_level = either(slow == all<V>(1.0f), slow > kOnto * change.slowness);
     change.slowness = strikes ? slow : change.slowness;
   }

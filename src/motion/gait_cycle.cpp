@@ -204,8 +204,8 @@ std::string why_no_pace(const GaitCycle& cycle) {
 // In a step-to limp one foot only comes up to the other. The walk divides by step lengths, so the
 // shorter step becomes at least a tenth of the stride; both feet move equally for that. With less,
 // joints reach 2000 degrees/s in a backward turn; with a tenth, 500.
-// Least step and farthest place behind the other foot, as shares of the stride.
-constexpr double kLeastStep = 0.1, kMostBehind = 0.1;
+// A foot that stays farther behind the other is no walk. Both are shares of the stride.
+constexpr double kLeastStep = 0.1;
 void lengthen_short_step(GaitCycle& cycle) {
   for (const Side side : {kLeftSide, kRightSide}) {
     const double least_m = kLeastStep * cycle.stride_m;
@@ -223,7 +223,7 @@ std::string why_no_walk(const CapturedCycle& captured, const GaitCycle& cycle) {
       return std::string("holds no walk: the ") + kSideNames[side] + " foot slides " +
              fixed(slides_m, 2) + " m while it should stand";
     }
-    if (!(cycle.step_m[side] >= -kMostBehind * cycle.stride_m))
+    if (!(cycle.step_m[side] >= -kLeastStep * cycle.stride_m))
       return "holds no walk: one foot stays " + fixed(-cycle.step_m[side], 2) +
              " m behind the other";
   }

@@ -81,11 +81,9 @@ Sole sole_of(const FootJoints& foot, const std::vector<SampleRange>& ranges, dou
   for (const auto& [score, f] : flat) {
     vec3 toe = foot.toe_m[f] - foot.ankle_m[f];
     const vec3 end = foot.toe_end_m[f] - foot.ankle_m[f];
-    const auto is_short = [&](const vec3& v) {
-      return horizontal_length(v) < kShortestFoot_legs * leg_m;
-    };
-    if (is_short(toe) && !is_short(end)) toe = end;
-    if (is_short(toe)) toe = kOwnToe_legs * leg_m * foot.ahead[f] + vec3(0.0, toe.y, 0.0);
+    if (is_short_foot(toe, leg_m) && !is_short_foot(end, leg_m)) toe = end;
+    if (is_short_foot(toe, leg_m))
+      toe = kOwnToe_legs * leg_m * foot.ahead[f] + vec3(0.0, toe.y, 0.0);
     const double low = std::min({toe.y, end.y, -kLeastAnkle_legs * leg_m});
     const quat into_ankle = glm::conjugate(foot.ankle[f]);
     heels.push_back(into_ankle * vec3(-kHeelShare * toe.x, low, -kHeelShare * toe.z));

@@ -316,7 +316,7 @@ void close_loop(Motion& motion, double turn_rad) {
 Result<std::vector<StrideWindow>> best_strides(const Motion& motion) {
   if (motion.frames.size() < 6) return Error{"has fewer than 6 frames"};
   const WalkTrack track = walk_track(motion);
-  if (!(track.leg_m > 0.0) || !(motion.frame_time_s > 0.0)) return Error{"has no legs to walk on"};
+  if (!(track.leg_m > 0.0)) return Error{"has no legs to walk on"};
   const FeetTracks feet = feet_tracks(motion);
   std::vector<Candidate> all = candidates(feet, track);
   if (all.empty()) return Error{why_no_stride(feet, track)};

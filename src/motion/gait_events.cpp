@@ -404,17 +404,17 @@ namespace {
 
 // --- A closed stride -----------------------------------------------------------------------------
 
-constexpr int kCopies = 3;  // copies of the stride in a row, so that the middle one is not cut off
 // A run has both feet in the air at this speed; a shorter or slower flight is an error of events.
 constexpr double kLeastFlight_s = 0.03, kSlowestRun_legs_s = 2.1;
 
+// Three copies of the stride in a row, so that the middle one is not cut off.
 FeetTracks in_a_row(const FeetTracks& stride, const vec3& travel_m) {
   FeetTracks row = stride;
   for (FootTrack& foot : row.foot) {
     for (std::vector<vec3>* points : {&foot.ankle_m, &foot.heel_m, &foot.toe_m}) {
       const std::vector<vec3> once = *points;
-      for (int copy = 1; copy < kCopies; ++copy) {
-        for (const vec3& p : once) points->push_back(p + travel_m * double(copy));
+      for (const double copy : {1.0, 2.0}) {
+        for (const vec3& p : once) points->push_back(p + travel_m * copy);
       }
     }
   }

@@ -342,10 +342,10 @@ std::optional<std::string> fault_of(const GaitCycle& cycle) {
       return "has a leg without a thigh, a shank or a foot";
   }
   if (cycle.stride_m > kMostLegs * mean_leg_m(cycle)) return "takes strides longer than four legs";
-  constexpr double kSample = 1.0 / kCycleSamples;
-  if (std::abs(cycle.strike[1]) > kSample || cycle.toe_off[0] < kSample ||
-      cycle.strike[0] < cycle.toe_off[0] + kSample ||
-      cycle.toe_off[1] < cycle.strike[0] + kSample || cycle.toe_off[1] > 1.0 - kSample)
+  const double sample_share = 1.0 / kCycleSamples;
+  if (std::abs(cycle.strike[1]) > sample_share || cycle.toe_off[0] < sample_share ||
+      cycle.strike[0] < cycle.toe_off[0] + sample_share ||
+      cycle.toe_off[1] < cycle.strike[0] + sample_share || cycle.toe_off[1] > 1.0 - sample_share)
     return "has events that are not in the order of a walk";
   for (const CycleSample& sample : cycle.samples) {
     if (std::abs(glm::dot(sample.pelvis, sample.pelvis) - 1.0) > 1e-6)

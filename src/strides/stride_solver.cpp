@@ -114,7 +114,7 @@ PointRows point_rows(const LegFrames& f, const vec3& in_foot) {
 
 struct StrideSolver::System {
   using Matrix = Eigen::SparseMatrix<double>;
-  static constexpr int kReach = 3;  // most samples that a row involves
+  static constexpr int kReach = kBend.size();  // most samples that a row involves
   static constexpr int kBlock = kUnknowns * kUnknowns;
 
   int samples;  // number of samples of the stride

@@ -2,9 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <future>
 #include <optional>
 #include <string>
+#include <thread>
 
 #include "gaitpad/curve.h"
 #include "motion/leg_pose.h"
@@ -393,9 +393,17 @@ Result<StrideFamily> stride_family(const GaitCycle& cycle) {
   const GaitCycle backwards = run_back(cycle);
   Builder builder(cycle), back(backwards);
   back.family = builder.family;
-  // On a thread of its own where one can be started.
-  std::future<bool> beside = std::async([&back] { return back.solve(); });
-  const bool forwards_solved = builder.solve(), solved = beside.get() && forwards_solved;
+  bool back_solved = false;
+  const auto solve_back = [&back, &back_solved] { back_solved = back.solve(); };
+  std::thread beside;
+  if (std::thread::hardware_concurrency() > 1) {
+    beside = std::thread(solve_back);
+  } else {  // there is no second core
+    solve_back();
+  }
+  const bool forwards_solved = builder.solve();
+  if (beside.joinable()) beside.join();
+  const bool solved = back_solved && forwards_solved;
   builder.family.back = std::move(back.family.table);
   if (!solved || !is_finite(builder.family))
     return Error{cycle.name + ": no stride keeps its feet where they stand"};

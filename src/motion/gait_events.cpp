@@ -21,8 +21,8 @@ bool is_jump(const vec3& a, const vec3& b, double most_m) {
   return !(glm::distance(a, b) <= most_m);
 }
 
-std::vector<SampleRange> unbroken_ranges(const FeetTracks& tracks,
-                                         const std::vector<vec3>& pelvis) {
+std::vector<SampleRange> unbroken_ranges(const FeetTracks& tracks) {
+  const std::vector<vec3>& pelvis = tracks.pelvis_m;
   const double most_m = kFastest_legs_s * tracks.leg_m * tracks.sample_s;
   const int frames = static_cast<int>(pelvis.size());
   std::vector<SampleRange> ranges;
@@ -50,11 +50,10 @@ vec3 median_of(const std::vector<vec3>& places) {
   return middle;
 }
 
-// Tracks of one foot's joints.
-struct FootJoints {
-  std::vector<vec3> ankle_m, toe_m, toe_end_m;
+// What a sole is guessed from beside a foot's tracks.
+struct FootFrames {
+  std::vector<vec3> toe_end_m;
   std::vector<quat> ankle;
-  std::vector<vec3> ahead;  // direction that the hips face in each sample
 };
 
 // Heel and toe in the ankle's frame: the median over the frames in which ankle and toe are slowest
@@ -62,16 +61,17 @@ struct FootJoints {
 struct Sole {
   vec3 heel_m, toe_m;
 };
-Sole sole_of(const FootJoints& foot, const std::vector<SampleRange>& ranges, double sample_s,
-             double leg_m) {
+Sole sole_of(const FeetTracks& tracks, int side, const FootFrames& frames) {
+  const FootTrack& foot = tracks.foot[side];
+  const double leg_m = tracks.leg_m;
   std::vector<std::pair<double, int>> flat;
-  for (const SampleRange& range : ranges) {
+  for (const SampleRange& range : tracks.ranges) {
     for (int f = range.first; f <= range.last; ++f) {
       const int a = std::max(f - 1, range.first), b = std::min(f + 1, range.last);
       const double speed = (glm::distance(foot.ankle_m[a], foot.ankle_m[b]) +
-                            glm::distance(foot.toe_m[a], foot.toe_m[b])) /
-                           ((b - a) * sample_s);
-      flat.emplace_back(speed + kFlatRate_per_s * (foot.ankle_m[f].y + foot.toe_m[f].y), f);
+                            glm::distance(foot.toe_joint_m[a], foot.toe_joint_m[b])) /
+                           ((b - a) * tracks.sample_s);
+      flat.emplace_back(speed + kFlatRate_per_s * (foot.ankle_m[f].y + foot.toe_joint_m[f].y), f);
     }
   }
   if (flat.empty()) return {};
@@ -79,13 +79,13 @@ Sole sole_of(const FootJoints& foot, const std::vector<SampleRange>& ranges, dou
   flat.resize(std::max<std::size_t>(1, flat.size() * kFlatPercent / 100));
   std::vector<vec3> heels, toes;
   for (const auto& [score, f] : flat) {
-    vec3 toe = foot.toe_m[f] - foot.ankle_m[f];
-    const vec3 end = foot.toe_end_m[f] - foot.ankle_m[f];
+    vec3 toe = foot.toe_joint_m[f] - foot.ankle_m[f];
+    const vec3 end = frames.toe_end_m[f] - foot.ankle_m[f];
     if (is_short_foot(toe, leg_m) && !is_short_foot(end, leg_m)) toe = end;
     if (is_short_foot(toe, leg_m))
-      toe = kOwnToe_legs * leg_m * foot.ahead[f] + vec3(0.0, toe.y, 0.0);
+      toe = kOwnToe_legs * leg_m * heading_direction(tracks.heading_rad[f]) + vec3(0.0, toe.y, 0.0);
     const double low = std::min({toe.y, end.y, -kLeastAnkle_legs * leg_m});
-    const quat into_ankle = glm::conjugate(foot.ankle[f]);
+    const quat into_ankle = glm::conjugate(frames.ankle[f]);
     heels.push_back(into_ankle * vec3(-kHeelShare * toe.x, low, -kHeelShare * toe.z));
     toes.push_back(into_ankle * toe);
   }
@@ -348,32 +348,33 @@ FeetTracks feet_tracks(const Motion& motion) {
   FeetTracks tracks;
   tracks.sample_s = motion.frame_time_s;
   tracks.leg_m = leg_length_m(motion);
-  std::array<FootJoints, 2> foot;
-  std::vector<vec3> pelvis;
+  std::array<FootFrames, 2> frames;
   const auto world = std::make_unique<JointFrames>();
   for (const MotionFrame& frame : motion.frames) {
     forward_kinematics(motion, frame, *world);
     const auto& at = world->position_m;
-    pelvis.push_back(at[motion.pelvis]);
-    const vec3 across = at[motion.legs[kLeftSide].hip] - at[motion.legs[kRightSide].hip];
-    const vec3 ahead = heading_direction(hips_heading(across));
+    tracks.pelvis_m.push_back(at[motion.pelvis]);
+    double heading = hips_heading(at[motion.legs[kLeftSide].hip] - at[motion.legs[kRightSide].hip]);
+    if (!tracks.heading_rad.empty())
+      heading = tracks.heading_rad.back() + wrapped(heading - tracks.heading_rad.back());
+    tracks.heading_rad.push_back(heading);
     for (int side = 0; side < 2; ++side) {
       const LegJoints& j = motion.legs[side];
-      foot[side].ankle_m.push_back(at[j.ankle]);
-      foot[side].toe_m.push_back(at[j.toe]);
-      foot[side].toe_end_m.push_back(at[j.toe_end]);
-      foot[side].ankle.push_back(world->rotation[j.ankle]);
-      foot[side].ahead.push_back(ahead);
+      FootTrack& foot = tracks.foot[side];
+      foot.knee_m.push_back(at[j.knee]);
+      foot.ankle_m.push_back(at[j.ankle]);
+      foot.toe_joint_m.push_back(at[j.toe]);
+      frames[side].toe_end_m.push_back(at[j.toe_end]);
+      frames[side].ankle.push_back(world->rotation[j.ankle]);
     }
   }
-  for (int side = 0; side < 2; ++side) tracks.foot[side].ankle_m = foot[side].ankle_m;
-  tracks.ranges = unbroken_ranges(tracks, pelvis);
+  tracks.ranges = unbroken_ranges(tracks);
   for (int side = 0; side < 2; ++side) {
-    const Sole sole = sole_of(foot[side], tracks.ranges, tracks.sample_s, tracks.leg_m);
-    for (std::size_t f = 0; f < pelvis.size(); ++f) {
-      const vec3& ankle = foot[side].ankle_m[f];
-      tracks.foot[side].heel_m.push_back(ankle + foot[side].ankle[f] * sole.heel_m);
-      tracks.foot[side].toe_m.push_back(ankle + foot[side].ankle[f] * sole.toe_m);
+    const Sole sole = sole_of(tracks, side, frames[side]);
+    FootTrack& foot = tracks.foot[side];
+    for (std::size_t f = 0; f < foot.ankle_m.size(); ++f) {
+      foot.heel_m.push_back(foot.ankle_m[f] + frames[side].ankle[f] * sole.heel_m);
+      foot.toe_m.push_back(foot.ankle_m[f] + frames[side].ankle[f] * sole.toe_m);
     }
   }
   return tracks;

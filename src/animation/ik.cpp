@@ -16,6 +16,7 @@ namespace {
 // by the Levenberg-Marquardt method"); growth rises where a step makes the error greater.
 constexpr double kLeastDamping_m2 = 1e-20;  // above the rounding of doubles
 using Solver = SolverNumbers<double>;
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Turns a frame about its own first axis: (y, z) are the other two, in cyclic order.
 void turn(vec3& y, vec3& z, double sine, double cosine) noexcept {
@@ -164,12 +165,7 @@ void end_trace(IkTrace* trace, const IkAngles& angles_rad, double error_m) noexc
   add_trace_row(trace, angles_rad, error_m);
 }
 
-IkResult refused() noexcept {
-  IkResult result;
-  result.status = IkStatus::not_finite;
-  result.error_m = std::numeric_limits<double>::infinity();
-  return result;
-}
+IkResult refused() noexcept { return {.status = IkStatus::not_finite, .error_m = kInfinity}; }
 
 }  // namespace
 
@@ -333,12 +329,11 @@ double paper_iteration(const IkChain& chain, std::span<const IkRow> rows,
 
 IkResult solve_paper(const IkChain& chain, std::span<const IkRow> rows, const PaperOptions& options,
                      IkAngles& angles_rad, IkTrace* trace) noexcept {
-  if (!do_fit(chain, rows) || !are_sound(options)) return refused();
+  if (!do_fit(chain, rows) || !are_sound(options) || !are_inputs_finite(chain, angles_rad))
+    return refused();
   IkResult result;
   result.error_m = pose_error(chain, rows, angles_rad);
-  if (!are_inputs_finite(chain, angles_rad) || !std::isfinite(result.error_m)) {
-    return refused();
-  }
+  if (!std::isfinite(result.error_m)) return refused();
   add_trace_row(trace, angles_rad, result.error_m);
   while (result.error_m > options.tolerance_m) {  // step 7: repeat until the error is small enough
     if (result.iterations >= options.max_iterations) {
@@ -387,25 +382,18 @@ IkDofValues relative_weights(const IkChain& chain) noexcept {
   return w;
 }
 
-template <int kRows>
-using RowsOf = std::array<double, kRows>;
-template <int kRows>
-using ColumnsOf = std::array<RowsOf<kRows>, kMaxIkDofs>;
-
-// The linear system of one step.
-template <int kRows>
+// The linear system of one step. A row beyond the given ones is zero.
 struct Step {
+  std::array<Rows, kMaxIkDofs> column{};  // of the Jacobian
   IkDofValues weight;
   double damping;
-  RowsOf<kRows> error;  // what is left to close
+  Rows error{};  // what is left to close
 };
 
 // A column of J^T times y.
-template <std::size_t kRows>
-double product(const std::array<double, kRows>& column,
-               const std::array<double, kRows>& y) noexcept {
+double product(const Rows& column, const Rows& y) noexcept {
   double even = column[0] * y[0], odd = column[1] * y[1];
-  for (std::size_t r = 2; r < kRows; r += 2)
+  for (std::size_t r = 2; r < kMaxIkRows; r += 2)
     even += column[r] * y[r], odd += column[r + 1] * y[r + 1];
   return even + odd;
 }
@@ -413,44 +401,39 @@ double product(const std::array<double, kRows>& column,
 // Solves for a step within the limits. A DOF that the step would carry past a limit moves exactly
 // to the limit, its column leaves the system, and the system is solved again for the others. The
 // result depends continuously on goal and pose.
-template <int kRows>
-void limited_step(const Problem& p, const ColumnsOf<kRows>& column, Step<kRows>& step,
-                  const IkAngles& angles_rad, IkDofValues& delta) noexcept {
+IkDofValues limited_step(const Problem& p, Step& step, const IkAngles& angles_rad) noexcept {
   const int dofs = p.chain.dofs;
-  RowsOf<kRows> damping;
+  Rows damping;
   damping.fill(step.damping);
-  for (int j = 0; j < dofs; ++j) delta[j] = 0.0;
+  IkDofValues delta{};
   for (int round = 0; round <= dofs; ++round) {
-    RowsOf<kRows> y = step.error;
-    solve_rows<kRows>(column, dofs, step.weight, damping, y);
+    Rows y = step.error;
+    solve_rows<kMaxIkRows>(step.column, dofs, step.weight, damping, y);
     bool frozen = false;
     for (int j = 0; j < dofs; ++j) {
       if (step.weight[j] == 0.0) continue;
-      delta[j] = step.weight[j] * product(column[j], y);
+      delta[j] = step.weight[j] * product(step.column[j], y);
       const double wanted = angles_rad[j] + delta[j],
                    allowed = std::min(std::max(wanted, p.min_rad[j]), p.max_rad[j]);
       if (allowed == wanted) continue;
       frozen = true;
       delta[j] = allowed - angles_rad[j];
       step.weight[j] = 0.0;
-      for (int r = 0; r < kRows; ++r) step.error[r] -= column[j][r] * delta[j];
+      for (int r = 0; r < kMaxIkRows; ++r) step.error[r] -= step.column[j][r] * delta[j];
     }
-    if (!frozen) return;
+    if (!frozen) break;
   }
+  return delta;
 }
 
-// The columns of the Jacobian. kRows is even; a row beyond the given ones is zero.
-template <int kRows>
-void set_columns(const Problem& p, const IkPose& pose, ColumnsOf<kRows>& column) noexcept {
-  std::array<vec3, kRows> direction{}, moment{};
+void set_columns(const Problem& p, const IkPose& pose, Step& step) noexcept {
   for (std::size_t r = 0; r < p.rows.size(); ++r) {
-    direction[r] = p.rows[r].direction;
-    moment[r] = glm::cross(pose.point_m[r], direction[r]);
-  }
-  for (int j = 0; j < p.chain.dofs; ++j) {
-    const vec3& a = pose.axis[j];
-    const vec3 n = glm::cross(pose.pivot_m[j], a);
-    for (int r = 0; r < kRows; ++r) column[j][r] = jacobian_entry(a, n, direction[r], moment[r]);
+    const vec3& direction = p.rows[r].direction;
+    const vec3 moment = glm::cross(pose.point_m[r], direction);
+    for (int j = 0; j < p.chain.dofs; ++j) {
+      const vec3& a = pose.axis[j];
+      step.column[j][r] = jacobian_entry(a, glm::cross(pose.pivot_m[j], a), direction, moment);
+    }
   }
 }
 
@@ -462,15 +445,13 @@ struct Try {
 
 // Iterates from `start` until the tolerance is met, the error no longer falls or the iterations are
 // used up.
-template <int kRows>
 Try one_try(const Problem& p, const IkAngles& start, int max_iterations) noexcept {
-  constexpr double kInfinite = std::numeric_limits<double>::infinity(),
-                   kMost_m2 = Solver::kFarthest_m * Solver::kFarthest_m;
+  constexpr double kMost_m2 = Solver::kFarthest_m * Solver::kFarthest_m;
   const int dofs = p.chain.dofs;
   const double enough = p.options.tolerance_m * p.options.tolerance_m;
   IkAngles angles_rad = start, next = start;
   IkPose pose, best;
-  double growth = Solver::kGrowth, seen_m = kInfinite;
+  double growth = Solver::kGrowth, seen_m = kInfinity;
   int seen_at = 0;
   for (int k = 0;; ++k) {
     pose_chain(p.chain, p.rows, next, k == 0 ? best : pose);
@@ -485,20 +466,17 @@ Try one_try(const Problem& p, const IkAngles& start, int max_iterations) noexcep
     const double error_m = std::sqrt(best.squares);
     if (error_m < seen_m - Solver::kLeastGain * std::min(error_m, Solver::kGainFrom_m))
       seen_at = k, seen_m = error_m;
-    if (k - seen_at >= Solver::kPatience || !(best.squares < kInfinite))
+    if (k - seen_at >= Solver::kPatience || !(best.squares < kInfinity))
       return {angles_rad, best.squares, k};
 
-    ColumnsOf<kRows> column;
-    set_columns<kRows>(p, best, column);
     const double share = best.squares > kMost_m2 ? Solver::kFarthest_m / error_m : 1.0;
-    Step<kRows> step;
+    Step step;
+    set_columns(p, best, step);
     step.weight = p.weight;
     step.damping = std::max(p.options.damping * p.options.damping, kLeastDamping_m2) +
                    growth * std::min(best.squares, kMost_m2);
-    step.error.fill(0.0);
     for (std::size_t r = 0; r < p.rows.size(); ++r) step.error[r] = share * best.dx[r];
-    IkDofValues delta;
-    limited_step<kRows>(p, column, step, angles_rad, delta);
+    const IkDofValues delta = limited_step(p, step, angles_rad);
     double greatest = 0.0;
     for (int j = 0; j < dofs; ++j) greatest = std::max(greatest, std::abs(delta[j]));
     const double cap = greatest > p.options.max_step_rad ? p.options.max_step_rad / greatest : 1.0;
@@ -532,7 +510,7 @@ IkAngles spread_start(const Problem& p, const IkAngles& given, int k) noexcept {
 // The start that is nearest to the goal, of kCandidates starts from number `first` on.
 IkAngles nearest_start(const Problem& p, const IkAngles& given, int first) noexcept {
   IkAngles nearest = given;
-  double least = std::numeric_limits<double>::infinity();
+  double least = kInfinity;
   for (int k = first; k < first + kCandidates; ++k) {
     const IkAngles candidate = spread_start(p, given, k);
     IkPose pose;
@@ -558,10 +536,9 @@ bool beyond_reach(const Problem& p) noexcept {
   return false;
 }
 
-template <int kRows>
 IkResult best_of_tries(const Problem& p, const IkAngles& start, IkAngles& angles_rad) noexcept {
   const double enough = p.options.tolerance_m * p.options.tolerance_m;
-  Try best = one_try<kRows>(p, start, p.options.max_iterations);
+  Try best = one_try(p, start, p.options.max_iterations);
   IkResult result;
   result.iterations = best.iterations;
   const int tries = best.squares <= enough || beyond_reach(p) ? 1 : p.options.max_tries;
@@ -569,7 +546,7 @@ IkResult best_of_tries(const Problem& p, const IkAngles& start, IkAngles& angles
          result.iterations < p.options.max_iterations) {
     const IkAngles other = nearest_start(p, start, (result.tries - 1) * kCandidates);
     const int left = p.options.max_iterations - result.iterations - 1;
-    const Try next = one_try<kRows>(p, other, left);
+    const Try next = one_try(p, other, left);
     ++result.tries;
     result.iterations += 1 + next.iterations;  // the further start counts as one iteration
     if (next.squares <= enough || next.squares < kWorthAJump * best.squares) best = next;
@@ -595,16 +572,13 @@ IkResult solve_robust(const IkChain& chain, std::span<const IkRow> rows,
     start[j] = std::clamp(start[j], p.min_rad[j], p.max_rad[j]);
   }
   IkAngles answer = start;
-  const IkResult result =
-      rows.size() <= 4 ? best_of_tries<4>(p, start, answer) : best_of_tries<6>(p, start, answer);
+  const IkResult result = best_of_tries(p, start, answer);
   if (!std::isfinite(result.error_m)) return refused();
   angles_rad = answer;
   return result;
 }
 
 namespace {
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 std::optional<Error> unit_problem(const std::string& what, const vec3& v) {
   constexpr double kUnitTolerance = 1e-6;  // share of a length of 1

@@ -386,11 +386,6 @@ GridPlace grid_place(double from_m, double spacing_m, int samples) noexcept {
 Ground ask_grid(const void* grid, double x_m, double z_m) noexcept {
   return ground_at(*static_cast<const GroundGrid*>(grid), x_m, z_m);
 }
-void ask_grid_several(const void* grid, std::span<const GroundPlace> places,
-                      std::span<Ground> grounds) noexcept {
-  for (std::size_t i = 0; i < places.size(); ++i)
-    grounds[i] = ask_grid(grid, places[i].x_m, places[i].z_m);
-}
 
 }  // namespace
 
@@ -430,9 +425,7 @@ Ground ground_at(const GroundGrid& grid, double x_m, double z_m) noexcept {
           normal_of(dx, dz), 0};
 }
 
-AskedGround asked_ground(const GroundGrid& grid) noexcept {
-  return {&ask_grid, &grid, &ask_grid_several};
-}
+AskedGround asked_ground(const GroundGrid& grid) noexcept { return {&ask_grid, &grid}; }
 
 Ground ground_at(const Terrain& terrain, double x_m, double z_m) noexcept {
   if (terrain.asked.ask != nullptr)

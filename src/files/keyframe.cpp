@@ -183,7 +183,7 @@ void fill_samples(const KeyedStride& stride, GaitCycle& cycle) {
 
 // Sets the height of the pelvis so that the lower foot stands on the floor.
 void stand_on_lower_foot(GaitCycle& cycle) {
-  const auto height = heights_on_lower_foot<kCycleSamples>(cycle, 6);
+  const auto height = heights_on_lower_foot(cycle, kCycleSamples, 6);
   for (int i = 0; i < kCycleSamples; ++i) cycle.samples[i].pelvis_m.y = height[i];
 }
 

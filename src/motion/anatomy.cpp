@@ -450,9 +450,6 @@ namespace {
 
 // --- Arms, spine, neck and head ------------------------------------------------------------------
 
-// Most leaf joints that are tried as the end of an arm: fingers and faces have many.
-constexpr std::size_t kMostLeaves = 96;
-
 bool is_in_leg(const Figure& figure, const Legs& legs, int j) {
   return figure.carries(legs[0].hip, j) || figure.carries(legs[1].hip, j);
 }
@@ -510,12 +507,9 @@ ArmChain shaped_arm(const Figure& figure, int top, int leaf) {
 std::array<ArmChain, 2> shaped_arms(const Figure& figure, const Legs& legs, int top) {
   std::array<ArmChain, 2> arms;
   const vec3 left = figure.at[legs[0].hip] - figure.at[legs[1].hip];
-  std::vector<bool> is_parent(static_cast<std::size_t>(figure.count()), false);
-  for (int j = 1; j < figure.count(); ++j) is_parent[figure.parent(j)] = true;
-  std::size_t looked_at = 0;
-  for (int j = 0; j < figure.count() && looked_at < kMostLeaves; ++j) {
-    if (is_parent[j] || is_in_leg(figure, legs, j) || j == top) continue;
-    ++looked_at;
+  for (int j = 0; j < figure.count(); ++j) {
+    if (!children_of(figure.skeleton, j).empty() || is_in_leg(figure, legs, j) || j == top)
+      continue;
     const ArmChain arm = shaped_arm(figure, common_ancestor(figure.skeleton, j, top), j);
     if (!arm.is_found()) continue;
     const vec3 out = figure.at[arm.shoulder] - figure.at[top];

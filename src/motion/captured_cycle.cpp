@@ -106,18 +106,11 @@ std::array<vec3, kPoints> closed(const StrideFrames& s, const Spline& x) {
   return points;
 }
 
-// cos and sin of 2 pi k i / kPoints.
-struct Waves {
-  std::array<SinCos, kPoints> table;
-  Waves() {
-    for (int i = 0; i < kPoints; ++i) table[i] = sin_cos(2.0 * kPi * i / kPoints);
-  }
-  const SinCos& at(int k, int i) const { return table[(k * i) % kPoints]; }
-};
+using Wave = std::array<SinCos, kPoints>;  // of 2 pi i / kPoints
 
 // Harmonics below the Nyquist frequency of the source's frames. The highest ones fade out, so that
 // contacts do not ring.
-Fourier harmonics(const std::array<vec3, kPoints>& y, const Waves& waves, double period_frames) {
+Fourier harmonics(const std::array<vec3, kPoints>& y, const Wave& wave, double period_frames) {
   Fourier f;
   for (const vec3& v : y) f.mean += v / double(kPoints);
   const int most = std::min(kHarmonics, static_cast<int>(0.5 * period_frames) - 1);
@@ -125,7 +118,7 @@ Fourier harmonics(const std::array<vec3, kPoints>& y, const Waves& waves, double
   for (int k = 1; k <= most; ++k) {
     vec3 a(0.0), b(0.0);
     for (int i = 0; i < kPoints; ++i) {
-      const SinCos& s = waves.at(k, i);
+      const SinCos& s = wave[(k * i) % kPoints];
       a += y[i] * s.cos;
       b += y[i] * s.sin;
     }
@@ -183,7 +176,8 @@ quat mean_rotation(const std::vector<quat>& all) {
 
 PeriodicMotion periodic_motion(const Motion& motion, const StrideWindow& window) {
   const StrideFrames s = frames_of(window);
-  const auto waves = std::make_unique<Waves>();
+  Wave wave;
+  for (int i = 0; i < kPoints; ++i) wave[i] = sin_cos(2.0 * kPi * i / kPoints);
   PeriodicMotion out;
   out.duration_s = s.period * motion.frame_time_s;
 
@@ -193,7 +187,7 @@ PeriodicMotion periodic_motion(const Motion& motion, const StrideWindow& window)
   const vec3 travel = whole.at(s.place(1.0)) - whole.at(s.place(0.0));
   out.stride_m = travel.z;
   for (int f = 0; f < s.count; ++f) path_m[f] -= travel * (f - s.start) / s.period;
-  out.pelvis_m = harmonics(closed(s, spline(path_m)), *waves, s.period);
+  out.pelvis_m = harmonics(closed(s, spline(path_m)), wave, s.period);
   out.pelvis_m.mean = vec3(0.0, out.pelvis_m.mean.y, 0.0);
 
   const int joints = static_cast<int>(motion.skeleton.joints.size());
@@ -206,7 +200,7 @@ PeriodicMotion periodic_motion(const Motion& motion, const StrideWindow& window)
     out.mean.push_back(mean_rotation(local));
     std::vector<vec3> turn;
     for (const quat& q : local) turn.push_back(rotation_vector(glm::conjugate(out.mean[j]) * q));
-    out.rotation.push_back(harmonics(closed(s, spline(turn)), *waves, s.period));
+    out.rotation.push_back(harmonics(closed(s, spline(turn)), wave, s.period));
   }
   return out;
 }
@@ -371,9 +365,9 @@ namespace {
 
 // --- The standing pose ---------------------------------------------------------------------------
 
-constexpr double kOwnAnkle_legs = 0.08;  // height of a toeless ankle above the floor
-// Greatest depth of a sole under the ankle; a lower foot point is ignored.
-constexpr double kLowestToe_legs = 0.16;
+// Height of a toeless ankle above the floor. A foot point at more than twice this depth under the
+// ankle is ignored.
+constexpr double kOwnAnkle_legs = 0.08;
 // Greatest flexion of toes; some clips turn them all the way round.
 constexpr double kMostToe = 70.0 * kDegree;
 
@@ -453,11 +447,9 @@ void build_toes(const FlatPose& flat, const std::vector<quat>& local, GaitCycle&
   const auto from_ankle = [&](int joint) {
     return flat.foot * link(out.skeleton, local, j.ankle, joint);
   };
-  const auto is_short = [&](const vec3& v) {
-    return horizontal_length(v) < kShortestFoot_legs * leg_m;
-  };
-  if (is_short(from_ankle(j.toe)) && !is_short(from_ankle(j.toe_end))) j.toe = j.toe_end;
-  if (is_short(from_ankle(j.toe))) {
+  const auto is_short = [&](int joint) { return is_short_foot(from_ankle(joint), leg_m); };
+  if (is_short(j.toe) && !is_short(j.toe_end)) j.toe = j.toe_end;
+  if (is_short(j.toe)) {
     const vec3 wanted(0.0, -kOwnAnkle_legs * leg_m, kOwnToe_legs * leg_m);
     const vec3 missing = glm::conjugate(flat.foot) * (wanted - from_ankle(j.toe));
     joints[j.toe].offset_m +=
@@ -467,9 +459,8 @@ void build_toes(const FlatPose& flat, const std::vector<quat>& local, GaitCycle&
   leg.toe_end_m = joints[j.toe].is_end_site || j.toe == j.toe_end
                       ? vec3(0.0)
                       : flat.toe * link(out.skeleton, local, j.toe, j.toe_end);
-  const bool is_odd = leg.toe_m.y + leg.toe_end_m.y < -kLowestToe_legs * leg_m ||
-                      leg.toe_m.y + leg.toe_end_m.y > 0.0;
-  if (is_odd) {
+  const double end_m = leg.toe_m.y + leg.toe_end_m.y;
+  if (end_m < -2.0 * kOwnAnkle_legs * leg_m || end_m > 0.0) {
     j.toe_end = j.toe;
     leg.toe_end_m = vec3(0.0);
   }
@@ -488,7 +479,6 @@ Result<LegModel> leg_bones(const CapturedCycle& c, int side, const GaitCycle& ou
   LegModel leg;
   leg.joints = c.legs[side];
   const LegJoints& j = leg.joints;
-  if (j.toe < 0 || j.toe_end < 0) return Error{"has no joint and no End Site below an ankle"};
   const vec3 thigh = link(out.skeleton, local, j.hip, j.knee);
   const vec3 shank = link(out.skeleton, local, j.knee, j.ankle);
   leg.thigh_m = glm::length(thigh);

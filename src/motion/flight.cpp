@@ -68,7 +68,6 @@ struct Found {
   std::vector<Swing> swings;
 };
 Found found_in(const Motion& motion, Side side) {
-  if (motion.frames.size() < 3 || !(motion.frame_time_s > 0.0)) return {};
   Found found{feet_tracks(motion), {}};
   found.swings = whole_swings(found.feet, side);
   if (!found.swings.empty()) return found;
@@ -96,12 +95,12 @@ std::optional<Swing> robust_flight(const Motion& motion, Side side) {
     times.push_back(s.land - s.lift);
     lengths.push_back(horizontal_length(ankle[s.land] - ankle[s.lift]));
   }
+  const double usual_time = median(times), usual_length = median(lengths);
   std::optional<Swing> best;
   double least = 1e300;
   for (std::size_t i = 0; i < found.swings.size(); ++i) {
     const Swing& s = found.swings[i];
-    double off =
-        std::abs(times[i] / median(times) - 1.0) + std::abs(lengths[i] / median(lengths) - 1.0);
+    double off = std::abs(times[i] / usual_time - 1.0) + std::abs(lengths[i] / usual_length - 1.0);
     // The clip begins within the stance before this swing, so its heel-off is not known.
     const bool begins_before = s.heel_off < 1 || s.heel_off == s.lift;
     if (begins_before) off += 1.0;

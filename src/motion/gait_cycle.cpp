@@ -120,8 +120,8 @@ void measure_steps(const CapturedCycle& captured, GaitCycle& cycle) {
 // toe is down. So toe-off is delayed until the toe has moved, in the data, a third of the height
 // that the other toe still has to sink: both feet share the change.
 void wait_for_other_toe(GaitCycle& cycle) {
-  constexpr double kLeavingCosts = 3.0, kLongestWait = 0.08,
-                   kStep = 1.0 / (2 * kCycleSamples);  // half a sample's share of the stride
+  constexpr double kLeavingCosts = 3.0, kLongestWait = 0.08;
+  const double step = 0.5 / kCycleSamples;  // half a sample's share of the stride
   const std::array<double, 2> off = cycle.toe_off;
   for (const Side side : {kLeftSide, kRightSide}) {
     const Side lands = other(side);
@@ -131,14 +131,14 @@ void wait_for_other_toe(GaitCycle& cycle) {
       return toe;
     };
     double lowest_m = 1e9;
-    for (double after = 0.0; after < kLongestFlat; after += kStep)
+    for (double after = 0.0; after < kLongestFlat; after += step)
       lowest_m = std::min(lowest_m, toe_at(lands, cycle.strike[lands] + after).y);
     const vec3 stood = toe_at(side, off[side]);
     double wait = 0.0;
     while (wait < kLongestWait &&
            kLeavingCosts * glm::distance(toe_at(side, off[side] + wait), stood) <
                toe_at(lands, off[side] + wait).y - lowest_m)
-      wait += kStep;
+      wait += step;
     cycle.toe_off[side] = fraction(off[side] + wait);
   }
 }
@@ -204,8 +204,8 @@ std::string why_no_pace(const GaitCycle& cycle) {
 // In a step-to limp one foot only comes up to the other. The walk divides by step lengths, so the
 // shorter step becomes at least a tenth of the stride; both feet move equally for that. With less,
 // joints reach 2000 degrees/s in a backward turn; with a tenth, 500.
-// Least step and farthest place behind the other foot, as shares of the stride.
-constexpr double kLeastStep = 0.1, kMostBehind = 0.1;
+// A foot that stays farther behind the other is no walk. Both are shares of the stride.
+constexpr double kLeastStep = 0.1;
 void lengthen_short_step(GaitCycle& cycle) {
   for (const Side side : {kLeftSide, kRightSide}) {
     const double least_m = kLeastStep * cycle.stride_m;
@@ -223,7 +223,7 @@ std::string why_no_walk(const CapturedCycle& captured, const GaitCycle& cycle) {
       return std::string("holds no walk: the ") + kSideNames[side] + " foot slides " +
              fixed(slides_m, 2) + " m while it should stand";
     }
-    if (!(cycle.step_m[side] >= -kMostBehind * cycle.stride_m))
+    if (!(cycle.step_m[side] >= -kLeastStep * cycle.stride_m))
       return "holds no walk: one foot stays " + fixed(-cycle.step_m[side], 2) +
              " m behind the other";
   }

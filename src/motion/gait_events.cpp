@@ -21,8 +21,8 @@ bool is_jump(const vec3& a, const vec3& b, double most_m) {
   return !(glm::distance(a, b) <= most_m);
 }
 
-std::vector<SampleRange> unbroken_ranges(const FeetTracks& tracks,
-                                         const std::vector<vec3>& pelvis) {
+std::vector<SampleRange> unbroken_ranges(const FeetTracks& tracks) {
+  const std::vector<vec3>& pelvis = tracks.pelvis_m;
   const double most_m = kFastest_legs_s * tracks.leg_m * tracks.sample_s;
   const int frames = static_cast<int>(pelvis.size());
   std::vector<SampleRange> ranges;
@@ -50,11 +50,10 @@ vec3 median_of(const std::vector<vec3>& places) {
   return middle;
 }
 
-// Tracks of one foot's joints.
-struct FootJoints {
-  std::vector<vec3> ankle_m, toe_m, toe_end_m;
+// What a sole is guessed from beside a foot's tracks.
+struct FootFrames {
+  std::vector<vec3> toe_end_m;
   std::vector<quat> ankle;
-  std::vector<vec3> ahead;  // direction that the hips face in each sample
 };
 
 // Heel and toe in the ankle's frame: the median over the frames in which ankle and toe are slowest
@@ -62,16 +61,17 @@ struct FootJoints {
 struct Sole {
   vec3 heel_m, toe_m;
 };
-Sole sole_of(const FootJoints& foot, const std::vector<SampleRange>& ranges, double sample_s,
-             double leg_m) {
+Sole sole_of(const FeetTracks& tracks, int side, const FootFrames& frames) {
+  const FootTrack& foot = tracks.foot[side];
+  const double leg_m = tracks.leg_m;
   std::vector<std::pair<double, int>> flat;
-  for (const SampleRange& range : ranges) {
+  for (const SampleRange& range : tracks.ranges) {
     for (int f = range.first; f <= range.last; ++f) {
       const int a = std::max(f - 1, range.first), b = std::min(f + 1, range.last);
       const double speed = (glm::distance(foot.ankle_m[a], foot.ankle_m[b]) +
-                            glm::distance(foot.toe_m[a], foot.toe_m[b])) /
-                           ((b - a) * sample_s);
-      flat.emplace_back(speed + kFlatRate_per_s * (foot.ankle_m[f].y + foot.toe_m[f].y), f);
+                            glm::distance(foot.toe_joint_m[a], foot.toe_joint_m[b])) /
+                           ((b - a) * tracks.sample_s);
+      flat.emplace_back(speed + kFlatRate_per_s * (foot.ankle_m[f].y + foot.toe_joint_m[f].y), f);
     }
   }
   if (flat.empty()) return {};
@@ -79,15 +79,13 @@ Sole sole_of(const FootJoints& foot, const std::vector<SampleRange>& ranges, dou
   flat.resize(std::max<std::size_t>(1, flat.size() * kFlatPercent / 100));
   std::vector<vec3> heels, toes;
   for (const auto& [score, f] : flat) {
-    vec3 toe = foot.toe_m[f] - foot.ankle_m[f];
-    const vec3 end = foot.toe_end_m[f] - foot.ankle_m[f];
-    const auto is_short = [&](const vec3& v) {
-      return horizontal_length(v) < kShortestFoot_legs * leg_m;
-    };
-    if (is_short(toe) && !is_short(end)) toe = end;
-    if (is_short(toe)) toe = kOwnToe_legs * leg_m * foot.ahead[f] + vec3(0.0, toe.y, 0.0);
+    vec3 toe = foot.toe_joint_m[f] - foot.ankle_m[f];
+    const vec3 end = frames.toe_end_m[f] - foot.ankle_m[f];
+    if (is_short_foot(toe, leg_m) && !is_short_foot(end, leg_m)) toe = end;
+    if (is_short_foot(toe, leg_m))
+      toe = kOwnToe_legs * leg_m * heading_direction(tracks.heading_rad[f]) + vec3(0.0, toe.y, 0.0);
     const double low = std::min({toe.y, end.y, -kLeastAnkle_legs * leg_m});
-    const quat into_ankle = glm::conjugate(foot.ankle[f]);
+    const quat into_ankle = glm::conjugate(frames.ankle[f]);
     heels.push_back(into_ankle * vec3(-kHeelShare * toe.x, low, -kHeelShare * toe.z));
     toes.push_back(into_ankle * toe);
   }
@@ -101,14 +99,6 @@ constexpr double kSmoothing_s = 0.04;  // half the width of the window over the 
 constexpr double kShortestRest_s = 0.06;
 constexpr double kShortestSwing_s = 0.15, kLongestSwing_s = 1.8;
 constexpr double kShortestSwing_legs = 0.15, kLongestSwing_legs = 2.6;
-
-// Most samples in a window, which bounds the work for absurd frame times.
-constexpr double kMostSamples = 200.0;
-
-// Number of samples in a window of that time, at least 1.
-int count_of(double time_s, double sample_s) {
-  return std::max(1, static_cast<int>(std::min(time_s / sample_s, kMostSamples) + 0.5));
-}
 
 // Running mean weighted by a raised cosine, shortened at the range's ends.
 std::vector<vec3> smoothed(const std::vector<vec3>& p, const SampleRange& range,
@@ -135,8 +125,8 @@ std::vector<vec3> smoothed(const std::vector<vec3>& p, const SampleRange& range,
 
 // Horizontal speed of the ankle at each sample of the range.
 std::vector<double> ankle_speeds(const FeetTracks& tracks, Side side, const SampleRange& range) {
-  const std::vector<vec3> track = smoothed(tracks.foot[side].ankle_m, range,
-                                           std::min(kSmoothing_s / tracks.sample_s, kMostSamples));
+  const std::vector<vec3> track =
+      smoothed(tracks.foot[side].ankle_m, range, kSmoothing_s / tracks.sample_s);
   const int n = static_cast<int>(track.size());
   std::vector<double> speed(n);
   for (int i = 0; i < n; ++i) {
@@ -146,14 +136,18 @@ std::vector<double> ankle_speeds(const FeetTracks& tracks, Side side, const Samp
   return speed;
 }
 
-// Consecutive samples in which a foot moves.
-struct Run {
-  Side side;
-  int range;
-  int first, last;
-  // Last sample of the run before, first of the run after; else the range's ends.
-  int rest_first, rest_last;
-  double from, to;  // fractional samples where the speed crosses the limit
+// A foot's swing with the samples between which its two events are searched. The events may be
+// evaluated for several limits.
+struct SwingSearch : FootSwing {
+  int first = 0, last = 0;  // consecutive samples in which the foot moves
+  // Last sample of the swing before, first of the swing after; else the range's ends.
+  int rest_first = 0, rest_last = 0;
+  int fastest_heel = 0;        // sample at which the search for the strike begins
+  int flat = 0;                // sample at which it ends
+  double standing_heel_m = 0;  // height at `flat`
+  int fastest_toe = 0;         // the search for the toe-off begins here, backwards
+  int pushing = 0;             // sample at which the search ends: the toe is slowest while the heel
+                               // rises
 };
 
 // Fractional index between two neighbours at which the speed crosses the limit.
@@ -162,25 +156,34 @@ double crossing(const std::vector<double>& speed, int a, int b, double limit) {
   return rise == 0.0 ? a : a + (b - a) * std::clamp((limit - speed[a]) / rise, 0.0, 1.0);
 }
 
-std::vector<Run> moving_runs(const std::vector<double>& speed, double limit, double rest_samples,
-                             const Run& like) {
-  std::vector<Run> runs;
-  for (int i = 0; i < static_cast<int>(speed.size()); ++i) {
-    if (!(speed[i] > limit)) continue;
-    if (!runs.empty() && i - runs.back().last - 1 < rest_samples) {
-      runs.back().last = i;
-    } else {
-      Run run = like;
-      run.first = run.last = i;
+// The runs of samples of a range in which a foot moves.
+std::vector<SwingSearch> moving_runs(const FeetTracks& tracks, Side side, int range,
+                                     const std::vector<double>& speed, double limit) {
+  const auto [first, last] = tracks.ranges[range];
+  const double rest_samples = kShortestRest_s / tracks.sample_s;
+  std::vector<SwingSearch> runs;
+  for (int i = first; i <= last; ++i) {
+    if (!(speed[i - first] > limit)) continue;
+    if (runs.empty() || i - runs.back().last - 1 >= rest_samples) {
+      SwingSearch run;
+      run.side = side, run.range = range, run.first = i;
+      run.rest_first = runs.empty() ? first : runs.back().last;
+      if (!runs.empty()) runs.back().rest_last = i;
       runs.push_back(run);
     }
+    runs.back().last = i;
+  }
+  if (!runs.empty()) runs.back().rest_last = last;
+  for (SwingSearch& run : runs) {
+    const int from = run.first - first, to = run.last - first;
+    if (run.first > first) run.moves_from = first + crossing(speed, from - 1, from, limit);
+    if (run.last < last) run.moves_to = first + crossing(speed, to, to + 1, limit);
   }
   return runs;
 }
 
-bool is_swing(const FeetTracks& tracks, const Run& run) {
-  const auto [first, last] = tracks.ranges[run.range];
-  if (run.first == first || run.last == last) return true;  // the range cuts it
+bool is_swing(const FeetTracks& tracks, const SwingSearch& run) {
+  if (!run.moves_from || !run.moves_to) return true;  // the range cuts it
   const std::vector<vec3>& ankle = tracks.foot[run.side].ankle_m;
   const double time_s = (run.last - run.first + 1) * tracks.sample_s;
   const double legs = horizontal_length(ankle[run.last] - ankle[run.first]) / tracks.leg_m;
@@ -188,45 +191,29 @@ bool is_swing(const FeetTracks& tracks, const Run& run) {
          legs <= kLongestSwing_legs;
 }
 
-// The 95th percentile of all speeds in all ranges, both feet.
-double fast_speed(const std::vector<std::vector<double>>& speeds) {
+std::vector<SwingSearch> swing_runs(const FeetTracks& tracks, double moving_share,
+                                    double& limit_m_s) {
+  std::vector<std::array<std::vector<double>, 2>> speeds;  // by range and side
   std::vector<double> all;
-  for (const auto& some : speeds) all.insert(all.end(), some.begin(), some.end());
-  return all.empty() ? 0.0 : percentile(std::move(all), 95);
-}
-
-std::vector<Run> swing_runs(const FeetTracks& tracks, double moving_share, double& limit_m_s) {
-  std::vector<std::vector<double>> speeds;
   for (const SampleRange& range : tracks.ranges) {
+    speeds.emplace_back();
     for (const Side side : {kLeftSide, kRightSide}) {
-      speeds.push_back(ankle_speeds(tracks, side, range));
+      const auto& speed = speeds.back()[side] = ankle_speeds(tracks, side, range);
+      all.insert(all.end(), speed.begin(), speed.end());
     }
   }
-  limit_m_s = moving_share * fast_speed(speeds);
-  std::vector<Run> found;
-  for (std::size_t k = 0; k < speeds.size(); ++k) {
-    const int range = static_cast<int>(k / 2);
-    const auto [first, last] = tracks.ranges[range];
-    Run like{k % 2 == 0 ? kLeftSide : kRightSide, range, 0, 0, 0, 0, 0.0, 0.0};
-    std::vector<Run> runs =
-        moving_runs(speeds[k], limit_m_s, kShortestRest_s / tracks.sample_s, like);
-    const int end = last - first;
-    for (Run& run : runs) {
-      if (run.first > 0)
-        run.from = first + crossing(speeds[k], run.first - 1, run.first, limit_m_s);
-      if (run.last < end) run.to = first + crossing(speeds[k], run.last, run.last + 1, limit_m_s);
-      run.first += first;
-      run.last += first;
+  limit_m_s = moving_share * percentile(std::move(all), 95);
+  std::vector<SwingSearch> found;
+  for (int range = 0; range < static_cast<int>(speeds.size()); ++range) {
+    for (const Side side : {kLeftSide, kRightSide}) {
+      for (const SwingSearch& run :
+           moving_runs(tracks, side, range, speeds[range][side], limit_m_s)) {
+        if (is_swing(tracks, run)) found.push_back(run);
+      }
     }
-    for (std::size_t i = 0; i < runs.size(); ++i) {
-      runs[i].rest_first = i > 0 ? runs[i - 1].last : first;
-      runs[i].rest_last = i + 1 < runs.size() ? runs[i + 1].first : last;
-    }
-    std::erase_if(runs, [&](const Run& run) { return !is_swing(tracks, run); });
-    found.insert(found.end(), runs.begin(), runs.end());
   }
   std::stable_sort(found.begin(), found.end(),
-                   [](const Run& a, const Run& b) { return a.first < b.first; });
+                   [](const SwingSearch& a, const SwingSearch& b) { return a.first < b.first; });
   return found;
 }
 
@@ -246,13 +233,20 @@ constexpr double kPush_s = 0.15;  // time for which a toe stands while the heel 
 constexpr double kLeastRoll_s = 0.06;
 constexpr double kSlideStep = 0.05;  // growth of the limits in each attempt, relative
 
-// Reads one foot's tracks within a range.
+// Reads the tracks of a swing's foot within its range.
 struct Reader {
   const FootTrack& foot;
   SampleRange range;
-  double sample_s;
+  double sample_s, scale;  // the leg's length over an adult's
 
-  int half(double time_s) const { return count_of(time_s, sample_s); }
+  Reader(const FeetTracks& tracks, const FootSwing& swing)
+      : foot(tracks.foot[swing.side]),
+        range(tracks.ranges[swing.range]),
+        sample_s(tracks.sample_s),
+        scale(tracks.leg_m / kReferenceLeg_m) {}
+
+  // Number of samples in that time, at least 1.
+  int half(double time_s) const { return std::max(1, static_cast<int>(time_s / sample_s + 0.5)); }
   // The samples within a time of one sample.
   SampleRange around(int i, double time_s) const {
     const int n = half(time_s);
@@ -284,57 +278,36 @@ struct Reader {
   }
 };
 
-Reader reader(const FeetTracks& tracks, const Run& run) {
-  return {tracks.foot[run.side], tracks.ranges[run.range], tracks.sample_s};
-}
-
 // Share of the way to the next sample at which a falling value crosses the limit; 0 if it does not.
 double share_above(double above, double next, double limit) {
   return above > limit && above > next ? std::min((above - limit) / (above - next), 1.0) : 0.0;
 }
 
-// The samples between which a swing's two events are searched. The events may be evaluated for
-// several limits.
-struct SwingSearch {
-  Run run;
-  double scale = 1.0;          // the leg's length over an adult's
-  int fastest_heel = 0;        // sample at which the search for the strike begins
-  int flat = 0;                // sample at which it ends
-  double standing_heel_m = 0;  // height at `flat`
-  int fastest_toe = 0;         // the search for the toe-off begins here, backwards
-  int pushing = 0;             // sample at which the search ends: the toe is slowest while the heel
-                               // rises
-};
-
-SwingSearch search_of(const FeetTracks& tracks, const Run& run, double limit_m_s) {
-  const Reader r = reader(tracks, run);
-  SwingSearch s;
-  s.run = run;
-  s.scale = tracks.leg_m / kReferenceLeg_m;
-  s.fastest_heel = r.fastest(r.foot.heel_m, run.first, run.last);
-  s.flat = lowest(std::min(run.last + 1, run.rest_last), run.rest_last,
-                  [&](int i) { return r.flatness(i); });
+void set_search(const FeetTracks& tracks, double limit_m_s, SwingSearch& s) {
+  const Reader r(tracks, s);
+  s.fastest_heel = r.fastest(r.foot.heel_m, s.first, s.last);
+  s.flat =
+      lowest(std::min(s.last + 1, s.rest_last), s.rest_last, [&](int i) { return r.flatness(i); });
   s.standing_heel_m = r.height(r.foot.heel_m, s.flat);
-  s.fastest_toe = r.fastest(r.foot.toe_m, run.first, run.last);
+  s.fastest_toe = r.fastest(r.foot.toe_m, s.first, s.last);
   int leaving = s.fastest_toe;
-  while (leaving > run.rest_first && r.speed(r.foot.toe_m, leaving) > limit_m_s) --leaving;
+  while (leaving > s.rest_first && r.speed(r.foot.toe_m, leaving) > limit_m_s) --leaving;
   // The last of equally slow samples.
-  const int most = std::min(leaving - run.rest_first, r.half(kPush_s));
+  const int most = std::min(leaving - s.rest_first, r.half(kPush_s));
   s.pushing = leaving - lowest(0, most, [&](int k) { return r.speed(r.foot.toe_m, leaving - k); });
-  return s;
 }
 
 std::optional<double> strike_of(const FeetTracks& tracks, const SwingSearch& s, double slide) {
-  if (s.run.last == tracks.ranges[s.run.range].last) return std::nullopt;
-  const Reader r = reader(tracks, s.run);
+  if (!s.moves_to) return std::nullopt;
+  const Reader r(tracks, s);
   const std::vector<vec3>& heel = r.foot.heel_m;
-  const double down_m = slide * s.scale * kDown_m, still_m_s = slide * s.scale * kStill_m_s;
+  const double down_m = slide * r.scale * kDown_m, still_m_s = slide * r.scale * kStill_m_s;
   const auto rests = [&](int i) {
     const int end = std::min(i + r.half(kRest_s), s.flat);
     for (int k = i; k <= end; ++k) {
       if (r.speed(heel, k) > still_m_s) return false;
     }
-    return heel[i].y - s.standing_heel_m <= s.scale * kMostSink_m;
+    return heel[i].y - s.standing_heel_m <= r.scale * kMostSink_m;
   };
   int rest = s.fastest_heel + 1;
   while (rest < s.flat && !rests(rest)) ++rest;
@@ -351,9 +324,9 @@ std::optional<double> strike_of(const FeetTracks& tracks, const SwingSearch& s, 
 }
 
 std::optional<double> toe_off_of(const FeetTracks& tracks, const SwingSearch& s, double slide) {
-  if (s.run.first == tracks.ranges[s.run.range].first) return std::nullopt;
-  const Reader r = reader(tracks, s.run);
-  const double most_m_s = slide * s.scale * kLeaving_m_s;
+  if (!s.moves_from) return std::nullopt;
+  const Reader r(tracks, s);
+  const double most_m_s = slide * r.scale * kLeaving_m_s;
   int i = s.fastest_toe - 1;
   while (i > s.pushing && r.speed(r.foot.toe_m, i) > most_m_s) --i;
   if (i <= r.range.first) return std::nullopt;  // the toe left before the range begins
@@ -363,8 +336,8 @@ std::optional<double> toe_off_of(const FeetTracks& tracks, const SwingSearch& s,
 // The next swing in the same range if it is the other foot's, otherwise -1.
 int other_foots_next_swing(const std::vector<SwingSearch>& swings, std::size_t i) {
   for (std::size_t k = i + 1; k < swings.size(); ++k) {
-    if (swings[k].run.range != swings[i].run.range) continue;
-    return swings[k].run.side == swings[i].run.side ? -1 : static_cast<int>(k);
+    if (swings[k].range != swings[i].range) continue;
+    return swings[k].side == swings[i].side ? -1 : static_cast<int>(k);
   }
   return -1;
 }
@@ -375,32 +348,33 @@ FeetTracks feet_tracks(const Motion& motion) {
   FeetTracks tracks;
   tracks.sample_s = motion.frame_time_s;
   tracks.leg_m = leg_length_m(motion);
-  std::array<FootJoints, 2> foot;
-  std::vector<vec3> pelvis;
+  std::array<FootFrames, 2> frames;
   const auto world = std::make_unique<JointFrames>();
   for (const MotionFrame& frame : motion.frames) {
     forward_kinematics(motion, frame, *world);
     const auto& at = world->position_m;
-    pelvis.push_back(at[motion.pelvis]);
-    const vec3 across = at[motion.legs[kLeftSide].hip] - at[motion.legs[kRightSide].hip];
-    const vec3 ahead = heading_direction(hips_heading(across));
+    tracks.pelvis_m.push_back(at[motion.pelvis]);
+    double heading = hips_heading(at[motion.legs[kLeftSide].hip] - at[motion.legs[kRightSide].hip]);
+    if (!tracks.heading_rad.empty())
+      heading = tracks.heading_rad.back() + wrapped(heading - tracks.heading_rad.back());
+    tracks.heading_rad.push_back(heading);
     for (int side = 0; side < 2; ++side) {
       const LegJoints& j = motion.legs[side];
-      foot[side].ankle_m.push_back(at[j.ankle]);
-      foot[side].toe_m.push_back(at[j.toe]);
-      foot[side].toe_end_m.push_back(at[j.toe_end]);
-      foot[side].ankle.push_back(world->rotation[j.ankle]);
-      foot[side].ahead.push_back(ahead);
+      FootTrack& foot = tracks.foot[side];
+      foot.knee_m.push_back(at[j.knee]);
+      foot.ankle_m.push_back(at[j.ankle]);
+      foot.toe_joint_m.push_back(at[j.toe]);
+      frames[side].toe_end_m.push_back(at[j.toe_end]);
+      frames[side].ankle.push_back(world->rotation[j.ankle]);
     }
   }
-  for (int side = 0; side < 2; ++side) tracks.foot[side].ankle_m = foot[side].ankle_m;
-  tracks.ranges = unbroken_ranges(tracks, pelvis);
+  tracks.ranges = unbroken_ranges(tracks);
   for (int side = 0; side < 2; ++side) {
-    const Sole sole = sole_of(foot[side], tracks.ranges, tracks.sample_s, tracks.leg_m);
-    for (std::size_t f = 0; f < pelvis.size(); ++f) {
-      const vec3& ankle = foot[side].ankle_m[f];
-      tracks.foot[side].heel_m.push_back(ankle + foot[side].ankle[f] * sole.heel_m);
-      tracks.foot[side].toe_m.push_back(ankle + foot[side].ankle[f] * sole.toe_m);
+    const Sole sole = sole_of(tracks, side, frames[side]);
+    FootTrack& foot = tracks.foot[side];
+    for (std::size_t f = 0; f < foot.ankle_m.size(); ++f) {
+      foot.heel_m.push_back(foot.ankle_m[f] + frames[side].ankle[f] * sole.heel_m);
+      foot.toe_m.push_back(foot.ankle_m[f] + frames[side].ankle[f] * sole.toe_m);
     }
   }
   return tracks;
@@ -408,48 +382,40 @@ FeetTracks feet_tracks(const Motion& motion) {
 
 std::vector<FootSwing> foot_swings(const FeetTracks& tracks, double moving_share) {
   double limit_m_s = 0.0;
-  std::vector<SwingSearch> all;
-  for (const Run& run : swing_runs(tracks, moving_share, limit_m_s)) {
-    all.push_back(search_of(tracks, run, limit_m_s));
-  }
-  std::vector<FootSwing> found;
-  for (const SwingSearch& s : all) {
-    FootSwing swing{s.run.side, s.run.range, {}, {}, {}, {}};
-    swing.toe_off = toe_off_of(tracks, s, 1.0);
-    swing.strike = strike_of(tracks, s, 1.0);
-    const SampleRange& range = tracks.ranges[s.run.range];
-    if (s.run.first > range.first) swing.moves_from = s.run.from;
-    if (s.run.last < range.last) swing.moves_to = s.run.to;
-    found.push_back(swing);
+  std::vector<SwingSearch> all = swing_runs(tracks, moving_share, limit_m_s);
+  for (SwingSearch& swing : all) {
+    set_search(tracks, limit_m_s, swing);
+    swing.toe_off = toe_off_of(tracks, swing, 1.0);
+    swing.strike = strike_of(tracks, swing, 1.0);
   }
   // A heel must strike before the other toe leaves. Widen the limits for feet that slide.
   for (std::size_t i = 0; i < all.size(); ++i) {
     const int other = other_foots_next_swing(all, i);
-    if (other < 0 || !found[i].strike || !found[other].toe_off) continue;
+    if (other < 0 || !all[i].strike || !all[other].toe_off) continue;
     for (double slide = 1.0 + kSlideStep; slide <= kMostSlide; slide += kSlideStep) {
-      if ((*found[other].toe_off - *found[i].strike) * tracks.sample_s >= kLeastRoll_s) break;
-      found[i].strike = strike_of(tracks, all[i], slide);
-      found[other].toe_off = toe_off_of(tracks, all[other], slide);
+      if ((*all[other].toe_off - *all[i].strike) * tracks.sample_s >= kLeastRoll_s) break;
+      all[i].strike = strike_of(tracks, all[i], slide);
+      all[other].toe_off = toe_off_of(tracks, all[other], slide);
     }
   }
-  return found;
+  return {all.begin(), all.end()};
 }
 
 namespace {
 
 // --- A closed stride -----------------------------------------------------------------------------
 
-constexpr int kCopies = 3;  // copies of the stride in a row, so that the middle one is not cut off
 // A run has both feet in the air at this speed; a shorter or slower flight is an error of events.
 constexpr double kLeastFlight_s = 0.03, kSlowestRun_legs_s = 2.1;
 
+// Three copies of the stride in a row, so that the middle one is not cut off.
 FeetTracks in_a_row(const FeetTracks& stride, const vec3& travel_m) {
   FeetTracks row = stride;
   for (FootTrack& foot : row.foot) {
     for (std::vector<vec3>* points : {&foot.ankle_m, &foot.heel_m, &foot.toe_m}) {
       const std::vector<vec3> once = *points;
-      for (int copy = 1; copy < kCopies; ++copy) {
-        for (const vec3& p : once) points->push_back(p + travel_m * double(copy));
+      for (const double copy : {1.0, 2.0}) {
+        for (const vec3& p : once) points->push_back(p + travel_m * copy);
       }
     }
   }

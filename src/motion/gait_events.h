@@ -22,6 +22,7 @@ inline constexpr double kMostSlide = 4.0;  // factor: a heel 20 mm up or at 1.2 
 
 struct FootTrack {  // places of a foot's points over the ground, y up
   std::vector<vec3> ankle_m, heel_m, toe_m;
+  std::vector<vec3> knee_m, toe_joint_m;  // of a motion only
 };
 struct SampleRange {  // the samples [first, last], which contain no jump
   int first, last;
@@ -29,7 +30,10 @@ struct SampleRange {  // the samples [first, last], which contain no jump
 struct FeetTracks {
   std::array<FootTrack, 2> foot;  // tracks by Side
   std::vector<SampleRange> ranges;
-  double sample_s = 0.0, leg_m = 0.0;
+  // Place of the pelvis, and direction that the hips face, unwrapped; of a motion only.
+  std::vector<vec3> pelvis_m;
+  std::vector<double> heading_rad;
+  double sample_s = 0.0, leg_m = 0.0;  // thigh + shank, mean of both sides
 };
 
 // One swing of a foot from its toe-off to its strike.

@@ -30,11 +30,6 @@ vec3 foot_forward(const LegModel& leg) noexcept {
   return glm::normalize(vec3(line.x, 0.0, line.z));
 }
 
-double span_m(const LegModel& leg, double knee_rad) noexcept {
-  const double a = leg.thigh_m, b = leg.shank_m;
-  return std::sqrt(a * a + b * b + 2.0 * a * b * sin_cos(knee_rad).cos);
-}
-
 double knee_at_span(const LegModel& leg, double span_m) noexcept {
   const double a = leg.thigh_m, b = leg.shank_m;
   return gaitpad::acos((span_m * span_m - a * a - b * b) / (2.0 * a * b));
@@ -44,7 +39,10 @@ Stand standing_legs(const std::array<LegModel, 2>& legs, double knee_rad) noexce
   constexpr double kMostRoll = 10.0 * kDegree;  // of the pelvis, as a person's
   Stand stand;
   const vec3 across = legs[0].hip_m - legs[1].hip_m;
-  const auto length_m = [&](const LegModel& leg) { return span_m(leg, knee_rad) - leg.heel_m.y; };
+  const auto length_m = [knee_rad](const LegModel& leg) {
+    const double a = leg.thigh_m, b = leg.shank_m;
+    return std::sqrt(a * a + b * b + 2.0 * a * b * sin_cos(knee_rad).cos) - leg.heel_m.y;
+  };
   const double longer = length_m(legs[0]) - length_m(legs[1]) - across.y;
   stand.roll_rad = std::clamp(gaitpad::atan2(longer, std::abs(across.x)), -kMostRoll, kMostRoll);
   const quat roll = rotation_z(stand.roll_rad);

@@ -28,8 +28,6 @@ AnglesXzy angles_xzy(const quat& q) noexcept;
 vec3 foot_forward(const LegModel& leg) noexcept;
 inline constexpr double kHalfFoot = 0.054;  // half a foot's breadth in legs, 4.5 cm for an adult
 
-// Distance from hip to ankle at that knee flexion.
-double span_m(const LegModel& leg, double knee_rad) noexcept;
 // The knee flexion, in radians, at that distance from hip to ankle; 0 if the leg is too short.
 double knee_at_span(const LegModel& leg, double span_m) noexcept;
 

@@ -1,6 +1,7 @@
 #include "motion/procedural.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace gaitpad {
 namespace {
@@ -111,10 +112,24 @@ LegSample mirrored(const LegSample& leg) {
   return m;
 }
 
-double foot_clearance(const GaitCycle& cycle, int side, const CycleSample& at) {
-  const LegModel& model = cycle.leg[side];
-  const LegPose p = pose_of(cycle, side, at);
-  return std::min({p.heel_m.y, p.toe_m.y - model.toe_rest_m, p.toe_end_m.y - model.toe_end_rest_m});
+std::vector<double> heights_on_lower_foot(const GaitCycle& cycle, int samples, int harmonics) {
+  std::vector<double> height(samples, -std::numeric_limits<double>::infinity()), smooth(samples);
+  for (int i = 0; i < samples; ++i) {
+    for (int side = 0; side < 2; ++side) {
+      const LegModel& model = cycle.leg[side];
+      const LegPose p = pose_of(cycle, side, cycle.samples[i]);
+      height[i] = std::max({height[i], -p.heel_m.y, model.toe_rest_m - p.toe_m.y,
+                            model.toe_end_rest_m - p.toe_end_m.y});
+    }
+  }
+  for (int k = 0; k <= harmonics; ++k) {
+    const auto wave = [&](int i) { return sin_cos(2.0 * kPi * k * i / samples); };
+    double a = 0.0, b = 0.0;
+    for (int i = 0; i < samples; ++i) a += height[i] * wave(i).cos, b += height[i] * wave(i).sin;
+    const double share = (k == 0 ? 1.0 : 2.0) / samples;
+    for (int i = 0; i < samples; ++i) smooth[i] += share * (a * wave(i).cos + b * wave(i).sin);
+  }
+  return smooth;
 }
 
 namespace {
@@ -218,7 +233,7 @@ void fill_angles(GaitCycle& cycle) {
 // foot slide.)
 void fill_pelvis_path(GaitCycle& cycle) {
   // Even harmonics up to 6: it repeats every half cycle.
-  const auto height = heights_on_lower_foot<kHalf>(cycle, 3);
+  const std::vector<double> height = heights_on_lower_foot(cycle, kHalf, 3);
   for (int i = 0; i < kHalf; ++i) {
     const SinCos s = sin_cos(2.0 * kPi * i / kHalf);
     for (const int at : {i, i + kHalf}) {

@@ -165,30 +165,21 @@ class Matcher {
   }
 
   static bool is_part(const BodyPlan& part, int joint) {
-    const auto has = [joint](const std::vector<int>& list) {
-      return std::find(list.begin(), list.end(), joint) != list.end();
-    };
-    return has(part.joints.spine) || has(part.neck) ||
-           std::any_of(part.joints.arm.begin(), part.joints.arm.end(),
-                       [joint](const ArmChain& arm) {
-                         return joint == arm.collar || joint == arm.shoulder ||
-                                joint == arm.elbow || joint == arm.wrist;
-                       });
+    std::vector<int> parts = part.joints.spine;
+    parts.insert(parts.end(), part.neck.begin(), part.neck.end());
+    for (const ArmChain& arm : part.joints.arm)
+      parts.insert(parts.end(), {arm.collar, arm.shoulder, arm.elbow, arm.wrist});
+    return std::find(parts.begin(), parts.end(), joint) != parts.end();
   }
 
   void match_names() {
     const auto& joints = to_.cycle.skeleton.joints;
-    std::vector<int> same(joints.size(), -1);
-    for (std::size_t j = 0; j < joints.size(); ++j) {
-      const int joint = static_cast<int>(j);
-      const int found = from_.cycle.skeleton.find(joints[j].name);
-      if (found < 0 || is_part(to_, joint) || is_part(from_, found)) continue;
-      if (to_.is_upper(joint) && from_.is_upper(found)) same[j] = found;
-    }
-    for (std::size_t j = 0; j < joints.size(); ++j) {
-      if (same[j] < 0) continue;
-      match(same[j], static_cast<int>(j));
-      aim_at_only_child(same[j], static_cast<int>(j));
+    for (int joint = 0; joint < static_cast<int>(joints.size()); ++joint) {
+      const int same = from_.cycle.skeleton.find(joints[joint].name);
+      if (same < 0 || is_part(to_, joint) || is_part(from_, same)) continue;
+      if (!to_.is_upper(joint) || !from_.is_upper(same)) continue;
+      match(same, joint);
+      aim_at_only_child(same, joint);
     }
   }
 
@@ -296,24 +287,23 @@ double mean_ankle_height_m(const GaitCycle& cycle) {
   return -0.5 * (cycle.leg[0].heel_m.y + cycle.leg[1].heel_m.y);
 }
 
-// Gives the character the source's times and lengths, scaled by the ratio of leg lengths.
-void take_over_events(const GaitCycle& source, double ratio, GaitCycle& out) {
-  out.name = source.name;
-  out.metres_per_unit = source.metres_per_unit;
-  out.duration_s = source.duration_s * std::sqrt(std::sqrt(ratio));  // scaled as all step times are
-  out.pace = source.pace;
-  out.captured = source.captured;
-  out.stride_m = source.stride_m * ratio;
-  out.first_frame = source.first_frame;
-  out.frames = source.frames;
-  out.turn_rad = source.turn_rad;
-  out.strike = source.strike;
-  out.toe_off = source.toe_off;
+// The source's walk on another body, its times and lengths scaled by the ratio of leg lengths.
+GaitCycle on_body(const GaitCycle& source, double ratio, const GaitCycle& body) {
+  GaitCycle out = source;
+  out.skeleton = body.skeleton;
+  out.pelvis = body.pelvis;
+  out.pelvis_standing = body.pelvis_standing;
+  out.leg = body.leg;
+  out.standing_local = body.standing_local;
+  out.strides.reset();
+  out.duration_s *= std::sqrt(std::sqrt(ratio));  // scaled as all step times are
+  out.stride_m *= ratio;
   for (int side = 0; side < 2; ++side) {
     out.step_m[side] = source.step_m[side] * ratio;
     out.track_m[side] =
         source.track_m[side] * ratio + out.leg[side].hip_m.x - source.leg[side].hip_m.x * ratio;
   }
+  return out;
 }
 
 // Hips and heels follow the source's paths scaled by `ratio`. Feet keep the source's scaled
@@ -324,7 +314,6 @@ void take_over_samples(const GaitCycle& source, double ratio, GaitCycle& out) {
   const double shorter_m = mean_leg_m(out) - std::min(out.leg[0].length_m(), out.leg[1].length_m());
   const double higher_m =
       mean_ankle_height_m(out) - ratio * mean_ankle_height_m(source) - shorter_m;
-  out.samples = source.samples;
   vec3 middle(0.0);
   for (CycleSample& at : out.samples) {
     at.pelvis_m = ratio * (at.pelvis_m + at.pelvis * from_hips) - at.pelvis * to_hips;
@@ -382,21 +371,21 @@ Result<GaitCycle> cycle_on_skeleton(const GaitCycle& source, const Motion& chara
   if (auto problem = check(source)) return *problem;
   if (auto problem = check(character)) return *problem;
   if (!has_legs(character)) return Error{character.name + ": legs are not set, see find_legs()"};
-  Result<GaitCycle> out = body_of(character);
-  if (!out) return out;
-  const double ratio = mean_leg_m(*out) / mean_leg_m(source);
-  take_over_events(source, ratio, *out);
-  take_over_samples(source, ratio, *out);
-  const UpperBodyMatch match = Matcher(source, *out).matched();
-  stand_alike(match, *out);
+  const Result<GaitCycle> body = body_of(character);
+  if (!body) return body.error();
+  const double ratio = mean_leg_m(*body) / mean_leg_m(source);
+  GaitCycle out = on_body(source, ratio, *body);
+  take_over_samples(source, ratio, out);
+  const UpperBodyMatch match = Matcher(source, out).matched();
+  stand_alike(match, out);
   const std::vector<quat> stood = world_rotations(source.skeleton, source.standing_local),
-                          standing = world_rotations(out->skeleton, out->standing_local);
-  out->local.assign(kCycleSamples * standing.size(), kIdentity);
+                          standing = world_rotations(out.skeleton, out.standing_local);
+  out.local.assign(kCycleSamples * standing.size(), kIdentity);
   for (int i = 0; i < kCycleSamples; ++i) {
     std::vector<quat> turn = world_rotations(
         source.skeleton, std::span(source.local).subspan(i * stood.size(), stood.size()));
     for (std::size_t j = 0; j < stood.size(); ++j) turn[j] = turn[j] * glm::conjugate(stood[j]);
-    pose_sample(match, turn, standing, i, *out);
+    pose_sample(match, turn, standing, i, out);
   }
   return out;
 }

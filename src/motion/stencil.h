@@ -46,19 +46,19 @@ std::array<T, kCount> spline_through(const std::array<T, kCount>& samples) noexc
   return knots;
 }
 
-// The four samples around a phase and their Catmull-Rom weights.
+// The four samples around a phase and their weights.
 struct Stencil {
   std::array<int, 4> index;
   std::array<double, 4> weight;
 };
 
-inline Stencil stencil_at(double phase) noexcept {
+inline Stencil stencil_at(double phase,
+                          std::array<double, 4> (*weights)(double) = &cubic_weights) noexcept {
   const double place = fraction(phase) * kCycleSamples;
   const int i = std::min(static_cast<int>(place), kCycleSamples - 1);
-  const double t = place - i;
   Stencil s;
   for (int k = 0; k < 4; ++k) s.index[k] = (i + k - 1 + kCycleSamples) % kCycleSamples;
-  s.weight = cubic_weights(t);
+  s.weight = weights(place - i);
   return s;
 }
 

@@ -16,33 +16,6 @@ namespace {
 // A stride lasts from one event of a foot (it begins or stops moving) to the next equal one, with
 // every other event once in between. The best stride of a motion is most like its continuation.
 
-// --- Where pelvis and legs are in every frame ----------------------------------------------------
-
-struct LegTrack {
-  std::vector<vec3> knee_m, ankle_m, toe_m;
-};
-struct WalkTrack {
-  std::vector<vec3> pelvis_m;
-  std::vector<double> heading_rad;  // direction that the hips face in each frame, unwrapped
-  std::array<LegTrack, 2> leg;
-  double leg_m = 0.0;  // length of thigh + shank, mean of both sides
-};
-
-WalkTrack walk_track(const Motion& motion) {
-  const LegJoints &left = motion.legs[kLeftSide], &right = motion.legs[kRightSide];
-  const auto at =
-      joint_tracks_m(motion, std::array{motion.pelvis, left.knee, left.ankle, left.toe, right.knee,
-                                        right.ankle, right.toe, left.hip, right.hip});
-  WalkTrack track{
-      at[0], {}, {{{at[1], at[2], at[3]}, {at[4], at[5], at[6]}}}, leg_length_m(motion)};
-  for (std::size_t f = 0; f < motion.frames.size(); ++f) {
-    double heading = hips_heading(at[7][f] - at[8][f]);
-    if (f > 0) heading = track.heading_rad.back() + wrapped(heading - track.heading_rad.back());
-    track.heading_rad.push_back(heading);
-  }
-  return track;
-}
-
 // --- Events --------------------------------------------------------------------------------------
 
 enum class Change { lift, land };
@@ -72,7 +45,7 @@ vec3 point_at(const std::vector<vec3>& p, double frame) {
   const int f = std::clamp(static_cast<int>(frame), 0, static_cast<int>(p.size()) - 2);
   return glm::mix(p[f], p[f + 1], frame - f);
 }
-double heading_at(const WalkTrack& track, double frame) {
+double heading_at(const FeetTracks& track, double frame) {
   const int f =
       std::clamp(static_cast<int>(frame), 0, static_cast<int>(track.heading_rad.size()) - 2);
   return mix(track.heading_rad[f], track.heading_rad[f + 1], frame - f);
@@ -80,12 +53,12 @@ double heading_at(const WalkTrack& track, double frame) {
 
 // Mean distance of the legs' joints, relative to the pelvis and its heading, and of the pelvis'
 // height, in leg lengths.
-double pose_distance(const WalkTrack& track, double a, double b) {
+double pose_distance(const FeetTracks& track, double a, double b) {
   const quat back_a = rotation_y(-heading_at(track, a)), back_b = rotation_y(-heading_at(track, b));
   const vec3 pelvis_a = point_at(track.pelvis_m, a), pelvis_b = point_at(track.pelvis_m, b);
   double sum = std::abs(pelvis_a.y - pelvis_b.y);
-  for (const LegTrack& leg : track.leg) {
-    for (const auto* p : {&leg.knee_m, &leg.ankle_m, &leg.toe_m}) {
+  for (const FootTrack& leg : track.foot) {
+    for (const auto* p : {&leg.knee_m, &leg.ankle_m, &leg.toe_joint_m}) {
       sum += glm::distance(back_a * (point_at(*p, a) - pelvis_a),
                            back_b * (point_at(*p, b) - pelvis_b));
     }
@@ -95,7 +68,7 @@ double pose_distance(const WalkTrack& track, double a, double b) {
 
 // Distance between a stride's first and last pose. It includes the poses 5 % of the stride before
 // and after, so that velocities have to agree as well.
-double seam(const WalkTrack& track, const SampleRange& range, double start, double period) {
+double seam(const FeetTracks& track, const SampleRange& range, double start, double period) {
   double sum = 0.0, weight = 0.0;
   for (const double off : {-0.05 * period, 0.0, 0.05 * period}) {
     if (start + off < range.first || start + period + off > range.last) continue;
@@ -128,7 +101,7 @@ bool is_stride(const std::vector<FootEvent>& events, std::size_t from, std::size
 
 // The period within 4 % of the events' period with the smallest seam: the last pose fits the first
 // one best. A change costs up to 0.02 leg lengths.
-double best_period(const WalkTrack& track, const SampleRange& range, double start, double period) {
+double best_period(const FeetTracks& track, const SampleRange& range, double start, double period) {
   double best = period, least = seam(track, range, start, period);
   for (int k = -16; k <= 16; ++k) {
     const double tried = period * (1.0 + 0.0025 * k);
@@ -142,7 +115,7 @@ double best_period(const WalkTrack& track, const SampleRange& range, double star
   return best;
 }
 
-std::optional<Candidate> candidate(const WalkTrack& track, const SampleRange& range, double start,
+std::optional<Candidate> candidate(const FeetTracks& track, const SampleRange& range, double start,
                                    double end, double frame_s) {
   Candidate c;
   StrideWindow& w = c.window;
@@ -160,7 +133,7 @@ std::optional<Candidate> candidate(const WalkTrack& track, const SampleRange& ra
 }
 
 // Adds the strides from each event to the next equal one.
-void add_between_events(const WalkTrack& track, const SampleRange& range,
+void add_between_events(const FeetTracks& track, const SampleRange& range,
                         const std::vector<FootEvent>& events, double frame_s,
                         std::vector<Candidate>& found) {
   const auto is_same = [](const FootEvent& a, const FootEvent& b) {
@@ -177,7 +150,7 @@ void add_between_events(const WalkTrack& track, const SampleRange& range,
 
 // For clips of little more than one stride, which may contain no event twice: adds the strides from
 // each frame to the most similar later one with each event once in between.
-void add_by_pose(const WalkTrack& track, const SampleRange& range,
+void add_by_pose(const FeetTracks& track, const SampleRange& range,
                  const std::vector<FootEvent>& events, double frame_s,
                  std::vector<Candidate>& found) {
   constexpr double kLike_legs = 0.05;
@@ -203,14 +176,14 @@ void add_by_pose(const WalkTrack& track, const SampleRange& range,
   }
 }
 
-std::vector<Candidate> candidates(const FeetTracks& feet, const WalkTrack& track) {
+std::vector<Candidate> candidates(const FeetTracks& feet) {
   std::vector<Candidate> found;
   for (const auto add : {&add_between_events, &add_by_pose}) {
     for (const double share : kMovingShares) {
       if (!found.empty()) break;
       const std::vector<FootSwing> swings = foot_swings(feet, share);
       for (std::size_t range = 0; range < feet.ranges.size(); ++range) {
-        add(track, feet.ranges[range], foot_events(swings, static_cast<int>(range)), feet.sample_s,
+        add(feet, feet.ranges[range], foot_events(swings, static_cast<int>(range)), feet.sample_s,
             found);
       }
     }
@@ -219,7 +192,7 @@ std::vector<Candidate> candidates(const FeetTracks& feet, const WalkTrack& track
 }
 
 // Number of times that the leading foot, or the higher foot, changes in the range.
-int steps_in_place(const WalkTrack& track, const SampleRange& range) {
+int steps_in_place(const FeetTracks& track, const SampleRange& range) {
   // A smaller movement is a shift of the weight.
   constexpr double kAhead_legs = 0.1, kAbove_legs = 0.03;
   int ahead = 0, above = 0, steps_ahead = 0, steps_above = 0;
@@ -230,7 +203,7 @@ int steps_in_place(const WalkTrack& track, const SampleRange& range) {
     side = now;
   };
   for (int f = range.first; f <= range.last; ++f) {
-    const vec3 apart = track.leg[kLeftSide].ankle_m[f] - track.leg[kRightSide].ankle_m[f];
+    const vec3 apart = track.foot[kLeftSide].ankle_m[f] - track.foot[kRightSide].ankle_m[f];
     const vec3 front = heading_direction(track.heading_rad[f]);
     count(glm::dot(apart, front), kAhead_legs * track.leg_m, ahead, steps_ahead);
     count(apart.y, kAbove_legs * track.leg_m, above, steps_above);
@@ -239,18 +212,18 @@ int steps_in_place(const WalkTrack& track, const SampleRange& range) {
 }
 
 // The error sentence. Its numbers show whether the motion is too short for a stride.
-std::string why_no_stride(const FeetTracks& feet, const WalkTrack& track) {
+std::string why_no_stride(const FeetTracks& track) {
   constexpr double kFastestWalk_legs_s = 3.6;  // leg lengths a second: 3 m/s for an adult
   // Way and duration of the range in which the hips move farthest.
   double moved_m = -1.0, time_s = 0.0;
   int steps = 0;
-  for (const SampleRange& range : feet.ranges) {
+  for (const SampleRange& range : track.ranges) {
     double here_m = 0.0;
     for (int f = range.first; f <= range.last; ++f)
       here_m = std::max(here_m, horizontal_length(track.pelvis_m[f] - track.pelvis_m[range.first]));
     if (here_m > moved_m) {
       moved_m = here_m;
-      time_s = (range.last - range.first + 1) * feet.sample_s;
+      time_s = (range.last - range.first + 1) * track.sample_s;
     }
     steps = std::max(steps, steps_in_place(track, range));
   }
@@ -264,7 +237,7 @@ std::string why_no_stride(const FeetTracks& feet, const WalkTrack& track) {
 }
 
 // Difference between the travel of the stride's halves, as a share of the stride.
-double unsteadiness(const WalkTrack& track, const StrideWindow& w) {
+double unsteadiness(const FeetTracks& track, const StrideWindow& w) {
   const vec3 start = point_at(track.pelvis_m, w.start);
   const vec3 middle = point_at(track.pelvis_m, w.start + 0.5 * w.period);
   const vec3 end = point_at(track.pelvis_m, w.start + w.period);
@@ -274,7 +247,7 @@ double unsteadiness(const WalkTrack& track, const StrideWindow& w) {
 
 // Prefers a small seam, a straight and steady stride at the motion's usual speed, and frames beyond
 // it for fading the seam.
-void sort_best_first(const WalkTrack& track, std::vector<Candidate>& all) {
+void sort_best_first(const FeetTracks& track, std::vector<Candidate>& all) {
   std::vector<double> speed;
   for (const Candidate& c : all) speed.push_back(c.speed_legs_s);
   const double usual = median(speed);
@@ -315,11 +288,10 @@ void close_loop(Motion& motion, double turn_rad) {
 
 Result<std::vector<StrideWindow>> best_strides(const Motion& motion) {
   if (motion.frames.size() < 6) return Error{"has fewer than 6 frames"};
-  const WalkTrack track = walk_track(motion);
-  if (!(track.leg_m > 0.0) || !(motion.frame_time_s > 0.0)) return Error{"has no legs to walk on"};
-  const FeetTracks feet = feet_tracks(motion);
-  std::vector<Candidate> all = candidates(feet, track);
-  if (all.empty()) return Error{why_no_stride(feet, track)};
+  const FeetTracks track = feet_tracks(motion);
+  if (!(track.leg_m > 0.0)) return Error{"has no legs to walk on"};
+  std::vector<Candidate> all = candidates(track);
+  if (all.empty()) return Error{why_no_stride(track)};
   sort_best_first(track, all);
   std::vector<StrideWindow> windows;
   for (const Candidate& c : all) windows.push_back(c.window);
@@ -331,14 +303,14 @@ Motion looped_twice(const Motion& motion) {
   twice.frames.clear();
   const int frames = static_cast<int>(motion.frames.size());
   if (frames < 6) return twice;
-  const WalkTrack track = walk_track(motion);
+  const FeetTracks track = feet_tracks(motion);
   if (!(pose_distance(track, 0.0, frames - 1.0) <= kLoop_legs)) return twice;
   const double turn = wrapped(track.heading_rad.back() - track.heading_rad.front());
   twice.frames = motion.frames;
   close_loop(twice, turn);
   const quat onward = rotation_y(turn);
   // Join the loops by the pelvis, because the root may stand still.
-  const std::vector<vec3> pelvis = walk_track(twice).pelvis_m;
+  const std::vector<vec3> pelvis = feet_tracks(twice).pelvis_m;
   for (int f = 1; f < frames; ++f) {
     MotionFrame frame = twice.frames[f];
     frame.root_m = pelvis.back() + onward * (frame.root_m - pelvis.front());

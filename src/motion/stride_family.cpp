@@ -47,18 +47,15 @@ StridePlace stride_at(const std::vector<StrideTable>& tables, double phase, doub
   if (r == last - 1.0) {
     by_table[2] += 2.0 * by_table[3], by_table[1] -= by_table[3], by_table[3] = 0.0;
   }
-  const double x = (phase - std::floor(phase)) * kCycleSamples,
-               i = std::min(std::floor(x), kCycleSamples - 1.0);
-  const std::array<double, 4> by_knot = spline_weights(x - i);
+  const Stencil by_knot = stencil_at(phase, &spline_weights);
   StridePlace place;
   for (int n = 0; n < 4; ++n) {
     if (by_table[n] == 0.0) continue;
     const StrideTable& table = tables[first + n];
     add<StrideTrack>(place.track, table, by_table[n]);
     for (int m = 0; m < 4; ++m) {
-      if (by_knot[m] == 0.0) continue;  // at a knot
-      const int knot = (static_cast<int>(i) + m - 1 + kCycleSamples) % kCycleSamples;
-      add(place.cell, table.knot[knot], by_table[n] * by_knot[m]);
+      if (by_knot.weight[m] == 0.0) continue;  // at a knot
+      add(place.cell, table.knot[by_knot.index[m]], by_table[n] * by_knot.weight[m]);
     }
   }
   return place;

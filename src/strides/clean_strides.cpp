@@ -43,7 +43,6 @@ constexpr double kLooserPelvis = 0.3;
 // step of cmu_12_01 that is resumed pushes by 10.5 m/s^2 in place of 7.7; with 1 in longer ones,
 // starts of cmu_m21_walk at full stick push by 5.1 m/s^2 in place of 3.9.
 constexpr double kShortSpeed = 0.14, kLongSpeed = 0.03;
-constexpr double kSameRatio = 1e-9;  // difference of two ratios that count as equal
 constexpr double kLeastStandingKnee = 5.0 * kDegree;  // least bend
 // Share of the data's knee and ankle angles in steps of length 0: the foot still has to leave the
 // floor.
@@ -219,9 +218,7 @@ struct Builder {
     // degrees.
     if (cycle.captured) {
       // Shorter steps have less speed to keep, steps on the spot none.
-      const double share = ratio > 1.0 + kSameRatio   ? kLongSpeed
-                           : ratio < 1.0 - kSameRatio ? kShortSpeed * ratio
-                                                      : 1.0;
+      const double share = ratio > 1.0 ? kLongSpeed : ratio < 1.0 ? kShortSpeed * ratio : 1.0;
       p.own_stride_m = cycle.stride_m;
       p.leg_smoothness = mix(1.0, kSmootherLegs, std::min(1.0, ratio));
       p.pelvis_smoothness = mix(1.0, kLooserPelvis, share);
@@ -310,33 +307,27 @@ struct Builder {
     const int tables = forwards ? kStrideRatios : kBackRatios,
               first = std::min(kDataTable, tables - 1);
     std::vector<Solved> all(tables);
-    // Keeps a table's solution. False if there is none.
-    const auto keep = [&](int k, StrideProblem p, std::vector<StrideSample> stride) {
+    family.table.resize(tables);
+    // Solves table k from its neighbour `from`, or from its data if that is itself.
+    const auto solve_from = [&](int k, int from) {
+      const int beyond = 2 * from - k, steps = k == from        ? kFirstSolve
+                                               : !forwards      ? kNextBack
+                                               : k > kDataTable ? kLongSolve
+                                                                : kNextSolve;
+      const bool is_known = beyond >= 0 && beyond < tables && !all[beyond].stride.empty();
+      StrideProblem p = problem(k * kRatioStep);
+      std::vector<StrideSample> stride = solver.solve(
+          p, k == from ? p.wanted : start_of(p, all[from], is_known ? &all[beyond] : nullptr),
+          steps);
       if (stride.empty()) return false;
       family.table[k] = table_of(p, stride, k * kRatioStep);
       all[k] = {std::move(p), std::move(stride)};
       return true;
     };
-    family.table.resize(tables);
-    StrideProblem own = problem(first * kRatioStep);
-    std::vector<StrideSample> clean = solver.solve(own, own.wanted, kFirstSolve);
-    if (!keep(first, std::move(own), std::move(clean))) return false;
-    const auto solve_from = [&](int k, int from) {
-      const int beyond = 2 * from - k;
-      const bool is_known = beyond >= 0 && beyond < tables && !all[beyond].stride.empty();
-      StrideProblem p = problem(k * kRatioStep);
-      std::vector<StrideSample> start = start_of(p, all[from], is_known ? &all[beyond] : nullptr);
-      const int steps = !forwards ? kNextBack : k > kDataTable ? kLongSolve : kNextSolve;
-      std::vector<StrideSample> stride = solver.solve(p, std::move(start), steps);
-      return keep(k, std::move(p), std::move(stride));
-    };
-    for (int k = first - 1; k >= 0; --k) {
-      if (!solve_from(k, k + 1)) return false;
-    }
-    for (int k = first + 1; k < tables; ++k) {
-      if (!solve_from(k, k - 1)) return false;
-    }
-    return true;
+    bool solved = solve_from(first, first);
+    for (int k = first - 1; solved && k >= 0; --k) solved = solve_from(k, k + 1);
+    for (int k = first + 1; solved && k < tables; ++k) solved = solve_from(k, k - 1);
+    return solved;
   }
 };
 
@@ -351,10 +342,10 @@ std::optional<std::string> fault_of(const GaitCycle& cycle) {
       return "has a leg without a thigh, a shank or a foot";
   }
   if (cycle.stride_m > kMostLegs * mean_leg_m(cycle)) return "takes strides longer than four legs";
-  constexpr double kSample = 1.0 / kCycleSamples;
-  if (std::abs(cycle.strike[1]) > kSample || cycle.toe_off[0] < kSample ||
-      cycle.strike[0] < cycle.toe_off[0] + kSample ||
-      cycle.toe_off[1] < cycle.strike[0] + kSample || cycle.toe_off[1] > 1.0 - kSample)
+  const double sample_share = 1.0 / kCycleSamples;
+  if (std::abs(cycle.strike[1]) > sample_share || cycle.toe_off[0] < sample_share ||
+      cycle.strike[0] < cycle.toe_off[0] + sample_share ||
+      cycle.toe_off[1] < cycle.strike[0] + sample_share || cycle.toe_off[1] > 1.0 - sample_share)
     return "has events that are not in the order of a walk";
   for (const CycleSample& sample : cycle.samples) {
     if (std::abs(glm::dot(sample.pelvis, sample.pelvis) - 1.0) > 1e-6)
@@ -401,9 +392,7 @@ Result<StrideFamily> stride_family(const GaitCycle& cycle) {
   if (const auto fault = fault_of(cycle)) return Error{cycle.name + ": " + *fault};
   const GaitCycle backwards = run_back(cycle);
   Builder builder(cycle), back(backwards);
-  back.family.stand_rad = builder.family.stand_rad;
-  back.family.stand_m = builder.family.stand_m;
-  back.family.stand_roll_rad = builder.family.stand_roll_rad;
+  back.family = builder.family;
   bool back_solved = false;
   const auto solve_back = [&back, &back_solved] { back_solved = back.solve(); };
   std::thread beside;

@@ -36,10 +36,11 @@ constexpr double kLevelWeight = 5e2;
 // to move smoothly.
 constexpr double kSoftStrikeWeight = 3e4, kSoftToeDownWeight = 1.3e4;
 constexpr int kLanding = 3;  // number of samples over which these weights fade
-// People's hips accelerate by 2 to 4 m/s^2 along the path. Excess costs kSurgeWeight per square
-// metre of a second difference.
-constexpr double kMostSurge_m_s2 = 2.8, kSoftSurge_m_s2 = 0.8, kSurgeWeight = 1e6;
-constexpr double kSoftHeave_m_s2 = 2.0;  // width of the soft limit on the vertical acceleration
+// People's hips accelerate by 2 to 4 m/s^2 along the path. Soft limits on their acceleration
+// upwards and ahead, and the limits' widths; excess costs kSurgeWeight per square metre of a second
+// difference.
+constexpr vec3 kMostSurge_m_s2(0.0, 7.0, 2.8), kSoftSurge_m_s2(0.0, 2.0, 0.8);
+constexpr double kSurgeWeight = 1e6;
 // Distance beside the heel at which kLevelWeight measures the sole's roll.
 constexpr double kSide_m = 0.1;
 // Depth to which the edge of a heel may sink into the floor, and the width of that soft limit.
@@ -113,7 +114,7 @@ PointRows point_rows(const LegFrames& f, const vec3& in_foot) {
 
 struct StrideSolver::System {
   using Matrix = Eigen::SparseMatrix<double>;
-  static constexpr int kReach = 3;  // most samples that a row involves
+  static constexpr int kReach = kBend.size();  // most samples that a row involves
   static constexpr int kBlock = kUnknowns * kUnknowns;
 
   int samples;  // number of samples of the stride
@@ -136,7 +137,7 @@ struct StrideSolver::System {
         normal(solved * kUnknowns, solved * kUnknowns),
         gradient(solved * kUnknowns) {
     // Rows within a sample come and go between iterations, so their entries always exist.
-    for (int i = 0; i < n && i < solved; ++i) {
+    for (int i = 0; i < solved; ++i) {
       for (int side : {0, 1}) {
         for (int k = 0; k < kUnknowns; ++k) {
           for (int l = 0; l <= k; ++l) {
@@ -150,11 +151,6 @@ struct StrideSolver::System {
   // A row within a sample involves the pelvis and one leg.
   bool is_seen(int k, int side) const {
     return k < kPelvis || (k >= leg_unknown(side) && k < leg_unknown(side) + kLegDofs);
-  }
-
-  void clear() {
-    std::fill(block.begin(), block.end(), 0.0);
-    gradient.setZero();
   }
 
   double& at(int row, int column) {
@@ -289,13 +285,15 @@ struct StrideSolver::System {
   // Softly limits the pelvis' acceleration along an axis; in metres per sample^2, for samples that
   // are evenly spaced in time.
   void add_surge(int sample, int axis, const std::vector<StrideSample>& x,
-                 const std::vector<double>& time, double stride_m, double most_m, double soft_m) {
+                 const StrideProblem& problem) {
+    const double tick2 = problem.duration_s * problem.duration_s / (double(samples) * samples);
+    const double most_m = kMostSurge_m_s2[axis] * tick2, soft_m = kSoftSurge_m_s2[axis] * tick2;
     std::array<double, 3> when, place;
     std::array<Mirrored, 3> where;
     for (int d : {0, 1, 2}) {
       const int at = sample + d - 1, j = (at + samples) % samples;
-      when[d] = time[j] + (at < 0 ? -1.0 : at >= samples ? 1.0 : 0.0);
-      place[d] = x[j].pelvis_m[axis] + (axis == 2 ? stride_m * when[d] : 0.0);
+      when[d] = problem.time[j] + (at < 0 ? -1.0 : at >= samples ? 1.0 : 0.0);
+      place[d] = x[j].pelvis_m[axis] + (axis == 2 ? problem.stride_m * when[d] : 0.0);
       where[d] = place_of(at, axis);
     }
     const double begin = when[1] - when[0], end = when[2] - when[1];
@@ -342,8 +340,7 @@ bool is_mirrored(const vec3& a, const vec3& b) {
   return is_same(glm::distance(a, mirrored(b)), 0.0);
 }
 
-}  // namespace
-
+// True if everything half a stride later is the mirror image.
 bool is_symmetric(const StrideProblem& p) {
   const int n = static_cast<int>(p.wanted.size()), half = n / 2;
   const LegModel &left = p.leg[0], &right = p.leg[1];
@@ -367,13 +364,16 @@ bool is_symmetric(const StrideProblem& p) {
   return same;
 }
 
+}  // namespace
+
 StrideSolver::StrideSolver() = default;
 StrideSolver::~StrideSolver() = default;
 
 void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSample>& x) {
   System& s = *system_;
   const int n = s.samples, solved = s.solved;
-  s.clear();
+  std::fill(s.block.begin(), s.block.end(), 0.0);
+  s.gradient.setZero();
   // A small and smooth change of the data costs least.
   for (int i = 0; i < solved; ++i) {
     for (int k = 0; k < kUnknowns; ++k) {
@@ -383,34 +383,24 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
                             (k == 1        ? kPelvisSmoothUp * problem.pelvis_smoothness
                              : k < kPelvis ? kPelvisSmooth * problem.pelvis_smoothness
                                            : problem.leg_smoothness);
-      std::array<double, 3> change;
-      std::array<Mirrored, 3> where;
+      std::array<double, 3> change, row;
+      std::array<int, 3> where;
       for (int d : {0, 1, 2}) {
         const int j = (i + d + n - 1) % n;
+        const Mirrored place = s.place_of(i + d - 1, k);
         change[d] = unknown(x[j], k) - unknown(problem.wanted[j], k);
-        where[d] = s.place_of(i + d - 1, k);
+        row[d] = kBend[d] * place.factor;
+        where[d] = place.unknown;
       }
-      s.at(at, at) += weight;
-      s.gradient[at] += weight * change[1];
-      const double bend = change[0] - 2.0 * change[1] + change[2];
-      for (int d : {0, 1, 2}) {
-        const double slope = smooth * kBend[d] * where[d].factor;
-        s.gradient[where[d].unknown] += slope * bend;
-        for (int e = 0; e <= d; ++e) {
-          s.at(where[d].unknown, where[e].unknown) += slope * kBend[e] * where[e].factor;
-        }
-      }
+      s.add_square(std::array{1.0}, std::array{at}, change[1], weight);
+      s.add_square(row, where, change[0] - 2.0 * change[1] + change[2], smooth);
     }
   }
   for (int i = 0; i < solved && problem.own_stride_m > 0.0; ++i) s.add_speed(i, x, problem);
   std::vector<double> path_m(n);
   for (int i = 0; i < n; ++i) path_m[i] = problem.stride_m * problem.time[i];
-  const double tick2 = problem.duration_s * problem.duration_s / (double(n) * n);
   for (int i = 0; i < solved; ++i) {
-    s.add_surge(i, 2, x, problem.time, problem.stride_m, kMostSurge_m_s2 * tick2,
-                kSoftSurge_m_s2 * tick2);
-    s.add_surge(i, 1, x, problem.time, problem.stride_m, problem.most_heave_m_s2 * tick2,
-                kSoftHeave_m_s2 * tick2);
+    for (int axis : {2, 1}) s.add_surge(i, axis, x, problem);
   }
   // Feet.
   std::array<std::vector<LegFrames>, 2> all_frames;
@@ -502,8 +492,8 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
       if (bend > -kSoftKnee) {
         const int at = i * kUnknowns + leg_unknown(side) + kKneeX;
         const double slope = soft_slope(bend, kSoftKnee);
-        s.at(at, at) += kKneeWeight * slope * slope;
-        s.gradient[at] -= kKneeWeight * slope * soft_positive(bend, kSoftKnee);
+        s.add_square(std::array{-slope}, std::array{at}, soft_positive(bend, kSoftKnee),
+                     kKneeWeight);
       }
     }
   }
@@ -528,16 +518,11 @@ bool StrideSolver::move(std::vector<StrideSample>& x) {
   return true;
 }
 
-void StrideSolver::begin(const StrideProblem& problem) {
-  const int n = static_cast<int>(problem.wanted.size());
-  const int solved = is_symmetric(problem) ? n / 2 : n;
-  if (!system_ || system_->samples != n || system_->solved != solved)
-    system_ = std::make_unique<System>(n, solved);
-}
-
 std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,
                                               std::vector<StrideSample> x, int iterations) {
-  begin(problem);
+  const int n = static_cast<int>(problem.wanted.size());
+  const int solved = is_symmetric(problem) ? n / 2 : n;
+  if (!system_ || system_->solved != solved) system_ = std::make_unique<System>(n, solved);
   for (int iteration = 0; iteration < iterations; ++iteration) {
     fill(problem, x);
     system_->factorise();

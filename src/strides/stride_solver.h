@@ -45,23 +45,19 @@ struct StrideProblem {
   double pelvis_smoothness = 1.0;  // and of the pelvis' place alone
   std::array<double, 2> least_knee_rad{};  // soft limits on the knees' bend
   double soft_toe = 3e3;  // cost of a toe's jerky start, per square metre of second differences
-  double most_heave_m_s2 = 7.0;  // soft limit on the hips' vertical acceleration
 };
-// True if everything half a stride later is the mirror image.
-bool is_symmetric(const StrideProblem& problem);
-
 class StrideSolver {
  public:
   StrideSolver();
   ~StrideSolver();
-  // Solves `problem` in `iterations` Gauss-Newton steps from `start`. If is_symmetric(), only half
-  // of the stride is solved and mirrored. Empty if there is no solution.
+  // Solves `problem` in `iterations` Gauss-Newton steps from `start`. If everything half a stride
+  // later is the mirror image, only half of the stride is solved and mirrored. Empty if there is no
+  // solution.
   std::vector<StrideSample> solve(const StrideProblem& problem, std::vector<StrideSample> start,
                                   int iterations);
 
  private:
   struct System;
-  void begin(const StrideProblem& problem);
   void fill(const StrideProblem& problem, const std::vector<StrideSample>& x);
   bool move(std::vector<StrideSample>& x);
   // Equations of the previous problem, kept for their sparsity pattern.

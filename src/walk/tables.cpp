@@ -189,6 +189,7 @@ void fill_path(const WalkModel& model, BuildTables& tables) {
     }
     tables.path.push_back(to);
   }
+  tables.neck = neck_at - joints + static_cast<int>(tables.path.size());
   tables.chest_standing = wxyz(body.chest_standing);
   tables.head_standing = wxyz(body.head_standing);
   for (const SpineJoint& joint : body.spine) {
@@ -304,10 +305,6 @@ constexpr double kHarderChest = 1.7, kHarderHead = 1.9;
 void fill_hardness(const WalkModel& model, BuildTables& tables) {
   const GaitCycle& cycle = model.cycle;
   const std::size_t joints = cycle.skeleton.joints.size();
-  const int neck =
-      static_cast<int>(std::find_if(tables.path.begin(), tables.path.end(),
-                                    [](const PathJoint& joint) { return joint.of_look > 0.0f; }) -
-                       tables.path.begin());
   // Turns of chest and head by phase.
   std::array<std::array<quat, kKnots>, 2> turn;
   for (int k = 0; k < kKnots; ++k) {
@@ -323,7 +320,7 @@ void fill_hardness(const WalkModel& model, BuildTables& tables) {
     for (int i = 0; i < static_cast<int>(tables.path.size()); ++i) {
       above = above *
               cycle.local[static_cast<std::size_t>(at.index[1]) * joints + tables.path[i].joint];
-      (i < neck ? turn[0][k] : turn[1][k]) = above;
+      (i < tables.neck ? turn[0][k] : turn[1][k]) = above;
     }
   }
   constexpr int kApart = 2;  // knots

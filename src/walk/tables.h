@@ -107,6 +107,7 @@ struct BuildNumbers {
   bool has_head;        // a head ends the path
   bool on_pelvis;       // the path begins at the pelvis; else at the root, beside it
   int joints, pelvis;
+  int neck;  // index in the path of the first joint of neck and head; its end without a head
   float arm_m, shoulder_height_m;  // UpperBodyModel
   // Bounds of the angular acceleration of chest and head while a walk changes, rad/s^2.
   float most_chest_s2, most_head_s2;

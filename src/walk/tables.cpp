@@ -63,13 +63,13 @@ Places<kOf> places_of(const WalkModel& model, bool backward) {
   return places;
 }
 
-void fill_harmonics(const Places<kRatios>& places, BuildTables& tables) {
+void fill_harmonics(const Places<kStrideRatios>& places, BuildTables& tables) {
   tables.leg_harmonics = {};
   for (int k = 0; k < kKnots; ++k) {
     for (int n = 0; n < 1 + 2 * kHarmonics; ++n) {
       const SinCos turn = gaitpad::sin_cos(2.0 * kPi * ((n + 1) / 2) * k / kKnots);
       const double of = (n == 0 ? 1.0 : n % 2 == 1 ? 2.0 * turn.cos : 2.0 * turn.sin) / kKnots;
-      for (int r = 0; r < kRatios; ++r)
+      for (int r = 0; r < kStrideRatios; ++r)
         for (int side : {0, 1})
           for (int j = 0; j < kLegAngles; ++j)
             tables.leg_harmonics[r][side][j][n] +=
@@ -389,11 +389,11 @@ const Filters& kept_filters(double time_scale, double tick_s) noexcept {
 
 std::shared_ptr<const BuildTables> build_tables(const WalkModel& model) {
   auto tables = std::make_shared<BuildTables>();
-  const Places<kRatios> places = places_of<kRatios>(model, false);
+  const Places<kStrideRatios> places = places_of<kStrideRatios>(model, false);
   fill_strides(places, tables->forward);
   fill_harmonics(places, *tables);
   fill_strides(places_of<kBackRatios>(model, true), tables->back);
-  fill_footprints(model, false, kRatios, tables->footprints, tables->most_ratio);
+  fill_footprints(model, false, kStrideRatios, tables->footprints, tables->most_ratio);
   fill_footprints(model, true, kBackRatios, tables->back_footprints, tables->most_back_ratio);
   fill_legs(model, *tables);
   fill_upper_body(model, *tables);

@@ -206,7 +206,7 @@ void begin_weights(const Tables& tables, const Mask<V>& begins, const Time<V>& t
     twice[h][0] = (once[h][0] + wt * once[h][1]) * q;
     twice[h][1] = (once[h][1] - wt * once[h][0]) * q;
   }
-  const V last = all<V>(kRatios - 1.0f),
+  const V last = all<V>(kStrideRatios - 1.0f),
           y = least(most(V(state.ratio_behind * float(1.0 / kRatioStep)), V{}), last),
           first = least(floored(y), V(last - 1.0f)), share = y - first;
   for (int k : {0, 1}) {

@@ -73,7 +73,7 @@ template <int kWidth, class PoseInFull>
     leg.failed = both(leg.failed, no(alone));
     leg.more_pitch_rad *= 1.0f - share;
   }
-  write_data(tables, data_read(tables, tick, swing, block.state), share, poses);
+  write_data(tables, data_read(tables, tick, {swing, swing}, block.state), share, poses);
 }
 
 }  // namespace

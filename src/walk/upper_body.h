@@ -461,22 +461,22 @@ struct DataRead {
   Knots<V> knots;
   V shown, shoulder[2], elbow[2];
 };
+// `swing`: the factor on the swing of both arms, by Side.
 template <class V>
-void swing_arm(const Tables& tables, int side, const V& swing, DataRead<V>& data) noexcept {
-  constexpr float kSoftElbow = 0.1f;  // of the factor: rounds the limit that keeps elbows bent
-  data.shoulder[side] = swing;
-  data.elbow[side] = soft_least(swing, all<V>(tables.most_elbow_swing[side]), all<V>(kSoftElbow));
-}
-template <class V>
-DataRead<V> data_read(const Tables& tables, const BodyTick<V>& tick, const V& swing,
+DataRead<V> data_read(const Tables& tables, const BodyTick<V>& tick, const V (&swing)[2],
                       const State<V>& state) noexcept {
+  constexpr float kSoftElbow = 0.1f;  // of the factor: rounds the limit that keeps elbows bent
   DataRead<V> data;
   data.knots = knots_at(data_phase(tables, tick.time, tick.phase));
   // A filter comes near to 1 but not to it; a joint that the pose shows fully is read faster.
   constexpr float kWholly = 0.99999f;  // share of the posture that counts as all of it
   const V posture = within(state.posture.x, 0.0f, 1.0f);
   data.shown = tick.shown * (posture > all<V>(kWholly) ? all<V>(1.0f) : posture);
-  for (int side : {0, 1}) swing_arm(tables, side, swing, data);
+  for (int side : {0, 1}) {
+    data.shoulder[side] = swing[side];
+    data.elbow[side] =
+        soft_least(swing[side], all<V>(tables.most_elbow_swing[side]), all<V>(kSoftElbow));
+  }
   return data;
 }
 // A share of the way from a joint's rotation in the pose to another one.
@@ -536,15 +536,14 @@ void write_upper_body(const Tables& tables, const BodyTick<Floats<kWidth>>& of,
   State<V>& state = block.state;
   Styled<V>& styled = block.styled;
   Poise<V>& poise = block.poise;
-  BodyTick<V> tick = of;
-  DataRead<V> data = data_read(tables, tick, swing, state);
-  tick.shown = data.shown;
-  const bool any_style = any(is_styled);
-  for (int side : {0, 1}) {
-    if (!any_style) continue;
-    const V styled_swing = swing * styled.body[kArmSwing + side].x;
-    swing_arm(tables, side, styled.acts != V{} ? styled_swing : swing, data);
+  V swings[2] = {swing, swing};
+  if (any(is_styled)) {
+    for (int side : {0, 1})
+      swings[side] = styled.acts != V{} ? V(swing * styled.body[kArmSwing + side].x) : swing;
   }
+  const DataRead<V> data = data_read(tables, of, swings, state);
+  BodyTick<V> tick = of;
+  tick.shown = data.shown;
   write_data(tables, data, all<V>(1.0f), poses);
   if constexpr (!kPaper) swing_in_turn(tables, of, state, poses);
   const auto is_posed =

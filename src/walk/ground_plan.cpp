@@ -45,8 +45,9 @@ struct Frame {
 // --- Footholds -----------------------------------------------------------------------------------
 
 constexpr double kLeastStep = 0.05;  // in legs: shorter steps count as this long
-constexpr double kBeside_m = 1e-6;   // a place so near to a riser is certainly on one side of it
-constexpr double kLeast = 1e-6;      // metres or weights: not to divide by 0
+// Metres or weights: a place so near to a riser is certainly on one side of it, and not to divide
+// by 0.
+constexpr double kLeast = 1e-6;
 
 // The reach of the sole along z from its heel point.
 struct Extent {
@@ -134,7 +135,7 @@ double cost_of(const Floor& floor, const Step& step, const Stretch& piece) noexc
   constexpr double kLongStep = 0.6, kEasyRise = 0.22;  // in legs
   const vec3 place = place_on(step, piece), move = place - wanted_on(step, piece);
   const double middle =
-      std::clamp(place.z + step.sole.middle_m(), piece.from_m + kBeside_m, piece.to_m - kBeside_m);
+      std::clamp(place.z + step.sole.middle_m(), piece.from_m + kLeast, piece.to_m - kLeast);
   const double rise =
       std::abs(ground_at(floor, place.x, middle).height_m - step.from_m.y) / step.leg_m;
   const double wanted = step.length_m(), length = glm::dot(place - step.from_m, step.forward),
@@ -173,14 +174,13 @@ Stretch best_piece(const Floor& floor, const Step& step, const Stretch* settled)
       best = piece;
     }
     if (stands < piece.from_m) {
-      piece = piece_at(floor, piece.from_m - kBeside_m);
+      piece = piece_at(floor, piece.from_m - kLeast);
     } else if (stands > piece.to_m) {
-      piece = piece_at(floor, piece.to_m + kBeside_m);
+      piece = piece_at(floor, piece.to_m + kLeast);
     } else {
-      break;
+      return best;
     }
   }
-  return best;
 }
 
 // The share of its length that a step keeps on a slope: 1 / (1 + grade).
@@ -252,7 +252,7 @@ Plane plane_under(const Floor& floor, const LegBones& leg, const vec3& heel_m, d
   const double length = track.length_m, half = leg.half_width_m;
   const auto height = [&](double a, double c) {  // of the ground, shares of length and half width
     const vec3 p = heel_m + track.along * (a * length) + track.across * (c * half);
-    return ground_at(floor, p.x, std::clamp(p.z, piece.from_m + kBeside_m, piece.to_m - kBeside_m))
+    return ground_at(floor, p.x, std::clamp(p.z, piece.from_m + kLeast, piece.to_m - kLeast))
         .height_m;
   };
   const std::array<double, 4> corner = {height(0, 1), height(0, -1), height(1, 1), height(1, -1)};
@@ -634,7 +634,7 @@ Wanted wanted_raise(const Tables& tables, const Floor& floor, const PlannedFligh
     for (vec3& p : sole) {
       p.z += moved;
       if (flight.stays())
-        p.z = std::clamp(p.z, flight.begin.from_m + kBeside_m, flight.begin.to_m - kBeside_m);
+        p.z = std::clamp(p.z, flight.begin.from_m + kLeast, flight.begin.to_m - kLeast);
     }
     const auto ground = heights_at(floor, sole);
     const SolePoints& from = flight.over_until != 0 && !crosses ? sole : flight.base[i];

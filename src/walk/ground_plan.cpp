@@ -155,18 +155,17 @@ double cost_of(const Floor& floor, const Step& step, const Stretch& piece) noexc
 // Tries the pieces from the one of the wanted place back to the standing foot's. If both are the
 // same piece, and its edge stops the step, it also tries the piece beyond this edge.
 Stretch best_piece(const Floor& floor, const Step& step, const Stretch* settled) noexcept {
-  constexpr int kMostPieces = 8;  // compared
-  constexpr double kStay = 0.1;   // cost by which another piece than `settled` has to be cheaper
+  constexpr double kStay = 0.1;  // cost by which another piece than `settled` has to be cheaper
   const double middle = step.sole.middle_m(), stands = step.from_m.z + middle;
   Stretch piece = piece_at(floor, step.wanted_m.z + middle), best = piece;
   if (piece.from_m == step.stands.from_m) {
     const Room room = room_on(piece, step.sole, step.leg_m);
     const double z = std::clamp(step.wanted_m.z, room.low_m, room.high_m), dz = z - step.wanted_m.z;
     if (is_stuck(step, step.length_m() + step.forward.z * dz))
-      piece = piece_at(floor, dz > 0.0 ? piece.from_m - kBeside_m : piece.to_m + kBeside_m);
+      piece = piece_at(floor, dz > 0.0 ? piece.from_m - kLeast : piece.to_m + kLeast);
   }
   double least = std::numeric_limits<double>::infinity();
-  for (int n = 0; n < kMostPieces; ++n) {
+  for (;;) {
     double cost = cost_of(floor, step, piece);
     if (settled && piece.from_m == settled->from_m) cost -= kStay;
     if (cost < least) {
@@ -681,9 +680,8 @@ void make_up_for_lacks(const Wanted& beside, double size, Spline& shift) noexcep
     }
     if (at == 0) return;
     const int k = std::clamp((at * kKnotsOfFlight + kProbes / 2) / kProbes, 1, kRoomKnots) - 1;
-    const double weight = weight_of(k, share_at(at));
-    if (weight < kLeast) return;
-    shift[k] = std::clamp(shift[k] + lacks / weight, -kMostShift_m * size, kMostShift_m * size);
+    shift[k] = std::clamp(shift[k] + lacks / weight_of(k, share_at(at)), -kMostShift_m * size,
+                          kMostShift_m * size);
   }
 }
 
@@ -763,11 +761,11 @@ RoomPlan plan_over(const Tables& tables, const Floor& floor, const PlannedFlight
 // `raise` and lies before the landing's piece.
 double way_on(const Tables& tables, const Floor& floor, const PlannedFlight& flight, int i,
               double raise) noexcept {
-  constexpr int kMostRisers = 4;  // before the landing's piece
   const double room = kRoomBeside_m * tables.size, least_m = kLeastWanted_m * tables.size;
   const bool ahead = flight.left[i] > 0.0;
   double on = 0.0;
-  for (int risers = 0; risers < kMostRisers; ++risers) {
+  for (bool moves = true; moves;) {
+    moves = false;
     for (std::size_t k = 0; k < flight.sole[i].size(); ++k) {
       const vec3& p = flight.sole[i][k];
       const double z = p.z + on;
@@ -775,6 +773,7 @@ double way_on(const Tables& tables, const Floor& floor, const PlannedFlight& fli
       if (ground_at(floor, p.x, z).height_m <= flight.base[i][k].y + raise + least_m) continue;
       const Stretch piece = piece_at(floor, z);
       on += ahead ? piece.to_m + room - z : piece.from_m - room - z;
+      moves = true;
     }
   }
   return on;

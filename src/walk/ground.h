@@ -131,9 +131,8 @@ void follow_ground(const Tables& tables, const Time<V>& time, const AskedStep<V>
   change.off_ratio.v = anew ? V(-jump) : change.off_ratio.v;
   const auto strikes = both(no(time.flies), state.tick == all<V>(1.0f));
   Off<V>& off = footing.off_ratio;
-  off.x = strikes ? V{} : V(off.x - (size(jump) > most_jump ? jump : V{}));
-  off.v = strikes ? V{} : off.v;
-  off.a = strikes ? V{} : off.a;
+  off.x = off.x - (size(jump) > most_jump ? jump : V{});
+  off = chosen(strikes, Off<V>{}, off);
   fade(time.flies ? all<V>(1.0f) : V(state.roll_ticks - state.tick + 1.0f), off);
   set_ratio_on_ground(change, state, footing, landing);
 }
@@ -298,7 +297,7 @@ void move_hips_ground(const Tables& tables, const Time<V>& time, const Landing<V
       plans ? (falls ? V(early_m + (1.0f - end_share) * drop_m) : V{}) : footing.yield_m;
   const V s = now.share, left = 1.0f - s, per_tick = s > V{} ? V(1.0f / now.ticks) : V{},
           down_m = footing.drop_m * per_tick;
-  off = {waits ? off.x : faded.x, waits ? off.v : faded.v, waits ? off.a : faded.a};
+  off = chosen(waits, off, faded);
   hips.x = waits ? hips.x : V(footing.level_m + off.x - footing.drop_m * smoother(s));
   hips.v = waits ? V{} : V(off.v - down_m * 30.0f * s * s * left * left);
   hips.a = waits ? V{} : V(off.a - down_m * per_tick * 60.0f * s * left * (1.0f - 2.0f * s));

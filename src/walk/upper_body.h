@@ -92,15 +92,16 @@ void follow_rails(const Tables& tables, const Vec<Floats<kWidth>>& hips_m,
                            lane(of_hand(styled, side, kRailSide), w);
       const vec3 under(origin.x_m + frame.cos * x + frame.sin * z + aside * at.cos, 0.0,
                        origin.z_m + frame.cos * z - frame.sin * x - aside * at.sin);
-      double sum = 0.0, weights = 0.0;
+      double sum = 0.0;
       for (int i = -kProbes; i <= kProbes; ++i) {
         const double weight = kProbes + 1.0 - std::abs(i),
                      along = i * static_cast<double>(kProbe_m * tables.size);
         sum += weight *
                ground_height(tables, block.placed[w], under + vec3(at.sin, 0.0, at.cos) * along);
-        weights += weight;
       }
-      set_lane(static_cast<float>(sum / weights - origin.y_m), w, mean_m);
+      // The weights' sum is a square.
+      set_lane(static_cast<float>(sum / ((kProbes + 1.0) * (kProbes + 1.0)) - origin.y_m), w,
+               mean_m);
     }
     Smoothed<V> next = ground_m;
     follow(mean_m, tables.rail, next);

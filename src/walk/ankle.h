@@ -9,9 +9,8 @@ namespace gaitpad {
 namespace {
 
 // Ankles bend up to 38 degrees, for people's reach 35 to 40 with a bent knee. The limit is rounded
-// over 6 degrees, and over 12 in flight.
-inline constexpr float kMostBent_rad = 0.66322512f, kSoftBent_rad = 0.10471976f,
-                       kSoftFlying_rad = 0.20943951f;
+// over 6 degrees, and over twice as many in flight.
+inline constexpr float kMostBent_rad = 0.66322512f, kSoftBent_rad = 0.10471976f;
 // Eased by at most 40 degrees: beyond that a leg that cannot reach its foot turned it ever farther.
 inline constexpr float kMostEased_rad = 0.69813170f;
 
@@ -54,7 +53,7 @@ void ease_ankle(const Tables& tables, const Time<V>& time, const Stride<V>& stri
   const V beyond = k == 0 ? most(V(since - cycles - kUntilStrike), V{}) : V{},
           rises = heel_rise(tables, right, V(phase - beyond), no(Mask<V>{}), change),
           may = too_early ? V{} : V(begun * rises);
-  const V soft = chosen<V>(flies, kSoftFlying_rad, kSoftBent_rad),
+  const V soft = chosen<V>(flies, 2.0f * kSoftBent_rad, kSoftBent_rad),
           excess = least(soft_positive(bent, soft), all<V>(kMostEased_rad)) * (flies ? all<V>(1.0f)
                                                                                : stands ? may
                                                                                         : V{});
@@ -70,29 +69,15 @@ void ease_ankle(const Tables& tables, const Time<V>& time, const Stride<V>& stri
         (foot.heel_m.y - feet.base_m) * (is_uneven(tables) ? upright(footing.print) : all<V>(1.0f));
     Foot<V> down = foot;
     point_down(time, sole, yaw, heel_m, excess, down);
-    risen.heel_m = chosen(flies, down.heel_m, risen.heel_m);
-    risen.toe_m = chosen(flies, down.toe_m, risen.toe_m);
-    risen.turn = chosen(flies, down.turn, risen.turn);
-    risen.pitch_rad = flies ? down.pitch_rad : risen.pitch_rad;
+    put_where<V>(flies, down, risen);
   }
   // Solve the leg again from its first start, so that its knee does not swivel away.
-  V start_rad[kLegAngles], off_rad[kLegAngles];
-  set_table_angles(tables, right, stride, k, start_rad);
-  std::copy_n(begun_rad, kLegAngles, off_rad);
-  const Turn<V> to_pelvis = back(pelvis.turn);
-  const Vec<V> ankle_m = to_pelvis * (ankle_of(risen, sole) - pelvis.place_m - pelvis.hip_m[k]);
-  const Leg<V> again = solve_leg<V>(of_leg<V>(tables, right, &LegBones::thigh_m),
-                                    of_leg<V>(tables, right, &LegBones::shank_m), ankle_m,
-                                    to_pelvis * risen.turn, start_rad, off_rad);
-  foot.heel_m = chosen(eases, risen.heel_m, foot.heel_m);
-  foot.toe_m = chosen(eases, risen.toe_m, foot.toe_m);
-  foot.turn = chosen(eases, risen.turn, foot.turn);
-  foot.pitch_rad = eases ? risen.pitch_rad : foot.pitch_rad;
-  leg.hip = chosen(eases, again.hip, leg.hip);
-  leg.knee = chosen(eases, again.knee, leg.knee);
-  leg.ankle = chosen(eases, again.ankle, leg.ankle);
-  for (int j = 0; j < kLegAngles; ++j)
-    state.leg_rad[k][j] = eases ? off_rad[j] : state.leg_rad[k][j];
+  LegGoal<V> goal;
+  set_goal(tables, time, stride, k, pelvis, ankle_of(risen, sole), risen.turn, begun_rad, goal);
+  const Leg<V> again = solve_leg(goal);
+  put_where<V>(eases, risen, foot);
+  pose_leg(eases, again, leg);
+  put_where<V>(eases, goal.off_rad, state.leg_rad[k]);
 }
 
 template <class V>
@@ -104,7 +89,7 @@ void ease_ankles(const Tables& tables, const Time<V>& time, const Stride<V>& str
     const V bent =
         -(stride.leg_rad[k][4] + stand_rad<V>(tables, is_right(time, k), 4) + state.leg_rad[k][4]) -
         kMostBent_rad;
-    if (!any(bent > all<V>(-kSoftFlying_rad))) continue;
+    if (!any(bent > all<V>(-2.0f * kSoftBent_rad))) continue;
     ease_ankle(tables, time, stride, phase, bent, k, pelvis, change, footing, state, feet,
                begun_rad[k], legs[k]);
   }

@@ -8,24 +8,23 @@
 namespace gaitpad {
 namespace {
 
-enum : int { kShoulderXAt, kShoulderZAt, kShoulderYAt, kElbowAt, kWristXAt, kWristZAt };
 // An arm to be solved. All of its members are numbers V, of arms side by side.
 template <class N>
 struct ArmChain {
   using V = N;
-  static constexpr int kDofs = kArmAngles, dofs = kArmAngles;
+  static constexpr int dofs = kArmDofs;
   V solves{};  // 1: solve it
   Vec<V> upper_m, fore_m, grip_m, goal_m;
   V has_height{};  // 1: the hand also goes to the height of its goal
-  V weight[kArmAngles]{}, min_rad[kArmAngles]{}, max_rad[kArmAngles]{}, angle_rad[kArmAngles]{};
+  V weight[kArmDofs]{}, min_rad[kArmDofs]{}, max_rad[kArmDofs]{}, angle_rad[kArmDofs]{};
 
   struct Place {
-    Vec<V> axis[kArmAngles], elbow_m, wrist_m, end_m;
+    Vec<V> axis[kArmDofs], elbow_m, wrist_m, end_m;
     V error_m[3];
   };
-  void place(const V (&angle)[kArmAngles], Place& to) const noexcept {
-    V s[kArmAngles], c[kArmAngles];
-    for (int j = 0; j < kArmAngles; ++j) sin_cos(angle[j], s[j], c[j]);
+  void place(const V (&angle)[kArmDofs], Place& to) const noexcept {
+    V s[kArmDofs], c[kArmDofs];
+    for (int j = 0; j < kArmDofs; ++j) sin_cos(angle[j], s[j], c[j]);
     Axes<V> f = axes_xz(s, c);
     to.axis[0] = {all<V>(1.0f), V{}, V{}};
     to.axis[1] = f.z;
@@ -43,8 +42,8 @@ struct ArmChain {
     const Vec<V> off = goal_m - to.end_m;
     to.error_m[0] = off.x, to.error_m[1] = off.y * has_height, to.error_m[2] = off.z;
   }
-  void set_columns(const Place& at, V (&column)[kArmAngles][3]) const noexcept {
-    for (int j = 0; j < kArmAngles; ++j) {
+  void set_columns(const Place& at, V (&column)[kArmDofs][3]) const noexcept {
+    for (int j = 0; j < kArmDofs; ++j) {
       const Vec<V> arm = j < 3 ? at.end_m : at.end_m - (j == 3 ? at.elbow_m : at.wrist_m),
                    moves = cross(at.axis[j], arm);
       column[j][0] = moves.x, column[j][1] = moves.y * has_height, column[j][2] = moves.z;
@@ -56,7 +55,7 @@ template <class V>
 void solve_arms(ArmChain<V> (&arms)[2]) noexcept {
   constexpr int kNumbers = sizeof(ArmChain<float>) / sizeof(float);
   const Mask<V> solves[2] = {arms[0].solves != V{}, arms[1].solves != V{}};
-  work_packed<kNumbers, kNumbers - kArmAngles>(solves, arms, [](auto& packed) {
+  work_packed<kNumbers, kNumbers - kArmDofs>(solves, arms, [](auto& packed) {
     solve_chains(packed, packed.solves != decltype(packed.solves){}, packed.angle_rad);
   });
 }
@@ -103,20 +102,20 @@ void take_arm(const ArmBones& bones, const Turn<V>& shoulder, const V& is, const
   arm.upper = upper_joint * every<V>(bones.hanging);
   ArmChain<V>& chain = arm.chain;
   V* const a = chain.angle_rad;
-  angles_xzy(back(arm.base) * arm.upper, a[kShoulderXAt], a[kShoulderZAt], a[kShoulderYAt]);
+  angles_xzy(back(arm.base) * arm.upper, a[kShoulderX], a[kShoulderZ], a[kShoulderY]);
   const Turn<V> to_upper = back(arm.upper);
   chain.upper_m = to_upper * (elbow_m - arm.shoulder_m);
   const Vec<V> fore_m = place_m - elbow_m, in_upper = to_upper * fore_m;
-  a[kElbowAt] = arc_of(V(-in_upper.z), V(-in_upper.y));
-  a[kWristXAt] = a[kWristZAt] = V{};
+  a[kElbowX] = arc_of(V(-in_upper.z), V(-in_upper.y));
+  a[kWristX] = a[kWristZ] = V{};
   V sine, cosine;
-  sin_cos(V(0.5f * a[kElbowAt]), sine, cosine);
+  sin_cos(V(0.5f * a[kElbowX]), sine, cosine);
   const Turn<V> to_fore = back(arm.upper * Turn<V>{cosine, sine, V{}, V{}});
   chain.fore_m = to_fore * fore_m;
   arm.fore_rest = to_fore * elbow;
   arm.hand_rest = to_fore * turn;
   chain.grip_m = arm.hand_rest * every<V>(bones.grip_m);
-  for (int j = 0; j < kArmAngles; ++j) {
+  for (int j = 0; j < kArmDofs; ++j) {
     chain.min_rad[j] = all<V>(bones.min_rad[j]);
     chain.max_rad[j] = all<V>(bones.max_rad[j]);
     chain.weight[j] = all<V>(1.0f);
@@ -130,8 +129,8 @@ void write_arm(const ArmBones& bones, const V& is, const Arm<V>& arm, const Pose
     sin_cos(V(0.5f * angle_rad), sine, cosine);
   };
   V es, ec, xs, xc, zs, zc;
-  half_turn(a[kElbowAt], es, ec), half_turn(a[kWristXAt], xs, xc), half_turn(a[kWristZAt], zs, zc);
-  const Turn<V> upper = arm.base * turn_xzy(a[kShoulderXAt], a[kShoulderZAt], a[kShoulderYAt]),
+  half_turn(a[kElbowX], es, ec), half_turn(a[kWristX], xs, xc), half_turn(a[kWristZ], zs, zc);
+  const Turn<V> upper = arm.base * turn_xzy(a[kShoulderX], a[kShoulderZ], a[kShoulderY]),
                 fore = upper * Turn<V>{ec, es, V{}, V{}},
                 hand = fore * Turn<V>{xc, xs, V{}, V{}} * Turn<V>{zc, V{}, V{}, zs};
   Turn<V> above = arm.above;
@@ -157,10 +156,9 @@ void write_arm(const ArmBones& bones, const V& is, const Arm<V>& arm, const Pose
 
 template <class V>
 Mask<V> has_uneven_arm(const Styled<V>& styled, int side) noexcept {
-  const Smoothed<V>* weight = styled.body + kArmWeight + kArmAngles * side;
+  const Smoothed<V>* weight = styled.body + kArmWeight + kArmDofs * side;
   V low = weight[0].x, high = low;
-  for (int j = 1; j < kArmAngles; ++j)
-    low = least(low, weight[j].x), high = most(high, weight[j].x);
+  for (int j = 1; j < kArmDofs; ++j) low = least(low, weight[j].x), high = most(high, weight[j].x);
   return high - low >= all<V>(kEvenWeights);
 }
 enum : int { kCarry, kCarryX, kCarryY, kCarryZ, kRail, kRailHeight, kRailSide, kHandNumbers };
@@ -182,10 +180,10 @@ template <class V>
 void stiffen_arm(const ArmBones& bones, const Styled<V>& styled, int side, const Mask<V>& uneven,
                  const Vec<V>& own_m, Arm<V>& arm) noexcept {
   ArmChain<V>& chain = arm.chain;
-  for (int j = 0; j < kArmAngles; ++j)
-    chain.weight[j] = uneven ? styled.body[kArmWeight + kArmAngles * side + j].x : all<V>(1.0f);
-  make_relative(kArmAngles, chain.weight);
-  for (int j = 0; j < kArmAngles; ++j)
+  for (int j = 0; j < kArmDofs; ++j)
+    chain.weight[j] = uneven ? styled.body[kArmWeight + kArmDofs * side + j].x : all<V>(1.0f);
+  make_relative(kArmDofs, chain.weight);
+  for (int j = 0; j < kArmDofs; ++j)
     chain.angle_rad[j] = chain.angle_rad[j] +
                          held_back(chain.weight[j]) * (bones.middle_rad[j] - chain.angle_rad[j]);
   chain.goal_m = back(arm.base) * (own_m - arm.shoulder_m);
@@ -217,13 +215,13 @@ void aim_arm(const Mask<V>& where, ArmChain<V>& chain) noexcept {
   const Turn<V> turn =
       unit(Turn<V>{most(V(1.0f + dot(from, to)), all<V>(1e-6f)), axis.x, axis.y, axis.z});
   V *const a = chain.angle_rad, x, z, y;
-  angles_xzy(turn * turn_xzy(a[kShoulderXAt], a[kShoulderZAt], a[kShoulderYAt]), x, z, y);
+  angles_xzy(turn * turn_xzy(a[kShoulderX], a[kShoulderZ], a[kShoulderY]), x, z, y);
   const auto aims = both(where, both(far > all<V>(1e-6f), goal_far > all<V>(1e-6f)));
-  const V next_x = a[kShoulderXAt] + within_half_turn(V(x - a[kShoulderXAt])),
-          next_y = a[kShoulderYAt] + within_half_turn(V(y - a[kShoulderYAt]));
-  a[kShoulderXAt] = aims ? next_x : a[kShoulderXAt];
-  a[kShoulderZAt] = aims ? z : a[kShoulderZAt];
-  a[kShoulderYAt] = aims ? next_y : a[kShoulderYAt];
+  const V next_x = a[kShoulderX] + within_half_turn(V(x - a[kShoulderX])),
+          next_y = a[kShoulderY] + within_half_turn(V(y - a[kShoulderY]));
+  a[kShoulderX] = aims ? next_x : a[kShoulderX];
+  a[kShoulderZ] = aims ? z : a[kShoulderZ];
+  a[kShoulderY] = aims ? next_y : a[kShoulderY];
 }
 
 // The frames in which hands are held. A carrying hand is placed in the upright frame that turns
@@ -246,7 +244,7 @@ void hold_hand(const Tables& tables, const Styled<V>& styled, int side, const Ma
                   kAtRail_rad[3] = {25 * kDegree_rad, 4 * kDegree_rad, 5 * kDegree_rad};
   // Weights of a held arm: shoulder and elbow bring the hand to its place, and the wrist hardly
   // takes part. A hand held by the share kFullFrom has all of them.
-  constexpr float kHeldWeight[kArmAngles] = {1.0f, 1.0f, 0.7f, 1.0f, 0.25f, 0.25f};
+  constexpr float kHeldWeight[kArmDofs] = {1.0f, 1.0f, 0.7f, 1.0f, 0.25f, 0.25f};
   constexpr float kFullFrom = 0.1f;
   const float outwards = side == kLeftSide ? 1.0f : -1.0f;
   const V carry = within(of_hand(styled, side, kCarry), 0.0f, 1.0f),
@@ -286,21 +284,20 @@ void hold_hand(const Tables& tables, const Styled<V>& styled, int side, const Ma
           cosine =
               within(V((far2 - a * a - b * b) / most(V(2.0f * a * b), all<V>(1e-6f))), -1.0f, 1.0f),
           bend = arc_of(V(root(V(1.0f - cosine * cosine))), cosine);
-  const V start[kArmAngles] = {
-      mix(all<V>(kCarrying_rad[0]), all<V>(kAtRail_rad[0]), rail),
-      outwards * mix(all<V>(kCarrying_rad[1]), all<V>(kAtRail_rad[1]), rail),
-      outwards * mix(all<V>(kCarrying_rad[2]), all<V>(kAtRail_rad[2]), rail),
-      -bend,
-      V{},
-      V{}};
+  const V start[kArmDofs] = {mix(all<V>(kCarrying_rad[0]), all<V>(kAtRail_rad[0]), rail),
+                             outwards * mix(all<V>(kCarrying_rad[1]), all<V>(kAtRail_rad[1]), rail),
+                             outwards * mix(all<V>(kCarrying_rad[2]), all<V>(kAtRail_rad[2]), rail),
+                             -bend,
+                             V{},
+                             V{}};
   const V shows = smooth(0.0f, kFullFrom, held);
-  for (int j = 0; j < kArmAngles; ++j) {
+  for (int j = 0; j < kArmDofs; ++j) {
     const V angle = chain.angle_rad[j] + held * (start[j] - chain.angle_rad[j]),
             weight = chain.weight[j] * (1.0f + shows * (kHeldWeight[j] - 1.0f));
     chain.angle_rad[j] = holds_it ? angle : chain.angle_rad[j];
     chain.weight[j] = weight;
   }
-  make_relative(kArmAngles, chain.weight);
+  make_relative(kArmDofs, chain.weight);
   chain.goal_m = goal_m;
   chain.has_height = all<V>(1.0f);
   aim_arm(holds_it, chain);

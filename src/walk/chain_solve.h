@@ -74,7 +74,7 @@ void step_within(const Chain& chain, const V (&column)[kDofs][3], const V (&angl
 }
 
 // Solves the chains that are `open` and leaves the best angles found. A Chain has the number type
-// V, kDofs and dofs (the most and its own number of angles), weight (the greatest is 1), min_rad,
+// V, dofs (its number of angles, at most kDofs), weight (the greatest is 1), min_rad,
 // max_rad, a type Place with error_m (0 in rows that do not count), place(), set_columns().
 template <class Chain, class V, std::size_t kDofs>
 void solve_chains(const Chain& chain, Mask<V> open, V (&angle_rad)[kDofs]) noexcept {

@@ -22,14 +22,9 @@ void come_to_tables(const Tables& tables, Change<V>& change) noexcept {
 template <class V>
 Leg<V> leg_of_tables(const Tables& tables, const Mask<V>& right, const Stride<V>& stride,
                      int k) noexcept {
-  V table_rad[kLegAngles], sine[kLegAngles], cosine[kLegAngles];
+  V table_rad[kLegAngles];
   set_table_angles(tables, right, stride, k, table_rad);
-  for (int j = 0; j < kLegAngles; ++j) sin_cos_small(V(0.5f * table_rad[j]), sine[j], cosine[j]);
-  Leg<V> leg;
-  leg.hip = turn_of_halves(sine, cosine);
-  leg.knee = {cosine[3], sine[3], V{}, V{}};
-  leg.ankle = turn_of_halves(sine + 4, cosine + 4);
-  return leg;
+  return leg_at(table_rad);
 }
 
 // A walk that the tables alone pose begins anew with its legs and its upper body, should it come
@@ -78,7 +73,7 @@ template <int kWidth, class PoseInFull>
     leg.failed = both(leg.failed, no(alone));
     leg.more_pitch_rad *= 1.0f - share;
   }
-  write_data(tables, data_read(tables, tick, swing, block.state), share, poses);
+  write_data(tables, data_read(tables, tick, {swing, swing}, block.state), share, poses);
 }
 
 }  // namespace

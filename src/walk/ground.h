@@ -131,9 +131,8 @@ void follow_ground(const Tables& tables, const Time<V>& time, const AskedStep<V>
   change.off_ratio.v = anew ? V(-jump) : change.off_ratio.v;
   const auto strikes = both(no(time.flies), state.tick == all<V>(1.0f));
   Off<V>& off = footing.off_ratio;
-  off.x = strikes ? V{} : V(off.x - (size(jump) > most_jump ? jump : V{}));
-  off.v = strikes ? V{} : off.v;
-  off.a = strikes ? V{} : off.a;
+  off.x = off.x - (size(jump) > most_jump ? jump : V{});
+  off = chosen(strikes, Off<V>{}, off);
   fade(time.flies ? all<V>(1.0f) : V(state.roll_ticks - state.tick + 1.0f), off);
   set_ratio_on_ground(change, state, footing, landing);
 }
@@ -298,7 +297,7 @@ void move_hips_ground(const Tables& tables, const Time<V>& time, const Landing<V
       plans ? (falls ? V(early_m + (1.0f - end_share) * drop_m) : V{}) : footing.yield_m;
   const V s = now.share, left = 1.0f - s, per_tick = s > V{} ? V(1.0f / now.ticks) : V{},
           down_m = footing.drop_m * per_tick;
-  off = {waits ? off.x : faded.x, waits ? off.v : faded.v, waits ? off.a : faded.a};
+  off = chosen(waits, off, faded);
   hips.x = waits ? hips.x : V(footing.level_m + off.x - footing.drop_m * smoother(s));
   hips.v = waits ? V{} : V(off.v - down_m * 30.0f * s * s * left * left);
   hips.a = waits ? V{} : V(off.a - down_m * per_tick * 60.0f * s * left * (1.0f - 2.0f * s));
@@ -345,17 +344,20 @@ V rise_with_hips(const Tables& tables, const Mask<V>& right, const V& knee_rad, 
   return higher_m <= -2.0f * hover_m ? V{} : bounded_m;
 }
 
+// The share of a flight at which a foot has climbed a usual riser or a lower one, and from which on
+// a foot that does not land from a height comes to its ground.
+inline constexpr float kClimbed = 0.6f;
+
 // The height from which a flying foot's rise counts, over a line at `base_m`. A line that leads up
 // over a riser is steep; a foot that stopped rising as fast would be thrown up.
 template <class V>
 V climbed_m(const Tables& tables, const Time<V>& time, const V& base_m,
             const Footing<V>& footing) noexcept {
-  constexpr float kClimbs = 0.6f;  // share of the flight, for a usual riser or a lower one
   const V rise_m = footing.landing_y_m - footing.print_y_m;
   const auto climbs = both(time.flies, rise_m > V{});
   const V risers = most(V(rise_m * (1.0f / (kStairRise * tables.leg_m))), all<V>(1.0f)),
           share = time.u * root(risers),
-          even_m = footing.print_y_m + rise_m * smoother(0.0f, kClimbs, share);
+          even_m = footing.print_y_m + rise_m * smoother(0.0f, kClimbed, share);
   return climbs ? least(base_m, even_m) : base_m;
 }
 
@@ -363,11 +365,9 @@ V climbed_m(const Tables& tables, const Time<V>& time, const V& base_m,
 template <class V>
 V rise_in_flight(const Tables& tables, const Time<V>& time, const V& knee_rad, const V& base_m,
                  const Footing<V>& footing) noexcept {
-  // A foot that does not land from a height comes to its ground from this share of the flight on.
-  constexpr float kComesDown = 0.6f;
   const V hover_m = time.flies ? V(0.5f * footing.early_m * smooth(0.0f, 0.5f, time.u)) : V{},
           rise_m = rise_with_hips<V>(tables, time.right, knee_rad, base_m, hover_m, footing);
-  return footing.early_m > V{} ? rise_m : V(rise_m * (1.0f - smoother(kComesDown, 1.0f, time.u)));
+  return footing.early_m > V{} ? rise_m : V(rise_m * (1.0f - smoother(kClimbed, 1.0f, time.u)));
 }
 
 // The pitch of a foot on its toe that lifts the ankle by another `rise_m`.

@@ -45,8 +45,9 @@ struct Frame {
 // --- Footholds -----------------------------------------------------------------------------------
 
 constexpr double kLeastStep = 0.05;  // in legs: shorter steps count as this long
-constexpr double kBeside_m = 1e-6;   // a place so near to a riser is certainly on one side of it
-constexpr double kLeast = 1e-6;      // metres or weights: not to divide by 0
+// Metres or weights: a place so near to a riser is certainly on one side of it, and not to divide
+// by 0.
+constexpr double kLeast = 1e-6;
 
 // The reach of the sole along z from its heel point.
 struct Extent {
@@ -148,7 +149,7 @@ double cost_of(const Floor& floor, const Step& step, const Stretch& piece) noexc
   constexpr double kLongStep = 0.6, kEasyRise = 0.22;  // in legs
   const vec3 place = place_on(step, piece), move = place - wanted_on(step, piece);
   const double middle =
-      std::clamp(place.z + step.sole.middle_m(), piece.from_m + kBeside_m, piece.to_m - kBeside_m);
+      std::clamp(place.z + step.sole.middle_m(), piece.from_m + kLeast, piece.to_m - kLeast);
   const double rise =
       std::abs(ground_at(floor, place.x, middle).height_m - step.from_m.y) / step.leg_m;
   const double wanted = step.length_m(), length = glm::dot(place - step.from_m, step.forward),
@@ -170,18 +171,17 @@ double cost_of(const Floor& floor, const Step& step, const Stretch& piece) noexc
 // same piece, and its edge stops the step or brings the feet together, it also tries the piece beyond
 // this edge.
 Stretch best_piece(const Floor& floor, const Step& step, const Stretch* settled) noexcept {
-  constexpr int kMostPieces = 8;  // compared
-  constexpr double kStay = 0.1;   // cost by which another piece than `settled` has to be cheaper
+  constexpr double kStay = 0.1;  // cost by which another piece than `settled` has to be cheaper
   const double middle = step.sole.middle_m(), stands = step.from_m.z + middle;
   Stretch piece = piece_at(floor, step.wanted_m.z + middle), best = piece;
   if (piece.from_m == step.stands.from_m) {
     const Room room = room_on(piece, step.sole, step.leg_m);
     const double z = std::clamp(step.wanted_m.z, room.low_m, room.high_m), dz = z - step.wanted_m.z;
     if (is_stuck(step, step.length_m() + step.forward.z * dz) || crowds_m(step, piece) > 0.0)
-      piece = piece_at(floor, dz > 0.0 ? piece.from_m - kBeside_m : piece.to_m + kBeside_m);
+      piece = piece_at(floor, dz > 0.0 ? piece.from_m - kLeast : piece.to_m + kLeast);
   }
   double least = std::numeric_limits<double>::infinity();
-  for (int n = 0; n < kMostPieces; ++n) {
+  for (;;) {
     double cost = cost_of(floor, step, piece);
     if (settled && piece.from_m == settled->from_m) cost -= kStay;
     if (cost < least) {
@@ -189,14 +189,13 @@ Stretch best_piece(const Floor& floor, const Step& step, const Stretch* settled)
       best = piece;
     }
     if (stands < piece.from_m) {
-      piece = piece_at(floor, piece.from_m - kBeside_m);
+      piece = piece_at(floor, piece.from_m - kLeast);
     } else if (stands > piece.to_m) {
-      piece = piece_at(floor, piece.to_m + kBeside_m);
+      piece = piece_at(floor, piece.to_m + kLeast);
     } else {
-      break;
+      return best;
     }
   }
-  return best;
 }
 
 // The share of its length that a step keeps on a slope: 1 / (1 + grade).
@@ -268,7 +267,7 @@ Plane plane_under(const Floor& floor, const LegBones& leg, const vec3& heel_m, d
   const double length = track.length_m, half = leg.half_width_m;
   const auto height = [&](double a, double c) {  // of the ground, shares of length and half width
     const vec3 p = heel_m + track.along * (a * length) + track.across * (c * half);
-    return ground_at(floor, p.x, std::clamp(p.z, piece.from_m + kBeside_m, piece.to_m - kBeside_m))
+    return ground_at(floor, p.x, std::clamp(p.z, piece.from_m + kLeast, piece.to_m - kLeast))
         .height_m;
   };
   const std::array<double, 4> corner = {height(0, 1), height(0, -1), height(1, 1), height(1, -1)};
@@ -652,7 +651,7 @@ Wanted wanted_raise(const Tables& tables, const Floor& floor, const PlannedFligh
     for (vec3& p : sole) {
       p.z += moved;
       if (flight.stays())
-        p.z = std::clamp(p.z, flight.begin.from_m + kBeside_m, flight.begin.to_m - kBeside_m);
+        p.z = std::clamp(p.z, flight.begin.from_m + kLeast, flight.begin.to_m - kLeast);
     }
     const auto ground = heights_at(floor, sole);
     const SolePoints& from = flight.over_until != 0 && !crosses ? sole : flight.base[i];
@@ -699,9 +698,8 @@ void make_up_for_lacks(const Wanted& beside, double size, Spline& shift) noexcep
     }
     if (at == 0) return;
     const int k = std::clamp((at * kKnotsOfFlight + kProbes / 2) / kProbes, 1, kRoomKnots) - 1;
-    const double weight = weight_of(k, share_at(at));
-    if (weight < kLeast) return;
-    shift[k] = std::clamp(shift[k] + lacks / weight, -kMostShift_m * size, kMostShift_m * size);
+    shift[k] = std::clamp(shift[k] + lacks / weight_of(k, share_at(at)), -kMostShift_m * size,
+                          kMostShift_m * size);
   }
 }
 
@@ -781,11 +779,11 @@ RoomPlan plan_over(const Tables& tables, const Floor& floor, const PlannedFlight
 // `raise` and lies before the landing's piece.
 double way_on(const Tables& tables, const Floor& floor, const PlannedFlight& flight, int i,
               double raise) noexcept {
-  constexpr int kMostRisers = 4;  // before the landing's piece
   const double room = kRoomBeside_m * tables.size, least_m = kLeastWanted_m * tables.size;
   const bool ahead = flight.left[i] > 0.0;
   double on = 0.0;
-  for (int risers = 0; risers < kMostRisers; ++risers) {
+  for (bool moves = true; moves;) {
+    moves = false;
     for (std::size_t k = 0; k < flight.sole[i].size(); ++k) {
       const vec3& p = flight.sole[i][k];
       const double z = p.z + on;
@@ -793,6 +791,7 @@ double way_on(const Tables& tables, const Floor& floor, const PlannedFlight& fli
       if (ground_at(floor, p.x, z).height_m <= flight.base[i][k].y + raise + least_m) continue;
       const Stretch piece = piece_at(floor, z);
       on += ahead ? piece.to_m + room - z : piece.from_m - room - z;
+      moves = true;
     }
   }
   return on;

@@ -65,11 +65,39 @@ Turn<V> turn_of_halves(const V* sine, const V* cosine) noexcept {
           k * cosine[2] + i * sine[2]};
 }
 
-// Goals are seen from the hip joint in the pelvis' frame. The leg starts at table_rad + off_rad;
-// the changes of its angles are added to `off_rad`.
+// A leg in a pose: the turns of its joints.
 template <class V>
-Leg<V> solve_leg(const V& thigh_m, const V& shank_m, const Vec<V>& ankle_m, const Turn<V>& foot,
-                 const V (&table_rad)[kLegAngles], V (&off_rad)[kLegAngles]) noexcept {
+Leg<V> leg_at(const V (&angle_rad)[kLegAngles]) noexcept {
+  V sine[kLegAngles], cosine[kLegAngles];
+  for (int j = 0; j < kLegAngles; ++j) sin_cos_small(V(0.5f * angle_rad[j]), sine[j], cosine[j]);
+  Leg<V> leg;
+  leg.hip = turn_of_halves(sine, cosine);
+  leg.knee = {cosine[3], sine[3], V{}, V{}};
+  leg.ankle = turn_of_halves(sine + 4, cosine + 4);
+  return leg;
+}
+
+// Takes the joints of another leg.
+template <class V>
+void pose_leg(const Mask<V>& where, const Leg<V>& other, Leg<V>& leg) noexcept {
+  leg.hip = chosen(where, other.hip, leg.hip);
+  leg.knee = chosen(where, other.knee, leg.knee);
+  leg.ankle = chosen(where, other.ankle, leg.ankle);
+}
+
+// The input of a solve, seen from the hip joint in the pelvis' frame. All of its members are
+// numbers V, of legs side by side.
+template <class V>
+struct LegGoal {
+  V thigh_m, shank_m;
+  Vec<V> ankle_m;
+  Turn<V> foot;
+  V table_rad[kLegAngles], off_rad[kLegAngles];
+};
+// The leg starts at table_rad + off_rad; the changes of its angles are added to `off_rad`.
+template <class V>
+Leg<V> solve_leg(LegGoal<V>& goal) noexcept {
+  auto& [thigh_m, shank_m, ankle_m, foot, table_rad, off_rad] = goal;
   V hs[kLegAngles], hc[kLegAngles], s[kLegAngles], c[kLegAngles];
   for (int j = 0; j < kLegAngles; ++j) {
     sin_cos_small(V(0.5f * (table_rad[j] + off_rad[j])), hs[j], hc[j]);
@@ -152,18 +180,19 @@ void set_table_angles(const Tables& tables, const Mask<V>& right, const Stride<V
   table_rad[3] = most(table_rad[3], all<V>(kLeastKnee_rad));
 }
 
-// The input of a solve. All of its members are numbers V, of legs side by side.
+// Sets the goal of leg k for a foot that is planned; the leg starts `begun_rad` off the tables.
 template <class V>
-struct LegGoal {
-  V thigh_m, shank_m;
-  Vec<V> ankle_m;
-  Turn<V> foot;
-  V table_rad[kLegAngles], off_rad[kLegAngles];
-};
-template <class V>
-Leg<V> solve_leg(LegGoal<V>& goal) noexcept {
-  return solve_leg<V>(goal.thigh_m, goal.shank_m, goal.ankle_m, goal.foot, goal.table_rad,
-                      goal.off_rad);
+void set_goal(const Tables& tables, const Time<V>& time, const Stride<V>& stride, int k,
+              const Pelvis<V>& pelvis, const Vec<V>& ankle_m, const Turn<V>& foot,
+              const V (&begun_rad)[kLegAngles], LegGoal<V>& goal) noexcept {
+  const auto right = is_right(time, k);
+  const Turn<V> to_pelvis = back(pelvis.turn);
+  goal.thigh_m = of_leg<V>(tables, right, &LegBones::thigh_m);
+  goal.shank_m = of_leg<V>(tables, right, &LegBones::shank_m);
+  goal.ankle_m = to_pelvis * (ankle_m - pelvis.place_m - pelvis.hip_m[k]);
+  goal.foot = to_pelvis * foot;
+  set_table_angles(tables, right, stride, k, goal.table_rad);
+  std::copy_n(begun_rad, kLegAngles, goal.off_rad);
 }
 #ifdef GAITPAD_NO_VECTORS
 inline void solve_both(LegGoal<float> (&goals)[2], Leg<float> (&legs)[2]) noexcept {
@@ -200,23 +229,16 @@ void solve_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stri
   // the largest share with which the swivel returns without swinging: a double root.
   const float keep = 1.0f - std::min(1.0f, kLeak_per_s * tables.tick_s),
               square_root = 1.0f - std::sqrt(1.0f - keep), ahead = square_root * square_root;
-  const Turn<V> to_pelvis = back(pelvis.turn);
   LegGoal<V> goals[2];
   for (int k : {0, 1}) {
-    const auto right = is_right(time, k);
-    LegGoal<V>& goal = goals[k];
-    set_table_angles(tables, right, stride, k, goal.table_rad);
     for (int j = 0; j < kLegAngles; ++j) {
       const V off = state.leg_rad[k][j];
       state.leg_rad[k][j] = keep * off + ahead * (off - state.last_leg_rad[k][j]);
       state.last_leg_rad[k][j] = off;
     }
     if (begun_rad != nullptr) std::copy_n(state.leg_rad[k], kLegAngles, begun_rad[k]);
-    std::copy_n(state.leg_rad[k], kLegAngles, goal.off_rad);
-    goal.thigh_m = of_leg<V>(tables, right, &LegBones::thigh_m);
-    goal.shank_m = of_leg<V>(tables, right, &LegBones::shank_m);
-    goal.ankle_m = to_pelvis * (feet.ankle_m[k] - pelvis.place_m - pelvis.hip_m[k]);
-    goal.foot = to_pelvis * feet.foot[k].turn;
+    set_goal(tables, time, stride, k, pelvis, feet.ankle_m[k], feet.foot[k].turn, state.leg_rad[k],
+             goals[k]);
   }
   if constexpr (kLanes<V> == 1) {
     solve_both(goals, legs);

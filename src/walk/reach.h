@@ -53,9 +53,7 @@ void rise_on_toe(const Sole<V>& sole, const V& pitch_rad, const Mask<V>& rises,
                  Foot<V>& foot) noexcept {
   Foot<V> risen = foot;
   set_pitch(sole, foot.yaw, pitch_rad, rises, risen);
-  foot.pitch_rad = rises ? pitch_rad : foot.pitch_rad;
-  foot.turn = chosen(rises, risen.turn, foot.turn);
-  foot.heel_m = chosen(rises, risen.heel_m, foot.heel_m);
+  put_where<V>(rises, risen, foot);
 }
 
 // A smoothed number this near to its goal is there, as a share of the number or of 1 if it is less:

@@ -116,11 +116,12 @@ struct Rows {
 };
 inline Rows rows_of(const Tables& tables, bool back) noexcept {
   const StrideRow* first = back ? &tables.build.back[0][0] : &tables.build.forward[0][0];
-  return {reinterpret_cast<const float*>(first), (back ? kBackRatios : kRatios) * kRowNumbers};
+  return {reinterpret_cast<const float*>(first),
+          (back ? kBackRatios : kStrideRatios) * kRowNumbers};
 }
 template <class V>
 V last_ratio(const Mask<V>& back) noexcept {
-  return chosen<V>(back, kBackRatios - 1.0f, kRatios - 1.0f);
+  return chosen<V>(back, kBackRatios - 1.0f, kStrideRatios - 1.0f);
 }
 
 // Ratio of the strides whose half is the way of the flying foot, ahead or aside, for a first or a
@@ -190,7 +191,7 @@ struct StrideMix {
   struct OfWalk {
     Rows rows{};  // none: this walk is not read
     int begin = 0, end = 0;
-    float weight[kRatios + 4]{};  // by ratio + 1
+    float weight[kStrideRatios + 4]{};  // by ratio + 1
   };
   OfWalk walk[kLanes<V>];
   // Leaves out all walks but these.
@@ -242,8 +243,7 @@ template <class V>
 Stride<V> read_stride(const Tables& tables, const Time<V>& time, const V& phase, const V& behind,
                       const V& ahead, const V& change, const Reads<V>& reads) noexcept {
   constexpr int kWidth = kLanes<V>, kPart = kLanes<RowPart>, kParts = kRowNumbers / kPart,
-                kPlanParts = kPlanNumbers / kPart;
-  constexpr int kHeelParts = kHeelNumbers <= kPart ? 1 : kHeelNumbers / kPart,
+                kHeelParts = kHeelNumbers / kPart, kPlanParts = kPlanNumbers / kPart,
                 kNumbers = kRowNumbers + 2 * kHeelNumbers;
   const V last = last_ratio<V>(time.back), is_whole = chosen<V>(reads.whole, 1.0f, 0.0f);
   const Knots<V> knots = knots_at(phase), old = ratios_at(behind, last),
@@ -259,7 +259,7 @@ Stride<V> read_stride(const Tables& tables, const Time<V>& time, const V& phase,
     }
     const bool whole = lane(is_whole, w) != 0.0f;
     const int i = static_cast<int>(lane(knots.first, w));
-    float of_old[kRatios + 4] = {}, of_next[kRatios + 4] = {};  // by ratio + 1
+    float of_old[kStrideRatios + 4] = {}, of_next[kStrideRatios + 4] = {};  // by ratio + 1
     for (int k = 0; k < 4; ++k) {
       of_old[static_cast<int>(lane(old.first, w)) + 1 + k] = lane(old.weight[k], w);
       of_next[static_cast<int>(lane(next.first, w)) + 1 + k] = lane(next.weight[k], w);

@@ -63,13 +63,13 @@ Places<kOf> places_of(const WalkModel& model, bool backward) {
   return places;
 }
 
-void fill_harmonics(const Places<kRatios>& places, BuildTables& tables) {
+void fill_harmonics(const Places<kStrideRatios>& places, BuildTables& tables) {
   tables.leg_harmonics = {};
   for (int k = 0; k < kKnots; ++k) {
     for (int n = 0; n < 1 + 2 * kHarmonics; ++n) {
       const SinCos turn = gaitpad::sin_cos(2.0 * kPi * ((n + 1) / 2) * k / kKnots);
       const double of = (n == 0 ? 1.0 : n % 2 == 1 ? 2.0 * turn.cos : 2.0 * turn.sin) / kKnots;
-      for (int r = 0; r < kRatios; ++r)
+      for (int r = 0; r < kStrideRatios; ++r)
         for (int side : {0, 1})
           for (int j = 0; j < kLegAngles; ++j)
             tables.leg_harmonics[r][side][j][n] +=
@@ -189,6 +189,7 @@ void fill_path(const WalkModel& model, BuildTables& tables) {
     }
     tables.path.push_back(to);
   }
+  tables.neck = neck_at - joints + static_cast<int>(tables.path.size());
   tables.chest_standing = wxyz(body.chest_standing);
   tables.head_standing = wxyz(body.head_standing);
   for (const SpineJoint& joint : body.spine) {
@@ -304,10 +305,6 @@ constexpr double kHarderChest = 1.7, kHarderHead = 1.9;
 void fill_hardness(const WalkModel& model, BuildTables& tables) {
   const GaitCycle& cycle = model.cycle;
   const std::size_t joints = cycle.skeleton.joints.size();
-  const int neck =
-      static_cast<int>(std::find_if(tables.path.begin(), tables.path.end(),
-                                    [](const PathJoint& joint) { return joint.of_look > 0.0f; }) -
-                       tables.path.begin());
   // Turns of chest and head by phase.
   std::array<std::array<quat, kKnots>, 2> turn;
   for (int k = 0; k < kKnots; ++k) {
@@ -323,7 +320,7 @@ void fill_hardness(const WalkModel& model, BuildTables& tables) {
     for (int i = 0; i < static_cast<int>(tables.path.size()); ++i) {
       above = above *
               cycle.local[static_cast<std::size_t>(at.index[1]) * joints + tables.path[i].joint];
-      (i < neck ? turn[0][k] : turn[1][k]) = above;
+      (i < tables.neck ? turn[0][k] : turn[1][k]) = above;
     }
   }
   constexpr int kApart = 2;  // knots
@@ -392,11 +389,11 @@ const Filters& kept_filters(double time_scale, double tick_s) noexcept {
 
 std::shared_ptr<const BuildTables> build_tables(const WalkModel& model) {
   auto tables = std::make_shared<BuildTables>();
-  const Places<kRatios> places = places_of<kRatios>(model, false);
+  const Places<kStrideRatios> places = places_of<kStrideRatios>(model, false);
   fill_strides(places, tables->forward);
   fill_harmonics(places, *tables);
   fill_strides(places_of<kBackRatios>(model, true), tables->back);
-  fill_footprints(model, false, kRatios, tables->footprints, tables->most_ratio);
+  fill_footprints(model, false, kStrideRatios, tables->footprints, tables->most_ratio);
   fill_footprints(model, true, kBackRatios, tables->back_footprints, tables->most_back_ratio);
   fill_legs(model, *tables);
   fill_upper_body(model, *tables);

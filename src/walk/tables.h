@@ -25,16 +25,18 @@ struct StrideRow {
   std::array<float, 2> pelvis_span_m;  // the pelvis' lowest and highest place in the stride
   std::array<float, 5> none;           // makes the row a multiple of 8 numbers
 };
-inline constexpr int kRowNumbers = sizeof(StrideRow) / sizeof(float), kHeelNumbers = 8,
-                     kPlanNumbers = 16;  // up to the pelvis' yaw
-static_assert(kRowNumbers == 40 && offsetof(StrideRow, pelvis_tilt_rad) == 4 * kPlanNumbers);
+// Both heels and pitches; and all up to the pelvis' yaw.
+inline constexpr int kRowNumbers = sizeof(StrideRow) / sizeof(float),
+                     kHeelNumbers = offsetof(StrideRow, edge_rad) / sizeof(float),
+                     kPlanNumbers = offsetof(StrideRow, pelvis_tilt_rad) / sizeof(float);
+static_assert(kRowNumbers % 8 == 0 && kHeelNumbers % 8 == 0 && kPlanNumbers % 8 == 0);
 
 // The number of samples of a StrideFamily. Half as many change a knee at the lift-off by 0.17
 // degrees RMS.
-inline constexpr int kKnots = 128, kRatios = 8, kHarmonics = 2;
+inline constexpr int kKnots = 128, kHarmonics = 2;
 template <std::size_t kOf>
 using RowsOf = std::array<std::array<StrideRow, kOf>, kKnots + 3>;  // one before, two after
-using StrideRows = RowsOf<kRatios>;
+using StrideRows = RowsOf<kStrideRatios>;
 using BackRows = RowsOf<kBackRatios>;
 
 // Footprints of the strides, which are exactly linear in the ratio.
@@ -83,7 +85,6 @@ struct SpineBone {
 };
 
 // An arm (ArmBuild): its joints from the pelvis to the wrist.
-inline constexpr int kArmAngles = 6;  // shoulder x, z, y; elbow x; wrist x, z
 struct ArmBones {
   struct Link {
     int joint;
@@ -95,7 +96,7 @@ struct ArmBones {
   bool turns_wrist;                     // the last joint can turn
   std::array<float, 4> hanging, chest;  // w, x, y, z
   std::array<float, 3> grip_m;
-  std::array<float, kArmAngles> min_rad, max_rad, middle_rad;
+  std::array<float, kArmDofs> min_rad, max_rad, middle_rad;
 };
 
 // Numbers of a build.
@@ -107,6 +108,7 @@ struct BuildNumbers {
   bool has_head;        // a head ends the path
   bool on_pelvis;       // the path begins at the pelvis; else at the root, beside it
   int joints, pelvis;
+  int neck;  // index in the path of the first joint of neck and head; its end without a head
   float arm_m, shoulder_height_m;  // UpperBodyModel
   // Bounds of the angular acceleration of chest and head while a walk changes, rad/s^2.
   float most_chest_s2, most_head_s2;
@@ -124,7 +126,8 @@ struct BuildTables : BuildNumbers {
   FootprintLines footprints, back_footprints;
   // Harmonics of the legs' angles over a stride ahead, by ratio, Side and angle: the mean, then
   // cosine and sine of each harmonic.
-  std::array<std::array<std::array<std::array<float, 1 + 2 * kHarmonics>, kLegAngles>, 2>, kRatios>
+  std::array<std::array<std::array<std::array<float, 1 + 2 * kHarmonics>, kLegAngles>, 2>,
+             kStrideRatios>
       leg_harmonics;
   std::array<LegBones, 2> leg;
   std::array<IkChain, 2> chain;  // for IkMode::paper, by Side

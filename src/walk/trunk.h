@@ -117,12 +117,6 @@ struct Trunk {
 inline int joints_of_path(const Tables& tables) noexcept {
   return static_cast<int>(tables.path.size());
 }
-// The index in the path of the first joint of neck and head; behind its end without a head.
-inline int neck_of(const Tables& tables) noexcept {
-  int neck = 0;
-  while (neck < joints_of_path(tables) && tables.path[neck].of_look == 0.0f) ++neck;
-  return neck;
-}
 // The turn of a joint's parent.
 template <class V>
 const Turn<V>& below(const Trunk<V>& trunk, int joint) noexcept {
@@ -257,7 +251,7 @@ Turn<V> turn_of(const Vec<V>& v) noexcept {
 // The turns of chest and head from the standing pose, as such vectors in the walker's axes.
 template <class V>
 Vec<V> chest_turn(const Tables& tables, const Turn<V>& heading, const Trunk<V>& trunk) noexcept {
-  return vector_of(back(heading) * below(trunk, neck_of(tables)) *
+  return vector_of(back(heading) * below(trunk, tables.neck) *
                    back(every<V>(tables.chest_standing)));
 }
 template <class V>
@@ -462,7 +456,7 @@ Gaze<V> gaze(const Tables& tables, const Turn<V>& chest, const Vec<V>& direction
 template <class V>
 void look_along(const Tables& tables, const Vec<V>& direction, const V& share, const Turn<V>& own,
                 const Mask<V>& looks, Trunk<V>& trunk) noexcept {
-  const int joints = joints_of_path(tables), neck = neck_of(tables);
+  const int joints = joints_of_path(tables), neck = tables.neck;
   const Gaze<V> to =
       gaze<V>(tables, below(trunk, neck) * back(every<V>(tables.chest_standing)), direction);
   const Turn<V> wanted = between(own, to.head, V(within(share, 0.0f, 1.0f) * to.share));

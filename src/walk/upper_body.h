@@ -92,15 +92,16 @@ void follow_rails(const Tables& tables, const Vec<Floats<kWidth>>& hips_m,
                            lane(of_hand(styled, side, kRailSide), w);
       const vec3 under(origin.x_m + frame.cos * x + frame.sin * z + aside * at.cos, 0.0,
                        origin.z_m + frame.cos * z - frame.sin * x - aside * at.sin);
-      double sum = 0.0, weights = 0.0;
+      double sum = 0.0;
       for (int i = -kProbes; i <= kProbes; ++i) {
         const double weight = kProbes + 1.0 - std::abs(i),
                      along = i * static_cast<double>(kProbe_m * tables.size);
         sum += weight *
                ground_height(tables, block.placed[w], under + vec3(at.sin, 0.0, at.cos) * along);
-        weights += weight;
       }
-      set_lane(static_cast<float>(sum / weights - origin.y_m), w, mean_m);
+      // The weights' sum is a square.
+      set_lane(static_cast<float>(sum / ((kProbes + 1.0) * (kProbes + 1.0)) - origin.y_m), w,
+               mean_m);
     }
     Smoothed<V> next = ground_m;
     follow(mean_m, tables.rail, next);
@@ -207,10 +208,9 @@ void swing_in_turn(const Tables& tables, const BodyTick<V>& tick, const State<V>
                    const Poses& poses) noexcept {
   // Small beside a walk's: a shoulder that swings by 9 degrees moves the hand by 10 cm to either
   // side. Elbows bend by kBend_rad, and by kBends_rad more where the arm is ahead. A turn carries
-  // one hand forward and one back by kReach_rad, 7 cm.
+  // the outer hand out and forward by kOut_rad, 7 cm, and the other one back.
   constexpr float kSwing_rad = 9.0f * kDegree_rad, kBend_rad = 14.0f * kDegree_rad,
-                  kBends_rad = 5.0f * kDegree_rad, kOut_rad = 6.0f * kDegree_rad,
-                  kReach_rad = 6.0f * kDegree_rad;
+                  kBends_rad = 5.0f * kDegree_rad, kOut_rad = 6.0f * kDegree_rad;
   constexpr float kWhole_rad = 0.13f;  // turn of the chest ahead: as of a turn by 1 rad/s
   constexpr float kWalks = 0.9f;       // of the posture: from here on the data's swing is enough
   const V &ahead_rad = state.chest_ahead_rad.x, own = 1.0f - smooth(0.0f, kWalks, state.posture.x),
@@ -227,7 +227,7 @@ void swing_in_turn(const Tables& tables, const BodyTick<V>& tick, const State<V>
     const float left = side == kLeftSide ? 1.0f : -1.0f;
     const V forward = left * swing, outer = left * ahead_rad < V{} ? all<V>(1.0f) : all<V>(-1.0f),
             out_rad = (0.5f * kOut_rad * left) * carried * (1.0f + outer),
-            reach_rad = kReach_rad * carried * outer;
+            reach_rad = kOut_rad * carried * outer;
     const auto turn = [&](int at, const std::array<float, 4>& axes, const Turn<V>& by) {
       const Turn<V> frame = every<V>(axes), q = read_joint<V>(bones.path[at].joint, is, poses);
       write_where(unit(frame * by * back(frame) * q), bones.path[at].joint, is, poses);
@@ -461,22 +461,22 @@ struct DataRead {
   Knots<V> knots;
   V shown, shoulder[2], elbow[2];
 };
+// `swing`: the factor on the swing of both arms, by Side.
 template <class V>
-void swing_arm(const Tables& tables, int side, const V& swing, DataRead<V>& data) noexcept {
-  constexpr float kSoftElbow = 0.1f;  // of the factor: rounds the limit that keeps elbows bent
-  data.shoulder[side] = swing;
-  data.elbow[side] = soft_least(swing, all<V>(tables.most_elbow_swing[side]), all<V>(kSoftElbow));
-}
-template <class V>
-DataRead<V> data_read(const Tables& tables, const BodyTick<V>& tick, const V& swing,
+DataRead<V> data_read(const Tables& tables, const BodyTick<V>& tick, const V (&swing)[2],
                       const State<V>& state) noexcept {
+  constexpr float kSoftElbow = 0.1f;  // of the factor: rounds the limit that keeps elbows bent
   DataRead<V> data;
   data.knots = knots_at(data_phase(tables, tick.time, tick.phase));
   // A filter comes near to 1 but not to it; a joint that the pose shows fully is read faster.
   constexpr float kWholly = 0.99999f;  // share of the posture that counts as all of it
   const V posture = within(state.posture.x, 0.0f, 1.0f);
   data.shown = tick.shown * (posture > all<V>(kWholly) ? all<V>(1.0f) : posture);
-  for (int side : {0, 1}) swing_arm(tables, side, swing, data);
+  for (int side : {0, 1}) {
+    data.shoulder[side] = swing[side];
+    data.elbow[side] =
+        soft_least(swing[side], all<V>(tables.most_elbow_swing[side]), all<V>(kSoftElbow));
+  }
   return data;
 }
 // A share of the way from a joint's rotation in the pose to another one.
@@ -536,15 +536,14 @@ void write_upper_body(const Tables& tables, const BodyTick<Floats<kWidth>>& of,
   State<V>& state = block.state;
   Styled<V>& styled = block.styled;
   Poise<V>& poise = block.poise;
-  BodyTick<V> tick = of;
-  DataRead<V> data = data_read(tables, tick, swing, state);
-  tick.shown = data.shown;
-  const bool any_style = any(is_styled);
-  for (int side : {0, 1}) {
-    if (!any_style) continue;
-    const V styled_swing = swing * styled.body[kArmSwing + side].x;
-    swing_arm(tables, side, styled.acts != V{} ? styled_swing : swing, data);
+  V swings[2] = {swing, swing};
+  if (any(is_styled)) {
+    for (int side : {0, 1})
+      swings[side] = styled.acts != V{} ? V(swing * styled.body[kArmSwing + side].x) : swing;
   }
+  const DataRead<V> data = data_read(tables, of, swings, state);
+  BodyTick<V> tick = of;
+  tick.shown = data.shown;
   write_data(tables, data, all<V>(1.0f), poses);
   if constexpr (!kPaper) swing_in_turn(tables, of, state, poses);
   const auto is_posed =

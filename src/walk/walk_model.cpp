@@ -299,7 +299,6 @@ vec3 pelvis_turned(const vec3& place_m, double yaw_rad, const vec3& tilt) noexce
 }
 
 void scale_footprints(const StrideScale& to, Footprints& track) noexcept {
-  if (to.length == 1.0 && to.pelvis == 1.0) return;
   track.stride_m *= to.length;
   for (int side : {0, 1})
     track.footprint_m[side] = track.footprint_m[side] * to.length + to.apart_m[side];
@@ -325,7 +324,6 @@ void scale_pelvis(const StrideScale& to, StrideCell& cell) noexcept {
   cell.pelvis_tilt.z *= turns;
 }
 void scale_stride(const StrideScale& to, StrideCell& cell) noexcept {
-  if (to.length == 1.0 && to.pelvis == 1.0) return;
   for (int side : {0, 1})
     cell.foot[side].heel_m = cell.foot[side].heel_m * to.length + to.apart_m[side];
   scale_pelvis(to, cell);
@@ -440,6 +438,7 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
     model.leg[side].toe_off = fraction(cycle.toe_off[side] - cycle.strike[side]);
     model.leg[side].track_m =
         mean_heel(cycle, side).x * ratio + cycle.leg[side].hip_m.x * (character.scale - ratio);
+    model.own_step_m[side] = cycle.step_m[side] * ratio;
   }
   model.share = stage_shares(cycle);
   model.source_step_m = 0.5 * cycle.stride_m * ratio;
@@ -450,7 +449,6 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
   model.rest_lead_m = stand.lead_m;
   model.stand_roll_rad = stand.roll_rad;
   model.stand_rad = stand.angles;
-  for (Side side : {kLeftSide, kRightSide}) model.own_step_m[side] = cycle.step_m[side] * ratio;
   keep_trunk_upright(stand.roll_rad, model.cycle);
   collect_kept_joints(model);
   lay_out_legs(model);

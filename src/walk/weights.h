@@ -32,17 +32,14 @@ struct LegToShare {
   Vec<V> line, side;           // the foot's directions to the toe and to the left, in its own frame
   Turn<V> planned;             // the foot's turn by the plan, in the pelvis' frame
   V angles_rad[kLegAngles]{};  // in: the even pose and what the weights added last; out: the answer
-  Turn<V> hip, ankle;
-  V knee_cosine{}, knee_sine{};  // of half the knee's angle
-  V more_pitch_rad{};            // the foot's pitch beyond its plan
+  V more_pitch_rad{};          // the foot's pitch beyond its plan
 };
-inline constexpr int kShareTakes = offsetof(LegToShare<float>, hip) / sizeof(float),
+inline constexpr int kShareTakes = offsetof(LegToShare<float>, more_pitch_rad) / sizeof(float),
                      kShareGives = offsetof(LegToShare<float>, angles_rad) / sizeof(float);
 
 // One leg in one pose, seen from its hip joint in the pelvis' frame.
 template <class V>
 struct LegPlace {
-  V hs[kLegAngles], hc[kLegAngles];  // sines and cosines of half its angles
   Vec<V> axis[kLegAngles], knee_m, ankle_m, point_m, line, side;
   Vec<V> goal_side, goal_across, goal_along;  // axes of the planned foot; directions of the rows
   V error[6];
@@ -52,7 +49,7 @@ template <class V>
 void place_leg(const LegToShare<V>& leg, float lever_m, LegPlace<V>& place) noexcept {
   V s[kLegAngles], c[kLegAngles];
   for (int j = 0; j < kLegAngles; ++j) {
-    V &hs = place.hs[j], &hc = place.hc[j];
+    V hs, hc;
     sin_cos_small(V(0.5f * leg.angles_rad[j]), hs, hc);
     s[j] = 2.0f * hs * hc;
     c[j] = 1.0f - 2.0f * hs * hs;
@@ -189,11 +186,6 @@ void share_leg(float lever_m, LegToShare<V>& leg) noexcept {
     leg.more_pitch_rad = open ? pitched : leg.more_pitch_rad;
     open = both(open, greatest >= all<V>(kSharedNear_rad));
   }
-  for (int j = 0; j < kLegAngles; ++j)
-    sin_cos_small(V(0.5f * leg.angles_rad[j]), place.hs[j], place.hc[j]);
-  leg.hip = turn_of_halves(place.hs, place.hc);
-  leg.knee_cosine = place.hc[3], leg.knee_sine = place.hs[3];
-  leg.ankle = turn_of_halves(place.hs + 4, place.hc + 4);
 }
 
 // Starts the running means with their values in a steady walk of the present strides: the filters
@@ -214,7 +206,7 @@ void begin_weights(const Tables& tables, const Mask<V>& begins, const Time<V>& t
     twice[h][0] = (once[h][0] + wt * once[h][1]) * q;
     twice[h][1] = (once[h][1] - wt * once[h][0]) * q;
   }
-  const V last = all<V>(kRatios - 1.0f),
+  const V last = all<V>(kStrideRatios - 1.0f),
           y = least(most(V(state.ratio_behind * float(1.0 / kRatioStep)), V{}), last),
           first = least(floored(y), V(last - 1.0f)), share = y - first;
   for (int k : {0, 1}) {
@@ -423,10 +415,7 @@ void weigh_legs(const Tables& tables, const Time<V>& time, const Stride<V>& stri
     for (int j = 0; j < kLegAngles; ++j)
       uneven[k] =
           both(uneven[k], size(V(leg.angles_rad[j] - even_rad[k][j])) < all<V>(kMostShift_rad));
-    legs[k].hip = chosen(uneven[k], leg.hip, legs[k].hip);
-    legs[k].knee =
-        chosen(uneven[k], Turn<V>{leg.knee_cosine, leg.knee_sine, zero, zero}, legs[k].knee);
-    legs[k].ankle = chosen(uneven[k], leg.ankle, legs[k].ankle);
+    pose_leg(uneven[k], leg_at(leg.angles_rad), legs[k]);
     legs[k].more_pitch_rad = uneven[k] ? leg.more_pitch_rad : zero;
     for (int j = 0; j < kLegAngles; ++j)
       keep(uneven[k] ? V(leg.angles_rad[j] - even_rad[k][j]) : zero, weighted.shift_rad[k][j]);

@@ -50,11 +50,10 @@ Angles near(const Angles& angles, test::Random& random, double off_rad) {
   return moved;
 }
 Leg<float> solved(const Goal& goal, const Angles& start, Angles& moved) {
-  float start_rad[kLegAngles], off_rad[kLegAngles]{};
-  std::copy(start.begin(), start.end(), start_rad);
-  const Leg<float> leg =
-      solve_leg<float>(kThigh_m, kShank_m, goal.ankle_m, goal.foot, start_rad, off_rad);
-  for (int j = 0; j < kLegAngles; ++j) moved[j] = start[j] + off_rad[j];
+  LegGoal<float> of{kThigh_m, kShank_m, goal.ankle_m, goal.foot, {}, {}};
+  std::copy(start.begin(), start.end(), of.table_rad);
+  const Leg<float> leg = solve_leg(of);
+  for (int j = 0; j < kLegAngles; ++j) moved[j] = start[j] + of.off_rad[j];
   return leg;
 }
 

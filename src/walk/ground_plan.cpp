@@ -171,7 +171,8 @@ double cost_of(const Floor& floor, const Step& step, const Stretch& piece) noexc
 // same piece, and its edge stops the step or brings the feet together, it also tries the piece beyond
 // this edge.
 Stretch best_piece(const Floor& floor, const Step& step, const Stretch* settled) noexcept {
-  constexpr double kStay = 0.1;  // cost by which another piece than `settled` has to be cheaper
+  constexpr int kMostPieces = 8;  // compared
+  constexpr double kStay = 0.1;   // cost by which another piece than `settled` has to be cheaper
   const double middle = step.sole.middle_m(), stands = step.from_m.z + middle;
   Stretch piece = piece_at(floor, step.wanted_m.z + middle), best = piece;
   if (piece.from_m == step.stands.from_m) {
@@ -181,7 +182,7 @@ Stretch best_piece(const Floor& floor, const Step& step, const Stretch* settled)
       piece = piece_at(floor, dz > 0.0 ? piece.from_m - kLeast : piece.to_m + kLeast);
   }
   double least = std::numeric_limits<double>::infinity();
-  for (;;) {
+  for (int n = 0; n < kMostPieces; ++n) {
     double cost = cost_of(floor, step, piece);
     if (settled && piece.from_m == settled->from_m) cost -= kStay;
     if (cost < least) {
@@ -698,8 +699,9 @@ void make_up_for_lacks(const Wanted& beside, double size, Spline& shift) noexcep
     }
     if (at == 0) return;
     const int k = std::clamp((at * kKnotsOfFlight + kProbes / 2) / kProbes, 1, kRoomKnots) - 1;
-    shift[k] = std::clamp(shift[k] + lacks / weight_of(k, share_at(at)), -kMostShift_m * size,
-                          kMostShift_m * size);
+    const double weight = weight_of(k, share_at(at));
+    if (weight < kLeast) return;
+    shift[k] = std::clamp(shift[k] + lacks / weight, -kMostShift_m * size, kMostShift_m * size);
   }
 }
 
@@ -779,11 +781,11 @@ RoomPlan plan_over(const Tables& tables, const Floor& floor, const PlannedFlight
 // `raise` and lies before the landing's piece.
 double way_on(const Tables& tables, const Floor& floor, const PlannedFlight& flight, int i,
               double raise) noexcept {
+  constexpr int kMostRisers = 4;  // before the landing's piece
   const double room = kRoomBeside_m * tables.size, least_m = kLeastWanted_m * tables.size;
   const bool ahead = flight.left[i] > 0.0;
   double on = 0.0;
-  for (bool moves = true; moves;) {
-    moves = false;
+  for (int risers = 0; risers < kMostRisers; ++risers) {
     for (std::size_t k = 0; k < flight.sole[i].size(); ++k) {
       const vec3& p = flight.sole[i][k];
       const double z = p.z + on;
@@ -791,7 +793,6 @@ double way_on(const Tables& tables, const Floor& floor, const PlannedFlight& fli
       if (ground_at(floor, p.x, z).height_m <= flight.base[i][k].y + raise + least_m) continue;
       const Stretch piece = piece_at(floor, z);
       on += ahead ? piece.to_m + room - z : piece.from_m - room - z;
-      moves = true;
     }
   }
   return on;

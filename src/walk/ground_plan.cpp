@@ -168,8 +168,7 @@ double cost_of(const Floor& floor, const Step& step, const Stretch& piece) noexc
 }
 
 // Tries the pieces from the one of the wanted place back to the standing foot's. If both are the
-// same piece, and its edge stops the step or brings the feet together, it also tries the piece beyond
-// this edge.
+// same piece, and its edge stops the step, it also tries the piece beyond this edge.
 Stretch best_piece(const Floor& floor, const Step& step, const Stretch* settled) noexcept {
   constexpr int kMostPieces = 8;  // compared
   constexpr double kStay = 0.1;   // cost by which another piece than `settled` has to be cheaper
@@ -178,7 +177,7 @@ Stretch best_piece(const Floor& floor, const Step& step, const Stretch* settled)
   if (piece.from_m == step.stands.from_m) {
     const Room room = room_on(piece, step.sole, step.leg_m);
     const double z = std::clamp(step.wanted_m.z, room.low_m, room.high_m), dz = z - step.wanted_m.z;
-    if (is_stuck(step, step.length_m() + step.forward.z * dz) || crowds_m(step, piece) > 0.0)
+    if (is_stuck(step, step.length_m() + step.forward.z * dz))
       piece = piece_at(floor, dz > 0.0 ? piece.from_m - kLeast : piece.to_m + kLeast);
   }
   double least = std::numeric_limits<double>::infinity();

@@ -130,17 +130,18 @@ bool is_stuck(const Step& step, double length_m) noexcept {
   return sign * wanted > kLeastStep * step.leg_m && sign * length_m < kStuck * sign * wanted;
 }
 
-// By how much a place is nearer to the standing foot's line than feet need, if the wanted one is not.
+// By how much a place is nearer to the standing foot's line than feet need, if the wanted one is
+// not.
 double crowds_m(const Step& step, const Stretch& piece) noexcept {
   constexpr double kFeetApart = 0.12;  // in legs
   const double wanted = step.aside_m(wanted_on(step, piece));
-  return std::max(0.0, std::min(kFeetApart * step.leg_m, wanted) -
-                           step.aside_m(place_on(step, piece)));
+  return std::max(0.0,
+                  std::min(kFeetApart * step.leg_m, wanted) - step.aside_m(place_on(step, piece)));
 }
 
 // About the logarithm of the factor by which a piece lengthens or shortens the step, and costs of a
-// step that goes aside, is stuck in place, becomes long, comes to the standing foot's line, rises or
-// overhangs an edge.
+// step that goes aside, is stuck in place, becomes long, comes to the standing foot's line, rises
+// or overhangs an edge.
 double cost_of(const Floor& floor, const Step& step, const Stretch& piece) noexcept {
   // Costs of being stuck, and for each leg aside, beyond a long step, nearer to the standing foot's
   // line than feet need, beyond an easy rise, beyond the highest rise, and of an overhang.

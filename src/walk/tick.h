@@ -538,8 +538,9 @@ void strike(const Tables& tables, const BodyTick<Floats<kWidth>>& tick,
     change_footing(landing, strikes, feet.flat_toe_m.y, footing);
     const V slow = slowness_of(tables, no(time.right), state, footing);
     // Onto stairs, too, hips lead: they would else brake by 10 m/s^2 in the roll.
-    constexpr float kOnto = 1.5f;  // times as slow as the last step
-    is_level = either(slow == all<V>(1.0f), slow > kOnto * change.slowness);
+    constexpr float kGentle = 1.2f, kOnto = 1.5f;  // times a level step's, and the last step's
+    const auto climbs = both(change.slowness<all<V>(kGentle), slow> kOnto * change.slowness);
+    is_level = either(slow == all<V>(1.0f), climbs);
     change.slowness = strikes ? slow : change.slowness;
   }
   // After a late change of plan the step has not yet changed over to its own stride.

@@ -485,10 +485,11 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
   if (any(change.shown != all<V>(1.0f))) show(change.shown, stride);
   if (any(no(runs))) put_where<V>(no(runs), by_clock, stride);
   round_lift_off(tables, time, phase, strides, state, change, stride);
-  if (any(change.turns != V{})) {
+  const auto turns = change.turns != V{};
+  if (any(turns)) {
     const auto numbers = turned_numbers(stride);
     for (std::size_t k = 0; k < numbers.size(); ++k)
-      *numbers[k] = *numbers[k] + (change.turns != V{} ? change.off_turned[k].x : V{});
+      *numbers[k] = turns ? V(*numbers[k] + change.off_turned[k].x) : *numbers[k];
   }
   stride.heel_behind_m = by_clock.heel_behind_m, stride.heel_ahead_m = by_clock.heel_ahead_m;
   stride.heel_high_m = by_clock.heel_high_m;

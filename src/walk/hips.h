@@ -543,17 +543,18 @@ void go_on_from_here(const Tables& tables, const Mask<V>& begins, const State<V>
 // time.
 inline constexpr float kOtherPace = 0.02f, kOtherTime = 0.06f;
 
-// True if a step is asked for with a length that differs by more than `other` of the data's, or
-// with another time of its flight, than the last one of the same foot, `right`.
+// True if a step is asked for with another length, or with another time of its flight, than the
+// last one of the same foot, `right`.
 template <class V>
-Mask<V> has_other_pace(const Tables& tables, const Mask<V>& right, float other, const V& own_m,
+Mask<V> has_other_pace(const Tables& tables, const Mask<V>& right, const V& own_m,
                        const State<V>& state, const Change<V>& change) noexcept {
   // A led step takes time from its roll for its flight. That alone does not lead another step.
   const Stages<V> own = stages_of(tables, change, state, right);
   const V rolls = change.led != V{} ? V(own.roll_s - state.roll_ticks * tables.tick_s) : V{},
           flight_ticks = (own.flight_s + rolls) * (1.0f / tables.tick_s);
-  return either(size(V(by_side<V>(right, state.asked.length_m) - change.stepped_m)) > other * own_m,
-                size(V(state.flight_ticks - flight_ticks)) > kOtherTime * state.flight_ticks);
+  return either(
+      size(V(by_side<V>(right, state.asked.length_m) - change.stepped_m)) > kOtherPace * own_m,
+      size(V(state.flight_ticks - flight_ticks)) > kOtherTime * state.flight_ticks);
 }
 
 // At a strike: decides whether the hips lead the step that begins, which they do if its length or
@@ -575,7 +576,7 @@ void begin_lead(const Tables& tables, const Mask<V>& strikes, const V& phase, co
   change.closing = closes ? all<V>(1.0f) : strikes ? V{} : change.closing;
   auto changes = size(V(asked_m - smoothed_m)) > kOtherPace * own_m;
   if (any(is_level)) {  // on slopes and stairs the ground itself makes steps shorter and slower
-    const auto paces = has_other_pace(tables, no(right), kOtherPace, own_m, state, change);
+    const auto paces = has_other_pace(tables, no(right), own_m, state, change);
     changes = either(changes, both(is_level, paces));
   }
   const auto leads = both(no(rests), either(either(stops, changes), change.catch_ticks != V{}));

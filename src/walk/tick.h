@@ -206,18 +206,15 @@ void change_ends(const Tables& tables, Block<kWidth>& block) noexcept {
                      [&](Block<1>& one, int) { change(one, comes_back); });
 }
 
-// Differences of steps' lengths from which on a walk looks ahead anew. With a fifth, legs jumped by
-// 1.6 degrees a tick^2 in walks by chance; with 0.02 crowds looked twice as often for nothing.
-inline constexpr float kOtherLength = 0.1f;
-
 // True in a flight whose next step is asked for at another pace than the last look ahead assumed.
 // Asks once per knot of the sinking.
 template <class V>
 Mask<V> is_unforeseen(const Tables& tables, const State<V>& state,
                       const Change<V>& change) noexcept {
+  constexpr float kOther = 0.1f;  // of the steps' lengths
   const V asked_m = state.asked.length_m[0] + state.asked.length_m[1],
           part = state.tick / static_cast<float>(sink_knot_ticks(tables));
-  return both(size(V(asked_m - change.foreseen_m)) > kOtherLength * asked_m,
+  return both(size(V(asked_m - change.foreseen_m)) > kOther * asked_m,
               both(state.flies != V{}, part == floored(part)));
 }
 
@@ -595,10 +592,10 @@ void look_where_needed(const Tables& tables, const Time<Floats<kWidth>>& time,
     again = either(again, half);
   } else {
     // Hips must have begun to sink when a step of another pace begins.
-    paces = half;
+    paces = either(lifts, half);
     if (any(paces))
       paces =
-          both(paces, has_other_pace(tables, time.right, kOtherLength,
+          both(paces, has_other_pace(tables, time.right,
                                      own_step_m<V>(tables, time.right, time.back), state, change));
   }
   const auto looks = either(either(is_new, either(both(again, changes), paces)),

@@ -9,8 +9,9 @@ namespace gaitpad {
 namespace {
 
 // Ankles bend up to 38 degrees, for people's reach 35 to 40 with a bent knee. The limit is rounded
-// over 6 degrees, and over twice as many in flight.
-inline constexpr float kMostBent_rad = 0.66322512f, kSoftBent_rad = 0.10471976f;
+// over 6 degrees, and over 12 in flight.
+inline constexpr float kMostBent_rad = 0.66322512f, kSoftBent_rad = 0.10471976f,
+                       kSoftFlying_rad = 0.20943951f;
 // Eased by at most 40 degrees: beyond that a leg that cannot reach its foot turned it ever farther.
 inline constexpr float kMostEased_rad = 0.69813170f;
 
@@ -53,7 +54,7 @@ void ease_ankle(const Tables& tables, const Time<V>& time, const Stride<V>& stri
   const V beyond = k == 0 ? most(V(since - cycles - kUntilStrike), V{}) : V{},
           rises = heel_rise(tables, right, V(phase - beyond), no(Mask<V>{}), change),
           may = too_early ? V{} : V(begun * rises);
-  const V soft = chosen<V>(flies, 2.0f * kSoftBent_rad, kSoftBent_rad),
+  const V soft = chosen<V>(flies, kSoftFlying_rad, kSoftBent_rad),
           excess = least(soft_positive(bent, soft), all<V>(kMostEased_rad)) * (flies ? all<V>(1.0f)
                                                                                : stands ? may
                                                                                         : V{});
@@ -89,7 +90,7 @@ void ease_ankles(const Tables& tables, const Time<V>& time, const Stride<V>& str
     const V bent =
         -(stride.leg_rad[k][4] + stand_rad<V>(tables, is_right(time, k), 4) + state.leg_rad[k][4]) -
         kMostBent_rad;
-    if (!any(bent > all<V>(-2.0f * kSoftBent_rad))) continue;
+    if (!any(bent > all<V>(-kSoftFlying_rad))) continue;
     ease_ankle(tables, time, stride, phase, bent, k, pelvis, change, footing, state, feet,
                begun_rad[k], legs[k]);
   }

@@ -26,7 +26,7 @@ bool is_open_step(const Tables& tables, const Block<1>& block) noexcept {
 Placement reachable_step(const Tables& tables, const Block<1>& block,
                          const Placement& heel) noexcept {
   // From heel to heel, in legs: feet neither touch nor do a split.
-  constexpr double kAhead = 0.95, kLeastAside = 0.07, kAsideOrBack = 0.45;
+  constexpr double kAhead = 0.95, kBack = 0.45, kLeastAside = 0.07, kMostAside = 0.45;
   constexpr double kMostTurn_rad = 0.7;  // between both feet: about the range of the hip
   const bool right = block.state.right_swings != 0.0f, backward = block.state.backward != 0.0f;
   const double leg_m = tables.leg_m, outwards = right ? -1.0 : 1.0, way = backward ? -1.0 : 1.0,
@@ -34,8 +34,8 @@ Placement reachable_step(const Tables& tables, const Block<1>& block,
                         own_step_m<float>(tables, right, backward),
                ahead_m = std::min(kAhead * leg_m, most_m);
   const vec3& asked = heel.place_m;
-  return {vec3(outwards * std::clamp(outwards * asked.x, kLeastAside * leg_m, kAsideOrBack * leg_m),
-               0.0, way * std::clamp(way * asked.z, -kAsideOrBack * leg_m, ahead_m)),
+  return {vec3(outwards * std::clamp(outwards * asked.x, kLeastAside * leg_m, kMostAside * leg_m),
+               0.0, way * std::clamp(way * asked.z, -kBack * leg_m, ahead_m)),
           std::clamp(wrapped(heel.heading_rad), -kMostTurn_rad, kMostTurn_rad)};
 }
 

@@ -344,20 +344,17 @@ V rise_with_hips(const Tables& tables, const Mask<V>& right, const V& knee_rad, 
   return higher_m <= -2.0f * hover_m ? V{} : bounded_m;
 }
 
-// The share of a flight at which a foot has climbed a usual riser or a lower one, and from which on
-// a foot that does not land from a height comes to its ground.
-inline constexpr float kClimbed = 0.6f;
-
 // The height from which a flying foot's rise counts, over a line at `base_m`. A line that leads up
 // over a riser is steep; a foot that stopped rising as fast would be thrown up.
 template <class V>
 V climbed_m(const Tables& tables, const Time<V>& time, const V& base_m,
             const Footing<V>& footing) noexcept {
+  constexpr float kClimbs = 0.6f;  // share of the flight, for a usual riser or a lower one
   const V rise_m = footing.landing_y_m - footing.print_y_m;
   const auto climbs = both(time.flies, rise_m > V{});
   const V risers = most(V(rise_m * (1.0f / (kStairRise * tables.leg_m))), all<V>(1.0f)),
           share = time.u * root(risers),
-          even_m = footing.print_y_m + rise_m * smoother(0.0f, kClimbed, share);
+          even_m = footing.print_y_m + rise_m * smoother(0.0f, kClimbs, share);
   return climbs ? least(base_m, even_m) : base_m;
 }
 
@@ -365,9 +362,11 @@ V climbed_m(const Tables& tables, const Time<V>& time, const V& base_m,
 template <class V>
 V rise_in_flight(const Tables& tables, const Time<V>& time, const V& knee_rad, const V& base_m,
                  const Footing<V>& footing) noexcept {
+  // A foot that does not land from a height comes to its ground from this share of the flight on.
+  constexpr float kComesDown = 0.6f;
   const V hover_m = time.flies ? V(0.5f * footing.early_m * smooth(0.0f, 0.5f, time.u)) : V{},
           rise_m = rise_with_hips<V>(tables, time.right, knee_rad, base_m, hover_m, footing);
-  return footing.early_m > V{} ? rise_m : V(rise_m * (1.0f - smoother(kClimbed, 1.0f, time.u)));
+  return footing.early_m > V{} ? rise_m : V(rise_m * (1.0f - smoother(kComesDown, 1.0f, time.u)));
 }
 
 // The pitch of a foot on its toe that lifts the ankle by another `rise_m`.

@@ -45,9 +45,8 @@ struct Frame {
 // --- Footholds -----------------------------------------------------------------------------------
 
 constexpr double kLeastStep = 0.05;  // in legs: shorter steps count as this long
-// Metres or weights: a place so near to a riser is certainly on one side of it, and not to divide
-// by 0.
-constexpr double kLeast = 1e-6;
+constexpr double kBeside_m = 1e-6;   // a place so near to a riser is certainly on one side of it
+constexpr double kLeast = 1e-6;      // metres or weights: not to divide by 0
 
 // The reach of the sole along z from its heel point.
 struct Extent {
@@ -150,7 +149,7 @@ double cost_of(const Floor& floor, const Step& step, const Stretch& piece) noexc
   constexpr double kLongStep = 0.6, kEasyRise = 0.22;  // in legs
   const vec3 place = place_on(step, piece), move = place - wanted_on(step, piece);
   const double middle =
-      std::clamp(place.z + step.sole.middle_m(), piece.from_m + kLeast, piece.to_m - kLeast);
+      std::clamp(place.z + step.sole.middle_m(), piece.from_m + kBeside_m, piece.to_m - kBeside_m);
   const double rise =
       std::abs(ground_at(floor, place.x, middle).height_m - step.from_m.y) / step.leg_m;
   const double wanted = step.length_m(), length = glm::dot(place - step.from_m, step.forward),
@@ -179,7 +178,7 @@ Stretch best_piece(const Floor& floor, const Step& step, const Stretch* settled)
     const Room room = room_on(piece, step.sole, step.leg_m);
     const double z = std::clamp(step.wanted_m.z, room.low_m, room.high_m), dz = z - step.wanted_m.z;
     if (is_stuck(step, step.length_m() + step.forward.z * dz))
-      piece = piece_at(floor, dz > 0.0 ? piece.from_m - kLeast : piece.to_m + kLeast);
+      piece = piece_at(floor, dz > 0.0 ? piece.from_m - kBeside_m : piece.to_m + kBeside_m);
   }
   double least = std::numeric_limits<double>::infinity();
   for (int n = 0; n < kMostPieces; ++n) {
@@ -190,13 +189,14 @@ Stretch best_piece(const Floor& floor, const Step& step, const Stretch* settled)
       best = piece;
     }
     if (stands < piece.from_m) {
-      piece = piece_at(floor, piece.from_m - kLeast);
+      piece = piece_at(floor, piece.from_m - kBeside_m);
     } else if (stands > piece.to_m) {
-      piece = piece_at(floor, piece.to_m + kLeast);
+      piece = piece_at(floor, piece.to_m + kBeside_m);
     } else {
-      return best;
+      break;
     }
   }
+  return best;
 }
 
 // The share of its length that a step keeps on a slope: 1 / (1 + grade).
@@ -268,7 +268,7 @@ Plane plane_under(const Floor& floor, const LegBones& leg, const vec3& heel_m, d
   const double length = track.length_m, half = leg.half_width_m;
   const auto height = [&](double a, double c) {  // of the ground, shares of length and half width
     const vec3 p = heel_m + track.along * (a * length) + track.across * (c * half);
-    return ground_at(floor, p.x, std::clamp(p.z, piece.from_m + kLeast, piece.to_m - kLeast))
+    return ground_at(floor, p.x, std::clamp(p.z, piece.from_m + kBeside_m, piece.to_m - kBeside_m))
         .height_m;
   };
   const std::array<double, 4> corner = {height(0, 1), height(0, -1), height(1, 1), height(1, -1)};
@@ -652,7 +652,7 @@ Wanted wanted_raise(const Tables& tables, const Floor& floor, const PlannedFligh
     for (vec3& p : sole) {
       p.z += moved;
       if (flight.stays())
-        p.z = std::clamp(p.z, flight.begin.from_m + kLeast, flight.begin.to_m - kLeast);
+        p.z = std::clamp(p.z, flight.begin.from_m + kBeside_m, flight.begin.to_m - kBeside_m);
     }
     const auto ground = heights_at(floor, sole);
     const SolePoints& from = flight.over_until != 0 && !crosses ? sole : flight.base[i];

@@ -17,7 +17,7 @@ inline Turn<float> narrow(const quat& q) noexcept {
 
 // In paper mode `leg_rad` of the state are the angles themselves, and `last_leg_rad` is how far the
 // foot was pitched off its plan when one end alone was held: standing on its toe, and flying.
-enum : int { kOnToe, kFlying };
+inline constexpr int kOnToe = 0, kFlying = 1;
 
 // From there it comes over to its plan where the other end becomes a goal: the heel in a first
 // flight, the toe in a roll. The heel would else jump by 5 cm at the lift-off, most of that in the

@@ -536,8 +536,8 @@ void strike(const Tables& tables, const BodyTick<Floats<kWidth>>& tick,
     const V slow = slowness_of(tables, no(time.right), state, footing);
     // Onto stairs, too, hips lead: they would else brake by 10 m/s^2 in the roll.
     constexpr float kGentle = 1.2f, kOnto = 1.5f;  // times a level step's, and the last step's
-    const auto climbs = both(change.slowness<all<V>(kGentle), slow> kOnto * change.slowness);
-    is_level = either(slow == all<V>(1.0f), climbs);
+    const auto was_gentle = change.slowness < all<V>(kGentle);
+    is_level = either(slow == all<V>(1.0f), both(was_gentle, slow > kOnto * change.slowness));
     change.slowness = strikes ? slow : change.slowness;
   }
   // After a late change of plan the step has not yet changed over to its own stride.

@@ -208,9 +208,10 @@ void swing_in_turn(const Tables& tables, const BodyTick<V>& tick, const State<V>
                    const Poses& poses) noexcept {
   // Small beside a walk's: a shoulder that swings by 9 degrees moves the hand by 10 cm to either
   // side. Elbows bend by kBend_rad, and by kBends_rad more where the arm is ahead. A turn carries
-  // the outer hand out and forward by kOut_rad, 7 cm, and the other one back.
+  // one hand forward and one back by kReach_rad, 7 cm.
   constexpr float kSwing_rad = 9.0f * kDegree_rad, kBend_rad = 14.0f * kDegree_rad,
-                  kBends_rad = 5.0f * kDegree_rad, kOut_rad = 6.0f * kDegree_rad;
+                  kBends_rad = 5.0f * kDegree_rad, kOut_rad = 6.0f * kDegree_rad,
+                  kReach_rad = 6.0f * kDegree_rad;
   constexpr float kWhole_rad = 0.13f;  // turn of the chest ahead: as of a turn by 1 rad/s
   constexpr float kWalks = 0.9f;       // of the posture: from here on the data's swing is enough
   const V &ahead_rad = state.chest_ahead_rad.x, own = 1.0f - smooth(0.0f, kWalks, state.posture.x),
@@ -227,7 +228,7 @@ void swing_in_turn(const Tables& tables, const BodyTick<V>& tick, const State<V>
     const float left = side == kLeftSide ? 1.0f : -1.0f;
     const V forward = left * swing, outer = left * ahead_rad < V{} ? all<V>(1.0f) : all<V>(-1.0f),
             out_rad = (0.5f * kOut_rad * left) * carried * (1.0f + outer),
-            reach_rad = kOut_rad * carried * outer;
+            reach_rad = kReach_rad * carried * outer;
     const auto turn = [&](int at, const std::array<float, 4>& axes, const Turn<V>& by) {
       const Turn<V> frame = every<V>(axes), q = read_joint<V>(bones.path[at].joint, is, poses);
       write_where(unit(frame * by * back(frame) * q), bones.path[at].joint, is, poses);

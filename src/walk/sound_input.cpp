@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <cstring>
 
 #include "control/params_range.h"
@@ -13,10 +14,19 @@ bool is_sound(const GaitParams& params) noexcept {
   const ParamsRange& range = params_range();
   const auto numbers = numbers_of(params), least = numbers_of(range.least),
              most = numbers_of(range.most);
-  bool sound = true;
-  for (std::size_t k = 0; k < kParamsNumbers; ++k)
-    sound &= (numbers[k] >= least[k]) & (numbers[k] <= most[k]);
-  return sound;
+  // The numbers of a plain upper body are within their ranges, and the last ones; before them are
+  // the weights.
+  static_assert(offsetof(GaitParams, body) + sizeof(UpperBodyParams) == sizeof(GaitParams));
+  static_assert(offsetof(GaitParams, weight) + sizeof params.weight == offsetof(GaitParams, body));
+  std::size_t count = kParamsNumbers;
+  if (is_plain(params.body)) {
+    count -= kBodyNumbers;
+    if (is_even(params.weight)) count -= sizeof params.weight / sizeof(double);
+  }
+  std::size_t inside = 0;
+  for (std::size_t k = 0; k < count; ++k)
+    inside += (numbers[k] >= least[k]) & (numbers[k] <= most[k]);
+  return inside == count;
 }
 
 bool is_finite(const Placement& place) noexcept {

@@ -182,9 +182,11 @@ void set_table_angles(const Tables& tables, const Mask<V>& right, const Stride<V
 
 // Sets the goal of leg k for a foot that is planned; the leg starts `begun_rad` off the tables.
 template <class V>
-void set_goal(const Tables& tables, const Time<V>& time, const Stride<V>& stride, int k,
-              const Pelvis<V>& pelvis, const Vec<V>& ankle_m, const Turn<V>& foot,
-              const V (&begun_rad)[kLegAngles], LegGoal<V>& goal) noexcept {
+[[gnu::always_inline]] inline void set_goal(const Tables& tables, const Time<V>& time,
+                                            const Stride<V>& stride, int k, const Pelvis<V>& pelvis,
+                                            const Vec<V>& ankle_m, const Turn<V>& foot,
+                                            const V (&begun_rad)[kLegAngles],
+                                            LegGoal<V>& goal) noexcept {
   const auto right = is_right(time, k);
   const Turn<V> to_pelvis = back(pelvis.turn);
   goal.thigh_m = of_leg<V>(tables, right, &LegBones::thigh_m);

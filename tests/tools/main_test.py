@@ -117,8 +117,7 @@ def test_bench_counts_in_its_peers(benched):
         assert row.get("bytes", 1000) >= 1000
     assert {r["name"] for r in benched if "ratio" in r} == {"character_even", "characters_even", "characters_styled", "step",
                                                          "character_even_60_hz", "character_asked", "crowd", "crowd_alone", "crowd_memory"}
-    assert ns["load"] == ns["load_clip"] > ns["load_cached"] > ns["load_built_in"]
-    assert ns["replay_files"] > ns["replay"]
+    assert ns["load"] == ns["load_clip"]
 
 
 def test_bench_says_which_bounds_are_met(benched):

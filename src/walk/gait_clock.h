@@ -102,12 +102,20 @@ template <class V>
 V asked_ratio(const Tables& tables, const State<V>& state) noexcept {
   return longer_ratio(tables, state.asked.length_m, state.backward);
 }
-// True if the walk is to go on. To walk the other way it first comes to rest.
+// True if a turn on the spot is asked for.
 template <class V>
-Mask<V> is_to_walk(const State<V>& state) noexcept {
+Mask<V> is_asked_onto_spot(const State<V>& state) noexcept {
   const Asked<V>& asked = state.asked;
-  const auto on_spot = both(asked.length_m[0] == V{}, asked.length_m[1] == V{});
-  return both(asked.walks != V{}, either(on_spot, asked.backward == state.backward));
+  return both(asked.walks != V{}, both(asked.length_m[0] == V{}, asked.length_m[1] == V{}));
+}
+// True if the walk is to go on. To walk the other way, or to turn on the spot, it first comes to
+// rest.
+template <class V>
+Mask<V> is_to_walk(const State<V>& state, const Change<V>& change) noexcept {
+  const Asked<V>& asked = state.asked;
+  const auto on_spot = both(change.length_m[0] == V{}, change.length_m[1] == V{});
+  return both(asked.walks != V{},
+              is_asked_onto_spot(state) ? on_spot : asked.backward == state.backward);
 }
 
 // People turn their heads up to 0.3 s before their pelvis, and the chest in between.
@@ -129,7 +137,7 @@ void smooth_asked(const Tables& tables, const Change<V>& change, const V& left,
                   State<V>& state) noexcept {
   constexpr float kStraight_rad_s = 1e-5f;  // too small to see
   const Asked<V>& asked = state.asked;
-  const auto walks = is_to_walk(state);
+  const auto walks = is_to_walk(state, change);
   for (int side : {0, 1}) {
     // A first step follows a stick that is still on its way, so its filter is quicker.
     const auto starts = change.starting != V{},

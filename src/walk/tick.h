@@ -180,7 +180,7 @@ void change_ends(const Tables& tables, Block<kWidth>& block) noexcept {
   if constexpr (!kUneven)
     one_by_one<kWidth>(is_to_turn_back(block.state, block.change), block,
                        [&](Block<1>& one, int) { turn_back(tables, one); });
-  const auto walks = is_to_walk(block.state), stops = block.change.stops != V{},
+  const auto walks = is_to_walk(block.state, block.change), stops = block.change.stops != V{},
              moves = both(block.change.stands == V{}, either(no(walks), no(comes)));
   asked_legs = asked.walks != V{} ? way_legs : V{};
   const auto ends = [&](bool may_move, Block<1>& one, auto& footing) {
@@ -599,7 +599,7 @@ void look_where_needed(const Tables& tables, const Time<Floats<kWidth>>& time,
                                      own_step_m<V>(tables, time.right, time.back), state, change));
   }
   const auto looks = either(either(is_new, either(both(again, changes), paces)),
-                            both(is_to_walk(state), is_unforeseen(tables, state, change)));
+                            both(is_to_walk(state, change), is_unforeseen(tables, state, change)));
   one_by_one<kWidth>(looks, block,
                      [&](Block<1>& one, int) { look_ahead<kPaper, kUneven>(tables, one); });
 }

@@ -113,9 +113,17 @@ Mask<V> is_asked_onto_spot(const State<V>& state) noexcept {
 template <class V>
 Mask<V> is_to_walk(const State<V>& state, const Change<V>& change) noexcept {
   const Asked<V>& asked = state.asked;
-  const auto on_spot = both(change.length_m[0] == V{}, change.length_m[1] == V{});
+  const auto on_spot = both(change.length_m[0] == V{}, change.length_m[1] == V{}),
+             may_turn = either(change.stands != V{}, on_spot);
   return both(asked.walks != V{},
-              is_asked_onto_spot(state) ? on_spot : asked.backward == state.backward);
+              is_asked_onto_spot(state) ? may_turn : asked.backward == state.backward);
+}
+// The turn rate that head and chest follow, in rad/s: in a stop for a turn on the spot already that
+// turn's.
+template <class V>
+V looked_turn(const State<V>& state, const Change<V>& change) noexcept {
+  const auto turns = either(is_to_walk(state, change), is_asked_onto_spot(state));
+  return turns ? state.asked.turn_rad_s : V{};
 }
 
 // People turn their heads up to 0.3 s before their pelvis, and the chest in between.
@@ -158,7 +166,8 @@ void smooth_asked(const Tables& tables, const Change<V>& change, const V& left,
   follow(walks ? V(0.5f * cycle_s) : state.step_time_s.x, change.starting != V{}, tables.first_step,
          tables.step, state.step_time_s);
   // Where the ground makes steps slower, turns are as much slower: a step turns by as much.
-  const V turn_rad_s = walks ? V(asked.turn_rad_s / change.slowness) : V{};
+  const V turn_rad_s = walks ? V(asked.turn_rad_s / change.slowness) : V{},
+          looked_rad_s = looked_turn(state, change) / change.slowness;
   // A stick that crosses the heading asks for the other turn within 60 ms. The landing of a foot in
   // the air would turn by 0.1 rad a tick; a goal that is near turns it by half as much.
   constexpr float kNear_rad_s = 0.8f;
@@ -168,8 +177,8 @@ void smooth_asked(const Tables& tables, const Change<V>& change, const V& left,
           goal_rad_s = state.flies != V{} ? near_rad_s : turn_rad_s;
   follow_turn(goal_rad_s, kStraight_rad_s, tables.turn_goal, state.turn_goal_rad_s);
   follow_turn(state.turn_goal_rad_s.x, kStraight_rad_s, tables.turn, state.turn_rad_s);
-  follow_turn(V(kChestAhead_s * turn_rad_s), kStill_rad, tables.chest, state.chest_ahead_rad);
-  follow_turn(V(kHeadAhead_s * turn_rad_s), kStill_rad, tables.head, state.head_ahead_rad);
+  follow_turn(V(kChestAhead_s * looked_rad_s), kStill_rad, tables.chest, state.chest_ahead_rad);
+  follow_turn(V(kHeadAhead_s * looked_rad_s), kStill_rad, tables.head, state.head_ahead_rad);
   follow(asked.bounce, tables.bounce, state.bounce);
   follow(asked.sway, tables.bounce, state.sway);
   const V both_m = state.length_m[0].x + state.length_m[1].x;
@@ -352,20 +361,17 @@ void begin_step(const Tables& tables, const Time<V>& time, const Mask<V>& strike
   const Stages<V> next = stages_of(tables, change, state, no(time.right));
   const V short_s = state.late_s + state.step_s - (state.roll_ticks + state.flight_ticks) * tick_s;
   constexpr float kLeastWay = 0.52f;  // of speed times time: on a shorter way a quintic goes back
-  // Onto the spot, which has no back: in less time hips brake by 14.7 m/s^2, in this by 12.2.
-  constexpr float kLeastWayOnSpot = 0.42f;
   constexpr float kLeastTime = 0.5f;  // of the step's own time
   constexpr float kWalked = 0.2f;     // ratio from which on the last step was not on the spot
   const auto led = change.led != V{};
   const V asked_m = by_side<V>(no(time.right), state.asked.length_m),
           way_m =
               0.5f * (state.ratio_behind * own_step_m<V>(tables, time.right, time.back) + asked_m),
-          least_way = chosen<V>(asked_m == V{}, kLeastWayOnSpot, kLeastWay),
           x = change.pelvis_x_m.v, z = change.pelvis_z_m.v,
           speed_m = most(root(V(x * x + z * z)), all<V>(1e-5f)),
           own_s = next.roll_s + next.flight_s,
           least_time = change.slowness > all<V>(1.0f) ? all<V>(1.0f) : all<V>(kLeastTime),
-          longest_s = most(V(tick_s * way_m / (least_way * speed_m)), V(least_time * own_s));
+          longest_s = most(V(tick_s * way_m / (kLeastWay * speed_m)), V(least_time * own_s));
   // After a flight that the ground has made long, the phase is slow. The roll lasts as long as it
   // takes to become as fast as in the flight.
   constexpr float kSlow = 0.8f;  // of the phase's steady rate at a strike

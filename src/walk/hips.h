@@ -580,8 +580,10 @@ void begin_lead(const Tables& tables, const Mask<V>& strikes, const V& phase, co
     changes = either(changes, both(is_level, paces));
   }
   const auto leads = both(no(rests), either(either(stops, changes), change.catch_ticks != V{}));
-  change.length_m[0] = both(strikes, no(stops)) ? state.asked.length_m[0] : change.length_m[0];
-  change.length_m[1] = both(strikes, no(stops)) ? state.asked.length_m[1] : change.length_m[1];
+  // A walk that is yet to stop for a turn on the spot does not begin it with this step.
+  const auto goes = both(strikes, both(no(stops), is_to_walk(state, change)));
+  for (int side : {0, 1})
+    change.length_m[side] = goes ? state.asked.length_m[side] : change.length_m[side];
   change.was_led = rests ? V{} : strikes ? change.led : change.was_led;
   change.off_ticks = rests ? V{} : change.off_ticks;
   for (Off<V>* off : {&change.off_phase, &change.off_shown}) off->x = rests ? V{} : off->x;

@@ -171,11 +171,13 @@ template <int kWidth, bool kUneven>
 void change_ends(const Tables& tables, Block<kWidth>& block) noexcept {
   using V = Floats<kWidth>;
   constexpr float kGrows_per_s = 5.0f;  // share of a command: faster is a stick on its way
-  constexpr float kTurn_s = 1.0f;       // a turn of 1 rad/s counts as steps of one leg
+  constexpr float kTurn_s = 1.0f;       // on the spot 1 rad/s counts as steps of one leg
   const Asked<V>& asked = block.state.asked;
   V& asked_legs = block.change.asked_legs;
-  const V way_legs = (asked.length_m[0] + asked.length_m[1]) * (1.0f / tables.leg_m) +
-                     kTurn_s * size(asked.turn_rad_s);
+  // By length and turn together, a stick that comes back from a turn on the spot would seem to
+  // rest.
+  const V length_legs = (asked.length_m[0] + asked.length_m[1]) * (1.0f / tables.leg_m),
+          way_legs = length_legs != V{} ? length_legs : V(kTurn_s * size(asked.turn_rad_s));
   const auto comes = size(V(way_legs - asked_legs)) > kGrows_per_s * tables.tick_s * way_legs;
   if constexpr (!kUneven)
     one_by_one<kWidth>(is_to_turn_back(block.state, block.change), block,

@@ -581,7 +581,7 @@ void begin_lead(const Tables& tables, const Mask<V>& strikes, const V& phase, co
   }
   const auto leads = both(no(rests), either(either(stops, changes), change.catch_ticks != V{}));
   // A walk that is yet to stop for a turn on the spot does not begin it with this step.
-  const auto goes = both(strikes, both(no(stops), is_to_walk(state, change)));
+  const auto goes = both(strikes, both(no(stops), is_to_walk(tables, state, change)));
   for (int side : {0, 1})
     change.length_m[side] = goes ? state.asked.length_m[side] : change.length_m[side];
   change.was_led = rests ? V{} : strikes ? change.led : change.was_led;

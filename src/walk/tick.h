@@ -182,8 +182,9 @@ void change_ends(const Tables& tables, Block<kWidth>& block) noexcept {
   if constexpr (!kUneven)
     one_by_one<kWidth>(is_to_turn_back(block.state, block.change), block,
                        [&](Block<1>& one, int) { turn_back(tables, one); });
-  const auto walks = is_to_walk(block.state, block.change), stops = block.change.stops != V{},
-             moves = both(block.change.stands == V{}, either(no(walks), no(comes)));
+  const auto walks = is_to_walk(tables, block.state, block.change), stops = block.change.stops != V{},
+             turns = is_asked_onto_spot(block.state),
+             moves = both(block.change.stands == V{}, either(both(no(walks), no(turns)), no(comes)));
   asked_legs = asked.walks != V{} ? way_legs : V{};
   const auto ends = [&](bool may_move, Block<1>& one, auto& footing) {
     plan_rest(tables, may_move, one, footing);
@@ -277,7 +278,7 @@ void choose_footholds(const Tables& tables, const Time<Floats<kWidth>>& time,
   one_by_one<kWidth>(asks, block, [&](Block<1>& one, int w) {
     const AskedFoothold step{lane(asked.along.sine, w), lane(asked.along.cosine, w),
                              lane(asked.length_m, w),   lane(is_first, w) != 0.0f,
-                             lane(is_open, w) != 0.0f,  goes_on(one.state, one.change)};
+                             lane(is_open, w) != 0.0f,  goes_on(tables, one.state, one.change)};
     choose_foothold(tables, step, one);
   });
 }
@@ -601,7 +602,7 @@ void look_where_needed(const Tables& tables, const Time<Floats<kWidth>>& time,
                                      own_step_m<V>(tables, time.right, time.back), state, change));
   }
   const auto looks = either(either(is_new, either(both(again, changes), paces)),
-                            both(is_to_walk(state, change), is_unforeseen(tables, state, change)));
+                            both(is_to_walk(tables, state, change), is_unforeseen(tables, state, change)));
   one_by_one<kWidth>(looks, block,
                      [&](Block<1>& one, int) { look_ahead<kPaper, kUneven>(tables, one); });
 }

@@ -212,7 +212,7 @@ Mask<V> advance_poise(const Tables& tables, const Hips<V>& hips, const Mask<V>& 
   const Asked<V>& a = state.asked;
   const V pace = (a.length_m[0] + a.length_m[1]) /
                  most(V(a.time_s[0] + a.time_s[1]), all<V>(kLeastCycle_s)),
-          asked = is_to_walk(state, change) ? (a.backward != V{} ? V(-pace) : pace) : V{};
+          asked = is_to_walk(tables, state, change) ? (a.backward != V{} ? V(-pace) : pace) : V{};
   const V goes_m = (state.pelvis_x_m[0] - state.pelvis_x_m[1]) * hips.heading.sine +
                    (state.pelvis_z_m[0] - state.pelvis_z_m[1]) * hips.heading.cosine;
   follow(V(goes_m * (1.0f / tables.tick_s)), tables.speed, poise.speed_m_s);
@@ -231,7 +231,7 @@ Mask<V> advance_poise(const Tables& tables, const Hips<V>& hips, const Mask<V>& 
             push = more + (asked != V{} ? first : V{}), goal = lacks < V{} ? V(-push) : push;
     follow_turn(goal, kStill_rad, tables.push, poise.push_rad);
   }
-  const V ahead_rad = kHeadAhead_s * looked_turn(state, change);
+  const V ahead_rad = kHeadAhead_s * looked_turn(tables, state, change);
   const auto turns = either(size(state.head_ahead_rad.v) > all<V>(kTurns_rad_s),
                             size(V(ahead_rad - state.head_ahead_rad.x)) > all<V>(kTurns_rad));
   return either(either(poise.unsteady_ticks != V{}, poise.push_rad.x != V{}), turns);

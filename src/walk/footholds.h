@@ -46,9 +46,6 @@ Way<V> way_at_strike(const Tables& tables, const Time<V>& time, const State<V>& 
   return way_of(heading_ahead(tables, state, V(time.to_strike + 1.0f)));
 }
 
-// A landing follows the parameters at once until kSettles of the flight, then ever more slowly, and
-// from kFreeze on it stays. If it stopped at once, the flying foot would jerk.
-inline constexpr float kSettles = 0.25f, kFreeze = 0.6f;
 // A program may ask for a landing until kLatestAim of the flight; the landing is there from
 // kAimSettles on.
 inline constexpr float kLatestAim = 0.5f, kAimSettles = 0.75f;
@@ -112,9 +109,7 @@ AskedStep<V> plan_landing(const Tables& tables, const Time<V>& time, Change<V>& 
           lead_m = in_place * tables.rest_lead_m;
   const V ahead_rad = state.turn_goal_rad_s.x * (state.roll_ticks + state.flight_ticks) *
                       tables.tick_s * kFootAhead;
-  // If the plan changes during the flight, the landing follows the new plan at once.
-  const V changed_u = most(V(change.gap_begin - kSettles), V{}),
-          y = (time.u - kSettles - changed_u) * (1.0f / (kFreeze - kSettles));
+  const V y = settled(time.u, change);
   const auto follows = y <= V{}, open = y < all<V>(1.0f);
   const float settling = kSettling_s * tables.time_scale / tables.tick_s;
   const V share = 1.0f / (1.0f + settling * y * y / (1.0f - (open ? y : V{})));

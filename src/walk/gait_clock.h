@@ -115,9 +115,28 @@ Mask<V> is_to_walk(const Tables& tables, const State<V>& state, const Change<V>&
   const Asked<V>& asked = state.asked;
   const auto on_spot = both(change.length_m[0] == V{}, change.length_m[1] == V{});
   auto may_turn = either(change.stands != V{}, on_spot);
+  // There such stops stretched legs: by up to 2.6 degrees a tick^2 on the course.
   if (tables.terrain != nullptr) may_turn = V{} == V{};
   return both(asked.walks != V{},
               is_asked_onto_spot(state) ? may_turn : asked.backward == state.backward);
+}
+// A landing follows the parameters at once until kSettles of the flight, then ever more slowly, and
+// from kFreeze on it stays. If it stopped at once, the flying foot would jerk.
+inline constexpr float kSettles = 0.25f, kFreeze = 0.6f;
+// How far a landing has settled at the share `u` of its flight: it follows up to 0 and stays from 1
+// on. If the plan changes during the flight, the landing follows the new plan at once.
+template <class V>
+V settled(const V& u, const Change<V>& change) noexcept {
+  const V changed_u = most(V(change.gap_begin - kSettles), V{});
+  return (u - kSettles - changed_u) * (1.0f / (kFreeze - kSettles));
+}
+// True where the last foot of a stop for a turn on the spot flies to a landing that stays: the turn
+// begins. Begun sooner, it would move the landing and the place where the hips come to rest.
+template <class V>
+Mask<V> may_turn_early(const State<V>& state, const Change<V>& change) noexcept {
+  const auto closes = both(state.flies != V{}, change.closing != V{}),
+             stays = settled(V(state.tick / state.flight_ticks), change) >= all<V>(1.0f);
+  return both(is_asked_onto_spot(state), both(closes, stays));
 }
 // The turn rate that head and chest follow, in rad/s: in a stop for a turn on the spot already that
 // turn's.
@@ -167,7 +186,8 @@ void smooth_asked(const Tables& tables, const Change<V>& change, const V& left,
   follow(walks ? V(0.5f * cycle_s) : state.step_time_s.x, change.starting != V{}, tables.first_step,
          tables.step, state.step_time_s);
   // Where the ground makes steps slower, turns are as much slower: a step turns by as much.
-  const V turn_rad_s = walks ? V(asked.turn_rad_s / change.slowness) : V{},
+  const auto turns = either(walks, may_turn_early(state, change));
+  const V turn_rad_s = turns ? V(asked.turn_rad_s / change.slowness) : V{},
           looked_rad_s = looked_turn(tables, state, change) / change.slowness;
   // A stick that crosses the heading asks for the other turn within 60 ms. The landing of a foot in
   // the air would turn by 0.1 rad a tick; a goal that is near turns it by half as much.

@@ -98,7 +98,8 @@ Landing<V> landing_over(const Tables& tables, const Time<V>& time, const Way<V>&
 // Whether another step follows.
 template <class V>
 Mask<V> goes_on(const Tables& tables, const State<V>& state, const Change<V>& change) noexcept {
-  return both(change.closing == V{}, either(is_to_walk(tables, state, change), change.further != V{}));
+  return both(change.closing == V{},
+              either(is_to_walk(tables, state, change), change.further != V{}));
 }
 
 // Updates the share of the step's length that the ground leaves, and the ratio for which the tables

@@ -133,10 +133,10 @@ void plan_landing_anew(const Tables& tables, const Time<float>& time, Block<1>& 
   if constexpr (kIsUneven<F>) {
     footing.asked_x_m = footing.level_x_m, footing.asked_z_m = footing.level_z_m;
     footing.asked_rad = state.landing_rad;
-    choose_foothold(
-        tables,
-        {asked.along.sine, asked.along.cosine, asked.length_m, false, true, goes_on(tables, state, change)},
-        block);
+    choose_foothold(tables,
+                    {asked.along.sine, asked.along.cosine, asked.length_m, false, true,
+                     goes_on(tables, state, change)},
+                    block);
     footing.step_m = asked.to.ahead(state.landing_x_m, state.landing_z_m);
     footing.step_ratio = size(footing.step_m) / own_step_m<float>(tables, time.right, time.back);
     footing.off_ratio = {};

@@ -165,27 +165,33 @@ Mask<V> is_to_leave_spot(const Tables& tables, const State<V>& state,
   return both(both(change.stands == V{}, change.led == V{}), both(on_spot, goes));
 }
 
-// Plans stops, and walks that go on after all. Both wait until the stick has come to rest, because
-// on its way it passes through small deflections.
+// Plans stops, and walks that go on after all. A stop for a turn on the spot and a walk that goes
+// on wait until the stick has come to rest, because on its way it passes through other deflections.
 template <int kWidth, bool kUneven>
 void change_ends(const Tables& tables, Block<kWidth>& block) noexcept {
   using V = Floats<kWidth>;
   constexpr float kGrows_per_s = 5.0f;  // share of a command: faster is a stick on its way
-  constexpr float kTurn_s = 1.0f;       // on the spot 1 rad/s counts as steps of one leg
+  constexpr float kTurn_s = 1.0f;       // a turn of 1 rad/s counts as steps of one leg
   const Asked<V>& asked = block.state.asked;
-  V& asked_legs = block.change.asked_legs;
-  // By length and turn together, a stick that comes back from a turn on the spot would seem to
-  // rest.
+  // Length and turn each count: of their sum alone, a stick that comes back from a turn on the spot
+  // would seem to rest.
+  V(&asked_legs)[2] = block.change.asked_legs;
   const V length_legs = (asked.length_m[0] + asked.length_m[1]) * (1.0f / tables.leg_m),
-          way_legs = length_legs != V{} ? length_legs : V(kTurn_s * size(asked.turn_rad_s));
-  const auto comes = size(V(way_legs - asked_legs)) > kGrows_per_s * tables.tick_s * way_legs;
+          turn_legs = kTurn_s * size(asked.turn_rad_s),
+          longer_legs = size(V(length_legs - asked_legs[0])),
+          more_legs = longer_legs + size(V(turn_legs - asked_legs[1]));
+  const float grows = kGrows_per_s * tables.tick_s;
+  const auto comes =
+      either(longer_legs > grows * length_legs, more_legs > grows * (length_legs + turn_legs));
   if constexpr (!kUneven)
     one_by_one<kWidth>(is_to_turn_back(block.state, block.change), block,
                        [&](Block<1>& one, int) { turn_back(tables, one); });
-  const auto walks = is_to_walk(tables, block.state, block.change), stops = block.change.stops != V{},
-             turns = is_asked_onto_spot(block.state),
-             moves = both(block.change.stands == V{}, either(both(no(walks), no(turns)), no(comes)));
-  asked_legs = asked.walks != V{} ? way_legs : V{};
+  const auto walks = is_to_walk(tables, block.state, block.change),
+             stops = block.change.stops != V{}, turns = is_asked_onto_spot(block.state),
+             moves =
+                 both(block.change.stands == V{}, either(both(no(walks), no(turns)), no(comes)));
+  asked_legs[0] = asked.walks != V{} ? length_legs : V{};
+  asked_legs[1] = asked.walks != V{} ? turn_legs : V{};
   const auto ends = [&](bool may_move, Block<1>& one, auto& footing) {
     plan_rest(tables, may_move, one, footing);
   };
@@ -601,8 +607,9 @@ void look_where_needed(const Tables& tables, const Time<Floats<kWidth>>& time,
           both(paces, has_other_pace(tables, time.right,
                                      own_step_m<V>(tables, time.right, time.back), state, change));
   }
-  const auto looks = either(either(is_new, either(both(again, changes), paces)),
-                            both(is_to_walk(tables, state, change), is_unforeseen(tables, state, change)));
+  const auto looks =
+      either(either(is_new, either(both(again, changes), paces)),
+             both(is_to_walk(tables, state, change), is_unforeseen(tables, state, change)));
   one_by_one<kWidth>(looks, block,
                      [&](Block<1>& one, int) { look_ahead<kPaper, kUneven>(tables, one); });
 }

@@ -102,23 +102,30 @@ template <class V>
 V asked_ratio(const Tables& tables, const State<V>& state) noexcept {
   return longer_ratio(tables, state.asked.length_m, state.backward);
 }
-// True if a turn on the spot is asked for.
+// True if a turn on the spot is asked for, or one with tiny steps: where a stick points, the turn
+// itself leads from one to the other.
 template <class V>
-Mask<V> is_asked_onto_spot(const State<V>& state) noexcept {
+Mask<V> is_asked_onto_spot(const Tables& tables, const State<V>& state) noexcept {
   const Asked<V>& asked = state.asked;
-  return both(asked.walks != V{}, both(asked.length_m[0] == V{}, asked.length_m[1] == V{}));
+  constexpr float kTiny = 0.2f;         // ratio to the data's stride
+  constexpr float kTurns_rad_s = 0.5f;  // a stick that is let go asks for tiny steps, too
+  const auto stays = both(asked.length_m[0] == V{}, asked.length_m[1] == V{}),
+             tiny =
+                 asked_ratio(tables, state)<all<V>(kTiny), turns = size(asked.turn_rad_s)> all<V>(
+                     kTurns_rad_s);
+  return both(asked.walks != V{}, either(stays, both(tiny, turns)));
 }
 // True if the walk is to go on. To walk the other way it first comes to rest; on level ground to
 // turn on the spot, too.
 template <class V>
 Mask<V> is_to_walk(const Tables& tables, const State<V>& state, const Change<V>& change) noexcept {
   const Asked<V>& asked = state.asked;
-  const auto on_spot = both(change.length_m[0] == V{}, change.length_m[1] == V{});
+  const auto on_spot = longer_ratio(tables, change.length_m, state.backward) < all<V>(0.2f);
   auto may_turn = either(change.stands != V{}, on_spot);
   // There such stops stretched legs: by up to 2.6 degrees a tick^2 on the course.
   if (tables.terrain != nullptr) may_turn = V{} == V{};
   return both(asked.walks != V{},
-              is_asked_onto_spot(state) ? may_turn : asked.backward == state.backward);
+              is_asked_onto_spot(tables, state) ? may_turn : asked.backward == state.backward);
 }
 // A landing follows the parameters at once until kSettles of the flight, then ever more slowly, and
 // from kFreeze on it stays. If it stopped at once, the flying foot would jerk.
@@ -133,16 +140,17 @@ V settled(const V& u, const Change<V>& change) noexcept {
 // True where the last foot of a stop for a turn on the spot flies to a landing that stays: the turn
 // begins. Begun sooner, it would move the landing and the place where the hips come to rest.
 template <class V>
-Mask<V> may_turn_early(const State<V>& state, const Change<V>& change) noexcept {
+Mask<V> may_turn_early(const Tables& tables, const State<V>& state,
+                       const Change<V>& change) noexcept {
   const auto closes = both(state.flies != V{}, change.closing != V{}),
              stays = settled(V(state.tick / state.flight_ticks), change) >= all<V>(1.0f);
-  return both(is_asked_onto_spot(state), both(closes, stays));
+  return both(is_asked_onto_spot(tables, state), both(closes, stays));
 }
 // The turn rate that head and chest follow, in rad/s: in a stop for a turn on the spot already that
 // turn's.
 template <class V>
 V looked_turn(const Tables& tables, const State<V>& state, const Change<V>& change) noexcept {
-  const auto turns = either(is_to_walk(tables, state, change), is_asked_onto_spot(state));
+  const auto turns = either(is_to_walk(tables, state, change), is_asked_onto_spot(tables, state));
   return turns ? state.asked.turn_rad_s : V{};
 }
 
@@ -186,7 +194,7 @@ void smooth_asked(const Tables& tables, const Change<V>& change, const V& left,
   follow(walks ? V(0.5f * cycle_s) : state.step_time_s.x, change.starting != V{}, tables.first_step,
          tables.step, state.step_time_s);
   // Where the ground makes steps slower, turns are as much slower: a step turns by as much.
-  const auto turns = either(walks, may_turn_early(state, change));
+  const auto turns = either(walks, may_turn_early(tables, state, change));
   const V turn_rad_s = turns ? V(asked.turn_rad_s / change.slowness) : V{},
           looked_rad_s = looked_turn(tables, state, change) / change.slowness;
   // A stick that crosses the heading asks for the other turn within 60 ms. The landing of a foot in

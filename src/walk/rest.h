@@ -480,7 +480,7 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
   // By the walk's mean speed a stop has much the same way from any moment of a step, so a player
   // learns it. Hips of a walk that starts or changes its pace may be far from the mean.
   // One that is to go the other way is in a hurry: it brakes as hard as it may at that moment.
-  const bool hurries = state.asked.walks != 0.0f && !is_asked_onto_spot(state);
+  const bool hurries = state.asked.walks != 0.0f && !is_asked_onto_spot(tables, state);
   const float pace = hurries ? speed : most(least(mean_m_s, kSwings * speed), speed / kSwings),
               paced_need = kNeed * pace * pace;
   const float most_closing = on_spot ? kMostClosingOnSpot : kMostClosing;

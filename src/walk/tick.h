@@ -187,7 +187,7 @@ void change_ends(const Tables& tables, Block<kWidth>& block) noexcept {
     one_by_one<kWidth>(is_to_turn_back(block.state, block.change), block,
                        [&](Block<1>& one, int) { turn_back(tables, one); });
   const auto walks = is_to_walk(tables, block.state, block.change),
-             stops = block.change.stops != V{}, turns = is_asked_onto_spot(block.state),
+             stops = block.change.stops != V{}, turns = is_asked_onto_spot(tables, block.state),
              moves =
                  both(block.change.stands == V{}, either(both(no(walks), no(turns)), no(comes)));
   asked_legs[0] = asked.walks != V{} ? length_legs : V{};

@@ -102,28 +102,30 @@ template <class V>
 V asked_ratio(const Tables& tables, const State<V>& state) noexcept {
   return longer_ratio(tables, state.asked.length_m, state.backward);
 }
-// True if a turn on the spot is asked for, or one with tiny steps: where a stick points, the turn
-// itself leads from one to the other.
+// Ratio to the data's stride: shorter steps are those of a turn on the spot.
+inline constexpr float kTiny = 0.2f;
+// True if a turn on the spot is asked for. On level ground one with tiny steps counts, too: where a
+// stick points, the turn itself leads from one to the other.
 template <class V>
 Mask<V> is_asked_onto_spot(const Tables& tables, const State<V>& state) noexcept {
-  const Asked<V>& asked = state.asked;
-  constexpr float kTiny = 0.2f;         // ratio to the data's stride
   constexpr float kTurns_rad_s = 0.5f;  // a stick that is let go asks for tiny steps, too
-  const auto stays = both(asked.length_m[0] == V{}, asked.length_m[1] == V{}),
-             tiny =
-                 asked_ratio(tables, state)<all<V>(kTiny), turns = size(asked.turn_rad_s)> all<V>(
-                     kTurns_rad_s);
-  return both(asked.walks != V{}, either(stays, both(tiny, turns)));
+  const Asked<V>& asked = state.asked;
+  auto stays = both(asked.length_m[0] == V{}, asked.length_m[1] == V{});
+  if (tables.terrain == nullptr) {
+    const auto tiny = asked_ratio(tables, state) < all<V>(kTiny);
+    stays = either(stays, both(tiny, size(asked.turn_rad_s) > all<V>(kTurns_rad_s)));
+  }
+  return both(asked.walks != V{}, stays);
 }
 // True if the walk is to go on. To walk the other way it first comes to rest; on level ground to
-// turn on the spot, too.
+// turn on the spot, too. Elsewhere such stops stretched legs, by up to 2.6 degrees a tick^2.
 template <class V>
 Mask<V> is_to_walk(const Tables& tables, const State<V>& state, const Change<V>& change) noexcept {
   const Asked<V>& asked = state.asked;
-  const auto on_spot = longer_ratio(tables, change.length_m, state.backward) < all<V>(0.2f);
-  auto may_turn = either(change.stands != V{}, on_spot);
-  // There such stops stretched legs: by up to 2.6 degrees a tick^2 on the course.
-  if (tables.terrain != nullptr) may_turn = V{} == V{};
+  auto may_turn = V{} == V{};
+  if (tables.terrain == nullptr)
+    may_turn = either(change.stands != V{},
+                      longer_ratio(tables, change.length_m, state.backward) < all<V>(kTiny));
   return both(asked.walks != V{},
               is_asked_onto_spot(tables, state) ? may_turn : asked.backward == state.backward);
 }

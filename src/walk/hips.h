@@ -244,14 +244,15 @@ V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& l
   constexpr float kBeforeStep = 0.1f, kAfterStep = 0.14f;     // cycles around the step's own
   constexpr float kFastestPhase = 2.5f, kFastestStop = 1.5f;  // of the clock's rate
   constexpr float kComesUp_s = 0.06f;  // at the reference leg: to the fastest rate, and back
-  constexpr int kFewTries = 2, kPhaseTries = 6;  // iterations: usually, and of a new plan
+  constexpr int kFewTries = 2, kPhaseTries = 6;  // iterations: usually, and where a plan is new
   const Way<V>& way = landing.way;
   const Path<V>& path = state.path;
   const V at_zero = mix(way.ahead(V(-hips.behind.stand_m.x), V(-hips.behind.stand_m.z)),
                         way.ahead(path.x_m, path.z_m), share),
           per_cycle = mix(way.ahead(V{}, hips.behind.stride_m),
                           way.ahead(path.per_cycle_x_m, path.per_cycle_z_m), share);
-  const auto led = change.led != V{}, is_new = both(led, change.is_new != V{});
+  const auto led = change.led != V{},
+             carries = both(led, either(change.is_new != V{}, change.was_new != V{}));
   strides.keep(led);
   const V wanted = way.ahead(change.pelvis_x_m.x, change.pelvis_z_m.x),
           goes = way.ahead(change.pelvis_x_m.v, change.pelvis_z_m.v);
@@ -264,8 +265,8 @@ V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& l
   phase = phase - floored(V(phase - 0.5f * (low + high) + 0.5f));
   phase = least(most(phase, low), high);
   const V last = phase;
-  for (int n = 0; n < (any(is_new) ? kPhaseTries : kFewTries); ++n) {
-    if (n == kFewTries) strides.keep(is_new);
+  for (int n = 0; n < (any(carries) ? kPhaseTries : kFewTries); ++n) {
+    if (n == kFewTries) strides.keep(carries);
     const V phases[2] = {phase, V(phase + kPhaseStep)};
     Vec<V> pelvis_m[2];
     read_pelvis(strides, phases, pelvis_m);
@@ -275,7 +276,7 @@ V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& l
     const V step = ((here - wanted) * slope + in_time * (phase - state.phase)) * weight,
             next = least(most(V(phase - step), low), high),
             moves = (goes * slope + in_time * state.phase_rate) * weight;
-    const auto tries = either(is_new, all<V>(static_cast<float>(n)) < all<V>(kFewTries));
+    const auto tries = either(carries, all<V>(static_cast<float>(n)) < all<V>(kFewTries));
     phase = tries ? next : phase;
     rate = tries ? moves : rate;
   }
@@ -299,7 +300,7 @@ V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& l
                : next;
     next = starts ? least(next, V(last + most(was, rate) + bend)) : next;
   }
-  return is_new ? phase : next;
+  return carries ? phase : next;
 }
 
 // Scales a stride towards standing: `shown` is the share of it that is left.
@@ -373,7 +374,7 @@ void fade_differences(const Time<V>& time, const State<V>& state, Change<V>& cha
     fade(step_ticks, *off);
   fade(least(change.off_ticks, V(ticks_of_stage(state) - state.tick + 1.0f)), change.off_pitch);
   if (any(change.turns != V{}))
-    for (Off<V>& off : change.off_turned) fade(change.off_ticks, off);
+    for (Off<V>& off : change.off_turned) fade(step_ticks, off);
 }
 
 // The numbers of a stride that Change::off_turned changes, in its order.

@@ -173,16 +173,20 @@ void change_ends(const Tables& tables, Block<kWidth>& block) noexcept {
   constexpr float kGrows_per_s = 5.0f;  // share of a command: faster is a stick on its way
   constexpr float kTurn_s = 1.0f;       // a turn of 1 rad/s counts as steps of one leg
   const Asked<V>& asked = block.state.asked;
-  // Length and turn each count: of their sum alone, a stick that comes back from a turn on the spot
-  // would seem to rest.
   V(&asked_legs)[2] = block.change.asked_legs;
   const V length_legs = (asked.length_m[0] + asked.length_m[1]) * (1.0f / tables.leg_m),
-          turn_legs = kTurn_s * size(asked.turn_rad_s),
-          longer_legs = size(V(length_legs - asked_legs[0])),
-          more_legs = longer_legs + size(V(turn_legs - asked_legs[1]));
-  const float grows = kGrows_per_s * tables.tick_s;
-  const auto comes =
-      either(longer_legs > grows * length_legs, more_legs > grows * (length_legs + turn_legs));
+          turn_legs = kTurn_s * size(asked.turn_rad_s), longer_legs = length_legs - asked_legs[0],
+          turned_legs = turn_legs - asked_legs[1];
+  const auto grows = [&](const V& more_legs, const V& of_legs) {
+    return size(more_legs) > kGrows_per_s * tables.tick_s * of_legs;
+  };
+  // In a stop length and turn each count: of their sum alone, a stick that comes back from a turn
+  // on the spot would seem to rest.
+  const V all_legs = length_legs + turn_legs;
+  const auto grows_each = either(grows(longer_legs, length_legs),
+                                 grows(V(size(longer_legs) + size(turned_legs)), all_legs)),
+             comes = block.change.stops != V{} ? grows_each
+                                               : grows(V(longer_legs + turned_legs), all_legs);
   if constexpr (!kUneven)
     one_by_one<kWidth>(is_to_turn_back(block.state, block.change), block,
                        [&](Block<1>& one, int) { turn_back(tables, one); });

@@ -457,13 +457,17 @@ def _mirror_name(name):
 
 def mirror_checks(w, twin):
     n = min(w.ticks, twin.ticks)
-    heading = worst(np.abs(w.col["heading_rad"][:n] + twin.col["heading_rad"][:n]))
+    apart = np.abs(w.col["heading_rad"][:n] + twin.col["heading_rad"][:n])
+    # A turn on the spot out of a walk begins with the last foot's landing, and a captured walker's feet are no mirrors.
+    on_spot = (w.col["stick_x"][:n] != 0) & (w.col["stick_y"][:n] == 0)
+    walks = n if not w.captured() or not on_spot.any() else int(on_spot.argmax())
+    heading = worst(apart[:walks])
     checks = [Check("ticks differ", abs(w.ticks - twin.ticks), 0, "=="),
               Check("mirrored stick_x, stick_y", worst(np.abs(w.col["stick_x"][:n] + twin.col["stick_x"][:n])) +
                     worst(np.abs(w.col["stick_y"][:n] - twin.col["stick_y"][:n])), 0, "=="),
               Check("mirrored heading", heading, 1e-6, unit="rad")]  # floats add up to other last bits
     if w.captured():
-        return checks
+        return [*checks, Check("mirrored heading on the spot", worst(apart[walks:]), 0.1, unit="rad")]
     swap = {"left": "right", "right": "left", "none": "none"}
     stages = (w.col["stage"][:n] != twin.col["stage"][:n]) | \
              (w.col["swing"][:n] != np.array([swap[s] for s in twin.col["swing"][:n]]))

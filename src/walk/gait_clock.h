@@ -111,10 +111,9 @@ Mask<V> is_asked_onto_spot(const Tables& tables, const State<V>& state) noexcept
   constexpr float kTurns_rad_s = 0.5f;  // a stick that is let go asks for tiny steps, too
   const Asked<V>& asked = state.asked;
   auto stays = both(asked.length_m[0] == V{}, asked.length_m[1] == V{});
-  if (tables.terrain == nullptr) {
-    const auto tiny = asked_ratio(tables, state) < all<V>(kTiny);
-    stays = either(stays, both(tiny, size(asked.turn_rad_s) > all<V>(kTurns_rad_s)));
-  }
+  const auto turns = size(asked.turn_rad_s) > all<V>(kTurns_rad_s);
+  if (tables.terrain == nullptr && any(turns))
+    stays = either(stays, both(turns, asked_ratio(tables, state) < all<V>(kTiny)));
   return both(asked.walks != V{}, stays);
 }
 // True if the walk is to go on. To walk the other way it first comes to rest; on level ground to
@@ -122,12 +121,13 @@ Mask<V> is_asked_onto_spot(const Tables& tables, const State<V>& state) noexcept
 template <class V>
 Mask<V> is_to_walk(const Tables& tables, const State<V>& state, const Change<V>& change) noexcept {
   const Asked<V>& asked = state.asked;
-  auto may_turn = V{} == V{};
-  if (tables.terrain == nullptr)
-    may_turn = either(change.stands != V{},
-                      longer_ratio(tables, change.length_m, state.backward) < all<V>(kTiny));
-  return both(asked.walks != V{},
-              is_asked_onto_spot(tables, state) ? may_turn : asked.backward == state.backward);
+  const auto onto_spot = is_asked_onto_spot(tables, state),
+             same_way = both(asked.walks != V{}, asked.backward == state.backward);
+  if (!any(onto_spot)) return same_way;
+  if (tables.terrain != nullptr) return either(onto_spot, same_way);
+  const auto may_turn = either(
+      change.stands != V{}, longer_ratio(tables, change.length_m, state.backward) < all<V>(kTiny));
+  return onto_spot ? may_turn : same_way;
 }
 // A landing follows the parameters at once until kSettles of the flight, then ever more slowly, and
 // from kFreeze on it stays. If it stopped at once, the flying foot would jerk.
@@ -144,8 +144,9 @@ V settled(const V& u, const Change<V>& change) noexcept {
 template <class V>
 Mask<V> may_turn_early(const Tables& tables, const State<V>& state,
                        const Change<V>& change) noexcept {
-  const auto closes = both(state.flies != V{}, change.closing != V{}),
-             stays = settled(V(state.tick / state.flight_ticks), change) >= all<V>(1.0f);
+  const auto closes = both(state.flies != V{}, change.closing != V{});
+  if (!any(closes)) return closes;
+  const auto stays = settled(V(state.tick / state.flight_ticks), change) >= all<V>(1.0f);
   return both(is_asked_onto_spot(tables, state), both(closes, stays));
 }
 // The turn rate that head and chest follow, in rad/s: in a stop for a turn on the spot already that

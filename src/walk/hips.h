@@ -226,6 +226,8 @@ void move_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& la
   move(z_m, path.per_cycle_z_m, change.pelvis_z_m);
 }
 
+inline constexpr float kFastestPhase = 2.5f;  // of hips that lead, over the clock's rate
+
 // The phase at which the tables have the pelvis at its place, by Newton's method on a sum of
 // squares: distance of the hips from their place, and of the phase from the clock's. `strides`: the
 // tables as this tick shows them, by `share` those of its own stride. `rate` becomes the phase's
@@ -240,9 +242,9 @@ V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& l
   // farther than kGoesSomewhere of the data's stride the hips alone tell the phase; kLeastWay_m2
   // bounds the Newton step there.
   constexpr float kInTime_m = 1.2f, kLeastWay_m2 = 0.02f, kGoesSomewhere = 0.2f;
-  constexpr float kPhaseStep = 1e-3f;                         // cycles, of the slope
-  constexpr float kBeforeStep = 0.1f, kAfterStep = 0.14f;     // cycles around the step's own
-  constexpr float kFastestPhase = 2.5f, kFastestStop = 1.5f;  // of the clock's rate
+  constexpr float kPhaseStep = 1e-3f;                      // cycles, of the slope
+  constexpr float kBeforeStep = 0.1f, kAfterStep = 0.14f;  // cycles around the step's own
+  constexpr float kFastestStop = 1.5f;                     // of the clock's rate
   constexpr float kComesUp_s = 0.06f;  // at the reference leg: to the fastest rate, and back
   constexpr int kFewTries = 2, kPhaseTries = 6;  // iterations: usually, and where a plan is new
   const Way<V>& way = landing.way;
@@ -462,15 +464,18 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
     V moves{};
     const V found = phase_of_pelvis(tables, time, landing, hips, strides, strike_phase, strike_rate,
                                     over, state, change, moves);
+    // A new plan's rate is measured a tick later, because its path moves as well. Hips that hardly
+    // move yet leave the phase open: there it may leap.
+    const V leaps = found - last_found, most_rate = kFastestPhase * strike_rate,
+            goes = least(most(V(leaps - floored(V(leaps + 0.5f))), V(-most_rate)), most_rate);
+    moves = was_new ? goes : moves;
     phase = led ? found : phase;
     rate = led ? moves : rate;
   }
-  // The rate of a new plan's phase is measured a tick later, because its path moves as well.
-  const V cycles = floored(V(change.phase - phase + 0.5f)), was = change.phase - cycles,
-          goes_on = was_new ? V(phase - (last_found - cycles)) : rate;
+  const V was = change.phase - floored(V(change.phase - phase + 0.5f));
   const auto carries = either(is_new, was_new);
   change.off_phase =
-      chosen(carries, {V(was + change.phase_rate - phase), V(change.phase_rate - goes_on), V{}},
+      chosen(carries, {V(was + change.phase_rate - phase), V(change.phase_rate - rate), V{}},
              change.off_phase);
   const float carry = kCarry_s * tables.time_scale / tables.tick_s;
   change.off_ticks =

@@ -180,10 +180,12 @@ void change_ends(const Tables& tables, Block<kWidth>& block) noexcept {
   const auto grows = [&](const V& more_legs, const V& of_legs) {
     return size(more_legs) > kGrows_per_s * tables.tick_s * of_legs;
   };
-  // Length and turn each count: of their sum alone, a stick that comes back from a turn on the spot
-  // would seem to rest. A flight that leaves the spot has no time to wait for more than that.
+  // On level ground length and turn each count: of their sum alone, a stick that comes back from a
+  // turn on the spot would seem to rest. A flight that leaves the spot has no time to wait for more
+  // than that.
   const V all_legs = length_legs + turn_legs;
-  const auto waits = either(block.change.stops != V{}, block.state.flies == V{}),
+  const auto waits =
+                 kUneven ? Mask<V>{} : either(block.change.stops != V{}, block.state.flies == V{}),
              each = either(grows(longer_legs, length_legs),
                            grows(V(size(longer_legs) + size(turned_legs)), all_legs)),
              comes = waits ? each : grows(V(longer_legs + turned_legs), all_legs);

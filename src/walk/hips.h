@@ -704,22 +704,26 @@ inline int all_sink_ticks(const Tables& tables) noexcept {
 inline int sink_ticks_left(const Tables& tables, float ticks) noexcept {
   return std::min(static_cast<int>(ticks), all_sink_ticks(tables));
 }
-// The planned sinking in this tick, in metres.
+// The planned sinking `at` ticks after the plan's beginning, in metres; `w`: the walk's lane.
+template <class V>
+float planned_sink(const Tables& tables, const V (&sink_m)[kSinkKnots], int w, int at) noexcept {
+  const int knot = sink_knot_ticks(tables), i = std::min(at / knot, kSinkKnots - 4);
+  const Knots<float> knots =
+      spline_knots(0.0f, static_cast<float>(at - i * knot) / static_cast<float>(knot));
+  float sum_m = knots.weight[0] * lane(sink_m[i], w);
+  for (int k : {1, 2, 3}) sum_m += knots.weight[k] * lane(sink_m[i + k], w);
+  return sum_m;
+}
+// The same in this tick, and what is left of the plan before it.
 template <class V>
 V known_sink(const Tables& tables, const Change<V>& change) noexcept {
-  const int knot = sink_knot_ticks(tables), all_ticks = all_sink_ticks(tables);
   V sink_m{};
   for (int w = 0; w < kLanes<V>; ++w) {
     const int left = sink_ticks_left(tables, lane(change.sink_ticks, w));
     if (left == 0) continue;
-    const int at = all_ticks - left, i = at / knot;
-    const Knots<float> knots =
-        spline_knots(0.0f, static_cast<float>(at - i * knot) / static_cast<float>(knot));
-    float sum_m = knots.weight[0] * lane(change.sink_m[i], w);
-    for (int k : {1, 2, 3}) sum_m += knots.weight[k] * lane(change.sink_m[i + k], w);
-    set_lane(sum_m, w, sink_m);
+    set_lane(planned_sink(tables, change.sink_m, w, all_sink_ticks(tables) - left), w, sink_m);
   }
-  return sink_m;
+  return sink_m + change.off_sink.x;
 }
 
 // Lowers the pelvis where a leg would have to be longer than in the tables. `ankle_m`: swing and
@@ -774,6 +778,8 @@ void sink(const Tables& tables, const Time<V>& time, const Stride<V>& stride,
             more_m = known_m + soft_positive(V(sunk_m - known_m), width_m);
     sunk_m = both(ahead, known_m > all<V>(1e-6f)) ? more_m : sunk_m;
     change.sink_ticks = ahead ? V(change.sink_ticks - 1.0f) : V{};
+    fade(change.off_sink_ticks, change.off_sink);
+    change.off_sink_ticks = most(V(change.off_sink_ticks - 1.0f), V{});
   }
   pelvis.place_m.y = pelvis.place_m.y - sunk_m;
 }

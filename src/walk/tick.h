@@ -363,9 +363,19 @@ auto& footing_of(Block<1>& block, NoFooting& level) noexcept {
   }
 }
 
+// The planned sinking with its rate and acceleration, from it in three ticks.
+inline Off<float> sink_from(const Tables& tables, const Change<float>& change, int at) noexcept {
+  float x[3];
+  for (int n : {0, 1, 2}) x[n] = planned_sink(tables, change.sink_m, 0, at + n);
+  return {x[0], 2.0f * x[1] - 1.5f * x[0] - 0.5f * x[2], x[2] - 2.0f * x[1] + x[0]};
+}
+
 // Walks ahead to find when legs will be at their reach, and plans how the hips sink before that.
 template <bool kPaper, bool kUneven>
 void look_ahead(const Tables& tables, Block<1>& block) noexcept {
+  // From the old plan to the new one, at the reference leg: with 0.1 s legs jump on the course
+  // where a need comes late, with 0.06 s hips do.
+  constexpr float kComes_s = 0.15f;
   Change<float>& change = block.change;
   const int knot = sink_knot_ticks(tables), all_ticks = all_sink_ticks(tables),
             left = sink_ticks_left(tables, change.sink_ticks), at = left > 0 ? all_ticks - left : 0,
@@ -381,18 +391,21 @@ void look_ahead(const Tables& tables, Block<1>& block) noexcept {
     most_m = most(most_m, ahead.change.wants_m);
   }
   // Knot k is at the beginning of interval k - 1 and takes the greatest need of the intervals
-  // around it. The four knots that act now stay.
+  // around it. The four knots that act now keep what was planned for them if that is more.
   std::array<float, kSinkKnots> knots_m{};
-  bool sinks = false;
-  for (int k = 0; k < kSinkKnots; ++k) {
-    if (k < 4 && left > 0)
-      knots_m[k] = change.sink_m[first + k];
-    else if (k >= 4 && k < kSinkKnots - 3)
-      knots_m[k] = most(wants_m[k - 2], wants_m[k - 1]);
-    sinks |= knots_m[k] != 0.0f;
+  for (int k = 0; k < kSinkKnots - 3; ++k) {
+    const float planned_m = k < 4 && left > 0 ? change.sink_m[first + k] : 0.0f;
+    knots_m[k] = most(planned_m, most(wants_m[std::max(k - 2, 0)], wants_m[std::max(k - 1, 0)]));
   }
+  Off<float>& off = change.off_sink;
+  const Off<float> was = left > 0 ? sink_from(tables, change, at) : Off<float>{};
   for (int k = 0; k < kSinkKnots; ++k) change.sink_m[k] = knots_m[k];
+  const Off<float> is = sink_from(tables, change, gone);
+  off = {off.x + was.x - is.x, off.v + was.v - is.v, off.a + was.a - is.a};
+  change.off_sink_ticks = kComes_s * tables.time_scale / tables.tick_s;
   change.foreseen_m = block.state.asked.length_m[0] + block.state.asked.length_m[1];
+  const bool sinks = off.x != 0.0f ||
+                     std::any_of(knots_m.begin(), knots_m.end(), [](float m) { return m != 0.0f; });
   change.sink_ticks = sinks ? static_cast<float>(all_ticks - gone) : 0.0f;
 }
 

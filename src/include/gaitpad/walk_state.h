@@ -156,8 +156,10 @@ struct Change {
   // Sinking before a leg is at its reach: knots of a cubic spline in metres (kSinkKnot_s), the
   // ticks that are left of it, and the sinking that the legs ask for in this tick.
   V sink_m[kSinkKnots]{}, sink_ticks{}, wants_m{};
-  V foreseen_m{};     // sum of both steps' lengths for which that was planned
-  V asked_legs[2]{};  // asked for in the last tick: sum of both steps' lengths, and turn, in legs
+  Off<V> off_sink;     // by which the plan before differs
+  V off_sink_ticks{};  // in which that fades
+  V foreseen_m{};      // sum of both steps' lengths for which that was planned
+  V asked_legs[2]{};   // asked for in the last tick: sum of both steps' lengths, and turn, in legs
 
   // Flight after a change of plan: the share of the flight at which State::gap_m begins to fade,
   // and the share in which it fades.

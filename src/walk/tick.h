@@ -391,22 +391,25 @@ void look_ahead(const Tables& tables, Block<1>& block) noexcept {
     most_m = most(most_m, ahead.change.wants_m);
   }
   // Knot k is at the beginning of interval k - 1 and takes the greatest need of the intervals
-  // around it. The four knots that act now keep what was planned for them if that is more.
+  // around it. The four knots that act now stay; on uneven ground, where needs come late, they take
+  // them if they are more than what was planned.
   std::array<float, kSinkKnots> knots_m{};
   for (int k = 0; k < kSinkKnots - 3; ++k) {
-    const float planned_m = k < 4 && left > 0 ? change.sink_m[first + k] : 0.0f;
-    knots_m[k] = most(planned_m, most(wants_m[std::max(k - 2, 0)], wants_m[std::max(k - 1, 0)]));
+    if (k < 4 && left > 0) knots_m[k] = change.sink_m[first + k];
+    if (k < 4 && !kUneven) continue;
+    for (int i : {k - 2, k - 1}) knots_m[k] = most(knots_m[k], wants_m[std::max(i, 0)]);
   }
   Off<float>& off = change.off_sink;
   const Off<float> was = left > 0 ? sink_from(tables, change, at) : Off<float>{};
   for (int k = 0; k < kSinkKnots; ++k) change.sink_m[k] = knots_m[k];
   const Off<float> is = sink_from(tables, change, gone);
   off = {off.x + was.x - is.x, off.v + was.v - is.v, off.a + was.a - is.a};
-  change.off_sink_ticks = kComes_s * tables.time_scale / tables.tick_s;
   change.foreseen_m = block.state.asked.length_m[0] + block.state.asked.length_m[1];
   const bool sinks = off.x != 0.0f ||
                      std::any_of(knots_m.begin(), knots_m.end(), [](float m) { return m != 0.0f; });
   change.sink_ticks = sinks ? static_cast<float>(all_ticks - gone) : 0.0f;
+  change.off_sink_ticks = sinks ? kComes_s * tables.time_scale / tables.tick_s : 0.0f;
+  if (!sinks) off = {};
 }
 
 // Reports the legs' solves.

@@ -139,15 +139,19 @@ V settled(const V& u, const Change<V>& change) noexcept {
   const V changed_u = most(V(change.gap_begin - kSettles), V{});
   return (u - kSettles - changed_u) * (1.0f / (kFreeze - kSettles));
 }
-// True where the last foot of a stop for a turn on the spot flies to a landing that stays: the turn
-// begins. Begun sooner, it would move the landing and the place where the hips come to rest.
+// True where the last foot of a stop for a turn on the spot flies: the turn begins. Its landing
+// turns with the body.
 template <class V>
 Mask<V> may_turn_early(const Tables& tables, const State<V>& state,
                        const Change<V>& change) noexcept {
+  // Longest time before the strike, at the reference leg. Earlier, a slow last step would turn so
+  // far that the hips of the next one went by 11 m/s^2.
+  constexpr float kTurnsBefore_s = 0.55f;
   const auto closes = both(state.flies != V{}, change.closing != V{});
   if (!any(closes)) return closes;
-  const auto stays = settled(V(state.tick / state.flight_ticks), change) >= all<V>(1.0f);
-  return both(is_asked_onto_spot(tables, state), both(closes, stays));
+  const V left_s = (state.flight_ticks - state.tick) * tables.tick_s;
+  const auto lands = left_s <= all<V>(kTurnsBefore_s * tables.time_scale);
+  return both(is_asked_onto_spot(tables, state), both(closes, lands));
 }
 // The turn rate that head and chest follow, in rad/s: in a stop for a turn on the spot already that
 // turn's.
@@ -176,7 +180,8 @@ void smooth_asked(const Tables& tables, const Change<V>& change, const V& left,
                   State<V>& state) noexcept {
   constexpr float kStraight_rad_s = 1e-5f;  // too small to see
   const Asked<V>& asked = state.asked;
-  const auto walks = is_to_walk(tables, state, change);
+  const auto walks = is_to_walk(tables, state, change),
+             rests = either(change.stands != V{}, change.closing != V{});
   for (int side : {0, 1}) {
     // A first step follows a stick that is still on its way, so its filter is quicker.
     const auto starts = change.starting != V{},
@@ -185,8 +190,7 @@ void smooth_asked(const Tables& tables, const Change<V>& change, const V& left,
                is_quick = either(starts, stops),
                goes_on = both(change.catch_ticks != V{},
                               state.right_swings == all<V>(static_cast<float>(side)));
-    const V rests = most(change.stands, change.closing),
-            kept_m = rests != V{} ? V{} : state.length_m[side].x,
+    const V kept_m = rests ? V{} : state.length_m[side].x,
             asked_m = walks ? asked.length_m[side] : kept_m,
             goal_m = either(either(stops, turns), goes_on) ? change.length_m[side] : asked_m;
     follow(both(steps, no(either(stops, turns))) ? V(kFirstStep * goal_m) : goal_m, is_quick,
@@ -216,8 +220,9 @@ void smooth_asked(const Tables& tables, const Change<V>& change, const V& left,
   const V both_m = state.length_m[0].x + state.length_m[1].x;
   follow(V(0.5f * both_m * left * (1.0f / tables.source_step_m)), tables.step, state.pace);
   follow(within(V(2.0f * state.pace.x), 0.0f, 1.0f), tables.posture, state.posture);
-  // A lean of v w / g puts the weight on the standing foot's edge, as on a bicycle.
-  const V speed_m_s = both_m / most(cycle_s, all<V>(kLeastCycle_s));
+  // A lean of v w / g puts the weight on the standing foot's edge, as on a bicycle. Hips that come
+  // to rest do not lean into the turn that follows.
+  const V speed_m_s = rests ? V{} : V(both_m / most(cycle_s, all<V>(kLeastCycle_s)));
   follow(V(speed_m_s * state.turn_rad_s.x * (1.0f / kGravity_m_s2)), tables.lean, state.lean_rad);
   // Sums of multiples of 2^-24 are exact, so mirrored sticks give exactly mirrored headings,
   // although their walks strike at other ticks.

@@ -363,11 +363,16 @@ auto& footing_of(Block<1>& block, NoFooting& level) noexcept {
   }
 }
 
-// The planned sinking with its rate and acceleration, from it in three ticks.
+// The planned sinking `at` ticks after the plan's beginning, with its rate and acceleration: a
+// uniform cubic B-spline and its derivatives.
 inline Off<float> sink_from(const Tables& tables, const Change<float>& change, int at) noexcept {
-  float x[3];
-  for (int n : {0, 1, 2}) x[n] = planned_sink(tables, change.sink_m, 0, at + n);
-  return {x[0], 2.0f * x[1] - 1.5f * x[0] - 0.5f * x[2], x[2] - 2.0f * x[1] + x[0]};
+  const int knot = sink_knot_ticks(tables), i = std::min(at / knot, kSinkKnots - 4);
+  const float s = 1.0f / static_cast<float>(knot), u = s * static_cast<float>(at - i * knot),
+              *m = change.sink_m + i, from = m[1] - m[0], over = m[2] - m[1], to = m[3] - m[2],
+              left = 1.0f - u;
+  return {planned_sink(tables, change.sink_m, 0, at),
+          s * (0.5f * left * left * from + (0.5f + u * left) * over + 0.5f * u * u * to),
+          s * s * (left * (over - from) + u * (to - over))};
 }
 
 // Walks ahead to find when legs will be at their reach, and plans how the hips sink before that.

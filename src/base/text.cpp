@@ -127,7 +127,15 @@ std::size_t character_bytes(std::string_view text) noexcept {
 
 std::size_t utf8_bytes(std::string_view text) noexcept {
   std::size_t place = 0;
-  while (const std::size_t bytes = character_bytes(text.substr(place))) place += bytes;
+  while (place < text.size()) {
+    if (static_cast<unsigned char>(text[place]) < 0x80) {
+      ++place;
+      continue;
+    }
+    const std::size_t bytes = character_bytes(text.substr(place));
+    if (bytes == 0) break;
+    place += bytes;
+  }
   return place;
 }
 

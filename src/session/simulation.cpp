@@ -82,7 +82,7 @@ void follow_zones(Walker& w, const Terrain& terrain, std::span<const int> zone_s
 }
 
 // Advances blend and fatigue by one tick; returns the values for this tick.
-StyleValues advance_style(Walker& w, double dt_s) noexcept {
+const StyleValues& advance_style(Walker& w, double dt_s) noexcept {
   w.in_force = advance(w.blend, with_fatigue(w.values, w.tired), dt_s);
   return w.in_force;
 }

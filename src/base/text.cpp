@@ -270,6 +270,11 @@ char* put_fixed(char* out, double value, int decimals) {
     const std::string text = streamed(value, std::ios_base::fixed, decimals);
     return std::copy(text.begin(), text.end(), out);
   }
+  if (std::signbit(value)) *out++ = '-';
+  if (value == 0.0) {  // as a quarter of the numbers in frames.csv are
+    std::memcpy(out, "0.000000000", 11);
+    return out + (decimals == 0 ? 1 : 2 + decimals);
+  }
   const std::uint64_t power = kPowersOfTen[decimals];
   auto whole = static_cast<std::uint64_t>(static_cast<std::int64_t>(std::abs(value)));
   std::uint64_t fraction = scaled(value, decimals) - whole * power;
@@ -277,7 +282,6 @@ char* put_fixed(char* out, double value, int decimals) {
     ++whole;
     fraction = 0;
   }
-  if (std::signbit(value)) *out++ = '-';
   char* point = out + 1;
   for (std::uint64_t bound = 10; whole >= bound; bound *= 10) ++point;
   for (char* digit = point; digit > out; whole /= 10)

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cerrno>
+#include <charconv>
 #include <filesystem>
 #include <iterator>
 #include <string_view>
@@ -96,9 +97,13 @@ char* put(std::string_view word, char* out) {
   *out++ = ',';
   return out;
 }
-char* put(std::int64_t count, char* out) { return put(std::to_string(count), out); }
+char* put(std::int64_t count, char* out) {
+  out = std::to_chars(out, out + kMostFixedBytes, count).ptr;
+  *out++ = ',';
+  return out;
+}
 char* put(int count, char* out) { return put(std::int64_t{count}, out); }
-char* put(bool yes, char* out) { return put(yes ? 1 : 0, out); }
+char* put(bool yes, char* out) { return put(std::string_view(yes ? "1" : "0"), out); }
 
 struct FramesRow {
   std::int64_t tick;

@@ -75,8 +75,9 @@ inline constexpr std::size_t kMaxQuotedBytes = 60;
 std::string in_quotes(std::string_view text);
 // The value with `decimals` digits after the point, as printf's %.*f writes it in the C locale.
 std::string fixed(double value, int decimals);
-// Appends what fixed() returns; takes a few nanoseconds for at most 9 decimals and values below
-// 1e9.
-void append_fixed(std::string& out, double value, int decimals);
+// The same for 0 to 9 decimals, written to a buffer with room for kMostFixedBytes; returns the end.
+// Takes a few nanoseconds for values below 1e9.
+inline constexpr std::size_t kMostFixedBytes = 320;  // sign, 309 digits, point, 9 digits
+char* put_fixed(char* out, double value, int decimals);
 
 }  // namespace gaitpad

@@ -201,6 +201,9 @@ GaitRange range_of(GaitKey key, const GaitLimits& limits) noexcept {
 
 GaitParams gait_params(const Stick& stick, const StyleValues& style, const GaitOverrides& overrides,
                        const GaitLimits& limits) noexcept {
+  const auto& is_set = overrides.is_set;
+  if (std::find(is_set.begin(), is_set.end(), true) == is_set.end())
+    return gait_params(stick, style, limits);
   const auto speed_m_s = given(overrides, GaitKey::speed_m_s, limits);
   const auto turn_rate_rad_s = given(overrides, GaitKey::turn_rate_rad_s, limits);
   Stick in_force = stick;  // the stick that would have the effect of the overrides

@@ -57,9 +57,8 @@ std::optional<Error> problem_of(const std::string& owner, StyleValues style) {
         owner + ": " + (section.name.empty() ? "" : std::string(section.name) + ".");
     for (const StyleField& field : section.fields) {
       for (const double value : field.values(style, section.first_side)) {
-        if (auto problem =
-                range_problem(table + std::string(field.name), value, field.min, field.max))
-          return problem;
+        if (value >= field.min && value <= field.max) continue;  // before the name is built
+        return range_problem(table + std::string(field.name), value, field.min, field.max);
       }
     }
     if (is_locked(section, style))

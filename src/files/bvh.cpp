@@ -377,6 +377,7 @@ BvhWriter::BvhWriter(std::ostream& out, const Skeleton& skeleton, const BvhLayou
     layout_.orders[0] = kEulerYxz;
   }
   written_.resize(skeleton.joints.size());
+  line_.resize(3 * (1 + skeleton.joints.size()) * (kMostFixedBytes + 1));
   write_hierarchy();
 }
 
@@ -431,19 +432,15 @@ void BvhWriter::write_joint(int joint, int depth) {
 void BvhWriter::write(const Pose& pose) {
   if (!is_sound_) return;
   const vec3 root = pose.root_m / layout_.metres_per_unit;
-  line_.clear();
-  append_fixed(line_, root.x, 8);
-  for (const double value : {root.y, root.z}) {
-    line_ += ' ';
-    append_fixed(line_, value, 8);
+  char* end = line_.data();
+  for (const double value : {root.x, root.y, root.z}) {
+    end = put_fixed(end, value, 8);
+    *end++ = ' ';
   }
-  for (const int joint : joints_) {
-    Written& written = written_[joint];
-    written.turn_to(layout_.orders[joint], pose.local[joint]);
-    line_ += written.text;
-  }
-  line_ += '\n';
-  out_.write(line_.data(), static_cast<std::streamsize>(line_.size()));
+  for (const int joint : joints_)
+    end = written_[joint].put(layout_.orders[joint], pose.local[joint], end);
+  end[-1] = '\n';
+  out_.write(line_.data(), end - line_.data());
   ++frames_;
 }
 
@@ -460,17 +457,20 @@ bool has_same_bits(const T& a, const T& b) noexcept {
 
 // Angles depend only on the rotation and the previous angles: skip joints in which neither has
 // changed.
-void BvhWriter::Written::turn_to(const BvhOrder& order, const quat& turned) {
-  if (is_settled && has_same_bits(turned, rotation)) return;
+char* BvhWriter::Written::put(const BvhOrder& order, const quat& turned, char* out) {
+  const bool is_same = has_same_bits(turned, rotation);
+  if (is_same && is_settled) return std::copy(text.begin(), text.end(), out);
   const EulerAngles next_rad = nearest_euler(order, turned, angles_rad);
-  is_settled = has_same_bits(next_rad, angles_rad) && has_same_bits(turned, rotation);
+  is_settled = is_same && has_same_bits(next_rad, angles_rad);
   rotation = turned;
   angles_rad = next_rad;
-  text.clear();
+  char* end = out;
   for (const double angle_rad : angles_rad) {
-    text += ' ';
-    append_fixed(text, angle_rad / kDegree, 7);
+    end = put_fixed(end, angle_rad / kDegree, 7);
+    *end++ = ' ';
   }
+  if (is_settled) text.assign(out, end);
+  return end;
 }
 
 bool BvhWriter::finish() {

@@ -4,7 +4,7 @@ namespace gaitpad {
 namespace {
 
 // +1 for cyclic orders (xyz, yzx, zxy), otherwise -1.
-double handedness(const EulerOrder& order) noexcept {
+constexpr double handedness(const EulerOrder& order) noexcept {
   return (order[1] - order[0] + 3) % 3 == 1 ? 1.0 : -1.0;
 }
 
@@ -23,7 +23,7 @@ struct PoleParts {
 };
 // sin(second) = handedness * R[first axis][third axis], where R[row][column] is the matrix of the
 // rotation.
-PoleParts second_angle(const EulerOrder& order, const mat3& r) noexcept {
+inline PoleParts second_angle(const EulerOrder& order, const mat3& r) noexcept {
   const double sine = std::clamp(handedness(order) * r[order[2]][order[0]], -1.0, 1.0);
   const double a = r[order[2]][order[1]], b = r[order[2]][order[2]];
   return {sine, std::sqrt(a * a + b * b)};
@@ -41,10 +41,13 @@ double pole_closeness(const EulerOrder& order, const quat& rotation) noexcept {
   return std::abs(second_angle(order, glm::mat3_cast(rotation)).sine);
 }
 
-EulerAngles nearest_euler(const EulerOrder& order, const quat& rotation,
-                          const EulerAngles& previous_rad) noexcept {
-  const int i = order[0], j = order[1], k = order[2];
-  const double h = handedness(order);
+namespace {
+
+// nearest_euler() for the order i, j, k, of which only the needed parts of the matrix are computed.
+template <int i, int j, int k>
+EulerAngles nearest_in_order(const quat& rotation, const EulerAngles& previous_rad) noexcept {
+  constexpr EulerOrder order = {i, j, k};
+  constexpr double h = handedness(order);
   const mat3 r = glm::mat3_cast(rotation);  // r[column][row]
   const PoleParts second = second_angle(order, r);
   // Within 1e-7 of the pole the outer angles' sum (or difference) alone is defined.
@@ -73,6 +76,24 @@ EulerAngles nearest_euler(const EulerOrder& order, const quat& rotation,
                            nearest_turn(kPi - middle, previous_rad[1]),
                            nearest_turn(third + kPi, previous_rad[2])};
   return distance(one, previous_rad) <= distance(two, previous_rad) ? one : two;
+}
+
+}  // namespace
+
+EulerAngles nearest_euler(const EulerOrder& order, const quat& rotation,
+                          const EulerAngles& previous_rad) noexcept {
+  const bool is_cyclic = handedness(order) > 0.0;
+  switch (order[0]) {
+    case 0:
+      return is_cyclic ? nearest_in_order<0, 1, 2>(rotation, previous_rad)
+                       : nearest_in_order<0, 2, 1>(rotation, previous_rad);
+    case 1:
+      return is_cyclic ? nearest_in_order<1, 2, 0>(rotation, previous_rad)
+                       : nearest_in_order<1, 0, 2>(rotation, previous_rad);
+    default:
+      return is_cyclic ? nearest_in_order<2, 0, 1>(rotation, previous_rad)
+                       : nearest_in_order<2, 1, 0>(rotation, previous_rad);
+  }
 }
 
 }  // namespace gaitpad

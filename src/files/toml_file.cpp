@@ -25,7 +25,7 @@ std::size_t end_of_string(std::string_view text, std::size_t begin) {
   for (; i < text.size(); ++i) {
     if (text[i] == '\\' && quote == '"') {
       ++i;
-    } else if (text.substr(i, closing.size()) == closing) {
+    } else if (text[i] == quote && text.substr(i, closing.size()) == closing) {
       i += closing.size();
       break;
     } else if (text[i] == '\n' && !is_long) {
@@ -62,17 +62,30 @@ int first_line(std::string_view text, Wanted is_wanted) {
 }  // namespace
 
 int line_of_overlong_key(std::string_view text) {
-  constexpr std::string_view kEndsOfKeys = ",[]{}=\n";
   int dots = 0;
-  return first_line(text, [&](char c) {
-    if (kEndsOfKeys.find(c) != std::string_view::npos) dots = 0;
-    return c == '.' && ++dots >= kMaxKeyParts;
+  return first_line(text, [&dots](char c) {
+    switch (c) {
+      case '.':
+        return ++dots >= kMaxKeyParts;
+      case ',':
+      case '[':
+      case ']':
+      case '{':
+      case '}':
+      case '=':
+      case '\n':
+        dots = 0;  // the end of a key
+        return false;
+      default:
+        return false;
+    }
   });
 }
 
 int line_of_stray_character(std::string_view text) {
-  return first_line(without_byte_order_mark(text),
-                    [](char c) { return static_cast<unsigned char>(c) >= 0x80; });
+  const auto is_beyond_ascii = [](char c) { return static_cast<unsigned char>(c) >= 0x80; };
+  if (std::none_of(text.begin(), text.end(), is_beyond_ascii)) return 0;
+  return first_line(without_byte_order_mark(text), is_beyond_ascii);
 }
 
 int line_of_invalid_utf8(std::string_view text) {

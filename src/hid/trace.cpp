@@ -32,6 +32,9 @@ int hex_digit(char c) {
   return -1;
 }
 
+// Between the words of a line.
+constexpr bool is_gap(char c) { return c == ' ' || c == '\t'; }
+
 template <class T>
 std::optional<T> whole_number(std::string_view text, int base) {
   return text.starts_with('-') ? std::nullopt : parse_number<T>(text, base);
@@ -40,14 +43,15 @@ std::optional<T> whole_number(std::string_view text, int base) {
 }  // namespace
 
 void Words::skip_blanks() {
-  const std::size_t at = rest_.find_first_not_of(" \t");
-  rest_ = at == std::string_view::npos ? std::string_view{} : rest_.substr(at);
+  while (!rest_.empty() && is_gap(rest_.front())) rest_.remove_prefix(1);
 }
 
 std::string_view Words::next() {
   skip_blanks();
-  const std::string_view word = rest_.substr(0, rest_.find_first_of(" \t"));
-  rest_.remove_prefix(word.size());
+  std::size_t size = 0;
+  while (size < rest_.size() && !is_gap(rest_[size])) ++size;
+  const std::string_view word = rest_.substr(0, size);
+  rest_.remove_prefix(size);
   return word;
 }
 

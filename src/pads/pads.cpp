@@ -62,6 +62,7 @@ Pads::Pads(std::vector<PadConfig> configs, int rate_hz, PadRules rules)
   pads_.resize(configs.size());
   for (std::size_t i = 0; i < configs.size(); ++i) {
     pads_[i].config = std::move(configs[i]);
+    calibrate(pads_[i]);
     if (pads_[i].config.is_present) add_pad(static_cast<std::uint16_t>(i));
   }
 }
@@ -70,6 +71,7 @@ void Pads::set_pad(std::uint16_t device, PadConfig& config) noexcept {
   if (device >= pads_.size()) return;
   std::swap(pads_[device].config, config);
   pads_[device].config.is_present = false;
+  calibrate(pads_[device]);
 }
 
 bool Pads::take_report(const Report& report) noexcept {
@@ -83,6 +85,7 @@ bool Pads::take_report(const Report& report) noexcept {
   pad.settled_ticks = std::max(settled_ticks_, is_steady ? 2 * pad.silent_ticks : 0);
   pad.silent_ticks = 0;
   pad.filter.take(pad.state);
+  calibrate(pad);
   const bool is_first = !pad.is_seen;
   const bool has_moved = take_movement(pad, buttons_before);
   pad.is_seen = true;
@@ -105,10 +108,9 @@ void Pads::add_pad(std::uint16_t device) noexcept {
 
 // The first report tells the pad's state, not that it was moved.
 bool Pads::take_movement(Pad& pad, std::uint32_t buttons_before) noexcept {
-  const Stick stick = calibrated(pad);
-  const bool is_elsewhere = has_moved(pad.moved_to, stick);
+  const bool is_elsewhere = has_moved(pad.moved_to, pad.stick);
   pad.has_left_moved = pad.has_left_moved || !is_near_centre(pad);
-  if (is_elsewhere || !pad.is_seen) pad.moved_to = stick;
+  if (is_elsewhere || !pad.is_seen) pad.moved_to = pad.stick;
   const bool is_moved = pad.is_seen && (is_elsewhere || pad.state.buttons != buttons_before);
   if (is_moved || !is_at_rest(pad)) pad.resting_ticks = 0;
   return is_moved;
@@ -144,6 +146,7 @@ void Pads::remove_pad(std::uint16_t device) noexcept {
   lost.is_seen = false;
   lost.state = PadState{};
   lost.filter = JumpFilter();
+  calibrate(lost);
   lost.resting_ticks = 0;
   lost.has_left_moved = false;
   if (device == driving_) {
@@ -168,19 +171,24 @@ bool Pads::is_silent(const Pad& pad) const noexcept {
   return pad.config.streams && pad.silent_ticks >= silence_ticks_;
 }
 
-Stick Pads::calibrated(const Pad& pad) noexcept {
+void Pads::calibrate(Pad& pad) noexcept {
   const Calibration& calibration = pad.config.calibration;
-  return stick_position(calibration, pad.filter.filtered(calibration, pad.state));
+  pad.stick = stick_position(calibration, pad.filter.filtered(calibration, pad.state));
+}
+
+void Pads::settle(Pad& pad) noexcept {
+  pad.filter.settle();
+  const Calibration& calibration = pad.config.calibration;
+  if (calibration.left.filters_jumps || calibration.right.filters_jumps) calibrate(pad);
 }
 
 bool Pads::is_near_centre(const Pad& pad) const noexcept {
-  return glm::length(calibrated(pad).left) <= kNearCentre;
+  return glm::length(pad.stick.left) <= kNearCentre;
 }
 
 bool Pads::is_at_rest(const Pad& pad) const noexcept {
   if (is_silent(pad)) return true;
-  const Stick stick = calibrated(pad);
-  return pad.state.buttons == 0 && !has_moved({}, stick);
+  return pad.state.buttons == 0 && !has_moved({}, pad.stick);
 }
 
 bool Pads::can_take_over(const Pad& pad) const noexcept {
@@ -212,7 +220,7 @@ bool Pads::is_driven_by_hat(const Pad& pad) const noexcept {
 
 Stick Pads::stick_of(const Pad& pad) const noexcept {
   if (!pad.config.is_present || pad.is_awaited || is_silent(pad)) return {};
-  Stick stick = calibrated(pad);
+  Stick stick = pad.stick;
   if (is_driven_by_hat(pad)) stick.left = hat_position(pad.state);
   return stick;
 }
@@ -250,7 +258,7 @@ Stick Pads::finish_tick() noexcept {
   for (Pad& pad : pads_) {
     pad.silent_ticks = std::min(pad.silent_ticks + 1, silence_ticks_);
     pad.resting_ticks = is_at_rest(pad) ? std::min(pad.resting_ticks + 1, yielding_ticks_) : 0;
-    if (pad.silent_ticks >= std::min(pad.settled_ticks, silence_ticks_)) pad.filter.settle();
+    if (pad.silent_ticks >= std::min(pad.settled_ticks, silence_ticks_)) settle(pad);
   }
   return stick;
 }

@@ -82,7 +82,7 @@ void follow_zones(Walker& w, const Terrain& terrain, std::span<const int> zone_s
 }
 
 // Advances blend and fatigue by one tick; returns the values for this tick.
-StyleValues advance_style(Walker& w, double dt_s) noexcept {
+const StyleValues& advance_style(Walker& w, double dt_s) noexcept {
   w.in_force = advance(w.blend, with_fatigue(w.values, w.tired), dt_s);
   return w.in_force;
 }
@@ -379,10 +379,17 @@ bool Simulation::choose_style(std::span<Walker> walkers, std::string_view name) 
 }
 
 void Simulation::add_to_hash(const vec3& root_m, std::span<const quat> local) noexcept {
-  for (const double x : {root_m.x, root_m.y, root_m.z}) hash_.add(x);
+  WordHash hash = hash_;  // in a register
+  hash.add(root_m.x);
+  hash.add(root_m.y);
+  hash.add(root_m.z);
   for (const quat& q : local) {
-    for (const double x : {q.w, q.x, q.y, q.z}) hash_.add(x);
+    hash.add(q.w);
+    hash.add(q.x);
+    hash.add(q.y);
+    hash.add(q.z);
   }
+  hash_ = hash;
 }
 
 }  // namespace gaitpad

@@ -2,8 +2,12 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <array>
 #include <cerrno>
+#include <charconv>
 #include <filesystem>
+#include <iterator>
 #include <string_view>
 #include <utility>
 
@@ -43,9 +47,14 @@ Result<std::ostream*> OutputFiles::add(const std::string& name) {
   auto file = NewFile::create(path_of(name));
   if (!file) return file.error();
   errno = 0;
-  auto stream = std::make_unique<std::ofstream>(file->name_for_streams(), std::ios::binary);
+  // A system call for 64 KB instead of 8 KB: a file of several MB takes half the time.
+  constexpr std::size_t kBufferBytes = 1 << 16;
+  std::unique_ptr<char[]> buffer(new char[kBufferBytes]);
+  auto stream = std::make_unique<std::ofstream>();
+  stream->rdbuf()->pubsetbuf(buffer.get(), kBufferBytes);
+  stream->open(file->name_for_streams(), std::ios::binary);
   if (!*stream) return write_error(file->path(), errno);
-  files_.push_back({std::move(*file), std::move(stream)});
+  files_.push_back({std::move(*file), std::move(buffer), std::move(stream)});
   return files_.back().stream.get();
 }
 
@@ -73,23 +82,28 @@ std::optional<Error> OutputFiles::publish() {
 
 namespace {
 
-// Each value ends with a comma; that of the last becomes the end of the line.
-void append(double value, std::string& out) {
-  append_fixed(out, value + 0.0, 9);  // adding 0.0 avoids "-0"
-  out += ',';
+// Each value is written with a comma behind it; that of the last becomes the end of the line. They
+// return the end.
+char* put(double value, char* out) {
+  out = put_fixed(out, value + 0.0, 9);  // adding 0.0 avoids "-0"
+  *out++ = ',';
+  return out;
 }
-void append(const vec3& place_m, std::string& out) {
-  append(place_m.x, out);
-  append(place_m.y, out);
-  append(place_m.z, out);
+char* put(const vec3& place_m, char* out) {
+  return put(place_m.z, put(place_m.y, put(place_m.x, out)));
 }
-void append(std::string_view word, std::string& out) {
-  out += word;
-  out += ',';
+char* put(std::string_view word, char* out) {
+  out = std::copy(word.begin(), word.end(), out);
+  *out++ = ',';
+  return out;
 }
-void append(std::int64_t count, std::string& out) { append(std::to_string(count), out); }
-void append(int count, std::string& out) { append(std::int64_t{count}, out); }
-void append(bool yes, std::string& out) { append(yes ? 1 : 0, out); }
+char* put(std::int64_t count, char* out) {
+  out = std::to_chars(out, out + kMostFixedBytes, count).ptr;
+  *out++ = ',';
+  return out;
+}
+char* put(int count, char* out) { return put(std::int64_t{count}, out); }
+char* put(bool yes, char* out) { return put(std::string_view(yes ? "1" : "0"), out); }
 
 struct FramesRow {
   std::int64_t tick;
@@ -108,43 +122,40 @@ std::string_view swing_name(const WalkFrame& frame) {
 // One number or word of a row, or the three of a place.
 struct FramesColumn {
   std::string_view names;
-  void (*append_value)(const FramesRow& row, std::string& out);
+  char* (*put_value)(const FramesRow& row, char* out);
 };
 
 template <auto member>
 constexpr FramesColumn whole(std::string_view names) {
-  return {names, [](const FramesRow& row, std::string& out) { append(row.frame.*member, out); }};
+  return {names, [](const FramesRow& row, char* out) { return put(row.frame.*member, out); }};
 }
 template <auto member>
 constexpr FramesColumn left(std::string_view names) {
-  return {names, [](const FramesRow& row, std::string& out) {
-            append((row.frame.*member)[kLeftSide], out);
-          }};
+  return {names,
+          [](const FramesRow& row, char* out) { return put((row.frame.*member)[kLeftSide], out); }};
 }
 template <auto member>
 constexpr FramesColumn right(std::string_view names) {
-  return {names, [](const FramesRow& row, std::string& out) {
-            append((row.frame.*member)[kRightSide], out);
+  return {names, [](const FramesRow& row, char* out) {
+            return put((row.frame.*member)[kRightSide], out);
           }};
 }
 
 constexpr FramesColumn kFramesColumns[] = {
-    {"tick", [](const FramesRow& row, std::string& out) { append(row.tick, out); }},
+    {"tick", [](const FramesRow& row, char* out) { return put(row.tick, out); }},
     {"time_s", [](const FramesRow& row,
-                  std::string& out) { append(static_cast<double>(row.tick) / row.rate_hz, out); }},
-    {"stick_x", [](const FramesRow& row, std::string& out) { append(row.stick.left.x, out); }},
-    {"stick_y", [](const FramesRow& row, std::string& out) { append(row.stick.left.y, out); }},
+                  char* out) { return put(static_cast<double>(row.tick) / row.rate_hz, out); }},
+    {"stick_x", [](const FramesRow& row, char* out) { return put(row.stick.left.x, out); }},
+    {"stick_y", [](const FramesRow& row, char* out) { return put(row.stick.left.y, out); }},
     left<&WalkFrame::stride_m>("stride_left_m"),
     right<&WalkFrame::stride_m>("stride_right_m"),
     whole<&WalkFrame::speed_m_s>("speed_m_s"),
     whole<&WalkFrame::turn_rate_rad_s>("turn_rate_rad_s"),
     whole<&WalkFrame::heading_rad>("heading_rad"),
     whole<&WalkFrame::pelvis_m>("root_x_m,root_y_m,root_z_m"),
-    {"stage",
-     [](const FramesRow& row, std::string& out) {
-       append(kStageNames[static_cast<int>(row.frame.stage)], out);
-     }},
-    {"swing", [](const FramesRow& row, std::string& out) { append(swing_name(row.frame), out); }},
+    {"stage", [](const FramesRow& row,
+                 char* out) { return put(kStageNames[static_cast<int>(row.frame.stage)], out); }},
+    {"swing", [](const FramesRow& row, char* out) { return put(swing_name(row.frame), out); }},
     left<&WalkFrame::heel_planted>("left_heel_planted"),
     left<&WalkFrame::toe_planted>("left_toe_planted"),
     right<&WalkFrame::heel_planted>("right_heel_planted"),
@@ -166,15 +177,22 @@ constexpr FramesColumn kFramesColumns[] = {
 }  // namespace
 
 void append_frames_header(std::string& out) {
-  for (const FramesColumn& column : kFramesColumns) append(column.names, out);
+  for (const FramesColumn& column : kFramesColumns) {
+    out += column.names;
+    out += ',';
+  }
   out.back() = '\n';
 }
 
 void append_frames_row(std::int64_t tick, int rate_hz, const Stick& stick, const WalkFrame& frame,
                        std::string& out) {
+  constexpr std::size_t kMostNumbers = 3 * std::size(kFramesColumns);
+  std::array<char, kMostNumbers*(kMostFixedBytes + 1)> text;
   const FramesRow row = {tick, rate_hz, stick, frame};
-  for (const FramesColumn& column : kFramesColumns) column.append_value(row, out);
-  out.back() = '\n';
+  char* end = text.data();
+  for (const FramesColumn& column : kFramesColumns) end = column.put_value(row, end);
+  end[-1] = '\n';
+  out.append(text.data(), end);
 }
 
 namespace {

@@ -53,6 +53,7 @@ class OutputFiles {
  private:
   struct File {
     NewFile file;
+    std::unique_ptr<char[]> buffer;  // the stream's
     std::unique_ptr<std::ofstream> stream;
   };
   explicit OutputFiles(OutputFolder folder) : folder_(std::move(folder)) {}

@@ -94,9 +94,10 @@ class BvhWriter {
   struct Written {
     quat rotation{1.0, 0.0, 0.0, 0.0};
     std::array<double, 3> angles_rad{};
-    std::string text;         // text of its angles, a blank before each
     bool is_settled = false;  // if the next rotation is the same, its angles are the same
-    void turn_to(const BvhOrder& order, const quat& turned);
+    std::string text;         // the text of settled angles
+    // Writes the angles of the next frame, a blank after each; returns the end of the text.
+    char* put(const BvhOrder& order, const quat& turned, char* out);
   };
   void write_hierarchy();
   void write_joint(int joint, int depth);
@@ -107,7 +108,7 @@ class BvhWriter {
   BvhLayout layout_;
   std::vector<int> joints_;       // joints with channels, in the order of the file
   std::vector<Written> written_;  // the last frame of each joint
-  std::string line_;
+  std::vector<char> line_;        // room for a frame's text
   std::ostream::pos_type count_at_;
   long long frames_ = 0;
   bool is_sound_ = true;  // check() accepts the layout

@@ -13,13 +13,15 @@ class WordHash {
   void add(double value) noexcept {
     std::uint64_t bits;
     std::memcpy(&bits, &value, sizeof bits);
-    state_ = (state_ ^ bits) * 0x100000001b3ull;
-    state_ ^= state_ >> 32;
+    // The new word and the shift of the product before it do not wait for each other.
+    product_ = (product_ ^ bits ^ product_ >> 32) * 0x100000001b3ull;
   }
-  std::uint64_t value() const noexcept { return state_; }
+  std::uint64_t value() const noexcept { return product_ ^ product_ >> 32; }
 
  private:
-  std::uint64_t state_ = 0xcbf29ce484222325ull;
+  static constexpr std::uint64_t kOffset = 0xcbf29ce484222325ull;
+  // The hash before its shift, which undoes itself.
+  std::uint64_t product_ = kOffset ^ kOffset >> 32;
 };
 
 }  // namespace gaitpad

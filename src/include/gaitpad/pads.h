@@ -114,6 +114,7 @@ class Pads {
     PadConfig config;
     PadState state;               // the state that the pad reported last
     JumpFilter filter;            // removes jumps of its sticks
+    Stick stick;                  // the calibrated and filtered sticks of `state`
     bool is_awaited = false;      // plugged in again and not yet seen near its centre
     bool is_seen = false;         // it has reported since it was plugged in
     bool has_left_moved = false;  // its left stick has moved since it was plugged in
@@ -125,7 +126,9 @@ class Pads {
     int turn = 0;  // rank among pads that can take over, the lowest first; 0: never plugged in
   };
   bool is_silent(const Pad& pad) const noexcept;
-  static Stick calibrated(const Pad& pad) noexcept;
+  // Sets the pad's `stick`. Call it when its configuration, state or filter has changed.
+  static void calibrate(Pad& pad) noexcept;
+  static void settle(Pad& pad) noexcept;
   bool is_near_centre(const Pad& pad) const noexcept;
   bool is_at_rest(const Pad& pad) const noexcept;
   bool take_movement(Pad& pad, std::uint32_t buttons_before) noexcept;

@@ -2,10 +2,10 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cassert>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <locale>
 #include <sstream>
 
@@ -253,13 +253,12 @@ std::uint64_t scaled(double value, int decimals) noexcept {
 // one of eight, two of four, four of two, eight of one. The first half of a group is in its lower
 // bits. v / 100 is v * 10486 / 2^20 up to 9999, v / 10 is v * 103 / 2^10 up to 99.
 void put_eight_digits(std::uint64_t number, char* out) noexcept {
-  static_assert(std::endian::native == std::endian::little, "the lowest byte is the first digit");
   const std::uint64_t fours = number / 10'000 | number % 10'000 << 32;
   const std::uint64_t hundreds = fours * 10'486 >> 20 & 0x7f'0000'007f;
   const std::uint64_t twos = hundreds | (fours - 100 * hundreds) << 16;
   const std::uint64_t tens = twos * 103 >> 10 & 0xf'000f'000f'000f;
   const std::uint64_t ones = (tens | (twos - 10 * tens) << 8) + 0x3030'3030'3030'3030;
-  std::memcpy(out, &ones, 8);
+  for (int i = 0; i < 8; ++i) out[i] = static_cast<char>(ones >> 8 * i);
 }
 
 }  // namespace

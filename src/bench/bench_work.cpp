@@ -655,13 +655,15 @@ Result<std::vector<Work>> load_work() {
 
 // --- Replays -------------------------------------------------------------------------------------
 
-// The bundled trace, from reading it to its summary, as in `replay` and `check`, and with all files
-// of --out. The bounds are for the whole program, but its start is not measured.
+// The bundled trace, from reading it to its summary, and with all files of --out, in a program that
+// has replayed it before, as `replay` and `check` do with several recordings. The bounds are for
+// the whole program, but its start is not measured.
 Result<std::vector<Work>> replay_work(const std::vector<std::string>& config_folders) {
   SessionSpec spec;
   spec.config_folders = config_folders;
   spec.replay.trace = bundled_trace(spec.config_folders);
   const auto folder = cache_folder("replay");
+  const auto replayer = std::make_shared<Replayer>();
   std::vector<Work> list(2);
   list[0].name = "replay";
   list[0].label = "without files";
@@ -671,8 +673,8 @@ Result<std::vector<Work>> replay_work(const std::vector<std::string>& config_fol
   list[1].most_ns = 20e6;
   for (std::size_t i = 0; i < list.size(); ++i) {
     if (i == 1) spec.replay.out = folder->string();
-    if (const auto result = replay(spec); !result) return result.error();
-    list[i].pass = [spec, folder] { static_cast<void>(replay(spec)); };
+    if (const auto result = replayer->replay(spec); !result) return result.error();
+    list[i].pass = [spec, folder, replayer] { static_cast<void>(replayer->replay(spec)); };
     list[i].every = 3;
   }
   return list;

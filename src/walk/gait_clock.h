@@ -156,9 +156,10 @@ Mask<V> may_turn_early(const Tables& tables, const State<V>& state,
 // The turn rate that head and chest follow, in rad/s: in a stop for a turn on the spot already that
 // turn's.
 template <class V>
-V looked_turn(const Tables& tables, const State<V>& state, const Change<V>& change) noexcept {
-  const auto turns = either(is_to_walk(tables, state, change), is_asked_onto_spot(tables, state));
-  return turns ? state.asked.turn_rad_s : V{};
+V looked_turn(const Tables& tables, const State<V>& state) noexcept {
+  const Asked<V>& asked = state.asked;
+  const auto turns = either(asked.backward == state.backward, is_asked_onto_spot(tables, state));
+  return both(asked.walks != V{}, turns) ? asked.turn_rad_s : V{};
 }
 
 // People turn their heads up to 0.3 s before their pelvis, and the chest in between.
@@ -203,7 +204,7 @@ void smooth_asked(const Tables& tables, const Change<V>& change, const V& left,
   // Where the ground makes steps slower, turns are as much slower: a step turns by as much.
   const auto turns = either(walks, may_turn_early(tables, state, change));
   const V turn_rad_s = turns ? V(asked.turn_rad_s / change.slowness) : V{},
-          looked_rad_s = looked_turn(tables, state, change) / change.slowness;
+          looked_rad_s = looked_turn(tables, state) / change.slowness;
   // A stick that crosses the heading asks for the other turn within 60 ms. The landing of a foot in
   // the air would turn by 0.1 rad a tick; a goal that is near turns it by half as much.
   constexpr float kNear_rad_s = 0.8f;

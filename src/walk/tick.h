@@ -634,9 +634,9 @@ void look_where_needed(const Tables& tables, const Time<Floats<kWidth>>& time,
           both(paces, has_other_pace(tables, time.right,
                                      own_step_m<V>(tables, time.right, time.back), state, change));
   }
-  const auto looks =
-      either(either(is_new, either(both(again, changes), paces)),
-             both(is_to_walk(tables, state, change), is_unforeseen(tables, state, change)));
+  auto unforeseen = is_unforeseen(tables, state, change);
+  if (any(unforeseen)) unforeseen = both(unforeseen, is_to_walk(tables, state, change));
+  const auto looks = either(either(is_new, either(both(again, changes), paces)), unforeseen);
   one_by_one<kWidth>(looks, block,
                      [&](Block<1>& one, int) { look_ahead<kPaper, kUneven>(tables, one); });
 }

@@ -231,7 +231,7 @@ Mask<V> advance_poise(const Tables& tables, const Hips<V>& hips, const Mask<V>& 
             push = more + (asked != V{} ? first : V{}), goal = lacks < V{} ? V(-push) : push;
     follow_turn(goal, kStill_rad, tables.push, poise.push_rad);
   }
-  const V ahead_rad = kHeadAhead_s * looked_turn(tables, state, change);
+  const V ahead_rad = kHeadAhead_s * looked_turn(tables, state);
   const auto turns = either(size(state.head_ahead_rad.v) > all<V>(kTurns_rad_s),
                             size(V(ahead_rad - state.head_ahead_rad.x)) > all<V>(kTurns_rad));
   return either(either(poise.unsteady_ticks != V{}, poise.push_rad.x != V{}), turns);

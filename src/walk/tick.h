@@ -154,15 +154,20 @@ void change_over_ground(const Tables& tables, Block<1>& block, const Plan& plan)
 }
 
 // True in a step that began on the spot, or nearly, and is asked to go somewhere, until its hips
-// lead.
+// lead; in a first step that turns, in its flight. Hips went by up to 13 m/s^2 to a landing that
+// moved away in such a flight. Planned anew in its roll, the foot that lifts off jerked.
 template <class V>
 Mask<V> is_to_leave_spot(const Tables& tables, const State<V>& state,
                          const Change<V>& change) noexcept {
   constexpr float kOnSpot = 0.3f, kGoes = 0.1f;  // ratios to the data's stride
+  constexpr float kTurns_rad_s = 0.7f;           // less hardly moves a landing
   const V begun = longer_ratio(tables, change.length_m, state.backward);
   const auto on_spot =
       begun<all<V>(kOnSpot), goes = asked_ratio(tables, state) - begun> all<V>(kGoes);
-  return both(both(change.stands == V{}, change.led == V{}), both(on_spot, goes));
+  const auto first = both(both(change.starting != V{}, change.turns == V{}),
+                          both(change.resumes == V{}, state.flies != V{})),
+             turns = both(first, size(state.turn_rad_s.x) > all<V>(kTurns_rad_s));
+  return both(both(change.stands == V{}, either(change.led == V{}, turns)), both(on_spot, goes));
 }
 
 // Plans stops, and walks that go on after all. A stop for a turn on the spot and a walk that goes
@@ -182,10 +187,10 @@ void change_ends(const Tables& tables, Block<kWidth>& block) noexcept {
   };
   // On level ground length and turn each count: of their sum alone, a stick that comes back from a
   // turn on the spot would seem to rest. A flight that leaves the spot has no time to wait for more
-  // than that.
+  // than that, but a first one.
   const V all_legs = length_legs + turn_legs;
-  const auto waits =
-                 kUneven ? Mask<V>{} : either(block.change.stops != V{}, block.state.flies == V{}),
+  const auto ends = either(block.change.stops != V{}, block.change.starting != V{}),
+             waits = kUneven ? Mask<V>{} : either(ends, block.state.flies == V{}),
              each = either(grows(longer_legs, length_legs),
                            grows(V(size(longer_legs) + size(turned_legs)), all_legs)),
              comes = waits ? each : grows(V(longer_legs + turned_legs), all_legs);
@@ -198,7 +203,7 @@ void change_ends(const Tables& tables, Block<kWidth>& block) noexcept {
                  both(block.change.stands == V{}, either(both(no(walks), no(turns)), no(comes)));
   asked_legs[0] = asked.walks != V{} ? length_legs : V{};
   asked_legs[1] = asked.walks != V{} ? turn_legs : V{};
-  const auto ends = [&](bool may_move, Block<1>& one, auto& footing) {
+  const auto rests = [&](bool may_move, Block<1>& one, auto& footing) {
     plan_rest(tables, may_move, one, footing);
   };
   const auto comes_back = [&](bool may_move, Block<1>& one, auto& footing) {
@@ -215,7 +220,7 @@ void change_ends(const Tables& tables, Block<kWidth>& block) noexcept {
   // A landing that a program asked for keeps its place, so the stop waits for the next step.
   const auto is_open = both(no(stops), block.change.is_aimed == V{});
   one_by_one<kWidth>(both(moves, both(no(walks), is_open)), block,
-                     [&](Block<1>& one, int) { change(one, ends); });
+                     [&](Block<1>& one, int) { change(one, rests); });
   const auto leaves = is_to_leave_spot(tables, block.state, block.change);
   one_by_one<kWidth>(both(moves, both(walks, either(stops, leaves))), block,
                      [&](Block<1>& one, int) { change(one, comes_back); });

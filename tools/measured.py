@@ -569,8 +569,8 @@ as it began."""),
 moments of the stride (sticks of 0.3, 0.8 and 1), reversals, and four kinds of turns; the worst of all is told, of times and of
 the way at full stick the median. Asked are: first foot off 0.35 s, 90 % of the speed 1 s, push of the hips 6 m/s² or the steady
 walk's own, dip 1 cm, 1.05 times the steady walk's fastest, stop 0.9 s and 0.9 m with a standard deviation of 0.1 m, reversal
-1.2 s, shins 70 mm apart, feet 60 mm or as in standing, second difference (`d2`) of any joint 0.8 degrees a tick² (captures: 1.2),
-angular acceleration of chest and head twice the steady walk's. The tool's head says how each is measured.""", ""),
+1.2 s, shins 70 mm apart, feet 60 mm or as in standing, second difference of a leg's joint 0.8 degrees a tick²
+(captures: 1.2), of another joint as much or twice the steady walk's, angular acceleration of chest and head twice the steady walk's. The tool's head says how each is measured.""", ""),
     "people": (measure_by("tests/session/people.py"), runs_rows, "Beside people", True, """\
 `tests/session/people.py build/gaitpad` walks the built-in motion and sets it beside what others measured of people. The
 curves are the mean of healthy people at free speed (Schwartz, Rozumalski & Trost 2008) at every 4 % of a cycle, after the

@@ -5,7 +5,6 @@
 #include <cassert>
 #include <cmath>
 #include <cstdint>
-#include <cstring>
 #include <locale>
 #include <sstream>
 
@@ -271,7 +270,7 @@ char* put_fixed(char* out, double value, int decimals) {
   }
   if (std::signbit(value)) *out++ = '-';
   if (value == 0.0) {  // as a quarter of the numbers in frames.csv are
-    std::memcpy(out, "0.000000000", 11);
+    std::copy_n("0.000000000", 11, out);
     return out + (decimals == 0 ? 1 : 2 + decimals);
   }
   const std::uint64_t power = kPowersOfTen[decimals];

@@ -472,7 +472,11 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
     phase = led ? found : phase;
     rate = led ? moves : rate;
   }
-  const V was = change.phase - floored(V(change.phase - phase + 0.5f));
+  // The last phase that was shown, less whole cycles, where it is nearest.
+  const auto last_near = [&](const V& at) {
+    return V(change.phase - floored(V(change.phase - at + 0.5f)));
+  };
+  const V was = last_near(phase);
   const auto carries = either(is_new, was_new);
   change.off_phase =
       chosen(carries, {V(was + change.phase_rate - phase), V(change.phase_rate - rate), V{}},
@@ -483,7 +487,7 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
   change.was_new = change.is_new, change.is_new = V{};
   change.shown = runs ? V(planned_shown(time, change) + change.off_shown.x) : change.shown;
   phase = phase + change.off_phase.x;
-  const V goes = V(phase - was);
+  const V goes = phase - last_near(phase);
   change.phase = runs ? phase : change.phase;
   change.phase_rate = runs ? goes : change.phase_rate;
   phase = runs ? phase : state.phase;

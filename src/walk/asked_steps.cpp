@@ -107,7 +107,7 @@ void take_push(const Tables& tables, Block<1>& block) noexcept {
                         state.landing_z_m + falls_s * z_m_s);
     aim(reachable_step(tables, block, {caught_m, state.landing_rad}), change);
   }
-  const float share = least(tables.tick_s / (kPush_s * tables.time_scale), 1.0f);
+  const float share = least(tables.ticks * tables.tick_s / (kPush_s * tables.time_scale), 1.0f);
   const bool led = change.led != 0.0f;
   const auto take = [&](float& push_m_s, Off<float>& hips_m) {
     hips_m.v += share * push_m_s * tables.tick_s;

@@ -538,10 +538,11 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
   // the hips lead away from it.
   if constexpr (!kIsUneven<F>) {
     constexpr float kSoftHold_rad_s = 24.0f * kDegree_rad;  // rounds where the heel stays
-    const auto holds = both(both(stays, no(time.back)), state.tick > all<V>(1.0f));
+    const auto holds = both(both(stays, no(time.back)), state.tick > all<V>(tables.ticks));
     const V last = state.last_pitch_rad[0];
     planned =
-        holds ? V(last + soft_positive(V(planned - last), all<V>(kSoftHold_rad_s * tables.tick_s)))
+        holds ? V(last + soft_positive(V(planned - last),
+                                       all<V>(kSoftHold_rad_s * (tables.ticks * tables.tick_s))))
               : planned;
   }
   foot.toe_m = {state.toe_x_m, sole.toe_rest_m, state.toe_z_m};
@@ -645,9 +646,15 @@ void lift_off(const Tables& tables, const Time<V>& time, const Mask<V>& lifts,
 }
 
 template <class V>
-void keep_swing(const Foot<V>& swing, State<V>& state) noexcept {
-  state.last_heel_m[1] = state.last_heel_m[0], state.last_heel_m[0] = swing.heel_m;
-  state.last_pitch_rad[1] = state.last_pitch_rad[0], state.last_pitch_rad[0] = swing.pitch_rad;
+void keep_swing(const Tables& tables, const Foot<V>& swing, State<V>& state) noexcept {
+  const float ticks = tables.ticks;
+  Vec<V>(&heel_m)[2] = state.last_heel_m;
+  for (V Vec<V>::*part : {&Vec<V>::x, &Vec<V>::y, &Vec<V>::z}) {
+    V last_m[2] = {heel_m[0].*part, heel_m[1].*part};
+    keep_last(ticks, swing.heel_m.*part, last_m);
+    heel_m[0].*part = last_m[0], heel_m[1].*part = last_m[1];
+  }
+  keep_last(ticks, swing.pitch_rad, state.last_pitch_rad);
 }
 
 // Exchanges swing and stand at a strike, and sees places from the new step frame.

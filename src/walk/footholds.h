@@ -29,7 +29,7 @@ V power(float q, V n) noexcept {
 // with the double root q: its error is e_k = (e_0 + c k) q^k, whose sum has a closed form.
 template <class V>
 V heading_ahead(const Tables& tables, const State<V>& state, const V& n) noexcept {
-  const float dt = tables.tick_s, q = std::sqrt(tables.turn.keep), w = 1.0f / q - 1.0f;
+  const float dt = tables.tick_s, q = std::sqrt(tables.turn_keep), w = 1.0f / q - 1.0f;
   const V goal = state.turn_goal_rad_s.x, e0 = state.turn_rad_s.x - goal;
   const auto turns = either(e0 != V{}, state.turn_rad_s.v != V{});
   const V straight = state.heading_rad + goal * n * dt;
@@ -111,7 +111,7 @@ AskedStep<V> plan_landing(const Tables& tables, const Time<V>& time, Change<V>& 
                       tables.tick_s * kFootAhead;
   const V y = settled(time.u, change);
   const auto follows = y <= V{}, open = y < all<V>(1.0f);
-  const float settling = kSettling_s * tables.time_scale / tables.tick_s;
+  const float settling = kSettling_s * tables.time_scale / (tables.ticks * tables.tick_s);
   const V share = 1.0f / (1.0f + settling * y * y / (1.0f - (open ? y : V{})));
   const auto keep = [&](const V& now, V& kept) {
     kept = follows ? now : open ? V(kept + (now - kept) * share) : kept;
@@ -149,13 +149,13 @@ AskedStep<V> plan_landing(const Tables& tables, const Time<V>& time, Change<V>& 
   const auto aimed = change.is_aimed != V{};
   if (any(aimed)) {
     // The landing moves to its aim evenly until it is settled.
-    const auto begins = both(no(time.flies), state.tick == all<V>(1.0f));
+    const auto begins = both(no(time.flies), state.tick == all<V>(tables.ticks));
     const V settled = (time.flies ? V{} : state.roll_ticks) +
                       chosen<V>(time.flies, kAimSettles, kSettles) * state.flight_ticks,
-            left = most(V(settled - state.tick + 1.0f), all<V>(1.0f));
+            left = most(V(settled - state.tick + tables.ticks), all<V>(tables.ticks));
     const auto aim = [&](const V& at, V& kept, V& now) {
       const V from = begins ? now : kept;
-      now = aimed ? V(from + (at - from) / left) : now;
+      now = aimed ? V(from + tables.ticks * (at - from) / left) : now;
       kept = aimed ? now : kept;
     };
     aim(change.aim_x_m, *kept_x_m, x_m);

@@ -228,7 +228,8 @@ void smooth_asked(const Tables& tables, const Change<V>& change, const V& left,
   // Sums of multiples of 2^-24 are exact, so mirrored sticks give exactly mirrored headings,
   // although their walks strike at other ticks.
   state.heading_rad =
-      state.heading_rad + rounded_to(kTurned_rad, V(state.turn_rad_s.x * tables.tick_s));
+      state.heading_rad +
+      rounded_to(kTurned_rad, V(state.turn_rad_s.x * (tables.ticks * tables.tick_s)));
 }
 
 // Share of a cycle that a roll takes in strides of a ratio to the data's: longer in shorter steps.
@@ -358,19 +359,21 @@ struct PhaseCubic {
   V v0, c2, c3;
 };
 
-// Moves the clock on by one tick. `least_s`: bound of time_first_flight().
+// Moves the clock on by a tick, or by several, but not beyond the end of a stage. `least_s`: bound
+// of time_first_flight().
 template <class V>
 Time<V> advance_clock(const Tables& tables, const V& least_s, const Change<V>& change,
                       State<V>& state) noexcept {
   const auto follows = both(both(change.starting != V{}, change.turns == V{}), state.flies == V{}),
              runs = change.stands == V{};
   if (any(follows)) time_first_flight(tables, follows, least_s, change, state);
-  const V left = ticks_of_stage(state) - state.tick, s = 1.0f / left;
+  const V left = ticks_of_stage(state) - state.tick, per_tick = 1.0f / left,
+          goes = least(all<V>(tables.ticks), left), s = goes * per_tick;
   const PhaseCubic<V> moves(stage_end_of(tables, state) - state.phase, state.phase_rate * left,
                             state.end_rate * left);
   state.phase = runs ? V(state.phase + moves.at(s)) : state.phase;
-  state.phase_rate = runs ? V(moves.rate(s) * s) : V{};
-  state.tick = runs ? V(state.tick + 1.0f) : V{};
+  state.phase_rate = runs ? V(moves.rate(s) * per_tick) : V{};
+  state.tick = runs ? V(state.tick + goes) : V{};
   return time_of(tables, state);
 }
 

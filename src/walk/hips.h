@@ -34,20 +34,23 @@ bool is_nothing(const Off<V>& off) noexcept {
     return !any(parts);
   }
 }
-// Moves a difference by one tick along the quintic that brings it, its rate and its acceleration to
-// 0 in `ticks`.
+// Moves a difference by one tick, or by `goes` ticks, along the quintic that brings it, its rate
+// and its acceleration to 0 in `ticks`.
 template <class V>
-void fade(const V& ticks, Off<V>& off) noexcept {
+void fade(const V& ticks, Off<V>& off, float goes = 1.0f) noexcept {
   if (is_nothing(off)) return;
-  const V n = most(ticks, all<V>(1.0f)), s = 1.0f / n, p = off.v * n, q = off.a * (0.5f * n * n);
+  const V n = most(ticks, all<V>(1.0f)), per_tick = 1.0f / n, s = goes * per_tick, p = off.v * n,
+          q = off.a * (0.5f * n * n);
   const V c3 = -10.0f * off.x - 6.0f * p - 3.0f * q, c4 = 15.0f * off.x + 8.0f * p + 3.0f * q,
           c5 = -6.0f * off.x - 3.0f * p - q;
-  const auto lasts = ticks > all<V>(1.0f);
+  const auto lasts = ticks > all<V>(goes);
   off.x = lasts ? V(off.x + (p + (q + (c3 + (c4 + c5 * s) * s) * s) * s) * s) : V{};
   off.v =
-      lasts ? V((p + (2.0f * q + (3.0f * c3 + (4.0f * c4 + 5.0f * c5 * s) * s) * s) * s) * s) : V{};
-  off.a =
-      lasts ? V((2.0f * q + (6.0f * c3 + (12.0f * c4 + 20.0f * c5 * s) * s) * s) * (s * s)) : V{};
+      lasts ? V((p + (2.0f * q + (3.0f * c3 + (4.0f * c4 + 5.0f * c5 * s) * s) * s) * s) * per_tick)
+            : V{};
+  off.a = lasts ? V((2.0f * q + (6.0f * c3 + (12.0f * c4 + 20.0f * c5 * s) * s) * s) *
+                    (per_tick * per_tick))
+                : V{};
 }
 
 template <class V>
@@ -81,7 +84,7 @@ Hips<V> move_hips(const Tables& tables, const Time<V>& time, const Landing<V>& l
   const Path<V> to = path_to(landing, hips.ahead, turns);
   const V x_m = to.x_m + to.per_cycle_x_m * state.phase,
           z_m = to.z_m + to.per_cycle_z_m * state.phase;
-  const auto strikes = both(no(time.flies), state.tick == all<V>(1.0f));
+  const auto strikes = both(no(time.flies), state.tick == all<V>(tables.ticks));
   if (any(strikes)) {
     // The difference from the path of the last step's stride at this strike, its rate and its
     // acceleration.
@@ -132,9 +135,9 @@ Hips<V> move_hips(const Tables& tables, const Time<V>& time, const Landing<V>& l
   state.hips_x_m.x = state.hips_x_m.x + (strikes ? V{} : V(was_x_m - x_m));
   state.hips_z_m.x = state.hips_z_m.x + (strikes ? V{} : V(was_z_m - z_m));
   state.path = to;
-  const V ticks = time.to_strike + 1.0f;
-  fade(ticks, state.hips_x_m);
-  fade(ticks, state.hips_z_m);
+  const V ticks = time.to_strike + tables.ticks;
+  fade(ticks, state.hips_x_m, tables.ticks);
+  fade(ticks, state.hips_z_m, tables.ticks);
   const Vec<V> off = hips.heading * stride.pelvis_m;
   hips.x_m = x_m + state.hips_x_m.x + off.x;
   hips.z_m = z_m + state.hips_z_m.x + off.z;
@@ -182,7 +185,7 @@ void move_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& la
     x_m[k] = path.x_m + path.per_cycle_x_m * at + pelvis.x;
     z_m[k] = path.z_m + path.per_cycle_z_m * at + pelvis.z;
   }
-  const V left = stops ? change.rest_ticks : time.to_strike, ticks = left + 1.0f;
+  const V left = stops ? change.rest_ticks : time.to_strike, ticks = left + tables.ticks;
   // In a stop it comes to rest between the feet as the last step leaves them.
   if (any(stops)) {
     const V swings_m = of_leg<V>(tables, time.right, &LegBones::stance_m),
@@ -219,7 +222,7 @@ void move_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& la
     };
     const Off<V> was = goal(ticks), is = goal(left);
     Off<V> off{V(pelvis.x - was.x), V(pelvis.v - was.v), V(pelvis.a - was.a)};
-    fade(stops ? ticks : most(ticks, change.catch_ticks), off);
+    fade(stops ? ticks : most(ticks, change.catch_ticks), off, tables.ticks);
     pelvis = chosen(led, {V(is.x + off.x), V(is.v + off.v), V(is.a + off.a)}, pelvis);
   };
   move(x_m, path.per_cycle_x_m, change.pelvis_x_m);
@@ -283,7 +286,7 @@ V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& l
     rate = tries ? moves : rate;
   }
   const auto stops = tables.terrain != nullptr ? change.stops != V{} : Mask<V>{};
-  const V fastest = chosen<V>(stops, kFastestStop, kFastestPhase) * strike_rate;
+  const V fastest = tables.ticks * (chosen<V>(stops, kFastestStop, kFastestPhase) * strike_rate);
   V next = least(most(phase, V(last - fastest)), V(last + fastest));
   // A phase that lags behind comes up in time: its rate goes over to the hips'. On level ground
   // that is needed in first steps alone, where a stick that crosses the heading moves the landing
@@ -295,12 +298,14 @@ V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& l
   if (any(comes_up)) {
     const V bend = (kFastestPhase - 1.0f) * strike_rate *
                    (tables.tick_s / (kComesUp_s * tables.time_scale)),
-            lags = phase - last - rate, comes = root(V(2.0f * bend * size(lags))),
+            goes = tables.ticks * rate, lags = phase - last - goes,
+            comes = tables.ticks * root(V(2.0f * bend * size(lags))),
             was = change.phase_rate - change.off_phase.v;
     next = both(comes_up, size(lags) > comes)
-               ? least(starts ? next : most(next, V(last + rate - comes)), V(last + rate + comes))
+               ? least(starts ? next : most(next, V(last + goes - comes)), V(last + goes + comes))
                : next;
-    next = starts ? least(next, V(last + most(was, rate) + bend)) : next;
+    const float ticks = tables.ticks;
+    next = starts ? least(next, V(last + ticks * most(was, rate) + ticks * ticks * bend)) : next;
   }
   return carries ? phase : next;
 }
@@ -366,17 +371,20 @@ V edge_by_clock(const Time<V>& time, const Change<V>& change) noexcept {
              : all<V>(1.0f);
 }
 
-// Moves the differences that a change of plan has left by one tick. `time`, `state`: of that tick.
+// Moves the differences that a change of plan has left by one tick, or by `goes` ticks. `time`,
+// `state`: after them.
 template <class V>
-void fade_differences(const Time<V>& time, const State<V>& state, Change<V>& change) noexcept {
-  for (Off<V>* off : {&change.off_phase, &change.off_shown}) fade(change.off_ticks, *off);
+void fade_differences(const Time<V>& time, const State<V>& state, Change<V>& change,
+                      float goes = 1.0f) noexcept {
+  for (Off<V>* off : {&change.off_phase, &change.off_shown}) fade(change.off_ticks, *off, goes);
   // Differences of the step end with it, and that of the standing foot's pitch with its stage.
-  const V step_ticks = least(change.off_ticks, V(time.to_strike + 1.0f));
+  const V step_ticks = least(change.off_ticks, V(time.to_strike + goes));
   for (Off<V>* off : {&change.off_over, &change.off_ratio, &change.off_edge})
-    fade(step_ticks, *off);
-  fade(least(change.off_ticks, V(ticks_of_stage(state) - state.tick + 1.0f)), change.off_pitch);
+    fade(step_ticks, *off, goes);
+  fade(least(change.off_ticks, V(ticks_of_stage(state) - state.tick + goes)), change.off_pitch,
+       goes);
   if (any(change.turns != V{}))
-    for (Off<V>& off : change.off_turned) fade(step_ticks, off);
+    for (Off<V>& off : change.off_turned) fade(step_ticks, off, goes);
 }
 
 // The numbers of a stride that Change::off_turned changes, in its order.
@@ -439,14 +447,15 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
   if (!any(runs)) return state.phase;
   const auto is_new = change.is_new != V{}, was_new = both(no(is_new), change.was_new != V{});
   const V last_found = change.phase - change.off_phase.x;
-  fade_differences(time, state, change);
-  change.off_ticks = most(V(change.off_ticks - 1.0f), V{});
+  const float gone = tables.ticks;
+  fade_differences(time, state, change, gone);
+  change.off_ticks = most(V(change.off_ticks - gone), V{});
   // Hips do not rest before the last step, because the landing before it may still move.
   const V lasts = both(change.stops != V{}, change.closing == V{})
                       ? all<V>(kComesAfter_s * tables.time_scale / tables.tick_s)
                       : V{};
-  change.rest_ticks = most(V(change.rest_ticks - 1.0f), lasts);
-  change.catch_ticks = most(V(change.catch_ticks - 1.0f), V{});
+  change.rest_ticks = most(V(change.rest_ticks - gone), lasts);
+  change.catch_ticks = most(V(change.catch_ticks - gone), V{});
   const V over = planned_over(time, change) + change.off_over.x;
   const V last = last_ratio<V>(time.back);
   const Knots<V> ahead = ratios_at(landing.ratio, last);
@@ -467,7 +476,8 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
     // A new plan's rate is measured a tick later, because its path moves as well. Hips that hardly
     // move yet leave the phase open: there it may leap.
     const V leaps = found - last_found, most_rate = kFastestPhase * strike_rate,
-            goes = least(most(V(leaps - floored(V(leaps + 0.5f))), V(-most_rate)), most_rate);
+            leapt = (1.0f / gone) * (leaps - floored(V(leaps + 0.5f))),
+            goes = least(most(leapt, V(-most_rate)), most_rate);
     moves = was_new ? goes : moves;
     phase = led ? found : phase;
     rate = led ? moves : rate;
@@ -479,7 +489,7 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
   const V was = last_near(phase);
   const auto carries = either(is_new, was_new);
   change.off_phase =
-      chosen(carries, {V(was + change.phase_rate - phase), V(change.phase_rate - rate), V{}},
+      chosen(carries, {V(was + gone * change.phase_rate - phase), V(change.phase_rate - rate), V{}},
              change.off_phase);
   const float carry = kCarry_s * tables.time_scale / tables.tick_s;
   change.off_ticks =
@@ -487,7 +497,7 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
   change.was_new = change.is_new, change.is_new = V{};
   change.shown = runs ? V(planned_shown(time, change) + change.off_shown.x) : change.shown;
   phase = phase + change.off_phase.x;
-  const V goes = phase - last_near(phase);
+  const V goes = (1.0f / gone) * (phase - last_near(phase));
   change.phase = runs ? phase : change.phase;
   change.phase_rate = runs ? goes : change.phase_rate;
   phase = runs ? phase : state.phase;
@@ -520,13 +530,19 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
   return phase;
 }
 
+// Keeps a number beside those of the last ticks. After several ticks at once those in between lie
+// on a line.
+template <class V, std::size_t kKept>
+void keep_last(float ticks, const V& now, V (&last)[kKept]) noexcept {
+  const V went = ticks == 1.0f ? V{} : V((1.0f / ticks) * (now - last[0]));
+  for (std::size_t k = kKept - 1; k > 0; --k)
+    last[k] = ticks == 1.0f ? last[k - 1] : V(now - static_cast<float>(k) * went);
+  last[0] = now;
+}
 template <class V>
-void keep_pelvis(const Hips<V>& hips, State<V>& state) noexcept {
-  for (int k : {2, 1}) {
-    state.pelvis_x_m[k] = state.pelvis_x_m[k - 1];
-    state.pelvis_z_m[k] = state.pelvis_z_m[k - 1];
-  }
-  state.pelvis_x_m[0] = hips.x_m, state.pelvis_z_m[0] = hips.z_m;
+void keep_pelvis(const Tables& tables, const Hips<V>& hips, State<V>& state) noexcept {
+  keep_last(tables.ticks, hips.x_m, state.pelvis_x_m);
+  keep_last(tables.ticks, hips.z_m, state.pelvis_z_m);
 }
 
 // Where `begins`: the leading pelvis starts with the place, rate and acceleration of the last

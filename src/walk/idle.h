@@ -86,9 +86,9 @@ Idle<V> advance_idle(const Tables& tables, const Change<V>& change, const State<
   constexpr float kBegins_s = 2.0f, kEnds_s = 0.8f;  // fading in and out
   const auto stands = change.stands != V{}, acts = either(stands, styled.idle_share != V{});
   if (!any(either(acts, styled.idle_ticks != V{}))) return {};
-  const float dt = tables.tick_s;
+  const float dt = tables.ticks * tables.tick_s;
   const V ticks = styled.idle_ticks,
-          begins = ticks * dt >= all<V>(kBeginsAfter_s) ? all<V>(dt / kBegins_s) : V{};
+          begins = ticks * tables.tick_s >= all<V>(kBeginsAfter_s) ? all<V>(dt / kBegins_s) : V{};
   // Mirrored walks have mirrored stands: the foot that landed last decides the side, until all of
   // it has faded. A walk that begins may change its feet before.
   const auto right = styled.idle_share == V{} ? state.right_swings != V{} : styled.idle_share > V{};
@@ -96,7 +96,7 @@ Idle<V> advance_idle(const Tables& tables, const Change<V>& change, const State<
       within(V(size(styled.idle_share) + (stands ? begins : all<V>(-dt / kEnds_s))), 0.0f, 1.0f);
   styled.idle_share = right ? share : V(0.0f - share);  // no negative zero
   const auto goes_on = either(stands, share > V{});
-  styled.idle_ticks = goes_on ? V(ticks + 1.0f) : V{};
+  styled.idle_ticks = goes_on ? V(ticks + tables.ticks) : V{};
   return idle_at(tables, ticks, styled);
 }
 

@@ -369,6 +369,7 @@ Filters filters_of(double time_scale, double tick_s) noexcept {
   filters.push = of(0.04);
   filters.rail = of(kRailSmoothing_s);
   const double mean_s = 0.5 * time_scale;
+  filters.turn_keep = filters.turn.keep;
   filters.mean_pull = static_cast<float>(tick_s / (mean_s + tick_s));
   return filters;
 }
@@ -408,6 +409,21 @@ std::shared_ptr<const BuildTables> build_tables(const WalkModel& model) {
   tables->own_step_s = static_cast<float>(model.body.own_step_s);
   tables->leg_m = static_cast<float>(model.leg_length_m);
   return tables;
+}
+
+Filters in_several_ticks(const Filters& one, float ticks) noexcept {
+  constexpr int kFilters = sizeof(Smoothing) / sizeof(Filter);
+  Filters several = one;
+  if (ticks == 1.0f) return several;
+  several.ticks = ticks;
+  auto* const filter = reinterpret_cast<Filter*>(static_cast<Smoothing*>(&several));
+  for (int k = 0; k < kFilters; ++k) {
+    // As Damping: its pull times the tick is the square of w.
+    Filter& of = filter[k];
+    const float with = 1.0f + ticks * std::sqrt(of.pull * of.tick_s);
+    of = {of.pull * ticks, 1.0f / (with * with), of.tick_s * ticks};
+  }
+  return several;
 }
 
 Tables tables_of(const WalkModel& model, double tick_s) noexcept {

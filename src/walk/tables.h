@@ -142,13 +142,18 @@ struct BuildTables : BuildNumbers {
   std::vector<ArmBones::Link> above_pelvis;  // root to the pelvis' parent; empty: it is the root
 };
 
-// The filters of a build at one tick's length.
-struct Filters {
-  float tick_s;
+// The filters of a build.
+struct Smoothing {
   Filter room, ground, slope_lean;  // of uneven ground
   Filter step, first_step, turn_goal, turn, bounce, lean, posture, chest, head;
   Filter weights, loosens, lowers, body, speed, push, rail;
-  float mean_pull;  // of the two filters that make a leg's running mean
+};
+// The same at one tick's length, or in several ticks at once, by which a look ahead goes.
+struct Filters : Smoothing {
+  float tick_s;        // of one tick, which all counts and rates of a walk refer to
+  float ticks = 1.0f;  // by which the walks advance at once
+  float turn_keep;     // of the filter `turn` in one tick
+  float mean_pull;     // of the two filters that make a leg's running mean
 };
 inline constexpr double kRailSmoothing_s = 0.06;  // time constant of `rail`, at the reference leg
 
@@ -166,5 +171,7 @@ struct Tables : BuildNumbers, Filters {
 std::shared_ptr<const BuildTables> build_tables(const WalkModel& model);
 // The tables of a model for ticks of `tick_s` seconds; refers to the model. Does not use the heap.
 Tables tables_of(const WalkModel& model, double tick_s) noexcept;
+// The filters in `ticks` ticks at once. `one`: in one tick.
+Filters in_several_ticks(const Filters& one, float ticks) noexcept;
 
 }  // namespace gaitpad

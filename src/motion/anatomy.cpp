@@ -160,6 +160,12 @@ struct Figure {
   int count() const { return static_cast<int>(skeleton.joints.size()); }
   double distance(int a, int b) const { return glm::distance(at[a], at[b]); }
   bool carries(int ancestor, int j) const { return is_ancestor(skeleton, ancestor, j); }
+  // The index after a joint's last descendant: all descendants follow their ancestor.
+  int branch_end(int ancestor) const {
+    int end = ancestor + 1;
+    while (end < count() && carries(ancestor, end)) ++end;
+    return end;
+  }
 };
 
 // Hip, knee and ankle, or shoulder, elbow and wrist.
@@ -235,13 +241,9 @@ int end_site_of(const Skeleton& skeleton, int joint) {
 
 // The toe joint's own End Site, otherwise its last descendant in the file's order. Scripts that
 // read exported poses follow the same rule.
-int toe_end_of(const Skeleton& skeleton, int toe) {
-  if (const int end = end_site_of(skeleton, toe); end >= 0) return end;
-  int last = toe;
-  while (last + 1 < static_cast<int>(skeleton.joints.size()) &&
-         is_ancestor(skeleton, toe, last + 1))
-    ++last;
-  return last;
+int toe_end_of(const Figure& figure, int toe) {
+  const int end = end_site_of(figure.skeleton, toe);
+  return end >= 0 ? end : figure.branch_end(toe) - 1;
 }
 
 // The toe joint of a foot: the first joint named as a toe, because it carries the others; otherwise
@@ -249,8 +251,7 @@ int toe_end_of(const Skeleton& skeleton, int toe) {
 int toe_of(const Figure& figure, int ankle) {
   int best = -1, best_rank = 0;
   double best_length = 0.0;
-  for (int j = ankle + 1; j < figure.count(); ++j) {
-    if (!figure.carries(ankle, j)) break;
+  for (int j = ankle + 1, end = figure.branch_end(ankle); j < end; ++j) {
     const Joint& joint = figure.joint(j);
     const bool is_named = !joint.is_end_site && named_joint(joint.name).part == NamedPart::toe;
     const double length = figure.distance(ankle, j);
@@ -269,7 +270,7 @@ int toe_of(const Figure& figure, int ankle) {
 bool complete_foot(const Figure& figure, LegJoints& leg) {
   if (leg.toe < 0) leg.toe = toe_of(figure, leg.ankle);
   if (leg.toe < 0) return false;
-  leg.toe_end = toe_end_of(figure.skeleton, leg.toe);
+  leg.toe_end = toe_end_of(figure, leg.toe);
   return true;
 }
 
@@ -458,8 +459,7 @@ bool is_in_leg(const Figure& figure, const Legs& legs, int j) {
 // (CMU's lwrist). Without such a name: the farthest child.
 int wrist_below(const Figure& figure, int elbow, NamedSide side) {
   int farthest = -1, lowest_named = -1;
-  for (int j = elbow + 1; j < figure.count(); ++j) {
-    if (!figure.carries(elbow, j)) break;
+  for (int j = elbow + 1, end = figure.branch_end(elbow); j < end; ++j) {
     const NamedJoint named = named_joint(figure.joint(j).name);
     const bool is_lower = lowest_named < 0 || figure.carries(lowest_named, j);
     if (named.side == side && named.part == NamedPart::wrist && is_lower) lowest_named = j;
@@ -528,7 +528,7 @@ std::array<ArmChain, 2> shaped_arms(const Figure& figure, const Legs& legs, int 
 int hand_end_of(const Figure& figure, int wrist) {
   int farthest = -1;
   double longest = 0.0;
-  for (int j = wrist + 1; j < figure.count() && figure.carries(wrist, j); ++j) {
+  for (int j = wrist + 1, end = figure.branch_end(wrist); j < end; ++j) {
     const std::vector<std::string> words = name_words(figure.joint(j).name);
     const bool is_beside = std::any_of(words.begin(), words.end(), [](const std::string& word) {
       return word.ends_with("thumb") || word.ends_with("mesh");
@@ -565,8 +565,9 @@ int head_of(const Figure& figure, const Legs& legs, int top) {
 }
 
 int head_top_of(const Figure& figure, int head) {
+  if (head < 0) return -1;
   int top = head;
-  for (int j = head + 1; head >= 0 && j < figure.count() && figure.carries(head, j); ++j) {
+  for (int j = head + 1, end = figure.branch_end(head); j < end; ++j) {
     if (figure.at[j].y > figure.at[top].y) top = j;
   }
   return top;

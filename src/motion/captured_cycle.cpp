@@ -167,7 +167,7 @@ std::vector<double> straighten(const Motion& motion, const StrideFrames& s, doub
 quat mean_rotation(const std::vector<quat>& all) {
   quat sum = all.front();
   for (std::size_t i = 1; i < all.size(); ++i) {
-    sum = sum + all[i] * (glm::dot(all[i], sum) < 0.0 ? -1.0 : 1.0);
+    sum = sum + nearer(all[i], sum);
   }
   return glm::normalize(sum);
 }
@@ -346,9 +346,7 @@ quat mean_around(const std::vector<quat>& q, int middle, int reach) {
   const quat centre = q[wrapped_index(middle)];
   quat sum = centre;
   for (int k = -reach; k <= reach; ++k) {
-    if (k == 0) continue;
-    const quat& other = q[wrapped_index(middle + k)];
-    sum = sum + other * (glm::dot(other, centre) < 0.0 ? -1.0 : 1.0);
+    if (k != 0) sum = sum + nearer(q[wrapped_index(middle + k)], centre);
   }
   return glm::normalize(sum);
 }
@@ -595,15 +593,13 @@ void make_continuous(GaitCycle& out) {
         leg.angles[d] = before.angles[d] + wrapped(leg.angles[d] - before.angles[d]);
       }
       leg.toe_x = before.toe_x + wrapped(leg.toe_x - before.toe_x);
-      if (glm::dot(leg.foot, before.foot) < 0.0) leg.foot = -leg.foot;
+      leg.foot = nearer(leg.foot, before.foot);
     }
-    quat& pelvis = out.samples[i].pelvis;
-    if (glm::dot(pelvis, out.samples[i - 1].pelvis) < 0.0) pelvis = -pelvis;
+    out.samples[i].pelvis = nearer(out.samples[i].pelvis, out.samples[i - 1].pelvis);
   }
   const std::size_t joints = out.standing_local.size();
-  for (std::size_t k = joints; k < out.local.size(); ++k) {
-    if (glm::dot(out.local[k], out.local[k - joints]) < 0.0) out.local[k] = -out.local[k];
-  }
+  for (std::size_t k = joints; k < out.local.size(); ++k)
+    out.local[k] = nearer(out.local[k], out.local[k - joints]);
 }
 
 }  // namespace
@@ -614,6 +610,9 @@ void build_samples(const CapturedCycle& c, double floor_m, GaitCycle& out) {
   out.samples.assign(kCycleSamples, CycleSample{});
   const std::array<vec3, 2> hinge = {hinge_above_knee(out, kLeftSide),
                                      hinge_above_knee(out, kRightSide)};
+  std::array<std::vector<int>, 2> twist;
+  for (int side = 0; side < 2; ++side)
+    twist[side] = twist_joints(c.skeleton, c.pelvis, out.leg[side].joints);
   for (int i = 0; i < kCycleSamples; ++i) {
     CycleSample& at = out.samples[i];
     at.pelvis_m = c.pelvis_m[i] + down;
@@ -621,15 +620,11 @@ void build_samples(const CapturedCycle& c, double floor_m, GaitCycle& out) {
     quat* local = out.local.data() + i * c.joints();
     for (int side = 0; side < 2; ++side) {
       const LegModel& model = out.leg[side];
-      const LegJoints& j = model.joints;
       const vec3 hip_m = c.pelvis_m[i] + at.pelvis * model.hip_m;
       LegSample& leg = at.leg[side];
       leg = leg_sample(c.leg[side], i, model, hinge[side], hip_m, at.pelvis);
       leg.ankle_m += down;
-      for (const auto& [from, to] :
-           {std::pair{c.pelvis, j.hip}, {j.hip, j.knee}, {j.knee, j.ankle}, {j.ankle, j.toe}}) {
-        for (const int k : joints_between(c.skeleton, from, to)) local[k] = out.standing_local[k];
-      }
+      for (const int k : twist[side]) local[k] = out.standing_local[k];
       set_leg_locals(out.skeleton, model, pose_of(out, side, at), local);
     }
   }

@@ -279,7 +279,7 @@ void fill_upper_body(const WalkModel& model, BuildTables& tables) {
       quat sum(0.0, 0.0, 0.0, 0.0);
       for (int m = 0; m < 4; ++m) {
         const quat& q = cycle.local[static_cast<std::size_t>(at.index[m]) * joints + joint];
-        sum = sum + q * (glm::dot(q, last) < 0.0 ? -at.weight[m] : at.weight[m]);
+        sum = sum + nearer(q, last) * at.weight[m];
       }
       last = glm::normalize(sum);
       sample[0][k] = last.x, sample[1][k] = last.y, sample[2][k] = last.z, sample[3][k] = last.w;

@@ -25,8 +25,7 @@ quat mean_local(const GaitCycle& cycle, int joint) {
   const quat& first = cycle.local[joint];
   quat sum(0.0, 0.0, 0.0, 0.0);
   for (int i = 0; i < kCycleSamples; ++i) {
-    const quat& q = cycle.local[i * joints + joint];
-    sum = sum + (glm::dot(q, first) < 0.0 ? -q : q);
+    sum = sum + nearer(cycle.local[i * joints + joint], first);
   }
   return glm::dot(sum, sum) > 1e-12 ? glm::normalize(sum) : first;
 }
@@ -268,17 +267,6 @@ vec3 mean_heel(const GaitCycle& source, Side side) {
   return sum;
 }
 
-void collect_kept_joints(WalkModel& model) {
-  const Skeleton& skeleton = model.cycle.skeleton;
-  for (const LegModel& leg : model.cycle.leg) {
-    for (int j = skeleton.joints[leg.joints.toe].parent; j > model.cycle.pelvis;
-         j = skeleton.joints[j].parent) {
-      if (j != leg.joints.hip && j != leg.joints.knee && j != leg.joints.ankle)
-        model.kept.push_back(j);
-    }
-  }
-}
-
 // True if a leg has too many joints. The pose is written without heap, so the number of joints
 // between two joints of a leg is bounded.
 bool has_overlong_leg(const GaitCycle& cycle) {
@@ -298,8 +286,8 @@ vec3 pelvis_turned(const vec3& place_m, double yaw_rad, const vec3& tilt) noexce
   return rotation_y(yaw_rad) * (from_rotation_vector(tilt) * place_m);
 }
 
-void scale_footprints(const StrideScale& to, Footprints& track) noexcept {
-  track.stride_m *= to.length;
+void scale_track(const StrideScale& to, StrideTrack& track) noexcept {
+  for (double* m : {&track.stride_m, &track.low_m, &track.high_m}) *m *= to.length;
   for (int side : {0, 1})
     track.footprint_m[side] = track.footprint_m[side] * to.length + to.apart_m[side];
 }
@@ -390,8 +378,7 @@ void keep_trunk_upright(double roll_rad, GaitCycle& cycle) {
   const quat back = glm::conjugate(pelvis) * rotation_z(-roll_rad) * pelvis;
   for (std::size_t j = 0; j < cycle.skeleton.joints.size(); ++j) {
     const bool is_leg = std::any_of(cycle.leg.begin(), cycle.leg.end(), [&](const LegModel& leg) {
-      return is_ancestor(cycle.skeleton, static_cast<int>(j), leg.joints.hip) ||
-             static_cast<int>(j) == leg.joints.hip;
+      return is_ancestor(cycle.skeleton, static_cast<int>(j), leg.joints.hip);
     });
     if (cycle.skeleton.joints[j].parent == cycle.pelvis && !is_leg)
       cycle.standing_local[j] = back * cycle.standing_local[j];
@@ -450,7 +437,11 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
   model.stand_roll_rad = stand.roll_rad;
   model.stand_rad = stand.angles;
   keep_trunk_upright(stand.roll_rad, model.cycle);
-  collect_kept_joints(model);
+  for (const LegModel& leg : model.cycle.leg) {
+    const std::vector<int> twist =
+        twist_joints(model.cycle.skeleton, model.cycle.pelvis, leg.joints);
+    model.kept.insert(model.kept.end(), twist.begin(), twist.end());
+  }
   lay_out_legs(model);
   list_joints(model);
   model.body = upper_body_model(model.cycle, ratio, model.stand_m);
@@ -461,9 +452,7 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
 StridePlace stride_of(const WalkModel& model, bool backward, double phase, double ratio) noexcept {
   const StrideFamily& family = *model.cycle.strides;
   StridePlace place = stride_at(backward ? family.back : family.table, phase, ratio);
-  scale_footprints(model.stride_scale, place.track);
-  place.track.low_m *= model.stride_scale.length;
-  place.track.high_m *= model.stride_scale.length;
+  scale_track(model.stride_scale, place.track);
   scale_stride(model.stride_scale, place.cell);
   return place;
 }
@@ -488,7 +477,7 @@ double terrain_scale(const Terrain& terrain, const WalkModel& model) noexcept {
     const vec3 sole = leg.tip_m - leg.model.heel_m;
     const double needed_m = glm::length(vec2(sole.x, sole.z)) + kSpare_m * model.size;
     if (needed_m <= tread_m) continue;
-    scale = std::max({scale, model.leg_length_m / kReferenceLeg_m, needed_m / tread_m});
+    scale = std::max({scale, model.size, needed_m / tread_m});
   }
   return scale;
 }

@@ -3,7 +3,6 @@
 #include "animation/floor.h"
 #include "motion/leg_pose.h"
 #include "walk/feet.h"
-#include "walk/ground_plan.h"
 #include "walk/sound_input.h"
 
 namespace gaitpad {

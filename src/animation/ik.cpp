@@ -91,10 +91,7 @@ void pose_chain(const IkChain& chain, std::span<const IkRow> rows, const IkAngle
   pose.squares = 0.0;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const vec3& p = rows[r].point_m;
-    const bool same_point = r > 0 && p == rows[r - 1].point_m;
-    pose.point_m[r] = same_point
-                          ? pose.point_m[r - 1]
-                          : pose.end_m + p.x * pose.last.x + p.y * pose.last.y + p.z * pose.last.z;
+    pose.point_m[r] = pose.end_m + p.x * pose.last.x + p.y * pose.last.y + p.z * pose.last.z;
     pose.dx[r] = rows[r].goal_m - glm::dot(rows[r].direction, pose.point_m[r]);
     pose.squares += pose.dx[r] * pose.dx[r];
   }
@@ -578,9 +575,7 @@ IkResult solve_robust(const IkChain& chain, std::span<const IkRow> rows,
 namespace {
 
 std::optional<Error> unit_problem(const std::string& what, const vec3& v) {
-  constexpr double kUnitTolerance = 1e-6;  // share of a length of 1
-  return range_problem(what + ", its length,", std::sqrt(glm::dot(v, v)), 1.0 - kUnitTolerance,
-                       1.0 + kUnitTolerance);
+  return range_problem(what + ", its length,", std::sqrt(glm::dot(v, v)), 1.0 - 1e-6, 1.0 + 1e-6);
 }
 
 template <class Options>

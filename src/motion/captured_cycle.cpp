@@ -18,7 +18,7 @@ namespace {
 constexpr int kPoints = 256;    // samples of the closed stride, before its harmonics are taken
 constexpr double kFade = 0.12;  // longest fade on either side of the seam, a share of the stride
 constexpr double kLeastFade = 0.08;  // share of the stride: with less room the gaps are spread
-constexpr int kFullHarmonics = 10;   // harmonics above this number fade out to kHarmonics
+constexpr int kFullHarmonics = 10;   // harmonics above this number fade out to kStrideHarmonics
 
 // Natural cubic spline through values at 0, 1, 2 ...
 struct Spline {
@@ -113,7 +113,7 @@ using Wave = std::array<SinCos, kPoints>;  // of 2 pi i / kPoints
 Fourier harmonics(const std::array<vec3, kPoints>& y, const Wave& wave, double period_frames) {
   Fourier f;
   for (const vec3& v : y) f.mean += v / double(kPoints);
-  const int most = std::min(kHarmonics, static_cast<int>(0.5 * period_frames) - 1);
+  const int most = std::min(kStrideHarmonics, static_cast<int>(0.5 * period_frames) - 1);
   const int full = std::min(kFullHarmonics, most);
   for (int k = 1; k <= most; ++k) {
     vec3 a(0.0), b(0.0);
@@ -129,9 +129,9 @@ Fourier harmonics(const std::array<vec3, kPoints>& y, const Wave& wave, double p
   return f;
 }
 
-vec3 value_at(const Fourier& f, const std::array<SinCos, kHarmonics>& wave) {
+vec3 value_at(const Fourier& f, const std::array<SinCos, kStrideHarmonics>& wave) {
   vec3 sum = f.mean;
-  for (int k = 0; k < kHarmonics; ++k) sum += f.a[k] * wave[k].cos + f.b[k] * wave[k].sin;
+  for (int k = 0; k < kStrideHarmonics; ++k) sum += f.a[k] * wave[k].cos + f.b[k] * wave[k].sin;
   return sum;
 }
 
@@ -151,11 +151,7 @@ std::vector<double> straighten(const Motion& motion, const StrideFrames& s, doub
     place[f] = f == 0 ? now : place[f - 1] + rotation_y(-middle) * (now - before);
     before = now;
   }
-  const auto at = [&](double x) {
-    const int i = std::clamp(static_cast<int>(x), 0, s.count - 2);
-    return glm::mix(place[i], place[i + 1], x - i);
-  };
-  const double course = heading_of(at(s.place(1.0)) - at(s.place(0.0)));
+  const double course = heading_of(point_at(place, s.place(1.0)) - point_at(place, s.place(0.0)));
   for (int f = 0; f < s.count; ++f) {
     heading[f] += course;
     path_m.push_back(rotation_y(-course) * (place[f] - place[0]));
@@ -210,8 +206,8 @@ namespace {
 // --- Sampled poses -------------------------------------------------------------------------------
 
 Pose pose_at(const PeriodicMotion& motion, double phase) {
-  std::array<SinCos, kHarmonics> wave;
-  for (int k = 0; k < kHarmonics; ++k) wave[k] = sin_cos(2.0 * kPi * (k + 1) * phase);
+  std::array<SinCos, kStrideHarmonics> wave;
+  for (int k = 0; k < kStrideHarmonics; ++k) wave[k] = sin_cos(2.0 * kPi * (k + 1) * phase);
   Pose pose;
   pose.root_m = value_at(motion.pelvis_m, wave);
   pose.joint_count = static_cast<int>(motion.mean.size());
@@ -508,21 +504,19 @@ Result<double> build_standing(const CapturedCycle& c, GaitCycle& out) {
   out.pelvis = c.pelvis;
   out.pelvis_standing = mean_of(c.pelvis_rotation);
   const std::vector<quat> local = mean_locals(c);
-  std::array<FlatPose, 2> flat;
   double floor_m = 0.0;
   for (int side = 0; side < 2; ++side) {
     Result<LegModel> leg = leg_bones(c, side, out, local);
     if (!leg) return leg.error();
-    flat[side] = flat_pose(c, side);
-    build_toes(flat[side], local, out, *leg);
-    leg->standing[2] = flat[side].foot;
-    leg->standing[3] = flat[side].toe;
+    const FlatPose flat = flat_pose(c, side);
+    build_toes(flat, local, out, *leg);
+    leg->standing[2] = flat.foot;
+    leg->standing[3] = flat.toe;
     const double lowest = std::min(
         {leg->toe_m.y, leg->toe_m.y + leg->toe_end_m.y, -kLeastAnkle_legs * leg->length_m()});
-    const double under_m = flat[side].ankle_m.y + lowest;
     // Each foot stands on its own lowest point: captured floors are uneven by 1 to 2 cm, and with
     // one common floor the character would stand on one foot.
-    floor_m += 0.5 * under_m;
+    floor_m += 0.5 * (flat.ankle_m.y + lowest);
     build_sole(-lowest, *leg);
     out.leg[side] = *leg;
   }

@@ -8,7 +8,6 @@
 // the world like its counterpart.
 #include <algorithm>
 #include <memory>
-#include <optional>
 
 #include "base/numeric.h"
 #include "gaitpad/anatomy.h"

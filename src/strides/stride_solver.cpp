@@ -5,7 +5,6 @@
 
 #include <Eigen/SparseCholesky>
 #include <algorithm>
-#include <tuple>
 
 #include "gaitpad/curve.h"
 #include "motion/leg_pose.h"

@@ -137,7 +137,7 @@ ShapePoint point_at(const StairsSection& stairs, double, double u) noexcept {
 }
 
 std::optional<Error> problem_of(const StairsSection& stairs) {
-  constexpr int kMaxRisers = 100;
+  constexpr int kMaxRisers = 100;  // of one section
   if (auto problem = metres_problem("tread", stairs.tread_m, 0.15, 2.0)) return problem;
   if (auto problem = metres_problem("rise", std::abs(stairs.rise_m), 0.01, 0.4))
     return Error{problem->message + ", up or down"};

@@ -7,11 +7,16 @@
 namespace gaitpad {
 namespace {
 
+// Limits of a joint's angle in degrees, after AAOS.
+struct Limits {
+  double min, max;
+};
+
 // --- The upper body ------------------------------------------------------------------------------
 
-// Limits of a left arm in degrees, after AAOS; those of a right arm are mirrored in z and y.
-constexpr ArmAngles kMin = {-170, -35, -90, -150, -60, -25};
-constexpr ArmAngles kMax = {60, 150, 80, -2, 60, 35};
+// Of a left arm; those of a right arm are mirrored in z and y.
+constexpr std::array<Limits, kArmDofs> kArmLimits = {
+    {{-170, 60}, {-35, 150}, {-90, 80}, {-150, -2}, {-60, 60}, {-25, 35}}};
 // World frames of the joints in the data's sample i, with the root at the origin.
 JointFrames frames_of_sample(const GaitCycle& cycle, int i) {
   const std::size_t joints = cycle.skeleton.joints.size();
@@ -106,14 +111,14 @@ void fill_ranges(const GaitCycle& cycle, Side side, const JointFrames& standing,
   for (int d = 0; d < kArmDofs; ++d) {
     const bool is_mirrored =
         side == kRightSide && (d == kShoulderZ || d == kShoulderY || d == kWristZ);
-    const double min = (is_mirrored ? -kMax[d] : kMin[d]) * kDegree;
-    const double max = (is_mirrored ? -kMin[d] : kMax[d]) * kDegree;
+    const Limits left = kArmLimits[d], own = is_mirrored ? Limits{-left.max, -left.min} : left;
     const double room = d == kElbowX ? 0.0 : 5.0 * kDegree;
-    arm.min_rad[d] = std::min(min, low[d] - room), arm.max_rad[d] = std::max(max, high[d] + room);
+    arm.min_rad[d] = std::min(own.min * kDegree, low[d] - room);
+    arm.max_rad[d] = std::max(own.max * kDegree, high[d] + room);
   }
   constexpr double kLeastFlexion = 4.0 * kDegree;  // bend that an elbow keeps in a wide swing
-  constexpr double kWidestTurn_rad =
-      1.45;  // of shoulder z: near a right angle x and y are one axis
+  // Of shoulder z: near a right angle x and y are one axis.
+  constexpr double kWidestTurn_rad = 1.45;
   const double middle = arm.middle_rad[kElbowX];
   const double room = std::max(0.0, -kLeastFlexion - middle);
   arm.most_elbow_swing = std::max(1.0, room / std::max(1e-3, straightest - middle));
@@ -202,9 +207,9 @@ UpperBodyModel upper_body_model(const GaitCycle& cycle, double leg_ratio, double
 
 // --- Legs and tables -----------------------------------------------------------------------------
 
-// Joint limits of a leg in degrees (hip flexion and dorsiflexion are negative), after AAOS.
-constexpr std::array<double, kLegDofs> kLegMin = {-120, -50, -70, 1.0, -60, -60, -80};
-constexpr std::array<double, kLegDofs> kLegMax = {60, 50, 70, 150, 75, 60, 80};
+// Of a leg; hip flexion and dorsiflexion are negative.
+constexpr std::array<Limits, kLegDofs> kLegLimits = {
+    {{-120, 60}, {-50, 50}, {-70, 70}, {1, 150}, {-60, 75}, {-60, 60}, {-80, 80}}};
 
 IkChain leg_chain(const LegModel& leg) {
   constexpr std::array<vec3, kLegDofs> kAxis = {vec3(1, 0, 0), vec3(0, 0, 1), vec3(0, 1, 0),
@@ -214,8 +219,8 @@ IkChain leg_chain(const LegModel& leg) {
   chain.dofs = kLegDofs;
   for (int j = 0; j < kLegDofs; ++j) {
     chain.dof[j].axis = kAxis[j];
-    chain.dof[j].min_rad = kLegMin[j] * kDegree;
-    chain.dof[j].max_rad = kLegMax[j] * kDegree;
+    chain.dof[j].min_rad = kLegLimits[j].min * kDegree;
+    chain.dof[j].max_rad = kLegLimits[j].max * kDegree;
   }
   chain.dof[kHipY].link_m = vec3(0.0, -leg.thigh_m, 0.0);
   chain.dof[kKneeX].link_m = vec3(0.0, -leg.shank_m, 0.0);

@@ -414,7 +414,8 @@ struct StrideSolver::System {
   // Heel and toe stand where Table I plants them, and no part of the foot goes through the floor.
   void add_foot(int i, int side, const FootRows& foot, const StrideProblem& problem) {
     const LegModel& leg = problem.leg[side];
-    const auto& [frames, heel, toe] = foot;
+    const LegFrames& frames = foot.frames;
+    const PointRows &heel = foot.heel, &toe = foot.toe;
     // A point stands from the sample before its event to the one after it.
     const double sample = (1.0 - kRounding) / samples, phase = double(i) / samples;
     const double begins = fraction(phase - problem.strike[side] + sample);

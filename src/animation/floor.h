@@ -11,11 +11,14 @@ namespace gaitpad {
 struct Floor {
   const Terrain& terrain;
   const Placement& placed;
+  // True if places have to be turned and shifted to those of the ground.
+  bool is_moved() const noexcept {
+    return terrain.asked.ask != nullptr && !(placed == Placement{});
+  }
 };
 inline Ground ground_at(const Floor& floor, double x_m, double z_m) noexcept {
   const Placement& placed = floor.placed;
-  if (floor.terrain.asked.ask == nullptr || placed == Placement{})
-    return ground_at(floor.terrain, x_m, z_m);
+  if (!floor.is_moved()) return ground_at(floor.terrain, x_m, z_m);
   const vec3 at = to_world(placed, vec3(x_m, 0.0, z_m));
   Ground ground = ground_at(floor.terrain, at.x, at.z);
   ground.height_m -= placed.place_m.y;
@@ -28,7 +31,7 @@ std::array<double, kPlaces> heights_at(const Floor& floor,
                                        const std::array<vec3, kPlaces>& places) noexcept {
   static_assert(kPlaces <= kMostAsked);
   const Placement& placed = floor.placed;
-  const bool moves = floor.terrain.asked.ask != nullptr && !(placed == Placement{});
+  const bool moves = floor.is_moved();
   std::array<GroundPlace, kPlaces> asked;
   for (std::size_t i = 0; i < kPlaces; ++i) {
     const vec3 at = moves ? to_world(placed, vec3(places[i].x, 0.0, places[i].z)) : places[i];

@@ -91,10 +91,7 @@ void pose_chain(const IkChain& chain, std::span<const IkRow> rows, const IkAngle
   pose.squares = 0.0;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const vec3& p = rows[r].point_m;
-    const bool same_point = r > 0 && p == rows[r - 1].point_m;
-    pose.point_m[r] = same_point
-                          ? pose.point_m[r - 1]
-                          : pose.end_m + p.x * pose.last.x + p.y * pose.last.y + p.z * pose.last.z;
+    pose.point_m[r] = pose.end_m + p.x * pose.last.x + p.y * pose.last.y + p.z * pose.last.z;
     pose.dx[r] = rows[r].goal_m - glm::dot(rows[r].direction, pose.point_m[r]);
     pose.squares += pose.dx[r] * pose.dx[r];
   }
@@ -363,15 +360,19 @@ constexpr double kWorthAJump = 0.99;
 
 using IkDofValues = std::array<double, kMaxIkDofs>;
 
-// The input of a solve, and each DOF's weight and limits.
+// The input of a solve.
 struct Problem {
   const IkChain& chain;
   std::span<const IkRow> rows;
   const RobustOptions& options;
   IkTrace* trace;
   IkDofValues weight;  // weights divided by the largest one
-  IkDofValues min_rad, max_rad;
 };
+
+// The angle within the limits of its DOF; NaN stays.
+double limited(const IkDof& dof, double angle_rad) noexcept {
+  return std::clamp(angle_rad, dof.min_rad, dof.max_rad);
+}
 
 IkDofValues relative_weights(const IkChain& chain) noexcept {
   IkDofValues w{};
@@ -413,8 +414,7 @@ IkDofValues limited_step(const Problem& p, Step& step, const IkAngles& angles_ra
     for (int j = 0; j < dofs; ++j) {
       if (step.weight[j] == 0.0) continue;
       delta[j] = step.weight[j] * product(step.column[j], y);
-      const double wanted = angles_rad[j] + delta[j],
-                   allowed = std::min(std::max(wanted, p.min_rad[j]), p.max_rad[j]);
+      const double wanted = angles_rad[j] + delta[j], allowed = limited(p.chain.dof[j], wanted);
       if (allowed == wanted) continue;
       frozen = true;
       delta[j] = allowed - angles_rad[j];
@@ -480,10 +480,8 @@ Try one_try(const Problem& p, const IkAngles& start, int max_iterations) noexcep
     double greatest = 0.0;
     for (int j = 0; j < dofs; ++j) greatest = std::max(greatest, std::abs(delta[j]));
     const double cap = greatest > p.options.max_step_rad ? p.options.max_step_rad / greatest : 1.0;
-    for (int j = 0; j < dofs; ++j) {
-      const double wanted = angles_rad[j] + cap * delta[j];
-      next[j] = std::min(std::max(wanted, p.min_rad[j]), p.max_rad[j]);
-    }
+    for (int j = 0; j < dofs; ++j)
+      next[j] = limited(p.chain.dof[j], angles_rad[j] + cap * delta[j]);
   }
 }
 
@@ -564,13 +562,9 @@ IkResult solve_robust(const IkChain& chain, std::span<const IkRow> rows,
                       const RobustOptions& options, IkAngles& angles_rad, IkTrace* trace) noexcept {
   if (!do_fit(chain, rows) || !are_sound(options) || !are_inputs_finite(chain, angles_rad))
     return refused();
-  Problem p{chain, rows, options, trace, relative_weights(chain), {}, {}};
+  const Problem p{chain, rows, options, trace, relative_weights(chain)};
   IkAngles start = angles_rad;
-  for (int j = 0; j < chain.dofs; ++j) {
-    p.min_rad[j] = chain.dof[j].min_rad;
-    p.max_rad[j] = chain.dof[j].max_rad;
-    start[j] = std::clamp(start[j], p.min_rad[j], p.max_rad[j]);
-  }
+  for (int j = 0; j < chain.dofs; ++j) start[j] = limited(chain.dof[j], start[j]);
   IkAngles answer = start;
   const IkResult result = best_of_tries(p, start, answer);
   if (!std::isfinite(result.error_m)) return refused();
@@ -581,9 +575,7 @@ IkResult solve_robust(const IkChain& chain, std::span<const IkRow> rows,
 namespace {
 
 std::optional<Error> unit_problem(const std::string& what, const vec3& v) {
-  constexpr double kUnitTolerance = 1e-6;  // share of a length of 1
-  return range_problem(what + ", its length,", std::sqrt(glm::dot(v, v)), 1.0 - kUnitTolerance,
-                       1.0 + kUnitTolerance);
+  return range_problem(what + ", its length,", std::sqrt(glm::dot(v, v)), 1.0 - 1e-6, 1.0 + 1e-6);
 }
 
 template <class Options>

@@ -13,11 +13,6 @@ namespace {
 // place has two coordinates: x as in the world, and u, the metres from the section's begin. Heights
 // are relative to the height at which the section begins.
 
-// Bounds of a section's length, and of the treads, rises and risers of stairs.
-constexpr double kMinLength_m = 0.1, kMaxLength_m = 1000.0;
-constexpr double kMinTread_m = 0.15, kMaxTread_m = 2.0, kMinRise_m = 0.01, kMaxRise_m = 0.4;
-constexpr int kMaxRisers = 100;
-
 bool is_within(double x, double min, double max) noexcept { return x >= min && x <= max; }
 
 std::optional<Error> metres_problem(const char* what, double is_m, double min_m, double max_m) {
@@ -26,7 +21,7 @@ std::optional<Error> metres_problem(const char* what, double is_m, double min_m,
                short_number(min_m) + " and " + short_number(max_m) + " m"};
 }
 std::optional<Error> length_problem(double length_m) {
-  return metres_problem("length", length_m, kMinLength_m, kMaxLength_m);
+  return metres_problem("length", length_m, 0.1, 1000.0);
 }
 
 // The reason why `what`, at both ends of a length, is longer than that, if it is.
@@ -142,9 +137,9 @@ ShapePoint point_at(const StairsSection& stairs, double, double u) noexcept {
 }
 
 std::optional<Error> problem_of(const StairsSection& stairs) {
-  if (auto problem = metres_problem("tread", stairs.tread_m, kMinTread_m, kMaxTread_m))
-    return problem;
-  if (auto problem = metres_problem("rise", std::abs(stairs.rise_m), kMinRise_m, kMaxRise_m))
+  constexpr int kMaxRisers = 100;  // of one section
+  if (auto problem = metres_problem("tread", stairs.tread_m, 0.15, 2.0)) return problem;
+  if (auto problem = metres_problem("rise", std::abs(stairs.rise_m), 0.01, 0.4))
     return Error{problem->message + ", up or down"};
   if (stairs.count < 1 || stairs.count > kMaxRisers)
     return Error{std::to_string(stairs.count) + " risers are not 1 to " +
@@ -366,10 +361,6 @@ Ground finite_or_floor(const Ground& ground) noexcept {
   return std::isfinite(ground.height_m) ? ground : Ground{};
 }
 
-// Bounds of a grid: samples of a side (1 GiB in all), and their distance.
-constexpr int kMaxGridSide = 16'384;
-constexpr double kLeastSpacing_m = 0.01, kMostSpacing_m = 100.0;
-
 // A coordinate as the index of the sample before it, and the share of the way to the next sample.
 struct GridPlace {
   int cell = 0;
@@ -390,8 +381,8 @@ Ground ask_grid(const void* grid, double x_m, double z_m) noexcept {
 }  // namespace
 
 std::optional<Error> check(const GroundGrid& grid) {
-  if (auto problem =
-          range_problem("GroundGrid: spacing_m", grid.spacing_m, kLeastSpacing_m, kMostSpacing_m))
+  constexpr int kMaxGridSide = 16'384;  // samples of a side: 1 GiB in all
+  if (auto problem = range_problem("GroundGrid: spacing_m", grid.spacing_m, 0.01, 100.0))
     return problem;
   if (!std::isfinite(grid.x_m) || !std::isfinite(grid.z_m))
     return Error{"GroundGrid: x_m or z_m is not finite"};

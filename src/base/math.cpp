@@ -1,6 +1,5 @@
 #include "gaitpad/math.h"
 
-#include <cassert>
 #include <cstdint>
 
 #include "base/trigonometry.h"

@@ -157,9 +157,16 @@ struct Figure {
 
   const Joint& joint(int j) const { return skeleton.joints[j]; }
   int parent(int j) const { return joint(j).parent; }
+  NamedJoint named(int j) const { return named_joint(joint(j).name); }
   int count() const { return static_cast<int>(skeleton.joints.size()); }
   double distance(int a, int b) const { return glm::distance(at[a], at[b]); }
   bool carries(int ancestor, int j) const { return is_ancestor(skeleton, ancestor, j); }
+  // The index after a joint's last descendant: all descendants follow their ancestor.
+  int branch_end(int ancestor) const {
+    int end = ancestor + 1;
+    while (end < count() && carries(ancestor, end)) ++end;
+    return end;
+  }
 };
 
 // Hip, knee and ankle, or shoulder, elbow and wrist.
@@ -213,9 +220,9 @@ int common_ancestor(const Skeleton& skeleton, int a, int b) {
 }
 
 // The nearest ancestor of `joint` with that side and part; -1 if there is none.
-int named_ancestor(const Skeleton& skeleton, int joint, NamedSide side, NamedPart part) {
-  for (int j = skeleton.joints[joint].parent; j >= 0; j = skeleton.joints[j].parent) {
-    const NamedJoint named = named_joint(skeleton.joints[j].name);
+int named_ancestor(const Figure& figure, int joint, NamedSide side, NamedPart part) {
+  for (int j = figure.parent(joint); j >= 0; j = figure.parent(j)) {
+    const NamedJoint named = figure.named(j);
     if (named.side == side && named.part == part) return j;
   }
   return -1;
@@ -235,13 +242,9 @@ int end_site_of(const Skeleton& skeleton, int joint) {
 
 // The toe joint's own End Site, otherwise its last descendant in the file's order. Scripts that
 // read exported poses follow the same rule.
-int toe_end_of(const Skeleton& skeleton, int toe) {
-  if (const int end = end_site_of(skeleton, toe); end >= 0) return end;
-  int last = toe;
-  while (last + 1 < static_cast<int>(skeleton.joints.size()) &&
-         is_ancestor(skeleton, toe, last + 1))
-    ++last;
-  return last;
+int toe_end_of(const Figure& figure, int toe) {
+  const int end = end_site_of(figure.skeleton, toe);
+  return end >= 0 ? end : figure.branch_end(toe) - 1;
 }
 
 // The toe joint of a foot: the first joint named as a toe, because it carries the others; otherwise
@@ -249,10 +252,9 @@ int toe_end_of(const Skeleton& skeleton, int toe) {
 int toe_of(const Figure& figure, int ankle) {
   int best = -1, best_rank = 0;
   double best_length = 0.0;
-  for (int j = ankle + 1; j < figure.count(); ++j) {
-    if (!figure.carries(ankle, j)) break;
+  for (int j = ankle + 1, end = figure.branch_end(ankle); j < end; ++j) {
     const Joint& joint = figure.joint(j);
-    const bool is_named = !joint.is_end_site && named_joint(joint.name).part == NamedPart::toe;
+    const bool is_named = !joint.is_end_site && figure.named(j).part == NamedPart::toe;
     const double length = figure.distance(ankle, j);
     if ((!is_named && joint.parent != ankle) || length <= 0.0) continue;
     const int rank = is_named ? 3 : joint.is_end_site ? 1 : 2;
@@ -269,21 +271,21 @@ int toe_of(const Figure& figure, int ankle) {
 bool complete_foot(const Figure& figure, LegJoints& leg) {
   if (leg.toe < 0) leg.toe = toe_of(figure, leg.ankle);
   if (leg.toe < 0) return false;
-  leg.toe_end = toe_end_of(figure.skeleton, leg.toe);
+  leg.toe_end = toe_end_of(figure, leg.toe);
   return true;
 }
 
 // The first ankle of that side that is below a knee that is below a hip.
 std::optional<LegJoints> named_leg(const Figure& figure, NamedSide side) {
   for (int j = 0; j < figure.count(); ++j) {
-    const NamedJoint named = named_joint(figure.joint(j).name);
+    const NamedJoint named = figure.named(j);
     if (figure.joint(j).is_end_site || named.side != side || named.part != NamedPart::ankle)
       continue;
     LegJoints leg;
     leg.ankle = j;
-    leg.knee = named_ancestor(figure.skeleton, j, side, NamedPart::knee);
+    leg.knee = named_ancestor(figure, j, side, NamedPart::knee);
     if (leg.knee < 0) continue;
-    leg.hip = named_ancestor(figure.skeleton, leg.knee, side, NamedPart::hip);
+    leg.hip = named_ancestor(figure, leg.knee, side, NamedPart::hip);
     if (leg.hip < 0 || !is_limb(figure, limb_of(leg))) continue;
     // Accept a foot without length, which old Acclaim skeletons have, if its ankle has a name.
     // build_toes() gives it the usual length.
@@ -458,9 +460,8 @@ bool is_in_leg(const Figure& figure, const Legs& legs, int j) {
 // (CMU's lwrist). Without such a name: the farthest child.
 int wrist_below(const Figure& figure, int elbow, NamedSide side) {
   int farthest = -1, lowest_named = -1;
-  for (int j = elbow + 1; j < figure.count(); ++j) {
-    if (!figure.carries(elbow, j)) break;
-    const NamedJoint named = named_joint(figure.joint(j).name);
+  for (int j = elbow + 1, end = figure.branch_end(elbow); j < end; ++j) {
+    const NamedJoint named = figure.named(j);
     const bool is_lower = lowest_named < 0 || figure.carries(lowest_named, j);
     if (named.side == side && named.part == NamedPart::wrist && is_lower) lowest_named = j;
     const bool is_child = figure.parent(j) == elbow;
@@ -472,10 +473,10 @@ int wrist_below(const Figure& figure, int elbow, NamedSide side) {
 
 ArmChain named_arm(const Figure& figure, const Legs& legs, NamedSide side) {
   const auto above = [&](int joint, NamedPart part) {
-    return named_ancestor(figure.skeleton, joint, side, part);
+    return named_ancestor(figure, joint, side, part);
   };
   for (int j = 0; j < figure.count(); ++j) {
-    const NamedJoint named = named_joint(figure.joint(j).name);
+    const NamedJoint named = figure.named(j);
     if (named.side != side || named.part != NamedPart::elbow || is_in_leg(figure, legs, j))
       continue;
     ArmChain arm;
@@ -528,7 +529,7 @@ std::array<ArmChain, 2> shaped_arms(const Figure& figure, const Legs& legs, int 
 int hand_end_of(const Figure& figure, int wrist) {
   int farthest = -1;
   double longest = 0.0;
-  for (int j = wrist + 1; j < figure.count() && figure.carries(wrist, j); ++j) {
+  for (int j = wrist + 1, end = figure.branch_end(wrist); j < end; ++j) {
     const std::vector<std::string> words = name_words(figure.joint(j).name);
     const bool is_beside = std::any_of(words.begin(), words.end(), [](const std::string& word) {
       return word.ends_with("thumb") || word.ends_with("mesh");
@@ -557,7 +558,7 @@ int highest_joint(const Figure& figure, const Legs& legs) {
 int head_of(const Figure& figure, const Legs& legs, int top) {
   for (int j = 0; j < figure.count(); ++j) {
     const Joint& joint = figure.joint(j);
-    const bool is_head = named_joint(joint.name).part == NamedPart::head;
+    const bool is_head = figure.named(j).part == NamedPart::head;
     if (is_head && !joint.is_end_site && !is_in_leg(figure, legs, j)) return j;
   }
   if (top <= 0) return -1;
@@ -565,8 +566,9 @@ int head_of(const Figure& figure, const Legs& legs, int top) {
 }
 
 int head_top_of(const Figure& figure, int head) {
+  if (head < 0) return -1;
   int top = head;
-  for (int j = head + 1; head >= 0 && j < figure.count() && figure.carries(head, j); ++j) {
+  for (int j = head + 1, end = figure.branch_end(head); j < end; ++j) {
     if (figure.at[j].y > figure.at[top].y) top = j;
   }
   return top;

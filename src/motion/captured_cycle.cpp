@@ -18,7 +18,7 @@ namespace {
 constexpr int kPoints = 256;    // samples of the closed stride, before its harmonics are taken
 constexpr double kFade = 0.12;  // longest fade on either side of the seam, a share of the stride
 constexpr double kLeastFade = 0.08;  // share of the stride: with less room the gaps are spread
-constexpr int kFullHarmonics = 10;   // harmonics above this number fade out to kHarmonics
+constexpr int kFullHarmonics = 10;   // harmonics above this number fade out to kStrideHarmonics
 
 // Natural cubic spline through values at 0, 1, 2 ...
 struct Spline {
@@ -113,7 +113,7 @@ using Wave = std::array<SinCos, kPoints>;  // of 2 pi i / kPoints
 Fourier harmonics(const std::array<vec3, kPoints>& y, const Wave& wave, double period_frames) {
   Fourier f;
   for (const vec3& v : y) f.mean += v / double(kPoints);
-  const int most = std::min(kHarmonics, static_cast<int>(0.5 * period_frames) - 1);
+  const int most = std::min(kStrideHarmonics, static_cast<int>(0.5 * period_frames) - 1);
   const int full = std::min(kFullHarmonics, most);
   for (int k = 1; k <= most; ++k) {
     vec3 a(0.0), b(0.0);
@@ -129,9 +129,9 @@ Fourier harmonics(const std::array<vec3, kPoints>& y, const Wave& wave, double p
   return f;
 }
 
-vec3 value_at(const Fourier& f, const std::array<SinCos, kHarmonics>& wave) {
+vec3 value_at(const Fourier& f, const std::array<SinCos, kStrideHarmonics>& wave) {
   vec3 sum = f.mean;
-  for (int k = 0; k < kHarmonics; ++k) sum += f.a[k] * wave[k].cos + f.b[k] * wave[k].sin;
+  for (int k = 0; k < kStrideHarmonics; ++k) sum += f.a[k] * wave[k].cos + f.b[k] * wave[k].sin;
   return sum;
 }
 
@@ -151,11 +151,7 @@ std::vector<double> straighten(const Motion& motion, const StrideFrames& s, doub
     place[f] = f == 0 ? now : place[f - 1] + rotation_y(-middle) * (now - before);
     before = now;
   }
-  const auto at = [&](double x) {
-    const int i = std::clamp(static_cast<int>(x), 0, s.count - 2);
-    return glm::mix(place[i], place[i + 1], x - i);
-  };
-  const double course = heading_of(at(s.place(1.0)) - at(s.place(0.0)));
+  const double course = heading_of(point_at(place, s.place(1.0)) - point_at(place, s.place(0.0)));
   for (int f = 0; f < s.count; ++f) {
     heading[f] += course;
     path_m.push_back(rotation_y(-course) * (place[f] - place[0]));
@@ -167,7 +163,7 @@ std::vector<double> straighten(const Motion& motion, const StrideFrames& s, doub
 quat mean_rotation(const std::vector<quat>& all) {
   quat sum = all.front();
   for (std::size_t i = 1; i < all.size(); ++i) {
-    sum = sum + all[i] * (glm::dot(all[i], sum) < 0.0 ? -1.0 : 1.0);
+    sum = sum + nearer(all[i], sum);
   }
   return glm::normalize(sum);
 }
@@ -210,8 +206,8 @@ namespace {
 // --- Sampled poses -------------------------------------------------------------------------------
 
 Pose pose_at(const PeriodicMotion& motion, double phase) {
-  std::array<SinCos, kHarmonics> wave;
-  for (int k = 0; k < kHarmonics; ++k) wave[k] = sin_cos(2.0 * kPi * (k + 1) * phase);
+  std::array<SinCos, kStrideHarmonics> wave;
+  for (int k = 0; k < kStrideHarmonics; ++k) wave[k] = sin_cos(2.0 * kPi * (k + 1) * phase);
   Pose pose;
   pose.root_m = value_at(motion.pelvis_m, wave);
   pose.joint_count = static_cast<int>(motion.mean.size());
@@ -346,9 +342,7 @@ quat mean_around(const std::vector<quat>& q, int middle, int reach) {
   const quat centre = q[wrapped_index(middle)];
   quat sum = centre;
   for (int k = -reach; k <= reach; ++k) {
-    if (k == 0) continue;
-    const quat& other = q[wrapped_index(middle + k)];
-    sum = sum + other * (glm::dot(other, centre) < 0.0 ? -1.0 : 1.0);
+    if (k != 0) sum = sum + nearer(q[wrapped_index(middle + k)], centre);
   }
   return glm::normalize(sum);
 }
@@ -510,21 +504,19 @@ Result<double> build_standing(const CapturedCycle& c, GaitCycle& out) {
   out.pelvis = c.pelvis;
   out.pelvis_standing = mean_of(c.pelvis_rotation);
   const std::vector<quat> local = mean_locals(c);
-  std::array<FlatPose, 2> flat;
   double floor_m = 0.0;
   for (int side = 0; side < 2; ++side) {
     Result<LegModel> leg = leg_bones(c, side, out, local);
     if (!leg) return leg.error();
-    flat[side] = flat_pose(c, side);
-    build_toes(flat[side], local, out, *leg);
-    leg->standing[2] = flat[side].foot;
-    leg->standing[3] = flat[side].toe;
+    const FlatPose flat = flat_pose(c, side);
+    build_toes(flat, local, out, *leg);
+    leg->standing[2] = flat.foot;
+    leg->standing[3] = flat.toe;
     const double lowest = std::min(
         {leg->toe_m.y, leg->toe_m.y + leg->toe_end_m.y, -kLeastAnkle_legs * leg->length_m()});
-    const double under_m = flat[side].ankle_m.y + lowest;
     // Each foot stands on its own lowest point: captured floors are uneven by 1 to 2 cm, and with
     // one common floor the character would stand on one foot.
-    floor_m += 0.5 * under_m;
+    floor_m += 0.5 * (flat.ankle_m.y + lowest);
     build_sole(-lowest, *leg);
     out.leg[side] = *leg;
   }
@@ -595,15 +587,13 @@ void make_continuous(GaitCycle& out) {
         leg.angles[d] = before.angles[d] + wrapped(leg.angles[d] - before.angles[d]);
       }
       leg.toe_x = before.toe_x + wrapped(leg.toe_x - before.toe_x);
-      if (glm::dot(leg.foot, before.foot) < 0.0) leg.foot = -leg.foot;
+      leg.foot = nearer(leg.foot, before.foot);
     }
-    quat& pelvis = out.samples[i].pelvis;
-    if (glm::dot(pelvis, out.samples[i - 1].pelvis) < 0.0) pelvis = -pelvis;
+    out.samples[i].pelvis = nearer(out.samples[i].pelvis, out.samples[i - 1].pelvis);
   }
   const std::size_t joints = out.standing_local.size();
-  for (std::size_t k = joints; k < out.local.size(); ++k) {
-    if (glm::dot(out.local[k], out.local[k - joints]) < 0.0) out.local[k] = -out.local[k];
-  }
+  for (std::size_t k = joints; k < out.local.size(); ++k)
+    out.local[k] = nearer(out.local[k], out.local[k - joints]);
 }
 
 }  // namespace
@@ -614,6 +604,9 @@ void build_samples(const CapturedCycle& c, double floor_m, GaitCycle& out) {
   out.samples.assign(kCycleSamples, CycleSample{});
   const std::array<vec3, 2> hinge = {hinge_above_knee(out, kLeftSide),
                                      hinge_above_knee(out, kRightSide)};
+  std::array<std::vector<int>, 2> twist;
+  for (int side = 0; side < 2; ++side)
+    twist[side] = twist_joints(c.skeleton, c.pelvis, out.leg[side].joints);
   for (int i = 0; i < kCycleSamples; ++i) {
     CycleSample& at = out.samples[i];
     at.pelvis_m = c.pelvis_m[i] + down;
@@ -621,15 +614,11 @@ void build_samples(const CapturedCycle& c, double floor_m, GaitCycle& out) {
     quat* local = out.local.data() + i * c.joints();
     for (int side = 0; side < 2; ++side) {
       const LegModel& model = out.leg[side];
-      const LegJoints& j = model.joints;
       const vec3 hip_m = c.pelvis_m[i] + at.pelvis * model.hip_m;
       LegSample& leg = at.leg[side];
       leg = leg_sample(c.leg[side], i, model, hinge[side], hip_m, at.pelvis);
       leg.ankle_m += down;
-      for (const auto& [from, to] :
-           {std::pair{c.pelvis, j.hip}, {j.hip, j.knee}, {j.knee, j.ankle}, {j.ankle, j.toe}}) {
-        for (const int k : joints_between(c.skeleton, from, to)) local[k] = out.standing_local[k];
-      }
+      for (const int k : twist[side]) local[k] = out.standing_local[k];
       set_leg_locals(out.skeleton, model, pose_of(out, side, at), local);
     }
   }

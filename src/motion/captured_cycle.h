@@ -10,12 +10,12 @@
 
 namespace gaitpad {
 
-inline constexpr int kHarmonics = 16;  // harmonics of a periodic stride
+inline constexpr int kStrideHarmonics = 16;  // harmonics of a periodic stride
 
-// mean + sum of a cos 2 pi k p + b sin 2 pi k p, k = 1 .. kHarmonics, at phase p.
+// mean + sum of a cos 2 pi k p + b sin 2 pi k p, k = 1 .. kStrideHarmonics, at phase p.
 struct Fourier {
   vec3 mean{0.0};
-  std::array<vec3, kHarmonics> a{}, b{};
+  std::array<vec3, kStrideHarmonics> a{}, b{};
 };
 
 // Rotations are rotation vectors from each joint's mean, so that every channel is a plain vector.

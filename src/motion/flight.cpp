@@ -96,19 +96,14 @@ std::optional<Swing> robust_flight(const Motion& motion, Side side) {
     lengths.push_back(horizontal_length(ankle[s.land] - ankle[s.lift]));
   }
   const double usual_time = median(times), usual_length = median(lengths);
-  std::optional<Swing> best;
-  double least = 1e300;
-  for (std::size_t i = 0; i < found.swings.size(); ++i) {
+  if (found.swings.empty()) return std::nullopt;
+  return found.swings[lowest(0, static_cast<int>(found.swings.size()) - 1, [&](int i) {
     const Swing& s = found.swings[i];
-    double off = std::abs(times[i] / usual_time - 1.0) + std::abs(lengths[i] / usual_length - 1.0);
     // The clip begins within the stance before this swing, so its heel-off is not known.
     const bool begins_before = s.heel_off < 1 || s.heel_off == s.lift;
-    if (begins_before) off += 1.0;
-    if (off >= least) continue;
-    least = off;
-    best = s;
-  }
-  return best;
+    return std::abs(times[i] / usual_time - 1.0) + std::abs(lengths[i] / usual_length - 1.0) +
+           (begins_before ? 1.0 : 0.0);
+  })];
 }
 
 std::optional<Swing> paper_flight(const std::vector<double>& heights) {

@@ -14,14 +14,13 @@ namespace {
 
 // --- Reading a cycle at any phase ----------------------------------------------------------------
 
-// Neighbouring samples differ by a few degrees, so it is enough to blend the components and to
-// normalize. Each is brought into the second one's hemisphere first.
-quat blended(const std::array<const quat*, 4>& q, const std::array<double, 4>& weight) noexcept {
-  quat sum = *q[1] * weight[1];
-  for (const int k : {0, 2, 3}) {
-    const double sign = glm::dot(*q[k], *q[1]) < 0.0 ? -1.0 : 1.0;
-    sum = sum + *q[k] * (sign * weight[k]);
-  }
+// The rotation between four samples; `rotation(i)` is that of sample i. Neighbouring samples differ
+// by a few degrees, so it is enough to blend the components and to normalize.
+template <class RotationOf>
+quat blended(const Stencil& s, const RotationOf& rotation) noexcept {
+  const quat& second = rotation(s.index[1]);
+  quat sum = second * s.weight[1];
+  for (const int k : {0, 2, 3}) sum = sum + nearer(rotation(s.index[k]), second) * s.weight[k];
   return glm::normalize(sum);
 }
 
@@ -29,21 +28,19 @@ quat blended(const std::array<const quat*, 4>& q, const std::array<double, 4>& w
 
 CycleSample sample_at(const GaitCycle& cycle, double phase) noexcept {
   const Stencil s = stencil_at(phase);
-  std::array<const CycleSample*, 4> at;
-  for (int k = 0; k < 4; ++k) at[k] = &cycle.samples[s.index[k]];
+  const std::vector<CycleSample>& samples = cycle.samples;
   CycleSample out;
-  for (int k = 0; k < 4; ++k) out.pelvis_m += at[k]->pelvis_m * s.weight[k];
-  out.pelvis = blended({&at[0]->pelvis, &at[1]->pelvis, &at[2]->pelvis, &at[3]->pelvis}, s.weight);
+  out.pelvis = blended(s, [&](int i) -> const quat& { return samples[i].pelvis; });
+  for (int k = 0; k < 4; ++k) out.pelvis_m += samples[s.index[k]].pelvis_m * s.weight[k];
   for (int side = 0; side < 2; ++side) {
     LegSample& leg = out.leg[side];
-    std::array<const LegSample*, 4> from;
-    for (int k = 0; k < 4; ++k) from[k] = &at[k]->leg[side];
+    leg.foot = blended(s, [&](int i) -> const quat& { return samples[i].leg[side].foot; });
     for (int k = 0; k < 4; ++k) {
-      for (int d = 0; d < kLegDofs; ++d) leg.angles[d] += from[k]->angles[d] * s.weight[k];
-      leg.toe_x += from[k]->toe_x * s.weight[k];
-      leg.ankle_m += from[k]->ankle_m * s.weight[k];
+      const LegSample& from = samples[s.index[k]].leg[side];
+      for (int d = 0; d < kLegDofs; ++d) leg.angles[d] += from.angles[d] * s.weight[k];
+      leg.toe_x += from.toe_x * s.weight[k];
+      leg.ankle_m += from.ankle_m * s.weight[k];
     }
-    leg.foot = blended({&from[0]->foot, &from[1]->foot, &from[2]->foot, &from[3]->foot}, s.weight);
   }
   return out;
 }
@@ -53,10 +50,9 @@ void sample_local(const GaitCycle& cycle, double phase, Pose& pose) noexcept {
   const int joints = static_cast<int>(cycle.standing_local.size());
   assert(joints <= kMaxJoints);
   pose.joint_count = joints;
-  std::array<const quat*, 4> row;
-  for (int k = 0; k < 4; ++k) row[k] = cycle.local.data() + std::size_t(s.index[k]) * joints;
   for (int j = 0; j < joints; ++j)
-    pose.local[j] = blended({row[0] + j, row[1] + j, row[2] + j, row[3] + j}, s.weight);
+    pose.local[j] =
+        blended(s, [&](int i) -> const quat& { return cycle.local[std::size_t(i) * joints + j]; });
 }
 
 namespace {
@@ -87,15 +83,16 @@ FeetTracks feet_tracks(const GaitCycle& cycle) {
   tracks.sample_s = cycle.duration_s / kCycleSamples;
   tracks.leg_m = mean_leg_m(cycle);
   for (int side = 0; side < 2; ++side) {
+    const auto over_ground = [&](const vec3 LegPose::*point) {
+      std::vector<vec3> track = foot_track(cycle, side, point);
+      for (int i = 0; i < kCycleSamples; ++i)
+        track[i] += kForward * (cycle.stride_m * i / kCycleSamples);
+      return track;
+    };
     FootTrack& foot = tracks.foot[side];
-    foot.ankle_m = foot_track(cycle, side, &LegPose::ankle_m);
-    foot.heel_m = foot_track(cycle, side, &LegPose::heel_m);
-    foot.toe_m = foot_track(cycle, side, &LegPose::toe_m);
-    for (std::vector<vec3>* points : {&foot.ankle_m, &foot.heel_m, &foot.toe_m}) {
-      for (int i = 0; i < kCycleSamples; ++i) {
-        (*points)[i] += kForward * (cycle.stride_m * i / kCycleSamples);
-      }
-    }
+    foot.ankle_m = over_ground(&LegPose::ankle_m);
+    foot.heel_m = over_ground(&LegPose::heel_m);
+    foot.toe_m = over_ground(&LegPose::toe_m);
   }
   return tracks;
 }

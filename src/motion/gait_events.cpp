@@ -256,22 +256,20 @@ struct Reader {
     const auto [a, b] = around(i, kSpeed_s);
     return glm::distance(p[a], p[b]) / (std::max(b - a, 1) * sample_s);
   }
-  // Height, averaged around the sample.
-  double height(const std::vector<vec3>& p, int i) const {
+  // The mean of a value of the samples around one.
+  template <class Value>
+  double averaged(int i, const Value& value) const {
     const auto [a, b] = around(i, kFlat_s);
     double sum = 0.0;
-    for (int k = a; k <= b; ++k) sum += p[k].y;
+    for (int k = a; k <= b; ++k) sum += value(k);
     return sum / (b - a + 1);
   }
-  // Score of speed and height, averaged around the sample; small when the foot is flat.
+  // Score of speed and height; small when the foot is flat.
   double flatness(int i) const {
-    const auto [a, b] = around(i, kFlat_s);
-    double sum = 0.0;
-    for (int k = a; k <= b; ++k) {
-      sum += speed(foot.heel_m, k) + speed(foot.toe_m, k) +
+    return averaged(i, [this](int k) {
+      return speed(foot.heel_m, k) + speed(foot.toe_m, k) +
              kFlatRate_per_s * (foot.heel_m[k].y + foot.toe_m[k].y);
-    }
-    return sum / (b - a + 1);
+    });
   }
   int fastest(const std::vector<vec3>& p, int first, int last) const {
     return lowest(first, last, [&](int i) { return -speed(p, i); });
@@ -288,7 +286,7 @@ void set_search(const FeetTracks& tracks, double limit_m_s, SwingSearch& s) {
   s.fastest_heel = r.fastest(r.foot.heel_m, s.first, s.last);
   s.flat =
       lowest(std::min(s.last + 1, s.rest_last), s.rest_last, [&](int i) { return r.flatness(i); });
-  s.standing_heel_m = r.height(r.foot.heel_m, s.flat);
+  s.standing_heel_m = r.averaged(s.flat, [&](int k) { return r.foot.heel_m[k].y; });
   s.fastest_toe = r.fastest(r.foot.toe_m, s.first, s.last);
   int leaving = s.fastest_toe;
   while (leaving > s.rest_first && r.speed(r.foot.toe_m, leaving) > limit_m_s) --leaving;

@@ -2,6 +2,8 @@
 
 #include <memory>
 
+#include "gaitpad/anatomy.h"
+
 namespace gaitpad {
 
 LegPose leg_pose(const LegModel& model, const vec3& pelvis_m, const quat& pelvis,
@@ -84,7 +86,13 @@ AnglesXzy angles_xzy(const quat& q) noexcept {
   return a;
 }
 
-vec3 link(const Skeleton& skeleton, const std::vector<quat>& local, int from, int to) {
+std::vector<int> twist_joints(const Skeleton& skeleton, int pelvis, const LegJoints& leg) {
+  std::vector<int> joints = path_below(skeleton, pelvis, skeleton.joints[leg.toe].parent);
+  std::erase_if(joints, [&](int j) { return j == leg.hip || j == leg.knee || j == leg.ankle; });
+  return joints;
+}
+
+vec3 link(const Skeleton& skeleton, std::span<const quat> local, int from, int to) noexcept {
   vec3 v(0.0);
   for (int j = to; j > from; j = skeleton.joints[j].parent)
     v = skeleton.joints[j].offset_m + local[j] * v;
@@ -98,7 +106,7 @@ std::vector<quat> world_rotations(const Skeleton& skeleton, std::span<const quat
   return {all.begin(), all.begin() + static_cast<std::ptrdiff_t>(skeleton.joints.size())};
 }
 
-quat world_rotation(const Skeleton& skeleton, const quat* local, int joint) {
+quat world_rotation(const Skeleton& skeleton, const quat* local, int joint) noexcept {
   quat q = kIdentity;
   for (int j = joint; j >= 0; j = skeleton.joints[j].parent) q = local[j] * q;
   return q;

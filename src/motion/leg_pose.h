@@ -54,13 +54,22 @@ inline double hips_heading(const vec3& across_m) noexcept {
 inline vec3 mirrored(const vec3& v) noexcept { return vec3(-v.x, v.y, v.z); }
 inline quat mirrored(const quat& q) noexcept { return quat(q.w, q.x, -q.y, -q.z); }
 
+// Of q and -q, which are the same rotation, the one nearer to `to`.
+inline quat nearer(const quat& q, const quat& to) noexcept {
+  return glm::dot(q, to) < 0.0 ? -q : q;
+}
+
+// The twist joints of a leg: those between pelvis and toe that are not its own joints. They keep
+// their rotation in a walk.
+std::vector<int> twist_joints(const Skeleton& skeleton, int pelvis, const LegJoints& leg);
+
 // The vector from joint `from` to joint `to` at or below it, in the frame of `from`, with the
 // locals given.
-vec3 link(const Skeleton& skeleton, const std::vector<quat>& local, int from, int to);
+vec3 link(const Skeleton& skeleton, std::span<const quat> local, int from, int to) noexcept;
 // World rotation of every joint for the local rotations given.
 std::vector<quat> world_rotations(const Skeleton& skeleton, std::span<const quat> local);
 // The same of one joint; no rotation for -1, above the root.
-quat world_rotation(const Skeleton& skeleton, const quat* local, int joint);
+quat world_rotation(const Skeleton& skeleton, const quat* local, int joint) noexcept;
 // Overwrites the locals of hip, knee, ankle and toe so that their world rotations match the
 // segments of `pose`; all other joints keep their locals.
 void set_leg_locals(const Skeleton& skeleton, const LegModel& model, const LegPose& pose,

@@ -8,7 +8,6 @@
 // the world like its counterpart.
 #include <algorithm>
 #include <memory>
-#include <optional>
 
 #include "base/numeric.h"
 #include "gaitpad/anatomy.h"
@@ -356,9 +355,7 @@ void pose_sample(const UpperBodyMatch& match, const std::vector<quat>& turn,
   for (int side = 0; side < 2; ++side) {
     set_leg_locals(out.skeleton, out.leg[side], pose_of(out, side, at), local);
   }
-  for (int j = 0; i > 0 && j < joints; ++j) {
-    if (glm::dot(local[j], local[j - joints]) < 0.0) local[j] = -local[j];
-  }
+  for (int j = 0; i > 0 && j < joints; ++j) local[j] = nearer(local[j], local[j - joints]);
 }
 
 }  // namespace

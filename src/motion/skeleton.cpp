@@ -7,27 +7,22 @@
 namespace gaitpad {
 namespace {
 
-void carry_root(const vec3& position_m, const quat& rotation, JointFrames& frames) noexcept {
-  frames.position_m[0] = position_m;
-  frames.rotation[0] = rotation;
-}
-
-// Eq. (1) for one joint below the root: place = parent's place + parent's rotation * offset;
-// rotation = parent's rotation * local.
-void carry_joint(int joint, int parent, const vec3& offset_m, const quat& local,
+// Eq. (1) for one joint: place = parent's place + parent's rotation * offset; rotation = parent's
+// rotation * local. The root, which has no parent, stands at `root_m`.
+void carry_joint(int joint, int parent, const vec3& root_m, const vec3& offset_m, const quat& local,
                  JointFrames& frames) noexcept {
-  const quat& above = frames.rotation[parent];
-  frames.position_m[joint] = frames.position_m[parent] + above * offset_m;
-  frames.rotation[joint] = above * local;
+  const bool is_root = parent < 0;
+  frames.position_m[joint] =
+      is_root ? root_m : frames.position_m[parent] + frames.rotation[parent] * offset_m;
+  frames.rotation[joint] = is_root ? local : frames.rotation[parent] * local;
 }
 
 // The first joints, as many as there are local rotations. Offsets, if there are any, replace the
 // joints' own.
 void carry_all(const std::vector<Joint>& joints, const vec3& root_m, std::span<const quat> local,
                std::span<const vec3> offset_m, JointFrames& frames) noexcept {
-  carry_root(root_m, local[0], frames);
-  for (std::size_t j = 1; j < local.size(); ++j) {
-    carry_joint(static_cast<int>(j), joints[j].parent,
+  for (std::size_t j = 0; j < local.size(); ++j) {
+    carry_joint(static_cast<int>(j), joints[j].parent, root_m,
                 offset_m.empty() ? joints[j].offset_m : offset_m[j], local[j], frames);
   }
 }
@@ -50,11 +45,7 @@ void forward_kinematics(const Skeleton& skeleton, const vec3& root_m, std::span<
                         std::span<const int> joints, JointFrames& frames) noexcept {
   for (const int j : joints) {
     const Joint& joint = skeleton.joints[j];
-    if (joint.parent < 0) {
-      carry_root(root_m, local[j], frames);
-    } else {
-      carry_joint(j, joint.parent, joint.offset_m, local[j], frames);
-    }
+    carry_joint(j, joint.parent, root_m, joint.offset_m, local[j], frames);
   }
 }
 

@@ -18,11 +18,9 @@ namespace {
 
 // --- Events --------------------------------------------------------------------------------------
 
-enum class Change { lift, land };
 struct FootEvent {
   double frame;
-  int side;
-  Change change;
+  int kind;  // 2 * side, and 1 more if the foot lands
 };
 
 // All events of one range, in time order.
@@ -30,8 +28,8 @@ std::vector<FootEvent> foot_events(const std::vector<FootSwing>& swings, int ran
   std::vector<FootEvent> events;
   for (const FootSwing& s : swings) {
     if (s.range != range) continue;
-    if (s.moves_from) events.push_back({*s.moves_from, s.side, Change::lift});
-    if (s.moves_to) events.push_back({*s.moves_to, s.side, Change::land});
+    if (s.moves_from) events.push_back({*s.moves_from, 2 * s.side});
+    if (s.moves_to) events.push_back({*s.moves_to, 2 * s.side + 1});
   }
   std::stable_sort(events.begin(), events.end(),
                    [](const FootEvent& a, const FootEvent& b) { return a.frame < b.frame; });
@@ -40,11 +38,6 @@ std::vector<FootEvent> foot_events(const std::vector<FootSwing>& swings, int ran
 
 // --- Strides and how well they close -------------------------------------------------------------
 
-// Linear between frames.
-vec3 point_at(const std::vector<vec3>& p, double frame) {
-  const int f = std::clamp(static_cast<int>(frame), 0, static_cast<int>(p.size()) - 2);
-  return glm::mix(p[f], p[f + 1], frame - f);
-}
 double heading_at(const FeetTracks& track, double frame) {
   const int f =
       std::clamp(static_cast<int>(frame), 0, static_cast<int>(track.heading_rad.size()) - 2);
@@ -93,9 +86,7 @@ struct Candidate {
 // True if each of the four events happens once among these.
 bool is_stride(const std::vector<FootEvent>& events, std::size_t from, std::size_t to) {
   std::array<int, 4> count{};
-  for (std::size_t i = from; i < to; ++i) {
-    ++count[2 * events[i].side + static_cast<int>(events[i].change)];
-  }
+  for (std::size_t i = from; i < to; ++i) ++count[events[i].kind];
   return count == std::array{1, 1, 1, 1};
 }
 
@@ -136,12 +127,9 @@ std::optional<Candidate> candidate(const FeetTracks& track, const SampleRange& r
 void add_between_events(const FeetTracks& track, const SampleRange& range,
                         const std::vector<FootEvent>& events, double frame_s,
                         std::vector<Candidate>& found) {
-  const auto is_same = [](const FootEvent& a, const FootEvent& b) {
-    return a.side == b.side && a.change == b.change;
-  };
   for (std::size_t i = 0; i < events.size(); ++i) {
     std::size_t k = i + 1;
-    while (k < events.size() && !is_same(events[i], events[k])) ++k;
+    while (k < events.size() && events[k].kind != events[i].kind) ++k;
     if (k == events.size() || !is_stride(events, i, k)) continue;
     const auto c = candidate(track, range, events[i].frame, events[k].frame, frame_s);
     if (c) found.push_back(*c);
@@ -285,6 +273,11 @@ void close_loop(Motion& motion, double turn_rad) {
 }
 
 }  // namespace
+
+vec3 point_at(const std::vector<vec3>& track, double frame) {
+  const int f = std::clamp(static_cast<int>(frame), 0, static_cast<int>(track.size()) - 2);
+  return glm::mix(track[f], track[f + 1], frame - f);
+}
 
 Result<std::vector<StrideWindow>> best_strides(const Motion& motion) {
   if (motion.frames.size() < 6) return Error{"has fewer than 6 frames"};

@@ -18,6 +18,9 @@ struct StrideWindow {
 // foot) once and may begin with any of them. The error does not name the file.
 Result<std::vector<StrideWindow>> best_strides(const Motion& motion);
 
+// The place of a point at a frame with fractions: linear between frames.
+vec3 point_at(const std::vector<vec3>& track, double frame);
+
 // The motion twice in a row, if its last pose equals its first one apart from the travel. A small
 // difference is spread over the clip. No frames if the motion is not a loop.
 Motion looped_twice(const Motion& motion);

@@ -6,7 +6,6 @@
 #include <string>
 #include <thread>
 
-#include "gaitpad/curve.h"
 #include "motion/leg_pose.h"
 #include "strides/solver_input.h"
 #include "strides/stride_solver.h"
@@ -49,8 +48,6 @@ constexpr double kLeastStandingKnee = 5.0 * kDegree;  // least bend
 constexpr double kLeastLift = 0.3;
 // Share of the cycle for which a foot stands flat after its roll.
 constexpr double kFlatPhase = 0.2;
-// Limits of valid input. A step is shorter than two legs, so a stride is shorter than four.
-constexpr double kLeastBone_m = 0.01, kMostLegs = 4.0;
 
 // The cycle run backwards in time: a lift becomes a strike. Phase 0 is the right foot's lift in the
 // data; the stages keep the cycle's shares.
@@ -338,10 +335,11 @@ std::optional<std::string> fault_of(const GaitCycle& cycle) {
   }
   for (const LegModel& leg : cycle.leg) {
     const vec3 foot = leg.toe_m - leg.heel_m;
-    if (std::min({leg.thigh_m, leg.shank_m, horizontal_length(foot)}) < kLeastBone_m)
+    if (std::min({leg.thigh_m, leg.shank_m, horizontal_length(foot)}) < 0.01)
       return "has a leg without a thigh, a shank or a foot";
   }
-  if (cycle.stride_m > kMostLegs * mean_leg_m(cycle)) return "takes strides longer than four legs";
+  // A step is shorter than two legs.
+  if (cycle.stride_m > 4.0 * mean_leg_m(cycle)) return "takes strides longer than four legs";
   const double sample_share = 1.0 / kCycleSamples;
   if (std::abs(cycle.strike[1]) > sample_share || cycle.toe_off[0] < sample_share ||
       cycle.strike[0] < cycle.toe_off[0] + sample_share ||

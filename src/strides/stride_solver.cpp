@@ -5,7 +5,6 @@
 
 #include <Eigen/SparseCholesky>
 #include <algorithm>
-#include <tuple>
 
 #include "gaitpad/curve.h"
 #include "motion/leg_pose.h"
@@ -15,18 +14,20 @@ namespace {
 
 constexpr int kPelvis = 3, kUnknowns = kPelvis + 2 * kLegDofs;  // numbers of unknowns of one sample
 
-// Weights of squared residuals, relative to a change of 1 rad of a knee.
-constexpr double kDegreeCosts_m = 0.04;  // an error of the pelvis that costs as much as 1 degree
-constexpr double kPelvisWeight = (kDegree / kDegreeCosts_m) * (kDegree / kDegreeCosts_m);
+// Weights of squared residuals, relative to a change of 1 rad of a knee: the weight with which
+// `residual` costs as much as 1 degree.
+constexpr double costs_as_a_degree(double residual) {
+  return (kDegree / residual) * (kDegree / residual);
+}
+constexpr double kPelvisWeight = costs_as_a_degree(0.04);  // of an error of the pelvis, metres
 constexpr double kJointWeight = 1.8;    // a change of hip or ankle, relative to one of a knee
 constexpr double kSmoothWeight = 20.0;  // of second differences between samples
 // Factors on kSmoothWeight for the pelvis.
 constexpr double kPelvisSmooth = 5000.0, kPelvisSmoothUp = 4000.0;
-// A change of the pelvis' forward speed, as a share of the data's mean speed, that costs as much as
-// 1 degree. The median of 14 captures then is 3.3 % off their own speed's curve. At 4 % it is 8.3
-// %, where knees and ankles are nearer to their data by 0.3 and 0.2 degrees RMS.
-constexpr double kDegreeCostsSpeed = 0.015;
-constexpr double kSpeedWeight = (kDegree / kDegreeCostsSpeed) * (kDegree / kDegreeCostsSpeed);
+// Of a change of the pelvis' forward speed, as a share of the data's mean speed. The median of 14
+// captures then is 3.3 % off their own speed's curve. At 4 % it is 8.3 %, where knees and ankles
+// are nearer to their data by 0.3 and 0.2 degrees RMS.
+constexpr double kSpeedWeight = costs_as_a_degree(0.015);
 // Weights of a planted point's error, of a point's depth in the floor (both per square metre) and
 // of a knee's lack of bend (per square radian).
 constexpr double kPlantedWeight = 3e5, kFloorWeight = 3e6, kKneeWeight = 1e4;
@@ -108,6 +109,51 @@ PointRows point_rows(const LegFrames& f, const vec3& in_foot) {
   r.place_m = f.pose.ankle_m + f.pose.foot * in_foot;
   for (int j = 0; j < kLegDofs; ++j) r.by_angle[j] = glm::cross(f.axis[j], r.place_m - f.pivot[j]);
   return r;
+}
+
+struct FootRows {
+  LegFrames frames;
+  PointRows heel, toe;
+};
+
+double& unknown(StrideSample& s, int k) {
+  if (k < kPelvis) return s.pelvis_m[k];
+  return s.leg[(k - kPelvis) / kLegDofs][(k - kPelvis) % kLegDofs];
+}
+double unknown(const StrideSample& s, int k) { return unknown(const_cast<StrideSample&>(s), k); }
+
+double factor_of(const StrideProblem& p, int k) {
+  if (k < kPelvis) return 1.0;
+  return p.leg_weight[(k - kPelvis) / kLegDofs][(k - kPelvis) % kLegDofs];
+}
+
+bool is_same(double a, double b) { return std::abs(a - b) < kRounding; }
+bool is_mirrored(const vec3& a, const vec3& b) {
+  return is_same(glm::distance(a, mirrored(b)), 0.0);
+}
+
+// True if everything half a stride later is the mirror image.
+bool is_symmetric(const StrideProblem& p) {
+  const int n = static_cast<int>(p.wanted.size()), half = n / 2;
+  const LegModel &left = p.leg[0], &right = p.leg[1];
+  const vec3 on(0.0, 0.0, 0.5 * p.stride_m);
+  bool same = n % 2 == 0 && is_mirrored(left.hip_m, right.hip_m) &&
+              is_mirrored(left.heel_m, right.heel_m) && is_mirrored(left.toe_m, right.toe_m) &&
+              is_same(left.toe_rest_m, right.toe_rest_m) && is_same(left.thigh_m, right.thigh_m) &&
+              is_same(left.shank_m, right.shank_m) && is_same(p.strike[0], p.strike[1] + 0.5) &&
+              is_same(p.toe_off[0] + 0.5, p.toe_off[1]) &&
+              is_mirrored(p.heel_m[0], p.heel_m[1] + on);
+  for (int i = 0; i < half && same; ++i) {
+    const StrideSample &a = p.wanted[i], &b = p.wanted[i + half];
+    same = is_same(p.time[i] + 0.5, p.time[i + half]) &&
+           is_same(std::abs(glm::dot(a.pelvis, mirrored(b.pelvis))), 1.0);
+    for (int k = 0; k < kUnknowns && same; ++k) {
+      const Mirrored m = mirror_of(k);
+      same = is_same(unknown(a, k), m.factor * unknown(b, m.unknown)) &&
+             factor_of(p, k) == factor_of(p, m.unknown);
+    }
+  }
+  return same;
 }
 
 }  // namespace
@@ -245,8 +291,8 @@ struct StrideSolver::System {
   }
 
   // Adds weight * |second difference of the point's place along the path|^2.
-  void add_bend(int sample, int side, const std::vector<PointRows>& point,
-                const std::vector<double>& path_m, double stride_m, double weight) {
+  void add_bend(int sample, int side, const std::vector<FootRows>& feet,
+                const PointRows FootRows::*which, const StrideProblem& problem, double weight) {
     if (sample >= solved) return;
     for (int axis = 0; axis < 3; ++axis) {
       std::array<double, 3 * (kPelvis + kLegDofs)> row{};
@@ -255,8 +301,14 @@ struct StrideSolver::System {
       int m = 0;
       for (int d : {0, 1, 2}) {
         const int at = sample + d - 1, j = (at + samples) % samples;
-        double place = point[j].place_m[axis];
-        if (axis == 2) place += path_m[j] + (at < 0 ? -stride_m : at >= samples ? stride_m : 0.0);
+        const PointRows& point = feet[j].*which;
+        double place = point.place_m[axis];
+        if (axis == 2) {
+          const double stride_m = problem.stride_m;
+          place += stride_m * problem.time[j] + (at < 0          ? -stride_m
+                                                 : at >= samples ? stride_m
+                                                                 : 0.0);
+        }
         error += kBend[d] * place;
         const auto add = [&](int k, double slope) {
           const Mirrored place = place_of(at, k);
@@ -264,7 +316,7 @@ struct StrideSolver::System {
           where[m++] = place.unknown;
         };
         for (int a = 0; a < kPelvis; ++a) add(a, a == axis ? 1.0 : 0.0);
-        for (int k = 0; k < kLegDofs; ++k) add(leg_unknown(side) + k, point[j].by_angle[k][axis]);
+        for (int k = 0; k < kLegDofs; ++k) add(leg_unknown(side) + k, point.by_angle[k][axis]);
       }
       add_square(row, where, error, weight);
     }
@@ -320,64 +372,10 @@ struct StrideSolver::System {
     const double slope = soft_slope(low, soft_m);
     add_row(sample, side, point, kUp * slope, -soft_positive(low, soft_m), kFloorWeight);
   }
-};
 
-namespace {
-
-double& unknown(StrideSample& s, int k) {
-  if (k < kPelvis) return s.pelvis_m[k];
-  return s.leg[(k - kPelvis) / kLegDofs][(k - kPelvis) % kLegDofs];
-}
-double unknown(const StrideSample& s, int k) { return unknown(const_cast<StrideSample&>(s), k); }
-
-double factor_of(const StrideProblem& p, int k) {
-  if (k < kPelvis) return 1.0;
-  return p.leg_weight[(k - kPelvis) / kLegDofs][(k - kPelvis) % kLegDofs];
-}
-
-bool is_same(double a, double b) { return std::abs(a - b) < kRounding; }
-bool is_mirrored(const vec3& a, const vec3& b) {
-  return is_same(glm::distance(a, mirrored(b)), 0.0);
-}
-
-// True if everything half a stride later is the mirror image.
-bool is_symmetric(const StrideProblem& p) {
-  const int n = static_cast<int>(p.wanted.size()), half = n / 2;
-  const LegModel &left = p.leg[0], &right = p.leg[1];
-  const vec3 on(0.0, 0.0, 0.5 * p.stride_m);
-  bool same = n % 2 == 0 && is_mirrored(left.hip_m, right.hip_m) &&
-              is_mirrored(left.heel_m, right.heel_m) && is_mirrored(left.toe_m, right.toe_m) &&
-              is_same(left.toe_rest_m, right.toe_rest_m) && is_same(left.thigh_m, right.thigh_m) &&
-              is_same(left.shank_m, right.shank_m) && is_same(p.strike[0], p.strike[1] + 0.5) &&
-              is_same(p.toe_off[0] + 0.5, p.toe_off[1]) &&
-              is_mirrored(p.heel_m[0], p.heel_m[1] + on);
-  for (int i = 0; i < half && same; ++i) {
-    const StrideSample &a = p.wanted[i], &b = p.wanted[i + half];
-    same = is_same(p.time[i] + 0.5, p.time[i + half]) &&
-           is_same(std::abs(glm::dot(a.pelvis, mirrored(b.pelvis))), 1.0);
-    for (int k = 0; k < kUnknowns && same; ++k) {
-      const Mirrored m = mirror_of(k);
-      same = is_same(unknown(a, k), m.factor * unknown(b, m.unknown)) &&
-             factor_of(p, k) == factor_of(p, m.unknown);
-    }
-  }
-  return same;
-}
-
-}  // namespace
-
-StrideSolver::StrideSolver() = default;
-StrideSolver::~StrideSolver() = default;
-
-void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSample>& x) {
-  System& s = *system_;
-  const int n = s.samples, solved = s.solved;
-  std::fill(s.block.begin(), s.block.end(), 0.0);
-  s.gradient.setZero();
   // A small and smooth change of the data costs least.
-  for (int i = 0; i < solved; ++i) {
+  void add_changes(int sample, const std::vector<StrideSample>& x, const StrideProblem& problem) {
     for (int k = 0; k < kUnknowns; ++k) {
-      const int at = i * kUnknowns + k;
       const double weight = weight_of(k) * factor_of(problem, k);
       const double smooth = problem.smoothness * kSmoothWeight * weight *
                             (k == 1        ? kPelvisSmoothUp * problem.pelvis_smoothness
@@ -386,137 +384,142 @@ void StrideSolver::fill(const StrideProblem& problem, const std::vector<StrideSa
       std::array<double, 3> change, row;
       std::array<int, 3> where;
       for (int d : {0, 1, 2}) {
-        const int j = (i + d + n - 1) % n;
-        const Mirrored place = s.place_of(i + d - 1, k);
+        const int j = (sample + d + samples - 1) % samples;
+        const Mirrored place = place_of(sample + d - 1, k);
         change[d] = unknown(x[j], k) - unknown(problem.wanted[j], k);
         row[d] = kBend[d] * place.factor;
         where[d] = place.unknown;
       }
-      s.add_square(std::array{1.0}, std::array{at}, change[1], weight);
-      s.add_square(row, where, change[0] - 2.0 * change[1] + change[2], smooth);
+      add_square(std::array{1.0}, std::array{where[1]}, change[1], weight);
+      add_square(row, where, change[0] - 2.0 * change[1] + change[2], smooth);
     }
   }
-  for (int i = 0; i < solved && problem.own_stride_m > 0.0; ++i) s.add_speed(i, x, problem);
-  std::vector<double> path_m(n);
-  for (int i = 0; i < n; ++i) path_m[i] = problem.stride_m * problem.time[i];
-  for (int i = 0; i < solved; ++i) {
-    for (int axis : {2, 1}) s.add_surge(i, axis, x, problem);
-  }
-  // Feet.
-  std::array<std::vector<LegFrames>, 2> all_frames;
-  std::array<std::vector<PointRows>, 2> all_heels, all_toes;
-  for (int side : {0, 1}) {
-    const LegModel& leg = problem.leg[side];
-    std::vector<PointRows>&heels = all_heels[side], &toes = all_toes[side];
-    all_frames[side].resize(n), heels.resize(n), toes.resize(n);
-    // Solved samples and their neighbours.
-    for (int at = -1; at <= solved; ++at) {
-      const int i = (at + n) % n;
-      const LegFrames& frames = all_frames[side][i] = leg_frames(leg, x[i], side);
-      heels[i] = point_rows(frames, leg.heel_m);
-      toes[i] = point_rows(frames, leg.toe_m);
-    }
-    const int strike = static_cast<int>(std::floor(problem.strike[side] * n + kRounding)),
-              lift = static_cast<int>(std::ceil(problem.toe_off[side] * n - kRounding)),
-              down = static_cast<int>(std::floor(problem.toe_off[1 - side] * n + kRounding));
+
+  // Heels come to rest smoothly, and so do toes; toes begin to move smoothly.
+  void add_landings(int side, const std::vector<FootRows>& feet, const StrideProblem& problem) {
+    const int strike = static_cast<int>(std::floor(problem.strike[side] * samples + kRounding)),
+              lift = static_cast<int>(std::ceil(problem.toe_off[side] * samples - kRounding)),
+              down = static_cast<int>(std::floor(problem.toe_off[1 - side] * samples + kRounding));
     for (int d = 0; d < kLanding; ++d) {
       const double fades = 1.0 - double(d) / kLanding, weight = fades * fades;
-      const auto soften = [&](int sample, const std::vector<PointRows>& point, double soft) {
-        s.add_bend((sample + n) % n, side, point, path_m, problem.stride_m, weight * soft);
+      const auto soften = [&](int sample, const PointRows FootRows::*point, double soft) {
+        add_bend((sample + samples) % samples, side, feet, point, problem, weight * soft);
       };
-      soften(strike - d, heels, kSoftStrikeWeight);
-      soften(down - d, toes, kSoftToeDownWeight);
-      soften(lift + d, toes, problem.soft_toe);
+      soften(strike - d, &FootRows::heel, kSoftStrikeWeight);
+      soften(down - d, &FootRows::toe, kSoftToeDownWeight);
+      soften(lift + d, &FootRows::toe, problem.soft_toe);
     }
   }
-  for (int i = 0; i < solved; ++i) {
-    const double phase = double(i) / n;
+
+  // Heel and toe stand where Table I plants them, and no part of the foot goes through the floor.
+  void add_foot(int i, int side, const FootRows& foot, const StrideProblem& problem) {
+    const LegModel& leg = problem.leg[side];
+    const LegFrames& frames = foot.frames;
+    const PointRows &heel = foot.heel, &toe = foot.toe;
+    // A point stands from the sample before its event to the one after it.
+    const double sample = (1.0 - kRounding) / samples, phase = double(i) / samples;
+    const double begins = fraction(phase - problem.strike[side] + sample);
+    const double own = begins - sample;
+    const double roll = fraction(problem.toe_off[1 - side] - problem.strike[side]);
+    const double support = fraction(problem.toe_off[side] - problem.strike[side]);
+    vec3 heel_goal = problem.heel_m[side];
+    // At the cycle's end a foot in stance stands on the footprint of its last strike.
+    const double turns = std::floor(problem.strike[side] + own - phase + 0.5);
+    heel_goal.z -= problem.stride_m * (problem.time[i] + turns);
+    const vec3 across_foot = glm::cross(kUp, foot_forward(leg));
+    const bool rolls = own <= roll + sample,
+               supports = own >= roll - sample && own <= support + sample;
+    if (rolls) {
+      add_place(i, side, heel, heel_goal, kPlantedWeight);
+    } else {
+      add_floor(i, side, heel, 0.0, kSoftHeel_m);
+      // Keep the edges of a twisted or rolled heel out of the floor.
+      for (double half : {-kHalfFoot, kHalfFoot}) {
+        const vec3 edge_m = leg.heel_m + across_foot * (half * leg.length_m());
+        add_floor(i, side, point_rows(frames, edge_m), -kMostSink_m, kSoftEdge_m);
+      }
+    }
+    if (supports) {
+      add_place(i, side, toe, heel_goal + leg.toe_m - leg.heel_m, kPlantedWeight);
+    } else {
+      const double u = rolls ? 0.0 : std::max(0.0, own - support) / (1.0 - support);
+      const double least = leg.toe_rest_m + kToeClearance_m * 16.0 * u * u * (1.0 - u) * (1.0 - u);
+      add_floor(i, side, toe, least, kSoftFloor_m);
+    }
+    if (!rolls && !supports) return;
+    // The foot is level across and points ahead. Neither depends on the pelvis' place.
+    const auto add_level = [&](const PointRows& point, int axis, double wanted_m) {
+      std::array<double, kLegDofs> row;
+      std::array<int, kLegDofs> where;
+      for (int j = 0; j < kLegDofs; ++j) {
+        row[j] = point.by_angle[j][axis] - heel.by_angle[j][axis];
+        where[j] = i * kUnknowns + leg_unknown(side) + j;
+      }
+      add_square(row, where, point.place_m[axis] - heel.place_m[axis] - wanted_m, kLevelWeight);
+    };
+    add_level(point_rows(frames, leg.heel_m + across_foot * kSide_m), 1, 0.0);
+    add_level(toe, 0, (leg.toe_m - leg.heel_m).x);
+  }
+
+  // Softly keeps a knee bent.
+  void add_knee(int sample, int side, double knee_rad, double least_rad) {
+    const double bend = least_rad - knee_rad;
+    if (bend <= -kSoftKnee) return;
+    const int at = sample * kUnknowns + leg_unknown(side) + kKneeX;
+    add_square(std::array{-soft_slope(bend, kSoftKnee)}, std::array{at},
+               soft_positive(bend, kSoftKnee), kKneeWeight);
+  }
+
+  // Sets up the equations of a step from `x`.
+  void fill(const StrideProblem& problem, const std::vector<StrideSample>& x) {
+    std::fill(block.begin(), block.end(), 0.0);
+    gradient.setZero();
+    for (int i = 0; i < solved; ++i) add_changes(i, x, problem);
+    for (int i = 0; i < solved && problem.own_stride_m > 0.0; ++i) add_speed(i, x, problem);
+    for (int i = 0; i < solved; ++i) {
+      for (int axis : {2, 1}) add_surge(i, axis, x, problem);
+    }
+    std::array<std::vector<FootRows>, 2> feet;
     for (int side : {0, 1}) {
       const LegModel& leg = problem.leg[side];
-      const LegFrames& frames = all_frames[side][i];
-      // A point stands from the sample before its event to the one after it.
-      const double sample = (1.0 - kRounding) / n;
-      const double begins = fraction(phase - problem.strike[side] + sample);
-      const double own = begins - sample;
-      const double roll = fraction(problem.toe_off[1 - side] - problem.strike[side]);
-      const double support = fraction(problem.toe_off[side] - problem.strike[side]);
-      const PointRows &heel = all_heels[side][i], &toe = all_toes[side][i];
-      vec3 heel_goal = problem.heel_m[side];
-      // At the cycle's end a foot in stance stands on the footprint of its last strike.
-      const double turns = std::floor(problem.strike[side] + own - phase + 0.5);
-      heel_goal.z -= problem.stride_m * (problem.time[i] + turns);
-      const vec3 across_foot = glm::cross(kUp, foot_forward(leg));
-      const vec3 toe_goal = heel_goal + leg.toe_m - leg.heel_m;
-      const bool rolls = own <= roll + sample,
-                 supports = own >= roll - sample && own <= support + sample;
-      if (rolls) {
-        s.add_place(i, side, heel, heel_goal, kPlantedWeight);
-      } else {
-        s.add_floor(i, side, heel, 0.0, kSoftHeel_m);
-        // Keep the edges of a twisted or rolled heel out of the floor.
-        for (double half : {-kHalfFoot, kHalfFoot}) {
-          const vec3 edge_m = leg.heel_m + across_foot * (half * leg.length_m());
-          s.add_floor(i, side, point_rows(frames, edge_m), -kMostSink_m, kSoftEdge_m);
-        }
+      feet[side].resize(samples);
+      // Solved samples and their neighbours.
+      for (int at = -1; at <= solved; ++at) {
+        const int i = (at + samples) % samples;
+        const LegFrames frames = leg_frames(leg, x[i], side);
+        feet[side][i] = {frames, point_rows(frames, leg.heel_m), point_rows(frames, leg.toe_m)};
       }
-      if (supports) {
-        s.add_place(i, side, toe, toe_goal, kPlantedWeight);
-      } else {
-        const double u = rolls ? 0.0 : std::max(0.0, own - support) / (1.0 - support);
-        const double least =
-            leg.toe_rest_m + kToeClearance_m * 16.0 * u * u * (1.0 - u) * (1.0 - u);
-        s.add_floor(i, side, toe, least, kSoftFloor_m);
-      }
-      if (rolls || supports) {
-        // The foot is level across and points ahead.
-        const PointRows beside = point_rows(frames, leg.heel_m + across_foot * kSide_m);
-        PointRows across = beside, along = toe;
-        across.place_m -= heel.place_m;
-        along.place_m -= heel.place_m;
-        for (int j = 0; j < kLegDofs; ++j) {
-          across.by_angle[j] -= heel.by_angle[j];
-          along.by_angle[j] -= heel.by_angle[j];
-        }
-        // These differences do not depend on the pelvis' place.
-        std::array<int, kLegDofs> where;
-        for (int j = 0; j < kLegDofs; ++j) where[j] = i * kUnknowns + leg_unknown(side) + j;
-        const double want_x = (leg.toe_m - leg.heel_m).x;
-        for (const auto& [point, axis, error] : {std::tuple{&across, 1, across.place_m.y},
-                                                 std::tuple{&along, 0, along.place_m.x - want_x}}) {
-          std::array<double, kLegDofs> row;
-          for (int j = 0; j < kLegDofs; ++j) row[j] = point->by_angle[j][axis];
-          s.add_square(row, where, error, kLevelWeight);
-        }
-      }
-      const double bend = problem.least_knee_rad[side] - x[i].leg[side][kKneeX];
-      if (bend > -kSoftKnee) {
-        const int at = i * kUnknowns + leg_unknown(side) + kKneeX;
-        const double slope = soft_slope(bend, kSoftKnee);
-        s.add_square(std::array{-slope}, std::array{at}, soft_positive(bend, kSoftKnee),
-                     kKneeWeight);
+      add_landings(side, feet[side], problem);
+    }
+    for (int i = 0; i < solved; ++i) {
+      for (int side : {0, 1}) {
+        add_foot(i, side, feet[side][i], problem);
+        add_knee(i, side, x[i].leg[side][kKneeX], problem.least_knee_rad[side]);
       }
     }
   }
-}
 
-// Applies one solver step. False if the system has no solution.
-bool StrideSolver::move(std::vector<StrideSample>& x) {
-  const System& s = *system_;
-  if (s.factor.info() != Eigen::Success) return false;
-  const Eigen::VectorXd step = s.factor.solve(s.gradient);
-  for (int i = 0; i < s.solved; ++i) {
-    for (int k = 0; k < kUnknowns; ++k) {
-      unknown(x[i], k) -= std::clamp(step[i * kUnknowns + k], -kMostStep, kMostStep);
+  // Applies one solver step. False if the system has no solution.
+  bool move(std::vector<StrideSample>& x) const {
+    if (factor.info() != Eigen::Success) return false;
+    const Eigen::VectorXd step = factor.solve(gradient);
+    for (int i = 0; i < solved; ++i) {
+      for (int k = 0; k < kUnknowns; ++k) {
+        unknown(x[i], k) -= std::clamp(step[i * kUnknowns + k], -kMostStep, kMostStep);
+      }
     }
-  }
-  for (int i = s.solved; i < s.samples; ++i) {
-    for (int k = 0; k < kUnknowns; ++k) {
-      const Mirrored m = mirror_of(k);
-      unknown(x[i], k) = m.factor * unknown(x[i - s.solved], m.unknown);
+    for (int i = solved; i < samples; ++i) {
+      for (int k = 0; k < kUnknowns; ++k) {
+        const Mirrored m = mirror_of(k);
+        unknown(x[i], k) = m.factor * unknown(x[i - solved], m.unknown);
+      }
     }
+    return true;
   }
-  return true;
-}
+};
+
+StrideSolver::StrideSolver() = default;
+StrideSolver::~StrideSolver() = default;
 
 std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,
                                               std::vector<StrideSample> x, int iterations) {
@@ -524,9 +527,9 @@ std::vector<StrideSample> StrideSolver::solve(const StrideProblem& problem,
   const int solved = is_symmetric(problem) ? n / 2 : n;
   if (!system_ || system_->solved != solved) system_ = std::make_unique<System>(n, solved);
   for (int iteration = 0; iteration < iterations; ++iteration) {
-    fill(problem, x);
+    system_->fill(problem, x);
     system_->factorise();
-    if (!move(x)) return {};
+    if (!system_->move(x)) return {};
   }
   return x;
 }

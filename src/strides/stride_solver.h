@@ -57,10 +57,8 @@ class StrideSolver {
                                   int iterations);
 
  private:
-  struct System;
-  void fill(const StrideProblem& problem, const std::vector<StrideSample>& x);
-  bool move(std::vector<StrideSample>& x);
   // Equations of the previous problem, kept for their sparsity pattern.
+  struct System;
   std::unique_ptr<System> system_;
 };
 

@@ -6,6 +6,7 @@
 #include "walk/footholds.h"
 #include "walk/sound_input.h"
 #include "walk/walk.h"
+#include "walk/walk_frame.h"
 
 namespace gaitpad {
 namespace {
@@ -48,8 +49,7 @@ void aim(const Placement& heel, Change<float>& change) noexcept {
 
 // The step frame in the world.
 Placement step_frame(const WalkState& state) noexcept {
-  const Origin& origin = state.walk.origin[0];
-  return moved(state.placed, {vec3(origin.x_m, origin.y_m, origin.z_m), origin.heading_rad});
+  return moved(state.placed, placement_of(state.walk.origin[0]));
 }
 // A heel of the world in the step frame.
 Placement seen_in_step(const WalkState& state, const Placement& heel) noexcept {

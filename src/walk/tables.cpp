@@ -158,6 +158,17 @@ int swing_of(const WalkModel& model, int joint) {
 std::array<float, 3> offset_of(const std::vector<Joint>& joints, int joint) {
   return joint == 0 ? std::array<float, 3>{} : floats(joints[joint].offset_m);
 }
+// The part of a path from the root that hangs from the pelvis; the whole path if it does not.
+std::span<const int> below_pelvis(const WalkModel& model, const std::vector<int>& path) {
+  const auto pelvis = std::find(path.begin(), path.end(), model.cycle.pelvis);
+  return pelvis == path.end() ? std::span(path) : std::span(pelvis + 1, path.end());
+}
+// The index in the trunk's path of a joint; -1: it is beside the path.
+int index_on_path(const BuildTables& tables, int joint) {
+  const auto at = std::find_if(tables.path.begin(), tables.path.end(),
+                               [&](const PathJoint& p) { return p.joint == joint; });
+  return at == tables.path.end() ? -1 : static_cast<int>(at - tables.path.begin());
+}
 // The spine's joints share the turn of the chest equally. Neck and head share the rest of the
 // head's turn.
 void fill_path(const WalkModel& model, BuildTables& tables) {
@@ -166,38 +177,33 @@ void fill_path(const WalkModel& model, BuildTables& tables) {
   const std::vector<Joint>& all = model.cycle.skeleton.joints;
   tables.has_head = !body.head_path.empty();
   const std::vector<int>&spine = body.joints.spine,
-        &path = tables.has_head ? body.head_path : body.spine_path;
+        &from_root = tables.has_head ? body.head_path : body.spine_path;
+  const std::span<const int> path = below_pelvis(model, from_root);
   const int joints = static_cast<int>(path.size()),
-            neck_at = tables.has_head ? body.neck_at : joints, necks = joints - 1 - neck_at;
-  tables.on_pelvis = false;
+            above = static_cast<int>(from_root.size()) - joints;
+  tables.on_pelvis = above > 0;
+  tables.neck = tables.has_head ? body.neck_at - above : joints;
+  const int necks = joints - 1 - tables.neck;
   for (int i = 0; i < joints; ++i) {
-    if (path[i] == model.cycle.pelvis) {
-      tables.path.clear();
-      tables.on_pelvis = true;
-      continue;
-    }
     const bool bends = std::find(spine.begin(), spine.end(), path[i]) != spine.end();
     const float share = bends ? 1.0f / static_cast<float>(spine.size()) : 0.0f;
     PathJoint to{path[i], -1, share, 0.0f, share, 0.0f, offset_of(all, path[i])};
-    if (i >= neck_at) {
+    if (i >= tables.neck) {
       to.of_head = static_cast<float>(i < joints - 1 ? kNeckShare / necks
                                       : necks > 0    ? 1.0 - kNeckShare
                                                      : 1.0);
       to.of_chest -= to.of_head;
       to.of_look =
-          static_cast<float>(i == joints - 1 ? 1.0 : kNeckShare * (i - neck_at + 1) / necks);
+          static_cast<float>(i == joints - 1 ? 1.0 : kNeckShare * (i - tables.neck + 1) / necks);
     }
     tables.path.push_back(to);
   }
-  tables.neck = neck_at - joints + static_cast<int>(tables.path.size());
   tables.chest_standing = wxyz(body.chest_standing);
   tables.head_standing = wxyz(body.head_standing);
   for (const SpineJoint& joint : body.spine) {
-    const auto at = std::find_if(tables.path.begin(), tables.path.end(),
-                                 [&](const PathJoint& p) { return p.joint == joint.joint; });
-    if (at == tables.path.end()) continue;
-    tables.spine.push_back({static_cast<int>(at - tables.path.begin()), wxyz(joint.standing),
-                            static_cast<float>(joint.upper)});
+    const int at = index_on_path(tables, joint.joint);
+    if (at >= 0)
+      tables.spine.push_back({at, wxyz(joint.standing), static_cast<float>(joint.upper)});
   }
   if (tables.spine.size() < 2) tables.spine.clear();
   tables.spine_base = wxyz(body.spine_base);
@@ -211,11 +217,7 @@ void fill_arms(const WalkModel& model, BuildTables& tables) {
     const ArmBuild& from = body.arm[side];
     ArmBones& arm = tables.arm[side];
     if (!from.is_there) continue;
-    for (const int joint : from.path) {
-      if (joint == model.cycle.pelvis) {
-        arm.path.clear();
-        continue;
-      }
+    for (const int joint : below_pelvis(model, from.path)) {
       if (joint == from.joints.shoulder) arm.shoulder = static_cast<int>(arm.path.size());
       if (joint == from.joints.elbow) arm.elbow = static_cast<int>(arm.path.size());
       arm.path.push_back({joint, offset_of(all, joint)});
@@ -253,17 +255,13 @@ void fill_upper_body(const WalkModel& model, BuildTables& tables) {
   fill_path(model, tables);
   fill_arms(model, tables);
   fill_root(model, tables);
-  const auto is_on_path = [&](int joint) {
-    return std::any_of(tables.path.begin(), tables.path.end(),
-                       [&](const PathJoint& p) { return p.joint == joint; });
-  };
-  // A joint that keeps still in the data may turn if it is on the path or the root above the
-  // pelvis.
-  const auto turns = [&](int joint) {
-    return is_on_path(joint) || (joint == 0 && cycle.pelvis != 0);
-  };
   std::vector<int> moved = model.moving;
-  for (const int joint : model.still) (turns(joint) ? moved : tables.still).push_back(joint);
+  for (const int joint : model.still) {
+    // A joint that keeps still in the data may turn if it is on the path or the root above the
+    // pelvis.
+    const bool turns = index_on_path(tables, joint) >= 0 || (joint == 0 && cycle.pelvis != 0);
+    (turns ? moved : tables.still).push_back(joint);
+  }
   const std::size_t joints = cycle.skeleton.joints.size(), count = moved.size();
   tables.upper_rows.resize((kKnots + 3) * count * 4);
   for (std::size_t i = 0; i < count; ++i) {
@@ -279,7 +277,7 @@ void fill_upper_body(const WalkModel& model, BuildTables& tables) {
       quat sum(0.0, 0.0, 0.0, 0.0);
       for (int m = 0; m < 4; ++m) {
         const quat& q = cycle.local[static_cast<std::size_t>(at.index[m]) * joints + joint];
-        sum = sum + q * (glm::dot(q, last) < 0.0 ? -at.weight[m] : at.weight[m]);
+        sum = sum + nearer(q, last) * at.weight[m];
       }
       last = glm::normalize(sum);
       sample[0][k] = last.x, sample[1][k] = last.y, sample[2][k] = last.z, sample[3][k] = last.w;
@@ -289,8 +287,8 @@ void fill_upper_body(const WalkModel& model, BuildTables& tables) {
       for (int row = 0; row < kKnots + 3; ++row)
         tables.upper_rows[(row * count + i) * 4 + n] = static_cast<float>(knots[knot_of_row(row)]);
     }
-    for (PathJoint& on_path : tables.path)
-      if (on_path.joint == joint) on_path.upper = static_cast<int>(i);
+    if (const int at = index_on_path(tables, joint); at >= 0)
+      tables.path[at].upper = static_cast<int>(i);
     tables.upper.push_back(to);
   }
   for (int side : {0, 1})

@@ -3,7 +3,6 @@
 #include "animation/floor.h"
 #include "motion/leg_pose.h"
 #include "walk/feet.h"
-#include "walk/ground_plan.h"
 #include "walk/sound_input.h"
 
 namespace gaitpad {
@@ -44,32 +43,17 @@ float step_m(const Tables& tables, const State<float>& state) noexcept {
       .ahead(state.landing_x_m, state.landing_z_m);
 }
 
-// A joint in the frame of its pose: the world, or a body that follows the walk.
-struct JointFrame {
-  vec3 place_m;
-  quat turn;
-};
-JointFrame joint_frame(const Skeleton& skeleton, const vec3& root_m, std::span<const quat> local,
-                       int joint) noexcept {
-  JointFrame frame{vec3(0.0), local[joint]};
-  for (; joint > 0;) {
-    const Joint& of = skeleton.joints[joint];
-    frame.place_m = of.offset_m + local[joint] * frame.place_m;
-    joint = of.parent;
-    frame.turn = local[joint] * frame.turn;
-  }
-  frame.place_m = root_m + local[0] * frame.place_m;
-  return frame;
-}
-
 void report_feet(const WalkModel& model, const Tables& tables, const Placement& placed,
                  const vec3& root_m, std::span<const quat> local, WalkFrame& frame) noexcept {
   for (const Side side : {kLeftSide, kRightSide}) {
     const LegModel& leg = model.leg[side].model;
-    const JointFrame ankle = joint_frame(model.cycle.skeleton, root_m, local, leg.joints.ankle);
-    const quat foot = ankle.turn * glm::conjugate(leg.standing[2]);
-    frame.heel_m[side] = ankle.place_m + foot * leg.heel_m;
-    frame.toe_m[side] = ankle.place_m + foot * leg.toe_m;
+    const Skeleton& skeleton = model.cycle.skeleton;
+    const int ankle = leg.joints.ankle;
+    const vec3 ankle_m = root_m + local[0] * link(skeleton, local, 0, ankle);
+    const quat foot =
+        world_rotation(skeleton, local.data(), ankle) * glm::conjugate(leg.standing[2]);
+    frame.heel_m[side] = ankle_m + foot * leg.heel_m;
+    frame.toe_m[side] = ankle_m + foot * leg.toe_m;
   }
   if (!is_uneven(tables)) {
     frame.heel_ground_m = frame.toe_ground_m = {placed.place_m.y, placed.place_m.y};

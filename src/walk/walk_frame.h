@@ -22,6 +22,10 @@ RootNumbers root_numbers(const Block<kWidth>& block, int walk) noexcept {
           lane(state.pelvis_z_m[0], walk), lane(told.pelvis_x_m, walk),
           lane(told.pelvis_z_m, walk),     block.origin[walk]};
 }
+// A step frame in the walk's own coordinates.
+inline Placement placement_of(const Origin& origin) noexcept {
+  return {vec3(origin.x_m, origin.y_m, origin.z_m), origin.heading_rad};
+}
 // In the walk's own coordinates: the hips' place on the ground, without the tables' oscillation,
 // and the heading.
 Placement root_of(const RootNumbers& numbers) noexcept;

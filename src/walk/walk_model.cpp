@@ -7,11 +7,16 @@
 namespace gaitpad {
 namespace {
 
+// Limits of a joint's angle in degrees, after AAOS.
+struct Limits {
+  double min, max;
+};
+
 // --- The upper body ------------------------------------------------------------------------------
 
-// Limits of a left arm in degrees, after AAOS; those of a right arm are mirrored in z and y.
-constexpr ArmAngles kMin = {-170, -35, -90, -150, -60, -25};
-constexpr ArmAngles kMax = {60, 150, 80, -2, 60, 35};
+// Of a left arm; those of a right arm are mirrored in z and y.
+constexpr std::array<Limits, kArmDofs> kArmLimits = {
+    {{-170, 60}, {-35, 150}, {-90, 80}, {-150, -2}, {-60, 60}, {-25, 35}}};
 // World frames of the joints in the data's sample i, with the root at the origin.
 JointFrames frames_of_sample(const GaitCycle& cycle, int i) {
   const std::size_t joints = cycle.skeleton.joints.size();
@@ -25,8 +30,7 @@ quat mean_local(const GaitCycle& cycle, int joint) {
   const quat& first = cycle.local[joint];
   quat sum(0.0, 0.0, 0.0, 0.0);
   for (int i = 0; i < kCycleSamples; ++i) {
-    const quat& q = cycle.local[i * joints + joint];
-    sum = sum + (glm::dot(q, first) < 0.0 ? -q : q);
+    sum = sum + nearer(cycle.local[i * joints + joint], first);
   }
   return glm::dot(sum, sum) > 1e-12 ? glm::normalize(sum) : first;
 }
@@ -107,14 +111,14 @@ void fill_ranges(const GaitCycle& cycle, Side side, const JointFrames& standing,
   for (int d = 0; d < kArmDofs; ++d) {
     const bool is_mirrored =
         side == kRightSide && (d == kShoulderZ || d == kShoulderY || d == kWristZ);
-    const double min = (is_mirrored ? -kMax[d] : kMin[d]) * kDegree;
-    const double max = (is_mirrored ? -kMin[d] : kMax[d]) * kDegree;
+    const Limits left = kArmLimits[d], own = is_mirrored ? Limits{-left.max, -left.min} : left;
     const double room = d == kElbowX ? 0.0 : 5.0 * kDegree;
-    arm.min_rad[d] = std::min(min, low[d] - room), arm.max_rad[d] = std::max(max, high[d] + room);
+    arm.min_rad[d] = std::min(own.min * kDegree, low[d] - room);
+    arm.max_rad[d] = std::max(own.max * kDegree, high[d] + room);
   }
   constexpr double kLeastFlexion = 4.0 * kDegree;  // bend that an elbow keeps in a wide swing
-  constexpr double kWidestTurn_rad =
-      1.45;  // of shoulder z: near a right angle x and y are one axis
+  // Of shoulder z: near a right angle x and y are one axis.
+  constexpr double kWidestTurn_rad = 1.45;
   const double middle = arm.middle_rad[kElbowX];
   const double room = std::max(0.0, -kLeastFlexion - middle);
   arm.most_elbow_swing = std::max(1.0, room / std::max(1e-3, straightest - middle));
@@ -203,9 +207,9 @@ UpperBodyModel upper_body_model(const GaitCycle& cycle, double leg_ratio, double
 
 // --- Legs and tables -----------------------------------------------------------------------------
 
-// Joint limits of a leg in degrees (hip flexion and dorsiflexion are negative), after AAOS.
-constexpr std::array<double, kLegDofs> kLegMin = {-120, -50, -70, 1.0, -60, -60, -80};
-constexpr std::array<double, kLegDofs> kLegMax = {60, 50, 70, 150, 75, 60, 80};
+// Of a leg; hip flexion and dorsiflexion are negative.
+constexpr std::array<Limits, kLegDofs> kLegLimits = {
+    {{-120, 60}, {-50, 50}, {-70, 70}, {1, 150}, {-60, 75}, {-60, 60}, {-80, 80}}};
 
 IkChain leg_chain(const LegModel& leg) {
   constexpr std::array<vec3, kLegDofs> kAxis = {vec3(1, 0, 0), vec3(0, 0, 1), vec3(0, 1, 0),
@@ -215,8 +219,8 @@ IkChain leg_chain(const LegModel& leg) {
   chain.dofs = kLegDofs;
   for (int j = 0; j < kLegDofs; ++j) {
     chain.dof[j].axis = kAxis[j];
-    chain.dof[j].min_rad = kLegMin[j] * kDegree;
-    chain.dof[j].max_rad = kLegMax[j] * kDegree;
+    chain.dof[j].min_rad = kLegLimits[j].min * kDegree;
+    chain.dof[j].max_rad = kLegLimits[j].max * kDegree;
   }
   chain.dof[kHipY].link_m = vec3(0.0, -leg.thigh_m, 0.0);
   chain.dof[kKneeX].link_m = vec3(0.0, -leg.shank_m, 0.0);
@@ -268,17 +272,6 @@ vec3 mean_heel(const GaitCycle& source, Side side) {
   return sum;
 }
 
-void collect_kept_joints(WalkModel& model) {
-  const Skeleton& skeleton = model.cycle.skeleton;
-  for (const LegModel& leg : model.cycle.leg) {
-    for (int j = skeleton.joints[leg.joints.toe].parent; j > model.cycle.pelvis;
-         j = skeleton.joints[j].parent) {
-      if (j != leg.joints.hip && j != leg.joints.knee && j != leg.joints.ankle)
-        model.kept.push_back(j);
-    }
-  }
-}
-
 // True if a leg has too many joints. The pose is written without heap, so the number of joints
 // between two joints of a leg is bounded.
 bool has_overlong_leg(const GaitCycle& cycle) {
@@ -298,8 +291,8 @@ vec3 pelvis_turned(const vec3& place_m, double yaw_rad, const vec3& tilt) noexce
   return rotation_y(yaw_rad) * (from_rotation_vector(tilt) * place_m);
 }
 
-void scale_footprints(const StrideScale& to, Footprints& track) noexcept {
-  track.stride_m *= to.length;
+void scale_track(const StrideScale& to, StrideTrack& track) noexcept {
+  for (double* m : {&track.stride_m, &track.low_m, &track.high_m}) *m *= to.length;
   for (int side : {0, 1})
     track.footprint_m[side] = track.footprint_m[side] * to.length + to.apart_m[side];
 }
@@ -390,8 +383,7 @@ void keep_trunk_upright(double roll_rad, GaitCycle& cycle) {
   const quat back = glm::conjugate(pelvis) * rotation_z(-roll_rad) * pelvis;
   for (std::size_t j = 0; j < cycle.skeleton.joints.size(); ++j) {
     const bool is_leg = std::any_of(cycle.leg.begin(), cycle.leg.end(), [&](const LegModel& leg) {
-      return is_ancestor(cycle.skeleton, static_cast<int>(j), leg.joints.hip) ||
-             static_cast<int>(j) == leg.joints.hip;
+      return is_ancestor(cycle.skeleton, static_cast<int>(j), leg.joints.hip);
     });
     if (cycle.skeleton.joints[j].parent == cycle.pelvis && !is_leg)
       cycle.standing_local[j] = back * cycle.standing_local[j];
@@ -450,7 +442,11 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
   model.stand_roll_rad = stand.roll_rad;
   model.stand_rad = stand.angles;
   keep_trunk_upright(stand.roll_rad, model.cycle);
-  collect_kept_joints(model);
+  for (const LegModel& leg : model.cycle.leg) {
+    const std::vector<int> twist =
+        twist_joints(model.cycle.skeleton, model.cycle.pelvis, leg.joints);
+    model.kept.insert(model.kept.end(), twist.begin(), twist.end());
+  }
   lay_out_legs(model);
   list_joints(model);
   model.body = upper_body_model(model.cycle, ratio, model.stand_m);
@@ -461,9 +457,7 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
 StridePlace stride_of(const WalkModel& model, bool backward, double phase, double ratio) noexcept {
   const StrideFamily& family = *model.cycle.strides;
   StridePlace place = stride_at(backward ? family.back : family.table, phase, ratio);
-  scale_footprints(model.stride_scale, place.track);
-  place.track.low_m *= model.stride_scale.length;
-  place.track.high_m *= model.stride_scale.length;
+  scale_track(model.stride_scale, place.track);
   scale_stride(model.stride_scale, place.cell);
   return place;
 }
@@ -488,7 +482,7 @@ double terrain_scale(const Terrain& terrain, const WalkModel& model) noexcept {
     const vec3 sole = leg.tip_m - leg.model.heel_m;
     const double needed_m = glm::length(vec2(sole.x, sole.z)) + kSpare_m * model.size;
     if (needed_m <= tread_m) continue;
-    scale = std::max({scale, model.leg_length_m / kReferenceLeg_m, needed_m / tread_m});
+    scale = std::max({scale, model.size, needed_m / tread_m});
   }
   return scale;
 }

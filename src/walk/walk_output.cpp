@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "walk/sound_input.h"
+#include "walk/walk_frame.h"
 
 namespace gaitpad {
 namespace {
@@ -31,8 +32,7 @@ WalkEvents walk_events(const WalkSteps& before, const WalkState& state) noexcept
   WalkEvents events;
   // Place of an event: the heel or toe where the foot stands, or stood last.
   const Block<1>& walk = state.walk;
-  const Origin& origin = walk.origin[0];
-  const Placement step{vec3(origin.x_m, origin.y_m, origin.z_m), origin.heading_rad};
+  const Placement step = placement_of(walk.origin[0]);
   const auto planted_m = [&](WalkEventKind kind, Side side) {
     const bool swings = (side == kRightSide) == (walk.state.right_swings != 0.0f);
     if (!swings) return step.place_m;

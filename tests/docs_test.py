@@ -170,7 +170,7 @@ def test_what_the_pages_on_the_walk_name_is_defined_where_they_say(judge):
 @pytest.mark.parametrize("page, said, false", [
     ("path.md", "`src/walk/gait_clock.h`, `src/walk/footholds.h` |", "`src/walk/tick.h` |"),  # only called there
     ("walk.md", "`solve_leg()` in `leg_solve.h`", "`at_moments()`"),  # a test's
-    ("path.md", "`src/walk/feet.h`, `src/walk/reach.h`, `src/walk/idle.h` |", "`src/walk/reach.h`, `src/walk/idle.h` |"),
+    ("path.md", "`src/walk/feet.h`, `src/walk/reach.h`, ", "`src/walk/reach.h`, "),
     ("path.md", "`assign_ticks()`", "`decode()`"),  # another room's
     ("path.md", "`solve_paper()` of `src/animation/ik.cpp`", "`solve_paper()` of `src/walk/paper.h`"),
     ("tick.md", "`plan_rest()` in `rest.h`", "`plan_rest()` in `feet.h`"),

@@ -3,6 +3,7 @@
 #include "walk/ankle.h"
 #include "walk/detail.h"
 #include "walk/ground_plan.h"
+#include "walk/knees.h"
 #include "walk/paper.h"
 #include "walk/pose.h"
 #include "walk/rest.h"
@@ -84,6 +85,7 @@ void begin_walks(const Tables& tables, Block<kWidth>& block) noexcept {
     const V wider_m = chosen<V>(right, std::abs(r.stance_m) - std::abs(r.track_m),
                                 std::abs(l.stance_m) - std::abs(l.track_m));
     state.wider_m = other ? wider_m : state.wider_m;
+    for (V(&knees)[2] : change.knee_rad) exchange(other, knees[0], knees[1]);
     change_weighted_legs(other, block.weighted);
     state.right_swings = other ? V(1.0f - state.right_swings) : state.right_swings;
   }
@@ -648,6 +650,7 @@ void strike(const Tables& tables, const BodyTick<Floats<kWidth>>& tick,
                       ? mix(state.ratio_behind, landing.ratio, V(1.0f + change.off_over.x))
                       : landing.ratio;
   change_feet(landing, strikes, feet, tick.stride, state);
+  for (V(&knees)[2] : change.knee_rad) exchange(strikes, knees[0], knees[1]);
   change_weighted_legs(strikes, block.weighted);
   change_styled_feet(strikes, block.styled);
   end_aims(landing, strikes, change);
@@ -768,6 +771,8 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
   keep_heels_low(tables, time, phase, stride, change, state, block.styled, pelvis, feet, asked_rad);
   for (int k : {0, 1}) feet.ankle_m[k] = ankle_of(feet.foot[k], feet.sole[k]);
   sink(tables, time, stride, feet.ankle_m, state, change, pelvis);
+  if constexpr (!kPaper)
+    if (looks_ahead) ease_knees(tables, time, feet.ankle_m, change, pelvis);
   reach_with_toe(tables, time, change, pelvis, feet);
   const BodyTick<V> tick{time, landing, hips, stride, pelvis, idle, phase, change.shown};
   if (looks_ahead)  // a look ahead needs no pose

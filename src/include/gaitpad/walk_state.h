@@ -158,8 +158,13 @@ struct Change {
   V sink_m[kSinkKnots]{}, sink_ticks{}, wants_m{};
   Off<V> off_sink;     // by which the plan before differs
   V off_sink_ticks{};  // in which that fades
-  V foreseen_m{};      // sum of both steps' lengths for which that was planned
-  V asked_legs[2]{};   // asked for in the last tick: sum of both steps' lengths, and turn, in legs
+  // Knees of swing and stand, now and a tick ago; by how much the hips give way to one that is
+  // nearly straight, and the ticks in which that fades.
+  V knee_rad[2][2]{};
+  Off<V> raised_m;
+  V raised_ticks{};
+  V foreseen_m{};     // sum of both steps' lengths for which that was planned
+  V asked_legs[2]{};  // asked for in the last tick: sum of both steps' lengths, and turn, in legs
 
   // Flight after a change of plan: the share of the flight at which State::gap_m begins to fade,
   // and the share in which it fades.

@@ -525,9 +525,9 @@ TEST_P(ThumbsOnStairs, BreakFewBounds) {
   EXPECT_LE(most.sunk_mm, asked.most_sunk_mm);
 }
 INSTANTIATE_TEST_SUITE_P(OfEveryLeg, ThumbsOnStairs,
-                         testing::Values(ManyWalks{"short", 0.6, 10, 2.9, 12.3},
-                                         ManyWalks{"shorter", 0.8, 2, 1.5, 6.6},
-                                         ManyWalks{"adult", 1.0, 8, 2.3, 7.3}),
+                         testing::Values(ManyWalks{"short", 0.6, 6, 2.9, 12.3},
+                                         ManyWalks{"shorter", 0.8, 3, 1.7, 6.6},
+                                         ManyWalks{"adult", 1.0, 3, 2.0, 7.3}),
                          [](const auto& info) { return std::string(info.param.name); });
 
 // Sticks that jump, which no thumb does.

@@ -43,6 +43,7 @@ RATE = 240
 THUMB_S = 0.06
 COARSE = 4  # ticks in a step of 60 Hz
 MOMENTS = 12
+ROUNDING = 1e-9  # a mean of whole ticks that is the bound meets it
 
 
 # ---- a hand ----------------------------------------------------------------------------------
@@ -343,7 +344,7 @@ def judged(program, thumb_s, motion):
         turns = {turn: turn_of(player, moves) for turn, moves in TURNS.items()}
         lines = lines_of(rows, turns, reversal(player)[0], motion is None)
     return [{"name": name, "unit": unit, "value": float(value), "sign": sign, "bound": float(bound),
-             "ok": bool(value <= bound if sign == "<=" else value >= bound)}
+             "ok": bool(value <= bound + ROUNDING if sign == "<=" else value >= bound - ROUNDING)}
             for name, unit, value, sign, bound in lines]
 
 

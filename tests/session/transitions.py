@@ -117,16 +117,14 @@ def angular_acceleration(rotation):
 def chest_and_head(walk):
     b = walk.bvh
     lowered = [name.lower() for name in b.names]
-    def find(*words):
-        for word in words:
-            for j, name in enumerate(lowered):
-                if word in name and not b.end_site[j]:
-                    return j
-        return None
-    head = find("head")
-    neck = find("neck")
-    chest = b.parents[neck if neck is not None else head] if head is not None else find("chest", "spine")
-    return chest, head if head is not None else chest
+    def named(*words):
+        return [j for word in words for j, name in enumerate(lowered) if word in name and not b.end_site[j]]
+    # A skeleton without a head of that name carries it on the last joint of its neck.
+    necks, heads = named("neck"), named("head")
+    if necks or heads:
+        return b.parents[(necks or heads)[0]], heads[0] if heads else necks[-1]
+    chest = named("chest", "spine")[0]
+    return chest, chest
 
 
 def distance_of_lines(a0, a1, b0, b1):

@@ -127,7 +127,7 @@ AskedStep<V> plan_landing(const Tables& tables, const Time<V>& time, Change<V>& 
     // step that turns by more than a steered one does, its own toe, which points inwards, would
     // come to the standing foot. Lengths are at the reference leg: from axis to axis, and beyond
     // the toe, where it ends.
-    constexpr float kClear_m = 0.08f, kSoftClear_m = 0.012f, kBeyond_m = 0.12f;
+    constexpr float kClear_m = 0.08f, kSoftClear_m = 0.012f, kBeyond_m = 0.15f;
     constexpr float kSteered_rad = 0.8f, kFar_rad = 1.1f;  // between them the toe comes to count
     const LegBones &l = tables.leg[0], &r = tables.leg[1];
     const auto line_m = [&](const Mask<V>& right, int k) {

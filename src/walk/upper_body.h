@@ -321,7 +321,8 @@ template <int kWidth, bool kPaper>
   using V = Floats<kWidth>;
   // A turning walk raises the bounds, for its own turn is a part of the chest's and the head's: by
   // kMoreTurning rad/s^2 times the fourth power of the turn's rate, up to kMostTurning. The chest,
-  // which the head leads, has kChestLess of the head's bound.
+  // which the head leads, has kChestLess of the head's bound. Steps that are shorter or slower than
+  // the data's turn both by less.
   constexpr float kMoreTurning = 320.0f * kDegree_rad, kMostTurning = 300.0f * kDegree_rad,
                   kChestLess = 0.8f;
   constexpr float kLeastChest_s2 = 252.0f * kDegree_rad;  // rad/s^2: the built-in walk's, at least
@@ -370,7 +371,8 @@ template <int kWidth, bool kPaper>
   const bool may_ease = !kPaper && tables.has_head && any(acts);
   const V turns_rad = state.turn_rad_s.v * (dt * dt), asked = state.asked.turn_rad_s,
           square = asked * asked, quick = least(quickness(tables, state), all<V>(1.0f)),
-          slower = quick * quick,
+          pace = least(most(asked_ratio(tables, state), state.pace.x), all<V>(1.0f)),
+          slower = quick * quick * pace,
           more = least(V(kMoreTurning * square * square), all<V>(kMostTurning)),
           of_head = most(V(tables.most_head_s2 * slower), all<V>(kLeastHead_s2)) + more,
           of_chest = most(most(V(tables.most_chest_s2 * slower), all<V>(kLeastChest_s2)),

@@ -18,8 +18,8 @@ template <class V>
 V power(float q, V n) noexcept {
   V result = all<V>(1.0f);
   for (; any(n > V{}); q *= q) {
-    const V half = floored(V(0.5f * n));
-    result = n != 2.0f * half ? result * q : result;
+    const V half = rounded(V(0.5f * n - 0.25f)), odd = n - 2.0f * half;
+    result = result * (odd * q + (1.0f - odd));  // no branch, which could not be foreseen
     n = half;
   }
   return result;

@@ -132,6 +132,10 @@ inline V rounded(const V& x) noexcept {
 }
 template <class V>
 inline V floored(const V& x) noexcept {
+#ifndef GAITPAD_NO_VECTORS
+  // In a register a choice takes no branch, which a processor would guess wrong half of the time.
+  if constexpr (kLanes<V> == 1) return floored(Floats<4>{x})[0];
+#endif
   const V near = rounded(x);
   return near > x ? near - 1.0f : near;
 }

@@ -1,21 +1,14 @@
 #include "gaitpad/ik.h"
 
 #include <cassert>
-#include <limits>
 #include <string>
-#include <utility>
 
-#include "animation/solver_numbers.h"
+#include "animation/robust_solver.h"
 #include "base/ranges.h"
 
 namespace gaitpad {
 namespace {
 
-// The robust solver: theta += W J^T (J W J^T + l^2 I)^-1 dX inside joint limits, where
-// l^2 = damping^2 + growth |dX|^2 (after Sugihara 2011, "Solvability-unconcerned inverse kinematics
-// by the Levenberg-Marquardt method"); growth rises where a step makes the error greater.
-constexpr double kLeastDamping_m2 = 1e-20;  // above the rounding of doubles
-using Solver = SolverNumbers<double>;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 // Turns a frame about its own first axis: (y, z) are the other two, in cyclic order.
@@ -23,12 +16,6 @@ void turn(vec3& y, vec3& z, double sine, double cosine) noexcept {
   const vec3 old = y;
   y = cosine * old + sine * z;
   z = cosine * z - sine * old;
-}
-
-// An entry of the Jacobian is d . (a x (p - q)), for direction d, point p and an axis a through q.
-// It equals a . m + n . d with the moments m = p x d and n = q x a.
-double jacobian_entry(const vec3& a, const vec3& n, const vec3& d, const vec3& m) noexcept {
-  return (a.x * m.x + a.y * m.y) + (a.z * m.z + n.x * d.x) + (n.y * d.y + n.z * d.z);
 }
 
 // --- The chain in one pose -----------------------------------------------------------------------
@@ -47,8 +34,7 @@ struct IkPose {
   Axes last;                             // axes of the last frame
   vec3 end_m;                            // its origin
   std::array<vec3, kMaxIkRows> point_m;  // points of the rows
-  std::array<double, kMaxIkRows> dx;
-  double squares = 0.0;  // |dX|^2
+  std::array<double, kMaxIkRows> error_m;
 };
 
 // Turns the frame about a unit axis that is given in the frame itself, by Rodrigues' formula;
@@ -88,13 +74,26 @@ void pose_chain(const IkChain& chain, std::span<const IkRow> rows, const IkAngle
                 IkPose& pose) noexcept {
   assert(rows.size() <= kMaxIkRows);
   pose_chain(chain, angles_rad, pose);
-  pose.squares = 0.0;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const vec3& p = rows[r].point_m;
     pose.point_m[r] = pose.end_m + p.x * pose.last.x + p.y * pose.last.y + p.z * pose.last.z;
-    pose.dx[r] = rows[r].goal_m - glm::dot(rows[r].direction, pose.point_m[r]);
-    pose.squares += pose.dx[r] * pose.dx[r];
+    pose.error_m[r] = rows[r].goal_m - glm::dot(rows[r].direction, pose.point_m[r]);
   }
+}
+
+// |dX|^2 in one pose.
+double squares_of(const IkChain& chain, std::span<const IkRow> rows,
+                  const IkAngles& angles_rad) noexcept {
+  IkPose pose;
+  pose_chain(chain, rows, angles_rad, pose);
+  double squares = 0.0;
+  for (std::size_t r = 0; r < rows.size(); ++r) squares += pose.error_m[r] * pose.error_m[r];
+  return squares;
+}
+
+// An entry of the Jacobian: how far DOF j moves the point of row r along the row's direction.
+double jacobian_entry(const IkPose& pose, const IkRow& row, std::size_t r, int j) noexcept {
+  return glm::dot(row.direction, glm::cross(pose.axis[j], pose.point_m[r] - pose.pivot_m[j]));
 }
 
 // True if the arrays have room for the chain and the rows.
@@ -178,11 +177,8 @@ void position_jacobian(const IkChain& chain, std::span<const IkRow> rows,
   IkPose pose;
   pose_chain(chain, rows, angles_rad, pose);
   for (std::size_t r = 0; r < rows.size(); ++r) {
-    error_m[r] = pose.dx[r];
-    for (int j = 0; j < chain.dofs; ++j) {
-      const vec3 column = glm::cross(pose.axis[j], pose.point_m[r] - pose.pivot_m[j]);
-      jacobian[r][j] = glm::dot(rows[r].direction, column);
-    }
+    error_m[r] = pose.error_m[r];
+    for (int j = 0; j < chain.dofs; ++j) jacobian[r][j] = jacobian_entry(pose, rows[r], r, j);
   }
 }
 
@@ -309,13 +305,6 @@ Pass one_pass(const IkChain& chain, std::span<const IkRow> rows, const PaperOpti
   return pass;
 }
 
-double pose_error(const IkChain& chain, std::span<const IkRow> rows,
-                  const IkAngles& angles_rad) noexcept {
-  IkPose pose;
-  pose_chain(chain, rows, angles_rad, pose);
-  return std::sqrt(pose.squares);
-}
-
 }  // namespace
 
 double paper_iteration(const IkChain& chain, std::span<const IkRow> rows,
@@ -329,7 +318,7 @@ IkResult solve_paper(const IkChain& chain, std::span<const IkRow> rows, const Pa
   if (!do_fit(chain, rows) || !are_sound(options) || !are_inputs_finite(chain, angles_rad))
     return refused();
   IkResult result;
-  result.error_m = pose_error(chain, rows, angles_rad);
+  result.error_m = std::sqrt(squares_of(chain, rows, angles_rad));
   if (!std::isfinite(result.error_m)) return refused();
   add_trace_row(trace, angles_rad, result.error_m);
   while (result.error_m > options.tolerance_m) {  // step 7: repeat until the error is small enough
@@ -344,7 +333,7 @@ IkResult solve_paper(const IkChain& chain, std::span<const IkRow> rows, const Pa
       break;
     }
     ++result.iterations;
-    result.error_m = pose_error(chain, rows, angles_rad);
+    result.error_m = std::sqrt(squares_of(chain, rows, angles_rad));
     add_trace_row(trace, angles_rad, result.error_m);
   }
   return result;
@@ -355,135 +344,38 @@ namespace {
 // --- The robust solver ---------------------------------------------------------------------------
 
 constexpr int kCandidates = 16;  // number of starts that are compared before each further try
+constexpr double kLeastDamping_m = 1e-10;  // its square is above the rounding of doubles
 // A later try replaces an earlier one only if its error is below this share of the earlier error.
 constexpr double kWorthAJump = 0.99;
 
-using IkDofValues = std::array<double, kMaxIkDofs>;
-
-// The input of a solve.
+// The chain and its rows as robust_solver.h reads them.
 struct Problem {
+  using V = double;
+  using Place = IkPose;
+  static constexpr int kRows = kMaxIkRows;
+
   const IkChain& chain;
   std::span<const IkRow> rows;
-  const RobustOptions& options;
-  IkTrace* trace;
-  IkDofValues weight;  // weights divided by the largest one
-};
+  int dofs = chain.dofs;
+  IkAngles weight{}, min_rad{}, max_rad{};
 
-// The angle within the limits of its DOF; NaN stays.
-double limited(const IkDof& dof, double angle_rad) noexcept {
-  return std::clamp(angle_rad, dof.min_rad, dof.max_rad);
-}
-
-IkDofValues relative_weights(const IkChain& chain) noexcept {
-  IkDofValues w{};
-  double greatest = 0.0;
-  for (int j = 0; j < chain.dofs; ++j) greatest = std::max(greatest, chain.dof[j].weight);
-  if (greatest <= 0.0) return w;
-  for (int j = 0; j < chain.dofs; ++j) w[j] = std::max(chain.dof[j].weight, 0.0) / greatest;
-  return w;
-}
-
-// The linear system of one step. A row beyond the given ones is zero.
-struct Step {
-  std::array<Rows, kMaxIkDofs> column{};  // of the Jacobian
-  IkDofValues weight;
-  double damping;
-  Rows error{};  // what is left to close
-};
-
-// A column of J^T times y.
-double product(const Rows& column, const Rows& y) noexcept {
-  double even = column[0] * y[0], odd = column[1] * y[1];
-  for (std::size_t r = 2; r < kMaxIkRows; r += 2)
-    even += column[r] * y[r], odd += column[r + 1] * y[r + 1];
-  return even + odd;
-}
-
-// Solves for a step within the limits. A DOF that the step would carry past a limit moves exactly
-// to the limit, its column leaves the system, and the system is solved again for the others. The
-// result depends continuously on goal and pose.
-IkDofValues limited_step(const Problem& p, Step& step, const IkAngles& angles_rad) noexcept {
-  const int dofs = p.chain.dofs;
-  Rows damping;
-  damping.fill(step.damping);
-  IkDofValues delta{};
-  for (int round = 0; round <= dofs; ++round) {
-    Rows y = step.error;
-    solve_rows<kMaxIkRows>(step.column, dofs, step.weight, damping, y);
-    bool frozen = false;
+  Problem(const IkChain& of, std::span<const IkRow> of_rows) noexcept : chain(of), rows(of_rows) {
     for (int j = 0; j < dofs; ++j) {
-      if (step.weight[j] == 0.0) continue;
-      delta[j] = step.weight[j] * product(step.column[j], y);
-      const double wanted = angles_rad[j] + delta[j], allowed = limited(p.chain.dof[j], wanted);
-      if (allowed == wanted) continue;
-      frozen = true;
-      delta[j] = allowed - angles_rad[j];
-      step.weight[j] = 0.0;
-      for (int r = 0; r < kMaxIkRows; ++r) step.error[r] -= step.column[j][r] * delta[j];
+      const IkDof& dof = chain.dof[j];
+      weight[j] = dof.weight, min_rad[j] = dof.min_rad, max_rad[j] = dof.max_rad;
     }
-    if (!frozen) break;
+    make_relative(dofs, weight);
   }
-  return delta;
-}
-
-void set_columns(const Problem& p, const IkPose& pose, Step& step) noexcept {
-  for (std::size_t r = 0; r < p.rows.size(); ++r) {
-    const vec3& direction = p.rows[r].direction;
-    const vec3 moment = glm::cross(pose.point_m[r], direction);
-    for (int j = 0; j < p.chain.dofs; ++j) {
-      const vec3& a = pose.axis[j];
-      step.column[j][r] = jacobian_entry(a, glm::cross(pose.pivot_m[j], a), direction, moment);
+  void place(const IkAngles& angles_rad, IkPose& pose) const noexcept {
+    pose_chain(chain, rows, angles_rad, pose);
+  }
+  void set_columns(const IkPose& pose, double (&column)[kMaxIkDofs][kRows]) const noexcept {
+    for (int j = 0; j < dofs; ++j) {
+      for (std::size_t r = 0; r < kRows; ++r)
+        column[j][r] = r < rows.size() ? jacobian_entry(pose, rows[r], r, j) : 0.0;
     }
   }
-}
-
-struct Try {
-  IkAngles angles_rad;  // the best angles so far
-  double squares;
-  int iterations;
 };
-
-// Iterates from `start` until the tolerance is met, the error no longer falls or the iterations are
-// used up.
-Try one_try(const Problem& p, const IkAngles& start, int max_iterations) noexcept {
-  constexpr double kMost_m2 = Solver::kFarthest_m * Solver::kFarthest_m;
-  const int dofs = p.chain.dofs;
-  const double enough = p.options.tolerance_m * p.options.tolerance_m;
-  IkAngles angles_rad = start, next = start;
-  IkPose pose, best;
-  double growth = Solver::kGrowth, seen_m = kInfinity;
-  int seen_at = 0;
-  for (int k = 0;; ++k) {
-    pose_chain(p.chain, p.rows, next, k == 0 ? best : pose);
-    if (k > 0) {
-      const bool better = pose.squares < best.squares;
-      growth = better ? std::max(growth * Solver::kGrowthDown, Solver::kGrowth)
-                      : growth * Solver::kGrowthUp;
-      if (better) angles_rad = next, best = pose;
-    }
-    if (p.trace != nullptr) add_trace_row(p.trace, angles_rad, std::sqrt(best.squares));
-    if (best.squares <= enough || k >= max_iterations) return {angles_rad, best.squares, k};
-    const double error_m = std::sqrt(best.squares);
-    if (error_m < seen_m - Solver::kLeastGain * std::min(error_m, Solver::kGainFrom_m))
-      seen_at = k, seen_m = error_m;
-    if (k - seen_at >= Solver::kPatience || !(best.squares < kInfinity))
-      return {angles_rad, best.squares, k};
-
-    const double share = best.squares > kMost_m2 ? Solver::kFarthest_m / error_m : 1.0;
-    Step step;
-    set_columns(p, best, step);
-    step.weight = p.weight;
-    step.damping = std::max(p.options.damping * p.options.damping, kLeastDamping_m2) +
-                   growth * std::min(best.squares, kMost_m2);
-    for (std::size_t r = 0; r < p.rows.size(); ++r) step.error[r] = share * best.dx[r];
-    const IkDofValues delta = limited_step(p, step, angles_rad);
-    double greatest = 0.0;
-    for (int j = 0; j < dofs; ++j) greatest = std::max(greatest, std::abs(delta[j]));
-    const double cap = greatest > p.options.max_step_rad ? p.options.max_step_rad / greatest : 1.0;
-    for (int j = 0; j < dofs; ++j)
-      next[j] = limited(p.chain.dof[j], angles_rad[j] + cap * delta[j]);
-  }
-}
 
 // Start number k: a sequence that fills the box of the limits evenly (Weyl: multiples of an
 // irrational number per DOF, here square roots of primes). Without limits: half a turn to both
@@ -495,10 +387,10 @@ IkAngles spread_start(const Problem& p, const IkAngles& given, int k) noexcept {
       0.79583152331271907, 0.38516480713450374, 0.56776436283002192, 0.082762530298219357,
       0.40312423743284853, 0.55743852430200066, 0.85565460040104412, 0.28010988928051805};
   IkAngles start = given;
-  for (int j = 0; j < p.chain.dofs; ++j) {
+  for (int j = 0; j < p.dofs; ++j) {
     if (p.weight[j] == 0.0) continue;
-    const double low = std::max(p.chain.dof[j].min_rad, given[j] - kPi);
-    const double high = std::min(p.chain.dof[j].max_rad, given[j] + kPi);
+    const double low = std::max(p.min_rad[j], given[j] - kPi);
+    const double high = std::min(p.max_rad[j], given[j] + kPi);
     const double x = 0.5 + k * kIrrational[j];
     start[j] = low + (high - low) * (x - static_cast<int>(x));
   }
@@ -511,9 +403,8 @@ IkAngles nearest_start(const Problem& p, const IkAngles& given, int first) noexc
   double least = kInfinity;
   for (int k = first; k < first + kCandidates; ++k) {
     const IkAngles candidate = spread_start(p, given, k);
-    IkPose pose;
-    pose_chain(p.chain, p.rows, candidate, pose);
-    if (pose.squares < least) least = pose.squares, nearest = candidate;
+    const double squares = squares_of(p.chain, p.rows, candidate);
+    if (squares < least) least = squares, nearest = candidate;
   }
   return nearest;
 }
@@ -523,7 +414,7 @@ IkAngles nearest_start(const Problem& p, const IkAngles& given, int first) noexc
 bool beyond_reach(const Problem& p) noexcept {
   if (p.rows.empty()) return false;
   double reach = glm::length(p.rows[0].point_m), squares = 0.0;
-  for (int j = 0; j < p.chain.dofs; ++j) reach += glm::length(p.chain.dof[j].link_m);
+  for (int j = 0; j < p.dofs; ++j) reach += glm::length(p.chain.dof[j].link_m);
   for (std::size_t r = 0; r < p.rows.size() && p.rows[r].point_m == p.rows[0].point_m; ++r) {
     for (std::size_t s = 0; s < r; ++s) {
       if (std::abs(glm::dot(p.rows[r].direction, p.rows[s].direction)) > 1e-9) return false;
@@ -534,40 +425,42 @@ bool beyond_reach(const Problem& p) noexcept {
   return false;
 }
 
-IkResult best_of_tries(const Problem& p, const IkAngles& start, IkAngles& angles_rad) noexcept {
-  const double enough = p.options.tolerance_m * p.options.tolerance_m;
-  Try best = one_try(p, start, p.options.max_iterations);
-  IkResult result;
-  result.iterations = best.iterations;
-  const int tries = best.squares <= enough || beyond_reach(p) ? 1 : p.options.max_tries;
-  while (!(best.squares <= enough) && result.tries < tries &&
-         result.iterations < p.options.max_iterations) {
-    const IkAngles other = nearest_start(p, start, (result.tries - 1) * kCandidates);
-    const int left = p.options.max_iterations - result.iterations - 1;
-    const Try next = one_try(p, other, left);
-    ++result.tries;
-    result.iterations += 1 + next.iterations;  // the further start counts as one iteration
-    if (next.squares <= enough || next.squares < kWorthAJump * best.squares) best = next;
-  }
-  angles_rad = best.angles_rad;
-  result.error_m = std::sqrt(best.squares);
-  result.status = best.squares <= enough ? IkStatus::converged : IkStatus::unreachable;
-  end_trace(p.trace, angles_rad, result.error_m);
-  return result;
-}
-
 }  // namespace
 
 IkResult solve_robust(const IkChain& chain, std::span<const IkRow> rows,
                       const RobustOptions& options, IkAngles& angles_rad, IkTrace* trace) noexcept {
   if (!do_fit(chain, rows) || !are_sound(options) || !are_inputs_finite(chain, angles_rad))
     return refused();
-  const Problem p{chain, rows, options, trace, relative_weights(chain)};
+  const Problem p(chain, rows);
+  RobustOptions left = options;  // what is left of them
+  left.damping = std::max(options.damping, kLeastDamping_m);
+  const double enough = options.tolerance_m * options.tolerance_m;
+  const auto solve = [&](IkAngles& at_rad) {
+    return solve_chains(p, left, true, at_rad, [&](const IkAngles& best_rad, double squares) {
+      if (trace != nullptr) add_trace_row(trace, best_rad, std::sqrt(squares));
+    });
+  };
   IkAngles start = angles_rad;
-  for (int j = 0; j < chain.dofs; ++j) start[j] = limited(chain.dof[j], start[j]);
+  for (int j = 0; j < p.dofs; ++j) start[j] = std::clamp(start[j], p.min_rad[j], p.max_rad[j]);
   IkAngles answer = start;
-  const IkResult result = best_of_tries(p, start, answer);
+  Solved<double> best = solve(answer);
+  IkResult result;
+  result.iterations = best.steps;
+  const int tries = best.squares <= enough || beyond_reach(p) ? 1 : options.max_tries;
+  while (!(best.squares <= enough) && result.tries < tries &&
+         result.iterations < options.max_iterations) {
+    IkAngles other = nearest_start(p, start, (result.tries - 1) * kCandidates);
+    left.max_iterations = options.max_iterations - result.iterations - 1;
+    const Solved<double> next = solve(other);
+    ++result.tries;
+    result.iterations += 1 + next.steps;  // the further start counts as one iteration
+    if (next.squares <= enough || next.squares < kWorthAJump * best.squares)
+      best = next, answer = other;
+  }
+  result.error_m = std::sqrt(best.squares);
   if (!std::isfinite(result.error_m)) return refused();
+  result.status = best.squares <= enough ? IkStatus::converged : IkStatus::unreachable;
+  end_trace(trace, answer, result.error_m);
   angles_rad = answer;
   return result;
 }

@@ -12,7 +12,7 @@ namespace {
 template <class N>
 struct ArmChain {
   using V = N;
-  static constexpr int dofs = kArmDofs;
+  static constexpr int kRows = 3, dofs = kArmDofs;
   V solves{};  // 1: solve it
   Vec<V> upper_m, fore_m, grip_m, goal_m;
   V has_height{};  // 1: the hand also goes to the height of its goal
@@ -56,7 +56,7 @@ void solve_arms(ArmChain<V> (&arms)[2]) noexcept {
   constexpr int kNumbers = sizeof(ArmChain<float>) / sizeof(float);
   const Mask<V> solves[2] = {arms[0].solves != V{}, arms[1].solves != V{}};
   work_packed<kNumbers, kNumbers - kArmDofs>(solves, arms, [](auto& packed) {
-    solve_chains(packed, packed.solves != decltype(packed.solves){}, packed.angle_rad);
+    solve_chains(packed, kOfTick, packed.solves != decltype(packed.solves){}, packed.angle_rad);
   });
 }
 

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "base/lanes.h"
+#include "base/masks.h"
 #include "gaitpad/walk_state.h"
 
 namespace gaitpad {
@@ -32,11 +33,6 @@ struct FloatsOf {
 };
 #endif
 template <class V>
-inline constexpr int kLanes = sizeof(V) / sizeof(float);
-template <class V>
-using Mask = decltype(V{} < V{});  // bool of one walk
-
-template <class V>
 struct Turn {  // a unit quaternion
   V w{}, x{}, y{}, z{};
 };
@@ -48,10 +44,6 @@ inline constexpr float kTurn_rad = 6.2831853f, kRightAngle_rad = 1.5707963f,
 namespace {
 
 template <class V>
-inline V all(float x) noexcept {
-  return x - V{};  // x itself, which V{} + x is not: a zero may have a sign
-}
-template <class V>
 inline float lane(const V& v, int i) noexcept {
   return reinterpret_cast<const float*>(&v)[i];
 }
@@ -60,65 +52,9 @@ inline void set_lane(float x, int i, V& v) noexcept {
   reinterpret_cast<float*>(&v)[i] = x;
 }
 
-inline bool both(bool a, bool b) noexcept { return a && b; }
-inline bool either(bool a, bool b) noexcept { return a || b; }
-inline bool no(bool a) noexcept { return !a; }
-inline bool any(bool a) noexcept { return a; }
-template <class M>
-inline M both(const M& a, const M& b) noexcept {
-  return a & b;
-}
-template <class M>
-inline M either(const M& a, const M& b) noexcept {
-  return a | b;
-}
-template <class M>
-inline M no(const M& a) noexcept {
-  return ~a;
-}
-template <class M>
-inline bool any(const M& mask) noexcept {
-  static_assert(sizeof(M) >= 16, "a mask, not a number");
-  std::array<long long, sizeof(M) / 8> parts;
-  std::memcpy(parts.data(), &mask, sizeof mask);
-  long long sum = 0;
-  for (const long long part : parts) sum |= part;
-  return sum != 0;
-}
-template <class V>
-inline V chosen(const Mask<V>& mask, const V& a, const V& b) noexcept {
-  return mask ? a : b;
-}
-template <class V>
-inline V chosen(const Mask<V>& mask, float a, float b) noexcept {
-  return mask ? all<V>(a) : all<V>(b);
-}
-
-template <class V>
-inline V least(const V& a, const V& b) noexcept {
-  return b < a ? b : a;
-}
-template <class V>
-inline V most(const V& a, const V& b) noexcept {
-  return a < b ? b : a;
-}
 template <class V>
 inline V within(const V& x, float low, float high) noexcept {
   return least(most(x, all<V>(low)), all<V>(high));
-}
-template <class V>
-inline V size(const V& x) noexcept {
-  return most(x, -x);
-}
-template <class V>
-inline V root(const V& x) noexcept {
-  if constexpr (kLanes<V> == 1) {
-    return std::sqrt(x);
-  } else {
-    V r{};
-    for (int i = 0; i < kLanes<V>; ++i) r[i] = std::sqrt(x[i]);
-    return r;
-  }
 }
 // Rounds to the nearest multiple of `unit`, a power of 2, for |x| below 2^22 units.
 template <class V>
@@ -146,18 +82,6 @@ inline void exchange(const Mask<V>& where, V& a, V& b) noexcept {
   const V was = a;
   a = where ? b : was;
   b = where ? was : b;
-}
-
-// Sets the numbers V of which T consists to those of another T.
-template <class V, class T>
-inline void put_where(const Mask<V>& where, const T& from, T& to) noexcept {
-  constexpr std::size_t kBytes = sizeof(V);
-  static_assert(sizeof(T) % kBytes == 0);
-#pragma GCC unroll 8
-  for (std::size_t n = 0; n < sizeof(T) / kBytes; ++n) {
-    V& number = reinterpret_cast<V*>(&to)[n];
-    number = where ? reinterpret_cast<const V*>(&from)[n] : number;
-  }
 }
 
 // --- Four numbers of a row, or of a rotation (x, y, z, w) ----------------------------------------

@@ -304,7 +304,7 @@ inline constexpr float kNeckLever_m = 0.2f;  // makes a length of the neck's tur
 template <class N>
 struct SpineChain {
   using V = N;
-  static constexpr int kDofs = 3 * kMaxSpineIk;
+  static constexpr int kRows = 3, kDofs = 3 * kMaxSpineIk;
   int dofs;
   Vec<V> link_m[kMaxSpineIk], neck_m, goal_m, beside_goal_m;
   V weight[kDofs], min_rad[kDofs], max_rad[kDofs];
@@ -389,7 +389,7 @@ void share_spine(const Tables& tables, const Styled<V>& styled, const Mask<V>& u
       to_base * (trunk.place_m[tables.spine[count - 1].at] - trunk.place_m[tables.spine[0].at]);
   chain.goal_m = end_m + last * chain.neck_m;
   chain.beside_goal_m = chain.goal_m + last * Vec<V>{all<V>(kNeckLever_m), V{}, V{}};
-  solve_chains(chain, uneven, angle_rad);
+  solve_chains(chain, kOfTick, uneven, angle_rad);
   Turn<V> segment = no_turn<V>();
   int next = 0;
   for (int i = tables.spine[0].at; i < joints_of_path(tables); ++i) {

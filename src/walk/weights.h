@@ -8,7 +8,7 @@
 #pragma once
 #include <cstddef>
 
-#include "animation/solver_numbers.h"
+#include "animation/robust_solver.h"
 #include "walk/leg_solve.h"
 #include "walk/reach.h"
 
@@ -155,11 +155,8 @@ void step_of(const LegToShare<V>& leg, float lever_m, const LegPlace<V>& place,
     for (int r = 0; r < 6; ++r) b[r] = b[r] - column[j][r] * first_rad[j];
   }
   solve_rows<6>(column, kLegAngles, weight, give, b);
-  for (int j = 0; j < kLegAngles; ++j) {
-    V sum = column[j][0] * b[0];
-    for (int r = 1; r < 6; ++r) sum = sum + column[j][r] * b[r];
-    step_rad[j] = first_rad[j] + weight[j] * sum;
-  }
+  for (int j = 0; j < kLegAngles; ++j)
+    step_rad[j] = first_rad[j] + weight[j] * product<6>(column[j], b);
 }
 
 template <class V>

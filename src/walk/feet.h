@@ -58,8 +58,10 @@ V low_pitch(const V& low, const V& u) noexcept {
   return mix(low, all<V>(1.0f), smoother(0.0f, 0.5f, u));
 }
 
-inline constexpr float kLastLift_m = 0.025f;  // added to a last flight; at the reference leg
-inline constexpr float kRollEnd = 0.9f;       // share of the roll after which the toe is down
+inline constexpr float kLastLift_m = 0.025f;      // added to a last flight; at the reference leg
+inline constexpr float kFirstLift_m = 0.03f;      // to a first one, or one on the spot; the same
+inline constexpr float kTurnedPrints_rad = 0.1f;  // sum of both turns that counts fully
+inline constexpr float kRollEnd = 0.9f;           // share of the roll after which the toe is down
 
 template <class V>
 V flying_yaw(const Time<V>& time, const Landing<V>& landing, const Change<V>& change,
@@ -74,7 +76,6 @@ template <class V>
 V keeps_apart_m(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
                 const Vec<V>& heel_m, const V& twist_rad, const V& u, const Change<V>& change,
                 const State<V>& state) noexcept {
-  constexpr float kTurned_rad = 0.1f;  // acts fully from this sum of footprints' turns on
   constexpr float kApart = 0.65f, kSoft = 0.12f;  // shares of the distance of both tracks
   // Where tracks are narrow: shoes are 9 cm wide, and their axes must stay 6 cm apart. At the
   // reference leg.
@@ -99,7 +100,7 @@ V keeps_apart_m(const Tables& tables, const Time<V>& time, const Landing<V>& lan
           near_m = soft_least(heel, V(heel + toe), soft_m),
           beside = 1.0f - smooth(kBeside_m * tables.size, kPast_m * tables.size, size(heel_m.z)),
           flies = smoother(0.0f, 0.25f, u) * smoother(0.0f, 0.25f, V(1.0f - u));
-  return outwards * smooth(0.0f, kTurned_rad, turned) * beside * flies *
+  return outwards * smooth(0.0f, kTurnedPrints_rad, turned) * beside * flies *
          soft_positive(V(apart_m - near_m), soft_m);
 }
 
@@ -186,18 +187,15 @@ Vec<V> flight_heel(const Tables& tables, const Time<V>& time, const Landing<V>& 
   p.y = stride.heel_high_m * low * mix(all<V>(1.0f), more, smoother(0.0f, 0.4f, u));
   p.y = closes_low(tables, change, state) ? V(p.y * comes_in(u)) : p.y;
   // In a first or last flight the toe leaves the floor at once.
-  constexpr float kFirstLift_m = 0.03f;  // at the reference leg
   const V left_u = 1.0f - u, square_u = u * left_u;
   const V high_m = tables.size * 16.0f * chosen<V>(closes, kLastLift_m, kFirstLift_m);
   p.y = is_short ? V(p.y + high_m * square_u * square_u) : p.y;
   // In a turn on the spot the foot would skim the floor; people lift all of it by 3 to 5 cm. It
   // leaves the floor as without that: some captures have a nearly straight knee there.
-  constexpr float kSpotLift_m = 0.03f;     // at the reference leg
-  constexpr float kSpotTurned_rad = 0.1f;  // acts fully from this sum of footprints' turns on
   const V walks = smooth(V(most(state.ratio_behind, landing.ratio) * (1.0f / kPastClosely))),
-          turned = smooth(0.0f, kSpotTurned_rad, V(size(state.print_rad) + size(landing.rad))),
+          turned = smooth(0.0f, kTurnedPrints_rad, V(size(state.print_rad) + size(landing.rad))),
           spot = is_short ? V{} : V((1.0f - walks) * turned), power = square_u * square_u;
-  p.y = p.y + spot * (tables.size * 256.0f * kSpotLift_m) * (power * power);
+  p.y = p.y + spot * (tables.size * 256.0f * kFirstLift_m) * (power * power);
   if constexpr (kIsUneven<F>) p.y = p.y + base_m;
   return p;
 }
@@ -447,7 +445,7 @@ void pitch_in_flight(const Time<V>& time, const Sole<V>& sole, const Flight<V>& 
   if constexpr (kIsUneven<F>) {
     // The plane on which the foot stood bounds the toe at first; it may differ from the ground
     // line.
-    const V lifted_m = flight.lifted_m * (1.0f - smoother(0.0f, kLiftGround, u));
+    const V lifted_m = flight.lifted_m * (1.0f - smoother(0.0f, kLiftFade, u));
     height_m = (height_m - (flight.base_m + lifted_m)) * upright(footing.print);
   }
   const Vec<V> rolled = foot.edge * sole.line_m;
@@ -467,8 +465,9 @@ void pitch_in_flight(const Time<V>& time, const Sole<V>& sole, const Flight<V>& 
   }
   const V deep = (sole.toe_rest_m + edge_m - kMostSink_m - height_m) / foot_m;
   // The arc goes on straight beyond kSteep: a heel as high as the foot is long leaves it free.
-  constexpr float kSteep = 0.95f, kSteeper = 3.2025631f;  // the slope of the arc at kSteep
-  const V arc = arc_sine(within(deep, -kSteep, kSteep)) + kSteeper * least(V(deep + kSteep), V{});
+  constexpr float kSteep = 0.95f;
+  const float slope = 1.0f / std::sqrt(1.0f - kSteep * kSteep);  // of the arc at kSteep
+  const V arc = arc_sine(within(deep, -kSteep, kSteep)) + slope * least(V(deep + kSteep), V{});
   const V limit = sole.elevation_rad - arc + arc_sine(steeper);
   const V soft =
       kSoftPitch_rad + kWiderPitch * loose_pitch(u, off, change) + edge_m / foot_m + wide;
@@ -587,7 +586,7 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
     const V left_m = footing.print_y_m + rise_of(footing.print, V(foot.heel_m.x - state.print_x_m),
                                                  V(foot.heel_m.z - state.print_z_m));
     feet.floor_m =
-        time.flies ? mix(left_m, feet.base_m, smoother(0.0f, kLiftGround, time.u)) : feet.floor_m;
+        time.flies ? mix(left_m, feet.base_m, smoother(0.0f, kLiftFade, time.u)) : feet.floor_m;
   }
   return feet;
 }

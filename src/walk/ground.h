@@ -386,7 +386,6 @@ V pitch_to_rise(const Tables& tables, const Mask<V>& right, const V& rise_m,
 
 // --- Flights -------------------------------------------------------------------------------------
 
-inline constexpr float kLiftGround = 0.5f;  // share of the flight in which the plane left bounds it
 inline constexpr float kReplan_m = 0.002f;  // a landing that moves farther is planned for anew
 
 // The plane to which the foot flies, mixed with the plane before a change of plan.

@@ -146,7 +146,8 @@ Hips<V> move_hips(const Tables& tables, const Time<V>& time, const Landing<V>& l
 
 // --- A change of pace: the hips lead, the phase follows ------------------------------------------
 
-inline constexpr float kLiftFade = 0.5f;  // of the flight: until then the lift-off's motion fades
+// Of the flight: until then the lift-off's motion fades, and the plane that is left.
+inline constexpr float kLiftFade = 0.5f;
 // At the reference leg: in which hips that would rest follow a landing that still moves.
 inline constexpr float kComesAfter_s = 0.1f;
 inline constexpr float kCarry_s = 0.15f;  // at the reference leg: a phase of a new plan fades in
@@ -696,17 +697,22 @@ V leg_m(const Tables& tables, const Mask<V>& right) noexcept {
   return of_leg<V>(tables, right, &LegBones::thigh_m) +
          of_leg<V>(tables, right, &LegBones::shank_m);
 }
-// The distance from hip to ankle in the tables, where the knee is bent by `knee_rad` more than when
-// standing.
+// The distance from hip to ankle of a leg whose knee is bent by `knee_rad`.
+template <class V>
+V span_of_knee_m(const V& thigh_m, const V& shank_m, const V& knee_rad) noexcept {
+  V sine, cosine;
+  sin_cos(knee_rad, sine, cosine);
+  return root(V(thigh_m * thigh_m + shank_m * shank_m + 2.0f * thigh_m * shank_m * cosine));
+}
+// The same in the tables, where the knee is bent by `knee_rad` more than when standing.
 template <class V>
 V span_in_tables_m(const Tables& tables, const Mask<V>& right, const V& knee_rad) noexcept {
-  const V a = of_leg<V>(tables, right, &LegBones::thigh_m),
-          b = of_leg<V>(tables, right, &LegBones::shank_m),
-          knee = knee_rad + stand_rad<V>(tables, right, 3);
-  V sine, cosine;
-  sin_cos(knee, sine, cosine);
-  return root(V(a * a + b * b + 2.0f * a * b * cosine));
+  return span_of_knee_m(of_leg<V>(tables, right, &LegBones::thigh_m),
+                        of_leg<V>(tables, right, &LegBones::shank_m),
+                        V(knee_rad + stand_rad<V>(tables, right, 3)));
 }
+// Of a leg's way, how far the ankle is below the hip at least.
+inline constexpr float kLeastBelow = 0.3f;
 
 // Reach of a foot whose heel a style keeps low, over the leg's length.
 inline constexpr float kLowReach = 0.985f;
@@ -760,8 +766,8 @@ void sink(const Tables& tables, const Time<V>& time, const Stride<V>& stride,
                   kWidestReach_m = 0.06f, kKnown_m = 0.0015f, kMostSunk_m = 0.34f,
                   kSoftSunk_m = 0.12f;
   // From kLittle_m to kFar_m of excess the sinking comes over from the first order to its whole
-  // length. kLeastBelow: of the leg's way, how far the ankle stays below the hip at least.
-  constexpr float kLittle_m = 0.01f, kFar_m = 0.02f, kLeastBelow = 0.3f;
+  // length.
+  constexpr float kLittle_m = 0.01f, kFar_m = 0.02f;
   constexpr float kSoftSink_m = 0.007f, kSoftSinkOnGround_m = 0.012f;  // of the planned sinking
   const float grown = tables.size;
   V squares{};
@@ -776,7 +782,7 @@ void sink(const Tables& tables, const Time<V>& time, const Stride<V>& stride,
     const V soft = grown * (kSoftReach_m + kWiderReach * least(beyond, all<V>(kWidestReach_m)));
     const V times = beyond * (1.0f / kKnown_m), shows = times * times,
             excess = soft_positive(V(span - kReach * stretched), soft) * shows / (1.0f + shows),
-            upright = most(V(0.3f * span), V(-way.y)) / span, little = excess / upright;
+            upright = most(V(kLeastBelow * span), V(-way.y)) / span, little = excess / upright;
     // As far down as the ankle's way gets shorter by the excess. A little way is in proportion.
     const V reach = span - excess, aside = span * span - way.y * way.y,
             below =

@@ -19,7 +19,6 @@ struct Span {
 template <class V>
 Span<V> span_of(const Tables& tables, const Time<V>& time, int k, const Vec<V>& ankle_m,
                 const Pelvis<V>& pelvis) noexcept {
-  constexpr float kLeastBelow = 0.5f;  // of the distance
   const auto right = is_right(time, k);
   const Vec<V> way = ankle_m - (pelvis.place_m + pelvis.hip_m[k]);
   const V far_m = root(dot(way, way));
@@ -40,11 +39,8 @@ V knee_of(const Span<V>& span) noexcept {
 // How far up the hips make the knee bend by this angle, to first order.
 template <class V>
 V raise_to(const V& knee_rad, const Span<V>& span) noexcept {
-  V sine, cosine;
-  sin_cos_small(knee_rad, sine, cosine);
-  const V squares = span.thigh_m * span.thigh_m + span.shank_m * span.shank_m,
-          far_m = root(V(squares + 2.0f * span.thigh_m * span.shank_m * cosine));
-  return (far_m - span.far_m) * span.far_m / span.below_m;
+  return (span_of_knee_m(span.thigh_m, span.shank_m, knee_rad) - span.far_m) * span.far_m /
+         span.below_m;
 }
 
 // Raises or lowers the hips where the second difference of a nearly straight knee would be too

@@ -273,13 +273,7 @@ void fill_upper_body(const WalkModel& model, BuildTables& tables) {
     std::array<std::array<double, kKnots>, 4> sample;
     quat last = to.swings ? middle : cycle.standing_local[joint];
     for (int k = 0; k < kKnots; ++k) {
-      const Stencil at = stencil_at(double(k) / kKnots);
-      quat sum(0.0, 0.0, 0.0, 0.0);
-      for (int m = 0; m < 4; ++m) {
-        const quat& q = cycle.local[static_cast<std::size_t>(at.index[m]) * joints + joint];
-        sum = sum + nearer(q, last) * at.weight[m];
-      }
-      last = glm::normalize(sum);
+      last = glm::normalize(nearer(cycle.local[k * joints + joint], last));
       sample[0][k] = last.x, sample[1][k] = last.y, sample[2][k] = last.z, sample[3][k] = last.w;
     }
     for (int n = 0; n < 4; ++n) {
@@ -306,9 +300,7 @@ void fill_hardness(const WalkModel& model, BuildTables& tables) {
   // Turns of chest and head by phase.
   std::array<std::array<quat, kKnots>, 2> turn;
   for (int k = 0; k < kKnots; ++k) {
-    const double phase = double(k) / kKnots;
-    const StrideCell cell = stride_of(model, false, phase, 1.0).cell;
-    const Stencil at = stencil_at(phase);
+    const StrideCell cell = stride_of(model, false, double(k) / kKnots, 1.0).cell;
     quat above = kIdentity;
     if (tables.on_pelvis)
       above = rotation_y(cell.pelvis_yaw_rad) *
@@ -316,8 +308,7 @@ void fill_hardness(const WalkModel& model, BuildTables& tables) {
               cycle.pelvis_standing;
     turn[0][k] = turn[1][k] = above;
     for (int i = 0; i < static_cast<int>(tables.path.size()); ++i) {
-      above = above *
-              cycle.local[static_cast<std::size_t>(at.index[1]) * joints + tables.path[i].joint];
+      above = above * cycle.local[k * joints + tables.path[i].joint];
       (i < tables.neck ? turn[0][k] : turn[1][k]) = above;
     }
   }

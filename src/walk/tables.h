@@ -31,9 +31,8 @@ inline constexpr int kRowNumbers = sizeof(StrideRow) / sizeof(float),
                      kPlanNumbers = offsetof(StrideRow, pelvis_tilt_rad) / sizeof(float);
 static_assert(kRowNumbers % 8 == 0 && kHeelNumbers % 8 == 0 && kPlanNumbers % 8 == 0);
 
-// The number of samples of a StrideFamily. Half as many change a knee at the lift-off by 0.17
-// degrees RMS.
-inline constexpr int kKnots = 128, kHarmonics = 2;
+// Half as many knots change a knee at the lift-off by 0.17 degrees RMS.
+inline constexpr int kKnots = kCycleSamples, kHarmonics = 2;
 template <std::size_t kOf>
 using RowsOf = std::array<std::array<StrideRow, kOf>, kKnots + 3>;  // one before, two after
 using StrideRows = RowsOf<kStrideRatios>;

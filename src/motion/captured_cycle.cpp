@@ -160,14 +160,6 @@ std::vector<double> straighten(const Motion& motion, const StrideFrames& s, doub
   return heading;
 }
 
-quat mean_rotation(const std::vector<quat>& all) {
-  quat sum = all.front();
-  for (std::size_t i = 1; i < all.size(); ++i) {
-    sum = sum + nearer(all[i], sum);
-  }
-  return glm::normalize(sum);
-}
-
 }  // namespace
 
 PeriodicMotion periodic_motion(const Motion& motion, const StrideWindow& window) {
@@ -193,7 +185,7 @@ PeriodicMotion periodic_motion(const Motion& motion, const StrideWindow& window)
       const quat& q = motion.frames[s.first + f].local[j];
       local[f] = j == 0 ? rotation_y(-heading[f]) * q : q;
     }
-    out.mean.push_back(mean_rotation(local));
+    out.mean.push_back(mean_rotation(s.count, [&](int f) { return local[f]; }));
     std::vector<vec3> turn;
     for (const quat& q : local) turn.push_back(rotation_vector(glm::conjugate(out.mean[j]) * q));
     out.rotation.push_back(harmonics(closed(s, spline(turn)), wave, s.period));
@@ -338,16 +330,17 @@ FlatFoot flat_foot(const CapturedCycle& cycle, int side) {
   })};
 }
 
-quat mean_around(const std::vector<quat>& q, int middle, int reach) {
-  const quat centre = q[wrapped_index(middle)];
-  quat sum = centre;
-  for (int k = -reach; k <= reach; ++k) {
-    if (k != 0) sum = sum + nearer(q[wrapped_index(middle + k)], centre);
-  }
-  return glm::normalize(sum);
-}
+namespace {
 
-quat mean_of(const std::vector<quat>& q) { return mean_around(q, 0, kCycleSamples / 2 - 1); }
+// The middle rotation comes first: the others are nearest to it.
+quat mean_turn(const std::vector<quat>& q, int middle, int reach) {
+  return mean_rotation(2 * reach + 1, [&](int k) {
+    return q[wrapped_index(middle + (k == 0 ? 0 : k <= reach ? k - 1 - reach : k - reach))];
+  });
+}
+quat mean_of(const std::vector<quat>& q) { return mean_turn(q, 0, kCycleSamples / 2 - 1); }
+
+}  // namespace
 
 vec3 mean_around(const std::vector<vec3>& p, int middle, int reach) {
   vec3 sum(0.0);
@@ -427,8 +420,8 @@ FlatPose flat_pose(const CapturedCycle& c, int side) {
   const FlatFoot flat = flat_foot(c, side);
   const CapturedLeg& leg = c.leg[side];
   return {mean_around(leg.ankle_m, flat.middle, FlatFoot::reach),
-          mean_around(leg.ankle, flat.middle, FlatFoot::reach),
-          mean_around(leg.toe, flat.middle, FlatFoot::reach)};
+          mean_turn(leg.ankle, flat.middle, FlatFoot::reach),
+          mean_turn(leg.toe, flat.middle, FlatFoot::reach)};
 }
 
 // Offsets ankle to toe and toe to its end when standing. An End Site without length becomes a toe

@@ -61,8 +61,6 @@ struct FlatFoot {
 };
 FlatFoot flat_foot(const CapturedCycle& cycle, int side);
 
-quat mean_of(const std::vector<quat>& q);
-quat mean_around(const std::vector<quat>& q, int middle, int reach);
 vec3 mean_around(const std::vector<vec3>& p, int middle, int reach);
 inline int wrapped_index(int i) { return (i % kCycleSamples + kCycleSamples) % kCycleSamples; }
 

@@ -59,6 +59,14 @@ inline quat nearer(const quat& q, const quat& to) noexcept {
   return glm::dot(q, to) < 0.0 ? -q : q;
 }
 
+// The mean of so many rotations, which are all near to the first one.
+template <class RotationOf>
+quat mean_rotation(int count, const RotationOf& rotation) noexcept {
+  quat sum = rotation(0);
+  for (int i = 1; i < count; ++i) sum = sum + nearer(rotation(i), rotation(0));
+  return glm::normalize(sum);
+}
+
 // The twist joints of a leg: those between pelvis and toe that are not its own joints. They keep
 // their rotation in a walk.
 std::vector<int> twist_joints(const Skeleton& skeleton, int pelvis, const LegJoints& leg);

@@ -27,12 +27,7 @@ JointFrames frames_of_sample(const GaitCycle& cycle, int i) {
 
 quat mean_local(const GaitCycle& cycle, int joint) {
   const std::size_t joints = cycle.skeleton.joints.size();
-  const quat& first = cycle.local[joint];
-  quat sum(0.0, 0.0, 0.0, 0.0);
-  for (int i = 0; i < kCycleSamples; ++i) {
-    sum = sum + nearer(cycle.local[i * joints + joint], first);
-  }
-  return glm::dot(sum, sum) > 1e-12 ? glm::normalize(sum) : first;
+  return mean_rotation(kCycleSamples, [&](int i) { return cycle.local[i * joints + joint]; });
 }
 
 vec3 perpendicular(const vec3& v, const vec3& to) { return v - to * glm::dot(v, to); }

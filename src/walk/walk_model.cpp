@@ -286,12 +286,6 @@ vec3 pelvis_turned(const vec3& place_m, double yaw_rad, const vec3& tilt) noexce
   return rotation_y(yaw_rad) * (from_rotation_vector(tilt) * place_m);
 }
 
-void scale_track(const StrideScale& to, StrideTrack& track) noexcept {
-  for (double* m : {&track.stride_m, &track.low_m, &track.high_m}) *m *= to.length;
-  for (int side : {0, 1})
-    track.footprint_m[side] = track.footprint_m[side] * to.length + to.apart_m[side];
-}
-
 // Scales the pelvis of the motion's stride to the character (StrideScale). The legs keep their
 // angles: a wider pelvis turns and rolls less, by `length / pelvis`, and the middle of the hips
 // follows its scaled path.
@@ -310,11 +304,6 @@ void scale_pelvis(const StrideScale& to, StrideCell& cell) noexcept {
                   to.pelvis * hips_m(turns, to.standing_m[1]);
   cell.pelvis_yaw_rad *= turns;
   cell.pelvis_tilt.z *= turns;
-}
-void scale_stride(const StrideScale& to, StrideCell& cell) noexcept {
-  for (int side : {0, 1})
-    cell.foot[side].heel_m = cell.foot[side].heel_m * to.length + to.apart_m[side];
-  scale_pelvis(to, cell);
 }
 
 StrideScale stride_scale(const GaitCycle& cycle, double scale, double ratio) noexcept {
@@ -452,8 +441,14 @@ Result<WalkModel> walk_model(const GaitCycle& cycle, const Character& character)
 StridePlace stride_of(const WalkModel& model, bool backward, double phase, double ratio) noexcept {
   const StrideFamily& family = *model.cycle.strides;
   StridePlace place = stride_at(backward ? family.back : family.table, phase, ratio);
-  scale_track(model.stride_scale, place.track);
-  scale_stride(model.stride_scale, place.cell);
+  const StrideScale& to = model.stride_scale;
+  for (double* m : {&place.track.stride_m, &place.track.low_m, &place.track.high_m})
+    *m *= to.length;
+  for (int side : {0, 1}) {
+    for (vec3* heel_m : {&place.track.footprint_m[side], &place.cell.foot[side].heel_m})
+      *heel_m = *heel_m * to.length + to.apart_m[side];
+  }
+  scale_pelvis(to, place.cell);
   return place;
 }
 

@@ -4,6 +4,7 @@
 
 #include "base/ranges.h"
 #include "base/text.h"
+#include "motion/stencil.h"
 
 namespace gaitpad {
 namespace {
@@ -195,8 +196,7 @@ struct Spline {
 };
 Spline spline_at(double t) noexcept {
   const double s = 1.0 - t;
-  return {{s * s * s / 6.0, (3.0 * t * t * t - 6.0 * t * t + 4.0) / 6.0,
-           (3.0 * s * s * s - 6.0 * s * s + 4.0) / 6.0, t * t * t / 6.0},
+  return {spline_weights(t),
           {-0.5 * s * s, 1.5 * t * t - 2.0 * t, -1.5 * s * s + 2.0 * s, 0.5 * t * t}};
 }
 

@@ -234,8 +234,8 @@ inline constexpr float kFastestPhase = 2.5f;  // of hips that lead, over the clo
 
 // The phase at which the tables have the pelvis at its place, by Newton's method on a sum of
 // squares: distance of the hips from their place, and of the phase from the clock's. `strides`: the
-// tables as this tick shows them, by `share` those of its own stride. `rate` becomes the phase's
-// rate.
+// tables as this tick shows them; `share`: of the path to the landing, from the last step's. `rate`
+// becomes the phase's rate.
 template <class V>
 V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& landing,
                   const Hips<V>& hips, StrideMix<V> strides, const V& strike_phase,
@@ -472,8 +472,11 @@ V lead_hips(const Tables& tables, const Time<V>& time, const Landing<V>& landing
                                                  next.roll / ticks_of(next.roll_s, tables.tick_s)));
     move_pelvis(tables, time, landing, ahead, strike_phase, strike_rate, state, change);
     V moves{};
-    const V found = phase_of_pelvis(tables, time, landing, hips, strides, strike_phase, strike_rate,
-                                    over, state, change, moves);
+    // Hips that are to close stay on the last step's path. Its landing comes back at once: on a
+    // path to there they would be far ahead in the tables.
+    const V share = change.closing != V{} ? V{} : over,
+            found = phase_of_pelvis(tables, time, landing, hips, strides, strike_phase, strike_rate,
+                                    share, state, change, moves);
     // A new plan's rate is measured a tick later, because its path moves as well. Hips that hardly
     // move yet leave the phase open: there it may leap.
     const V leaps = found - last_found, most_rate = kFastestPhase * strike_rate,

@@ -291,10 +291,11 @@ V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& l
   V next = least(most(phase, V(last - fastest)), V(last + fastest));
   // A phase that lags behind comes up in time: its rate goes over to the hips'. On level ground
   // that is needed in first steps alone, where a stick that crosses the heading or is let go moves
-  // the landing fast; the phase also goes ahead of the hips' rate as evenly there.
+  // the landing fast; the phase also goes ahead of the hips' rate as evenly there. Before a stop
+  // the phase falls back at once: almost none of it is shown yet.
   const auto level = tables.terrain == nullptr ? V{} == V{} : Mask<V>{},
              starts = both(level, both(change.starting != V{}, change.turns == V{})),
-             comes_up = either(no(level), starts);
+             comes_up = either(no(level), starts), falls = both(starts, change.stops == V{});
   if (any(comes_up)) {
     const V bend = (kFastestPhase - 1.0f) * strike_rate *
                    (tables.tick_s / (kComesUp_s * tables.time_scale)),
@@ -302,7 +303,7 @@ V phase_of_pelvis(const Tables& tables, const Time<V>& time, const Landing<V>& l
             comes = tables.ticks * root(V(2.0f * bend * size(lags))),
             was = change.phase_rate - change.off_phase.v;
     next = both(comes_up, size(lags) > comes)
-               ? least(most(next, V(last + goes - comes)), V(last + goes + comes))
+               ? least(falls ? next : most(next, V(last + goes - comes)), V(last + goes + comes))
                : next;
     const float ticks = tables.ticks;
     next = starts ? least(next, V(last + ticks * most(was, rate) + ticks * ticks * bend)) : next;

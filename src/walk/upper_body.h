@@ -321,8 +321,8 @@ template <int kWidth, bool kPaper>
   using V = Floats<kWidth>;
   // A turning walk raises the bounds, for its own turn is a part of the chest's and the head's: by
   // kMoreTurning rad/s^2 times the fourth power of the turn's rate, up to kMostTurning. The chest,
-  // which the head leads, has kChestLess of the head's bound. Steps that are shorter or slower than
-  // the data's turn both by less.
+  // which the head leads, has kChestLess of the head's bound. Steps that are slower than the data's
+  // turn both by less, on a straight way shorter ones as well.
   constexpr float kMoreTurning = 320.0f * kDegree_rad, kMostTurning = 300.0f * kDegree_rad,
                   kChestLess = 0.8f;
   constexpr float kLeastChest_s2 = 252.0f * kDegree_rad;  // rad/s^2: the built-in walk's, at least
@@ -371,7 +371,9 @@ template <int kWidth, bool kPaper>
   const bool may_ease = !kPaper && tables.has_head && any(acts);
   const V turns_rad = state.turn_rad_s.v * (dt * dt), asked = state.asked.turn_rad_s,
           square = asked * asked, quick = least(quickness(tables, state), all<V>(1.0f)),
-          pace = least(most(asked_ratio(tables, state), state.pace.x), all<V>(1.0f)),
+          ratio = asked_ratio(tables, state),
+          pace = both(ratio > V{}, asked == V{}) ? least(most(ratio, state.pace.x), all<V>(1.0f))
+                                                 : all<V>(1.0f),
           slower = quick * quick * pace,
           more = least(V(kMoreTurning * square * square), all<V>(kMostTurning)),
           of_head = most(V(tables.most_head_s2 * slower), all<V>(kLeastHead_s2)) + more,

@@ -370,8 +370,8 @@ template <int kWidth, bool kPaper>
   const auto acts = either(eases, either(poise.chest.ticks > V{}, poise.head.ticks > V{}));
   const bool may_ease = !kPaper && tables.has_head && any(acts);
   const V turns_rad = state.turn_rad_s.v * (dt * dt), asked = state.asked.turn_rad_s,
-          square = asked * asked, quick = least(quickness(tables, state), all<V>(1.0f)),
-          ratio = asked_ratio(tables, state),
+          turn = most(size(asked), size(state.turn_rad_s.x)), square = turn * turn,
+          quick = least(quickness(tables, state), all<V>(1.0f)), ratio = asked_ratio(tables, state),
           pace = both(ratio > V{}, asked == V{}) ? least(most(ratio, state.pace.x), all<V>(1.0f))
                                                  : all<V>(1.0f),
           slower = quick * quick * pace,

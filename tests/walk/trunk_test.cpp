@@ -286,6 +286,44 @@ TEST(UpperBody, TurnsTheHeadWellAheadInASharpTurn) {
   }
 }
 
+// A head that led a turn on the spot stops with the body: it is past the body's last heading by at
+// most half of its lead, and not for long.
+TEST(UpperBody, StopsTheHeadWithTheBodyAfterATurnOnTheSpot) {
+  constexpr double kNear_rad = 4.0 * kDegree;
+  constexpr int kBack = 7 * kRate / 10;  // ticks after the thumb
+  for (const double side : {1.0, -1.0}) {
+    Walker walker;
+    walker.hold(kRate);
+    const quat stood = walker.head(), body = walker.pelvis();
+    const auto head_rad = [&] {
+      return heading_of(walker.head() * glm::conjugate(stood) * kForward);
+    };
+    const auto body_rad = [&] {
+      return heading_of(walker.pelvis() * glm::conjugate(body) * kForward);
+    };
+    walker.push(vec2(side, 0.0));
+    walker.hold(4 * kRate);
+    const double lead_rad = std::abs(wrapped(head_rad() - body_rad()));
+    walker.push(kRest);
+    std::vector<double> heading_rad(2 * kRate);
+    for (double& at_rad : heading_rad) {
+      walker.step();
+      at_rad = head_rad();
+    }
+    const double last_rad = body_rad();
+    double past_rad = 0.0, late_rad = 0.0;
+    for (int tick = 0; tick < std::ssize(heading_rad); ++tick) {
+      const double over_rad = wrapped(heading_rad[tick] - last_rad);
+      past_rad = std::max(past_rad, std::abs(over_rad));
+      if (tick >= kBack) late_rad = std::max(late_rad, std::abs(over_rad));
+    }
+    std::printf("past by %.1f, after 0.7 s by %.1f degrees\n", past_rad / kDegree,
+                late_rad / kDegree);
+    EXPECT_LT(past_rad, 0.5 * lead_rad);
+    EXPECT_LT(late_rad, kNear_rad);
+  }
+}
+
 // The arm on the outer side of a walk that turns is carried forward, the other one stays behind.
 TEST(UpperBody, CarriesArmsWithTheTrunkInASharpTurn) {
   constexpr double kLeast_m = 0.13;

@@ -1,5 +1,5 @@
-"""Random sticks by a thumb of 60 ms, runs of a minute, 25 on level ground and 30 on the course: each ends
-standing, and no bound of transitions.py is broken by more than half."""
+"""Random sticks by a thumb of 60 ms, runs of a minute: each ends standing, and no bound of transitions.py is broken by more than
+half. On level ground and on the course, on level ground also by thumbs of 30 and 150 ms and with captured motions."""
 import concurrent.futures
 import math
 import os
@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 import transitions
+from support.program import DATA
 
 LAST_MOVE_S, END_S = 55.0, 61.0
 # Twenty runs; on level ground those in which a knee jerked by up to 2.5 degrees a tick^2, or the hips braked by 10 m/s^2, as a
@@ -34,23 +35,31 @@ def moves(seed):
     return [*out, (time_s + 0.5, 0.0, 0.0)]
 
 
-@pytest.fixture(scope="module", name="figures", params=["level", "course"])
-def measured(request, program, tmp_path_factory):
-    is_level = request.param == "level"
-    folder = tmp_path_factory.mktemp(request.param)
-    options = [] if is_level else ["--terrain", "course"]
+def measured(player, seed):
+    walk = player.walk(*moves(seed), end_s=END_S)
+    shins, feet = transitions.apart(walk)
+    return {"stands": walk.col["stage"][-1] == "idle", "feet": feet.min(), "shins": shins.min(),
+            "m_s2": np.linalg.norm(transitions.at_60_hz(walk.root)[1][:, [0, 2]], axis=-1).max(),
+            "jerk": walk.second_differences.max(), "legs": walk.second_differences[:, sum(walk.leg_joints, [])].max()}
 
+
+def runs_of(program, folder, seeds, **player):
     def run(seed):
         place = folder / str(seed)
         place.mkdir()
-        walk = transitions.Player(program, place, options=options).walk(*moves(seed), end_s=END_S)
-        shins, feet = transitions.apart(walk)
-        return {"stands": walk.col["stage"][-1] == "idle", "feet": feet.min(), "shins": shins.min(),
-                "m_s2": np.linalg.norm(transitions.at_60_hz(walk.root)[1][:, [0, 2]], axis=-1).max(),
-                "jerk": walk.second_differences.max()}
+        return measured(transitions.Player(program, place, **player), seed)
 
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        return list(pool.map(run, SEEDS[request.param]))
+        return list(pool.map(run, seeds))
+
+
+@pytest.fixture(scope="module", name="figures", params=["level", "course", "thumb of 0.03 s", "thumb of 0.15 s"])
+def figures_of(request, program, tmp_path_factory):
+    folder = tmp_path_factory.mktemp("runs")
+    if request.param in SEEDS:
+        options = ("--terrain", "course") if request.param == "course" else ()
+        return runs_of(program, folder, SEEDS[request.param], options=options)
+    return runs_of(program, folder, range(10), thumb_s=float(request.param.split()[2]))
 
 
 def test_random_sticks_end_in_a_stand(figures):
@@ -65,3 +74,17 @@ def test_random_sticks_push_hips_and_joints_no_harder_than_half_as_much_again(fi
 def test_random_sticks_keep_legs_apart(figures):
     assert min(run["feet"] for run in figures) >= FEET_MM
     assert min(run["shins"] for run in figures) >= SHINS_MM
+
+
+@pytest.mark.parametrize("clip", ("cmu_006_01_iclone.bvh", "cmu_07_05.amc", "cmu_35_01.amc", "dpr_walk_simple.bvh"))
+def test_random_sticks_of_captures_stay_within_half_as_much_again(program, tmp_path, clip):
+    motion = DATA / "mocap" / clip
+    if not motion.is_file():
+        pytest.skip(f"{motion} is not there")
+    steady = transitions.Player(program, tmp_path, motion).walk((0.5, 0, 1.0), end_s=6)
+    own_m_s2 = np.linalg.norm(transitions.at_60_hz(steady.root)[1][2 * transitions.RATE:-20, [0, 2]], axis=-1).max()
+    for run in runs_of(program, tmp_path, range(10), motion=motion):
+        assert run["stands"]
+        assert run["m_s2"] <= max(HARDEST_M_S2, 1.5 * own_m_s2)
+        assert run["legs"] <= 1.5 * 1.2
+        assert run["feet"] >= FEET_MM and run["shins"] >= SHINS_MM

@@ -320,8 +320,9 @@ template <int kWidth, bool kPaper>
                                  const Poses& poses) noexcept {
   using V = Floats<kWidth>;
   // A turning walk raises the bounds, for its own turn is a part of the chest's and the head's: by
-  // kMoreTurning rad/s^2 times the fourth power of the turn's rate, up to kMostTurning. The chest,
-  // which the head leads, has kChestLess of the head's bound. Steps that are slower than the data's
+  // kMoreTurning rad/s^2 times the fourth power of the turn's rate, up to kMostTurning. A turn that
+  // is let go counts until it has ended: the head has to stop with it. The chest, which the head
+  // leads, has kChestLess of the head's bound. Steps that are slower than the data's
   // turn both by less, on a straight way shorter ones as well.
   constexpr float kMoreTurning = 320.0f * kDegree_rad, kMostTurning = 300.0f * kDegree_rad,
                   kChestLess = 0.8f;

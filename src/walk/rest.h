@@ -443,7 +443,10 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
   constexpr float kToClose_s = 0.40f, kNextStep_s = 0.35f, kWayWhileClosing = 0.44f;
   // Share of speed times time above which hips that have all that time would first get faster.
   constexpr float kWayInTime = 0.5f;
-  constexpr float kSwings = 1.3f;       // greatest ratio of the hips' speed in a step to its mean
+  constexpr float kSwings = 1.3f;  // greatest ratio of the hips' speed in a step to its mean
+  // Of the mean speed: on level ground, hips of a steady walk in a hurry count as at most so fast,
+  // for what is more swings back by itself.
+  constexpr float kSlows = 0.9f;
   constexpr float kLurch = 1.35f;       // ratio of the speed of hips that lurch to the walk's mean
   constexpr float kFurtherStep = 0.3f;  // shortest step between, a share of the foot's own
   constexpr float kTurnsOnSpot = 0.1f;  // steps below this ratio are on the spot
@@ -472,8 +475,7 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
   const bool leads_on = along(x.v, z.v) > tick_s * mean_m_s && along(x.a, z.a) > 0.0f;
   if (!on_spot && change.starting == 0.0f && leads_on) x.a = z.a = 0.0f;
   const float speed = along(x.v, z.v) / tick_s, bend = along(x.a, z.a) / (tick_s * tick_s),
-              from = sign * tables.rest_lead_m - along(x.x, z.x), need = kNeed * speed * speed,
-              left_s = time.to_strike * tick_s,
+              from = sign * tables.rest_lead_m - along(x.x, z.x), left_s = time.to_strike * tick_s,
               next_own_m = own_step_m<float>(tables, !right, time.back),
               foot_m = flies ? along(state.last_heel_m[0].x, state.last_heel_m[0].z)
                              : along(state.print_x_m, state.print_z_m);
@@ -481,7 +483,11 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
   // learns it. Hips of a walk that starts or changes its pace may be far from the mean.
   // One that is to go the other way is in a hurry: it brakes as hard as it may at that moment.
   const bool hurries = state.asked.walks != 0.0f && !is_asked_onto_spot(tables, state);
-  const float pace = hurries ? speed : most(least(mean_m_s, kSwings * speed), speed / kSwings),
+  const bool swings_back =
+      hurries && !kIsUneven<F> && change.led == 0.0f && change.starting == 0.0f && !on_spot;
+  const float fast = swings_back ? least(speed, kSlows * mean_m_s) : speed,
+              need = kNeed * fast * fast;
+  const float pace = hurries ? fast : most(least(mean_m_s, kSwings * speed), speed / kSwings),
               paced_need = kNeed * pace * pace;
   const float most_closing = on_spot ? kMostClosingOnSpot : kMostClosing;
   const float longest_s = longest_closing_s(tables, state);

@@ -31,17 +31,22 @@ constexpr double kLeastKnee = 2.0 * kDegree, kStraighter = 3.0 * kDegree;
 // Backward strides: least knee angle (rad), factor on smoothness, weights of the data.
 constexpr double kLeastKneeBack = 8.0 * kDegree, kSmootherBack = 10.0, kHipBack = 0.3,
                  kAnkleBack = 0.17;
-// Legs that follow hips of the data's speed change more evenly at this factor on smoothness: with
-// 1, the second differences of quick walks grow by a tenth.
-constexpr double kSmootherLegs = 1.5;
-// Factor on the pelvis' smoothness there: its speed already costs. With 1, a knee follows the hips
-// in a wave of a degree where a capture's feet slide.
-constexpr double kLooserPelvis = 0.3;
-// Shares of the cost of the hips' speed, and of the looser pelvis, in shorter strides (in
-// proportion to the ratio) and in longer ones, which stretch the legs. With 1 in shorter strides, a
-// step of cmu_12_01 that is resumed pushes by 10.5 m/s^2 in place of 7.7; with 1 in longer ones,
-// starts of cmu_m21_walk at full stick push by 5.1 m/s^2 in place of 3.9.
-constexpr double kShortSpeed = 0.14, kLongSpeed = 0.03;
+// What it costs to miss the hips' forward speed, and what changes with it.
+struct SpeedCost {
+  double shorter, longer;  // shares in strides that are shorter, times their ratio, and longer
+  double legs, pelvis;     // factors on the smoothness of the legs and, by the share, of the pelvis
+};
+// Longer strides stretch the legs. With 1 in shorter strides, a step of cmu_12_01 that is resumed
+// pushes by 10.5 m/s^2 in place of 7.7; with 1 in longer ones, starts of cmu_m21_walk at full stick
+// push by 5.1 m/s^2 in place of 3.9. Legs with 1: second differences of quick walks grow by a
+// tenth. Pelvis with 1: a knee follows the hips in a wave of a degree where a capture's feet slide.
+constexpr SpeedCost kCapturedSpeed{0.14, 0.03, 1.5, 0.3};
+// Pelvis with 1: the built-in walk's hips sway by 3.6 m/s^2 at full stick in place of 2.4.
+constexpr SpeedCost kMadeSpeed{1.0, 1.0, 3.0, 3.0};
+// The published angles of the built-in walk would move its hips slowest at the strikes, by a
+// quarter of their speed. People's are fastest there, as pendulums: by kSurge of the mean speed,
+// kEarly of a cycle before the strike, for its landing leg would be straight at 0. Its least knee.
+constexpr double kSurge = 0.1, kEarly = 1.0 / 16.0, kLeastMadeKnee = 2.7 * kDegree;
 constexpr double kLeastStandingKnee = 5.0 * kDegree;  // least bend
 // Share of the data's knee and ankle angles in steps of length 0: the foot still has to leave the
 // floor.
@@ -200,25 +205,30 @@ struct Builder {
     p.strike = cycle.strike;
     p.toe_off = cycle.toe_off;
     const StageClock stages = clock(ratio);
+    const bool is_made = !cycle.captured && cycle.stride_m > 0.0;
     for (int i = 0; i < kCycleSamples; ++i) {
       p.wanted.push_back(scaled(i, ratio));
       p.time.push_back(stages.time_at(double(i) / kCycleSamples));
+      if (is_made) {
+        const double swing = 4.0 * kPi * (double(i) / kCycleSamples + kEarly);
+        p.wanted.back().pelvis_m.z = p.stride_m * kSurge / (4.0 * kPi) * sin_cos(swing).sin;
+      }
     }
     for (int side : {0, 1}) {
       p.heel_m[side] = footprint(side, ratio);
       if (cycle.stride_m < 0.0) continue;
       double least_rad = kPi;
       for (const StrideSample& s : p.wanted) least_rad = std::min(least_rad, s.leg[side][kKneeX]);
-      p.least_knee_rad[side] = std::max(kLeastKnee, least_rad - kStraighter);
+      p.least_knee_rad[side] =
+          std::max(is_made ? kLeastMadeKnee : kLeastKnee, least_rad - kStraighter);
     }
-    // A cycle that is run back is not marked as captured: the data's speed would cost its knees 2
-    // degrees.
-    if (cycle.captured) {
-      // Shorter steps have less speed to keep, steps on the spot none.
-      const double share = ratio > 1.0 ? kLongSpeed : ratio < 1.0 ? kShortSpeed * ratio : 1.0;
+    // Run back, the data's speed would cost knees 2 degrees. Steps on the spot have none to keep.
+    if (cycle.stride_m > 0.0) {
+      const SpeedCost& cost = is_made ? kMadeSpeed : kCapturedSpeed;
+      const double share = ratio > 1.0 ? cost.longer : ratio < 1.0 ? cost.shorter * ratio : 1.0;
       p.own_stride_m = cycle.stride_m;
-      p.leg_smoothness = mix(1.0, kSmootherLegs, std::min(1.0, ratio));
-      p.pelvis_smoothness = mix(1.0, kLooserPelvis, share);
+      p.leg_smoothness = mix(1.0, cost.legs, std::min(1.0, ratio));
+      p.pelvis_smoothness = mix(1.0, cost.pelvis, share);
       p.speed_weight = share;
     }
     return p;

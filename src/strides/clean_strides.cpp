@@ -42,11 +42,12 @@ struct SpeedCost {
 // tenth. Pelvis with 1: a knee follows the hips in a wave of a degree where a capture's feet slide.
 constexpr SpeedCost kCapturedSpeed{0.14, 0.03, 1.5, 0.3};
 // Pelvis with 1: the built-in walk's hips sway by 3.6 m/s^2 at full stick in place of 2.4.
-constexpr SpeedCost kMadeSpeed{1.0, 1.0, 3.0, 3.0};
+constexpr SpeedCost kMadeSpeed{1.0, 1.0, 2.2, 3.0};
 // The published angles of the built-in walk would move its hips slowest at the strikes, by a
-// quarter of their speed. People's are fastest there, as pendulums: by kSurge of the mean speed,
-// kEarly of a cycle before the strike, for its landing leg would be straight at 0. Its least knee.
-constexpr double kSurge = 0.1, kEarly = 1.0 / 16.0, kLeastMadeKnee = 2.7 * kDegree;
+// quarter of their speed. People's swing as pendulums, fastest about the strikes: by kSurge of the
+// mean speed, kEarly of a cycle before the middle of a strike. At 0 the landing leg is so straight
+// that its knee jerks by 1 degree a tick^2. Its least knee: 2 lets it jerk by 0.85.
+constexpr double kSurge = 0.09, kEarly = 0.07, kLeastMadeKnee = 3.4 * kDegree;
 constexpr double kLeastStandingKnee = 5.0 * kDegree;  // least bend
 // Share of the data's knee and ankle angles in steps of length 0: the foot still has to leave the
 // floor.

@@ -444,9 +444,8 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
   // Share of speed times time above which hips that have all that time would first get faster.
   constexpr float kWayInTime = 0.5f;
   constexpr float kSwings = 1.3f;  // greatest ratio of the hips' speed in a step to its mean
-  // Of the mean speed: on level ground, hips of a steady walk in a hurry count as at most so fast,
-  // for what is more swings back by itself.
-  constexpr float kSlows = 0.9f;
+  // Of the mean speed: hips count as at most so fast, in a hurry and else.
+  constexpr float kSlowsInHurry = 0.9f, kSlows = 1.06f;
   constexpr float kLurch = 1.35f;       // ratio of the speed of hips that lurch to the walk's mean
   constexpr float kFurtherStep = 0.3f;  // shortest step between, a share of the foot's own
   constexpr float kTurnsOnSpot = 0.1f;  // steps below this ratio are on the spot
@@ -483,11 +482,12 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
   // learns it. Hips of a walk that starts or changes its pace may be far from the mean.
   // One that is to go the other way is in a hurry: it brakes as hard as it may at that moment.
   const bool hurries = state.asked.walks != 0.0f && !is_asked_onto_spot(tables, state);
-  const bool swings_back =
-      hurries && !kIsUneven<F> && change.led == 0.0f && change.starting == 0.0f && !on_spot;
-  const float fast = swings_back ? least(speed, kSlows * mean_m_s) : speed,
-              need = kNeed * fast * fast;
-  const float pace = hurries ? fast : most(least(mean_m_s, kSwings * speed), speed / kSwings),
+  // Hips that are fast about a strike slow down by themselves after it.
+  const bool walks_evenly = change.led == 0.0f && change.starting == 0.0f && !on_spot;
+  const float slows = hurries ? kSlowsInHurry : kSlows,
+              fast_m_s = walks_evenly ? least(speed, slows * mean_m_s) : speed,
+              need = kNeed * fast_m_s * fast_m_s;
+  const float pace = hurries ? fast_m_s : most(least(mean_m_s, kSwings * speed), speed / kSwings),
               paced_need = kNeed * pace * pace;
   const float most_closing = on_spot ? kMostClosingOnSpot : kMostClosing;
   const float longest_s = longest_closing_s(tables, state);

@@ -25,7 +25,7 @@ struct Bounds {
   double median_m_s2 = 4.0, worst_m_s2 = 6.0, start_m_s2 = 6.0, off_s = 0.35;
   double start_deg = 0.8, stop_deg = 0.8, resumed_deg = 0.8, paced_deg = 0.8, tap_deg = 0.8;
   double lower_m = 0.0105, paced_m = 0.0105;
-  double stop_s = 0.9, way_m = 0.9, turn_back_s = 0.75, reversal_s = 1.2, reversal_m_s2 = 6.0;
+  double stop_s = 0.9, way_m = 0.9, turn_back_s = 0.95, reversal_s = 1.2, reversal_m_s2 = 6.0;
   double resumed = 1.5, paced = 1.75, faster = 1.14;
   double shins_m = 0.07, feet_m = 0.06, turning_deg = 0.8, spot_m_s2 = 6.0, spot_deg = 1.0;
 };

@@ -107,14 +107,10 @@ TEST(NaturalWalk, StartsAndStopsAreGentleWheneverTheStickLetsGo) {
     EXPECT_LE(stops_from(stick).jolt_m_s2, kGentle_m_s2) << stick;
 }
 
-// At full stick the steady walk accelerates and decelerates its hips in each step by more than that
-// bound. A start and a stop add little to it.
-TEST(NaturalWalk, AtFullStickStartsAndStopsAreHardlyHarderThanTheWalk) {
-  Posed walk;
-  walk.walk(0, 1.0, 8 * kRate);
-  const double steady_m_s2 = walk.jolt_m_s2(5 * kRate, 8 * kRate);
-  EXPECT_LE(start_m_s2(1.0), 1.1 * steady_m_s2);
-  EXPECT_LE(stops_from(1.0).jolt_m_s2, 1.26 * steady_m_s2);
+// People need up to 6 m/s^2 from and to a brisk walk.
+TEST(NaturalWalk, AtFullStickStartsAndStopsAreLittleHarder) {
+  EXPECT_LE(start_m_s2(1.0), 1.1 * kGentle_m_s2);
+  EXPECT_LE(stops_from(1.0).jolt_m_s2, 1.15 * kGentle_m_s2);
 }
 
 TEST(NaturalWalk, AWalkStandsWithinTwoStepsWheneverTheStickLetsGo) {

@@ -601,6 +601,11 @@ template <class V>
 V slope_of(const V& now, const V& last, const V& before) noexcept {
   return 0.5f * (3.0f * now - 4.0f * last + before);
 }
+// The same half a tick later.
+template <class V>
+V coming_slope(const V& now, const V& last, const V& before) noexcept {
+  return 2.0f * now - 3.0f * last + before;
+}
 
 // Keeps the differences of a foot that lifts off, and of its slope, from its flight in the tables,
 // which are read a tick ahead for their slope.

@@ -42,7 +42,8 @@ struct Behind {
 // their place at rest, per second. A turn on the spot (`on_spot`) has no direction to go beyond or
 // back.
 inline float best_rest_s(const Off<float>& goes, const Off<float>& aside, bool on_spot,
-                         float least_s, float most_s, const Behind (&landings)[2]) noexcept {
+                         float least_s, float most_s, const Behind (&landings)[2],
+                         float late = kLate) noexcept {
   constexpr int kTimes = 20, kPoints = 40;         // times that are tried; points of each quintic
   constexpr float kOver = 200.0f, kAhead = 40.0f;  // costs of a metre, in m/s^2
   float best_s = least_s, least = std::numeric_limits<float>::infinity();
@@ -65,7 +66,7 @@ inline float best_rest_s(const Off<float>& goes, const Off<float>& aside, bool o
         if (now_s <= landing.time_s) ahead = most(ahead, off.x + landing.way_m);
     }
     if (on_spot) over = back = 0.0f;
-    const float cost = brakes + kOver * over + kBack * back + kLate * time_s + kAhead * ahead;
+    const float cost = brakes + kOver * over + kBack * back + late * time_s + kAhead * ahead;
     if (cost < least) best_s = time_s, least = cost;
   }
   return best_s;
@@ -436,8 +437,10 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
   constexpr float kNeed = 0.72f;
   constexpr float kBrake_m_s2 = 3.0f, kMostBrake_m_s2 = 3.9f;
   // Of a walk that is to go the other way: to close at once. If it will turn back without standing:
-  // to close after the landing, and the hardest one.
+  // to close after the landing, and the hardest one, with which it or one that is to turn on the
+  // spot closes at once, too.
   constexpr float kHastyClose_m_s2 = 3.3f, kHastyBrake_m_s2 = 3.9f, kMostHasty_m_s2 = 4.7f;
+  constexpr float kLateOnSpot = 4.0f;  // cost of a second, in m/s^2, before a turn on the spot
   // From the landing to the end of a closing step, and of a step between; the share of speed times
   // time that braking hips go in it.
   constexpr float kToClose_s = 0.40f, kNextStep_s = 0.35f, kWayWhileClosing = 0.44f;
@@ -481,7 +484,8 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
   // By the walk's mean speed a stop has much the same way from any moment of a step, so a player
   // learns it. Hips of a walk that starts or changes its pace may be far from the mean.
   // One that is to go the other way is in a hurry: it brakes as hard as it may at that moment.
-  const bool hurries = state.asked.walks != 0.0f && !is_asked_onto_spot(tables, state);
+  const bool to_spot = is_asked_onto_spot(tables, state),
+             hurries = state.asked.walks != 0.0f && !to_spot;
   // Hips that are fast about a strike slow down by themselves after it.
   const bool walks_evenly = change.led == 0.0f && change.starting == 0.0f && !on_spot;
   const float slows = hurries ? kSlowsInHurry : kSlows,
@@ -496,16 +500,20 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
                            const Behind(&landings)[2]) {
     const Off<float> aside{way.left(x.x, z.x) - aside_m, way.left(x.v, z.v) / tick_s,
                            way.left(x.a, z.a) / (tick_s * tick_s)};
-    const float time_s = best_rest_s({-way_m, speed, bend}, aside, on_spot, least_s,
-                                     most(least_s, most_s), landings);
+    const float time_s =
+        best_rest_s({-way_m, speed, bend}, aside, on_spot, least_s, most(least_s, most_s), landings,
+                    to_spot ? kLateOnSpot : kLate);
     change.rest_ticks = ticks_of(time_s, tick_s);
     change.stops = 1.0f;
     change.pelvis_x_m = x, change.pelvis_z_m = z;
   };
   const bool turns = hurries && !kIsUneven<F> && !time.back;
-  const float close_m_s2 = hurries ? kHastyClose_m_s2 : kBrake_m_s2,
+  const bool is_hasty = turns || to_spot;
+  const float close_m_s2 = is_hasty  ? kMostHasty_m_s2
+                           : hurries ? kHastyClose_m_s2
+                                     : kBrake_m_s2,
               brake_m_s2 = turns ? kHastyBrake_m_s2 : kBrake_m_s2,
-              most_m_s2 = turns ? kMostHasty_m_s2 : kMostBrake_m_s2;
+              most_m_s2 = is_hasty ? kMostHasty_m_s2 : kMostBrake_m_s2;
   const bool may_close = (from >= need / close_m_s2 && foot_m < -kBehind_m) || on_spot;
   const bool moves = !flies || (may_move && time.u < kStays);
   if (may_close && change.starting == 0.0f && moves) {

@@ -486,11 +486,12 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
   // One that is to go the other way is in a hurry: it brakes as hard as it may at that moment.
   const bool to_spot = is_asked_onto_spot(tables, state),
              hurries = state.asked.walks != 0.0f && !to_spot;
-  // Hips that are fast about a strike slow down by themselves after it.
+  // Hips that are fast about a strike slow down by themselves after it, which saves a step. The
+  // steps are long enough for their own speed.
   const bool walks_evenly = change.led == 0.0f && change.starting == 0.0f && !on_spot;
   const float slows = hurries ? kSlowsInHurry : kSlows,
               fast_m_s = walks_evenly ? least(speed, slows * mean_m_s) : speed,
-              need = kNeed * fast_m_s * fast_m_s;
+              need = kNeed * fast_m_s * fast_m_s, own_need = kNeed * speed * speed;
   const float pace = hurries ? fast_m_s : most(least(mean_m_s, kSwings * speed), speed / kSwings),
               paced_need = kNeed * pace * pace;
   const float most_closing = on_spot ? kMostClosingOnSpot : kMostClosing;
@@ -536,7 +537,7 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
   const auto wanted = [&](float time_s) {
     const float longest = left_s + longest_s + (time_s > kToClose_s ? kNextStep_s * scale : 0.0f),
                 brakes_m = most(least(paced_need / brake_m_s2, kWayInTime * pace * longest),
-                                need / most_m_s2);
+                                own_need / most_m_s2);
     return most(brakes_m, kWayWhileClosing * pace * (left_s + time_s * scale)) - from;
   };
   float step_m = planned, further_m = 0.0f;

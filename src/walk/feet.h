@@ -140,20 +140,20 @@ Vec<V> flight_heel(const Tables& tables, const Time<V>& time, const Landing<V>& 
     // second; it goes no farther behind or ahead of its even way than aside.
     const V most_m = all<V>(kMostAside_m * tables.size),
             soft_m = all<V>(kSoftAside_m * tables.size);
-    const auto low = closes_low(tables, change, state);
+    const V low = closes_low(tables, change, state);
     Vec<V> ahead = seen(hips.own, stride.heel_behind_m, turns, all<V>(kPastClosely));
     const V outwards = chosen<V>(time.right, -1.0f, 1.0f);
     ahead.x = outwards * soft_least(V(outwards * ahead.x), most_m, soft_m);
     const V swings_m = ahead.z + hips.own.stride_m * (1.0f - gone),
             closing_m =
                 comes_in(u) * -soft_least(V(-soft_least(swings_m, most_m, soft_m)), most_m, soft_m),
-            off_m = low ? closing_m : swings_m, goes = kLikeAStep * smoother(kWalksFrom, 1.0f, u),
-            walks = closes ? V{} : goes;
+            off_m = mix(swings_m, closing_m, low),
+            goes = kLikeAStep * smoother(kWalksFrom, 1.0f, u), walks = closes ? V{} : goes;
     const Vec<V> off = landing.way * Vec<V>{ahead.x, V{}, off_m};
     // A foot that closes flies by this share faster at first. Hips that have not braked yet would
     // leave it behind, and the leg, which gets straight, pull them down by up to 2 cm.
     constexpr float kSooner = 0.3f;  // with 0.6 knees turn back harder
-    const V even = low ? smoother(V(u * (1.0f + kSooner * (1.0f - u)))) : gone,
+    const V even = mix(gone, smoother(V(u * (1.0f + kSooner * (1.0f - u)))), low),
             x = mix(state.print_x_m, landing.x_m, even) + off.x,
             z = mix(state.print_z_m, landing.z_m, even) + off.z;
     p.x = is_short ? mix(x, V(landing.x_m + to.x), walks) : p.x;
@@ -185,7 +185,7 @@ Vec<V> flight_heel(const Tables& tables, const Time<V>& time, const Landing<V>& 
     more = more * up;
   }
   p.y = stride.heel_high_m * low * mix(all<V>(1.0f), more, smoother(0.0f, 0.4f, u));
-  p.y = closes_low(tables, change, state) ? V(p.y * comes_in(u)) : p.y;
+  p.y = closes ? V(p.y * mix(all<V>(1.0f), comes_in(u), closes_low(tables, change, state))) : p.y;
   // In a first or last flight the toe leaves the floor at once.
   const V left_u = 1.0f - u, square_u = u * left_u;
   const V high_m = tables.size * 16.0f * chosen<V>(closes, kLastLift_m, kFirstLift_m);

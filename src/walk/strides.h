@@ -431,13 +431,16 @@ Mask<V> goes_level(const Tables& tables, const State<V>& state) noexcept {
   constexpr float kGoes = 0.1f;  // least ratio of the last step's stride
   return state.ratio_behind > all<V>(tables.terrain == nullptr ? kGoes : kNever);
 }
-// Walks whose last foot flies low. On uneven ground it has risers to pass, and on the spot it is
-// lifted for a short way.
+// The share by which a last foot flies low. On uneven ground it has risers to pass, and on the spot
+// it is lifted for a short way.
 template <class V>
-Mask<V> closes_low(const Tables& tables, const Change<V>& change, const State<V>& state) noexcept {
-  constexpr float kHigh = 1.05f;  // factor on the height: such a style's feet keep their flight
+V closes_low(const Tables& tables, const Change<V>& change, const State<V>& state) noexcept {
+  // Factors on the height: such a style's feet keep their flight. A style may come or go in it.
+  constexpr float kLow = 1.05f, kHigh = 1.25f;
   const V high = most(state.lift[0].x, state.lift[1].x);
-  return both(both(change.closing != V{}, high < all<V>(kHigh)), goes_level(tables, state));
+  return both(change.closing != V{}, goes_level(tables, state))
+             ? V(1.0f - smoother(kLow, kHigh, high))
+             : V{};
 }
 // The share that is shown of a last flight's height and of its difference from its even way.
 // Captured feet leave the floor at once in short strides, and the phase of a last flight is fast.
@@ -476,14 +479,16 @@ Stride<V> read_by_clock(const Tables& tables, const Time<V>& time, const Landing
   flies.twist_rad = flat * flies.twist_rad, flies.roll_rad = flat * flies.roll_rad;
   raise_limping_heel(tables, time, phase, landing.ratio, u, change, stride);
   stride.heel_high_m = is_short ? stride.heel_behind_m.y : stride.heel_high_m;
-  const auto low = closes_low(tables, change, state);
-  stride.heel_high_m = low ? soft_least(stride.heel_high_m, all<V>(kMostHigh_m * tables.size),
-                                        all<V>(kSoftHigh_m * tables.size))
-                           : stride.heel_high_m;
+  const V low = closes_low(tables, change, state),
+          low_m = soft_least(stride.heel_high_m, all<V>(kMostHigh_m * tables.size),
+                             all<V>(kSoftHigh_m * tables.size));
+  stride.heel_high_m = closes ? mix(stride.heel_high_m, low_m, low) : stride.heel_high_m;
   const V pitch_rad = soft_least(flies.pitch_rad, all<V>(kMostPitch_rad), all<V>(kSoftPitch_rad));
   // In a first flight, too: the toe of a foot that points down would stay at the floor for longer.
-  const auto is_bound = tables.terrain == nullptr ? either(low, change.starting != V{}) : low;
-  flies.pitch_rad = is_bound ? pitch_rad : flies.pitch_rad;
+  const auto starts = tables.terrain == nullptr ? change.starting != V{} : Mask<V>{};
+  flies.pitch_rad = starts   ? pitch_rad
+                    : closes ? mix(flies.pitch_rad, pitch_rad, low)
+                             : flies.pitch_rad;
   return stride;
 }
 

@@ -463,11 +463,12 @@ TEST(Simulation, RandomCommandsKeepThePoseValid) {
 }
 
 // A regression: when a stop was planned while the hips moved back, they continued for 0.8 m and
-// dived below the floor. The lowest are at 0.448, in long steps back that begin within a tick.
+// dived below the floor. In 17 a style that lifts the feet goes as the last foot flies, which
+// jumped by 0.16 m.
 TEST(Simulation, NoCommandsMakeTheHipsDive) {
   for (unsigned seed = 1; seed <= 60; ++seed) {
     const auto check = [](const Walker& w) {
-      EXPECT_GT(walk_frame(w).pelvis_m.y, 0.44 * w.model->stand_m);
+      EXPECT_GT(walk_frame(w).pelvis_m.y, 0.5 * w.model->stand_m);
     };
     walk_at_random(IkMode::robust, any_command, check, seed, 5000);
   }

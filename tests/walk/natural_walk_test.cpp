@@ -176,6 +176,39 @@ TEST(NaturalWalk, DoubleSupportFallsFromAThirdOfAStrollToAFifthOfABriskWalk) {
   EXPECT_NEAR(before, 0.20, 0.035);
 }
 
+// People's hips swing over each leg like a pendulum that stands on its foot.
+TEST(NaturalWalk, TheHipsAreFastestAboutTheStrikesAsPeoplesAre) {
+  for (const double stick : {0.5, 0.8, 1.0}) {
+    Posed walk;
+    walk.walk(0, stick, 5 * kRate);
+    std::vector<int> strikes;
+    for (int before = walk.steps(); strikes.size() < 5; before = walk.steps()) {
+      walk.walk(0, stick, 1);
+      if (walk.steps() != before) strikes.push_back(static_cast<int>(walk.hips_m.size()) - 1);
+    }
+    for (std::size_t i = 0; i + 1 < strikes.size(); ++i) {
+      const int from = strikes[i], ticks = strikes[i + 1] - from;
+      const auto way_m = [&](int k) {
+        return walk.hips_m[from + k].z - walk.hips_m[from + k - 1].z;
+      };
+      int fastest = 0, slowest = 0;
+      double sum_m = 0.0;
+      for (int k = 0; k < ticks; ++k) {
+        if (way_m(k) > way_m(fastest)) fastest = k;
+        if (way_m(k) < way_m(slowest)) slowest = k;
+        sum_m += way_m(k);
+      }
+      const double from_strike = std::min(fastest, ticks - fastest) / double(ticks),
+                   faster = way_m(fastest) * ticks / sum_m;
+      EXPECT_LT(from_strike, 0.2) << stick;
+      EXPECT_GT(slowest, 0.15 * ticks) << stick;
+      EXPECT_LT(slowest, 0.6 * ticks) << stick;
+      EXPECT_GT(faster, 1.05) << stick;
+      EXPECT_LT(faster, 1.2) << stick;
+    }
+  }
+}
+
 TEST(NaturalWalk, TheSwingingKneeBendsLessInShortSteps) {
   double least_deg = 0.0, before_deg = 0.0;
   for (const double stick : {0.1, 0.25, 0.5, 0.8}) {

@@ -294,6 +294,16 @@ V gap_left(const V& u, const Gap<V>& gap, const Change<V>& change) noexcept {
   return gap.x * (1.0f - smoother(s)) + gap.v * change.gap_lasts * slope_left(s);
 }
 
+// The height that a flying foot keeps above. A new plan may begin with a foot below the line that
+// clears the ground (`clear_m`), on that of the old plan (`base_m`). It comes over to the higher.
+template <class V>
+V line_to_keep(const V& base_m, const V& clear_m, const V& u, const Change<V>& change) noexcept {
+  constexpr float kComes = 0.18f;  // share of the rest of the flight
+  const V high_m = most(base_m, clear_m);
+  return change.gap_begin != V{} ? mix(base_m, high_m, smoother(0.0f, kComes, gap_share(u, change)))
+                                 : high_m;
+}
+
 // The width over which the floor's bound on the pitch is loose: the pitch's difference from the
 // tables, once the toe has left the floor.
 template <class V>
@@ -572,15 +582,9 @@ Feet<V> plan_feet(const Tables& tables, const Time<V>& time, const Landing<V>& l
                          : pitch_to_rise<V>(tables, time.right, footing.rise_m, most(planned, V{}));
   }
   pitch_in_flight(time, sole, flight, planned, off, change, state, footing, foot);
-  // A new plan may begin with a foot below the line that clears the ground. What turns the foot
-  // later comes to keep to that line.
   feet.base_m = most(flight.base_m, clear_m);
-  if constexpr (kIsUneven<F>) {
-    constexpr float kComes = 0.18f;  // share of the rest of the flight
-    const V keeps = smoother(0.0f, kComes, gap_share(time.u, change));
-    feet.base_m = both(time.flies, change.gap_begin != V{}) ? mix(flight.base_m, feet.base_m, keeps)
-                                                            : feet.base_m;
-  }
+  if constexpr (kIsUneven<F>)
+    feet.base_m = time.flies ? line_to_keep(flight.base_m, clear_m, time.u, change) : feet.base_m;
   feet.floor_m = feet.base_m;
   if constexpr (kIsUneven<F>) {
     const V left_m = footing.print_y_m + rise_of(footing.print, V(foot.heel_m.x - state.print_x_m),

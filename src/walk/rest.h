@@ -105,8 +105,10 @@ Flown flown(const Tables& tables, const Change<float>& change, const State<float
       if (k == 1) follow_room(tables, footing);
       const Vec<float> room_m = room_at(time.u, at, footing);
       flown.heel_m[k] = flown.heel_m[k] + room_m;
-      flown.line_m[k] = base_m + gap_left(time.u, footing.gap_line_m, change);
+      const float line_m = base_m + gap_left(time.u, footing.gap_line_m, change);
       flown.room_m[k] = room_m.y + gap_left(time.u, footing.gap_room_m, change);
+      flown.line_m[k] = line_to_keep(line_m + flown.room_m[k], base_m + room_m.y, time.u, change) -
+                        flown.room_m[k];
     }
     const float pitch_off_rad = pitch_off(time, at.tick, change, at);
     if (k == 0) {

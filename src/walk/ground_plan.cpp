@@ -168,7 +168,8 @@ double cost_of(const Floor& floor, const Step& step, const Stretch& piece) noexc
 }
 
 // Tries the pieces from the one of the wanted place back to the standing foot's. If both are the
-// same piece, and its edge stops the step, it also tries the piece beyond this edge.
+// same piece, and its edge stops the step, it also tries the piece beyond this edge; also if the
+// edge brings the feet together and the flying foot comes from that piece.
 Stretch best_piece(const Floor& floor, const Step& step, const Stretch* settled) noexcept {
   constexpr int kMostPieces = 8;  // compared
   constexpr double kStay = 0.1;   // cost by which another piece than `settled` has to be cheaper
@@ -177,8 +178,10 @@ Stretch best_piece(const Floor& floor, const Step& step, const Stretch* settled)
   if (piece.from_m == step.stands.from_m) {
     const Room room = room_on(piece, step.sole, step.leg_m);
     const double z = std::clamp(step.wanted_m.z, room.low_m, room.high_m), dz = z - step.wanted_m.z;
-    if (is_stuck(step, step.length_m() + step.forward.z * dz))
-      piece = piece_at(floor, dz > 0.0 ? piece.from_m - kBeside_m : piece.to_m + kBeside_m);
+    const Stretch beyond =
+        piece_at(floor, dz > 0.0 ? piece.from_m - kBeside_m : piece.to_m + kBeside_m);
+    const bool stays = beyond.from_m == step.lifts.from_m && crowds_m(step, piece) > 0.0;
+    if (stays || is_stuck(step, step.length_m() + step.forward.z * dz)) piece = beyond;
   }
   double least = std::numeric_limits<double>::infinity();
   for (int n = 0; n < kMostPieces; ++n) {

@@ -7,9 +7,10 @@
 // Flights. A flight is planned over a ground line from one foothold's height to the other's. If
 // ground rises above this line, a B-spline raises it: its control points are the greatest heights
 // of the ground under the sole in their neighbourhood. At a riser close to a foothold a second
-// spline moves the foot along z, away from the riser; down stairs it moves the foot ahead, and the
-// first spline is drawn taut over the edges, so that the foot sinks early. Where such a move would
-// bring the foot to the standing one, the first spline raises it over the riser instead.
+// spline moves the foot along z, away from the riser, and as far along the standing foot as this
+// needs (move_along_z()); down stairs it moves the foot ahead, and the first spline is drawn taut
+// over the edges, so that the foot sinks early. Where such a move would still bring the foot to the
+// standing one, the first spline raises it over the riser instead.
 #include "walk/ground_plan.h"
 
 #include "animation/floor.h"
@@ -111,10 +112,10 @@ vec3 wanted_on(const Step& step, const Stretch& piece) noexcept {
 
 // The cheapest move that shifts a place by `dz_m` along z.
 vec3 shifted(const Step& step, double dz_m) noexcept {
-  constexpr double kSkew = 0.25;  // cost of a move ahead, where one aside costs 1
   const vec3& f = step.forward;
   const vec3 left = glm::cross(kUp, f);
-  return (f * f.z + left * (left.z * kSkew)) * (dz_m / (f.z * f.z + left.z * left.z * kSkew));
+  return (f * f.z + left * (left.z * kMoveAhead)) *
+         (dz_m / (f.z * f.z + left.z * left.z * kMoveAhead));
 }
 vec3 place_on(const Step& step, const Stretch& piece) noexcept {
   const Room room = room_on(piece, step.sole, step.leg_m);
@@ -495,6 +496,7 @@ struct PlannedFlight {
   std::array<SolePoints, kProbes + 1> sole;
   std::array<SolePoints, kProbes + 1> base;  // the ground line's plane below each of them
   Wanted left{};                             // the way along z that is left to the landing
+  vec3 away{0.0};                            // the move that shifts a foot by a metre along z
   Stretch begin, end;
   double begin_room = 0.0, begin_m = 0.0, end_m = 0.0, climb = 0.0;
   // Where the standing foot is in the way beside a riser, the flight goes over the riser until this
@@ -582,6 +584,8 @@ PlannedFlight planned_flight(const Tables& tables, const Floor& floor, const Fra
     set_points(leg, frame, flies, foot, flight.sole[i], flight.base[i]);
     flight.left[i] = lands.z - frame.out(wide(flies.heel_m)).z;
   }
+  const Vec<float> away = move_along_z<float>(way_of_half(state.frame_sine, state.frame_cosine));
+  flight.away = frame.way(wide(away));
   flight.begin = piece_at(floor, print.z);
   flight.end = piece_at(floor, lands.z);
   flight.begin_m = print.y, flight.end_m = lands.y;
@@ -635,8 +639,8 @@ Spline keep_clear(const Floor& floor, double size, PlannedFlight& flight) noexce
   const Spline moves = wide_envelope(away, size);
   for (int i = 0; i <= kProbes; ++i) {
     const double moved = spline_of(moves, 0.0, share_at(i));
-    for (vec3& p : flight.sole[i]) p.z += moved;
-    for (vec3& p : flight.base[i]) p.z += moved;
+    for (vec3& p : flight.sole[i]) p += flight.away * moved;
+    for (vec3& p : flight.base[i]) p += flight.away * moved;
     flight.left[i] -= moved;
   }
   return moves;
@@ -653,7 +657,7 @@ Wanted wanted_raise(const Tables& tables, const Floor& floor, const PlannedFligh
     double over = -tables.leg_m;
     SolePoints sole = flight.sole[i];
     for (vec3& p : sole) {
-      p.z += moved;
+      p += flight.away * moved;
       if (flight.stays())
         p.z = std::clamp(p.z, flight.begin.from_m + kBeside_m, flight.begin.to_m - kBeside_m);
     }
@@ -875,7 +879,7 @@ double depth_of(const Floor& floor, const PlannedFlight& flight, const RoomPlan&
     SolePoints sole = flight.sole[i];
     for (vec3& p : sole) {
       p.y += between(now.raise_m, to.raise_m, flight.climb);
-      p.z += between(now.shift_m, to.shift_m, 0.0);
+      p += flight.away * between(now.shift_m, to.shift_m, 0.0);
     }
     const auto ground = heights_at(floor, sole);
     for (std::size_t k = 0; k < sole.size(); ++k) deep_m = std::max(deep_m, ground[k] - sole[k].y);
@@ -908,8 +912,8 @@ bool lead_past_stand(const Tables& tables, const Frame& frame, bool right, const
   const LegBones& stands = tables.leg[right ? 0 : 1];
   const vec3 heel_m = frame.at_m, toe_m = frame.out(wide(stands.toe_m) - wide(stands.heel_m));
   const auto near_m = [&](const SolePoints& sole, double moved) {
-    const vec3 away(0.0, 0.0, moved), from = 0.5 * (sole[0] + sole[1]) + away,
-                                      to = 0.5 * (sole[4] + sole[5]) + away;
+    const vec3 away = flight.away * moved, from = 0.5 * (sole[0] + sole[1]) + away,
+               to = 0.5 * (sole[4] + sole[5]) + away;
     return std::min({from_line(from, heel_m, toe_m), from_line(to, heel_m, toe_m),
                      from_line(heel_m, from, to), from_line(toe_m, from, to)});
   };

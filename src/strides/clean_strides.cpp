@@ -41,13 +41,14 @@ struct SpeedCost {
 // push by 5.1 m/s^2 in place of 3.9. Legs with 1: second differences of quick walks grow by a
 // tenth. Pelvis with 1: a knee follows the hips in a wave of a degree where a capture's feet slide.
 constexpr SpeedCost kCapturedSpeed{0.14, 0.03, 1.5, 0.3};
-// Pelvis with 1: the built-in walk's hips sway by 3.6 m/s^2 at full stick in place of 2.4.
-constexpr SpeedCost kMadeSpeed{1.0, 1.0, 2.2, 3.0};
+// Legs with 2.2: in the built-in walk with a stiff hip a toe joint jerks by 0.56 degrees a tick^2 in
+// place of 0.49.
+constexpr SpeedCost kMadeSpeed{1.0, 1.0, 4.7, 1.0};
 // The published angles of the built-in walk would move its hips slowest at the strikes, by a
 // quarter of their speed. People's swing as pendulums, fastest about the strikes: by kSurge of the
 // mean speed, kEarly of a cycle before the middle of a strike. At 0 the landing leg is so straight
 // that its knee jerks by 1 degree a tick^2. Its least knee: 2 lets it jerk by 0.85.
-constexpr double kSurge = 0.09, kEarly = 0.07, kLeastMadeKnee = 3.4 * kDegree;
+constexpr double kSurge = 0.09, kEarly = 0.08, kLeastMadeKnee = 3.3 * kDegree;
 constexpr double kLeastStandingKnee = 5.0 * kDegree;  // least bend
 // Share of the data's knee and ankle angles in steps of length 0: the foot still has to leave the
 // floor.

@@ -35,20 +35,22 @@ constexpr double kLeastKneeBack = 8.0 * kDegree, kSmootherBack = 10.0, kHipBack 
 struct SpeedCost {
   double shorter, longer;  // shares in strides that are shorter, times their ratio, and longer
   double legs, pelvis;     // factors on the smoothness of the legs and, by the share, of the pelvis
+  double weight;           // of the cost in the data's own stride
 };
 // Longer strides stretch the legs. With 1 in shorter strides, a step of cmu_12_01 that is resumed
 // pushes by 10.5 m/s^2 in place of 7.7; with 1 in longer ones, starts of cmu_m21_walk at full stick
 // push by 5.1 m/s^2 in place of 3.9. Legs with 1: second differences of quick walks grow by a
 // tenth. Pelvis with 1: a knee follows the hips in a wave of a degree where a capture's feet slide.
-constexpr SpeedCost kCapturedSpeed{0.14, 0.03, 1.5, 0.3};
-// Legs with 2.2: in the built-in walk with a stiff hip a toe joint jerks by 0.56 degrees a tick^2 in
-// place of 0.49.
-constexpr SpeedCost kMadeSpeed{1.0, 1.0, 4.7, 1.0};
+constexpr SpeedCost kCapturedSpeed{0.14, 0.03, 1.5, 0.3, 1.0};
+// Legs with 2.2: in the built-in walk with a stiff hip a toe joint jerks by 0.56 degrees a tick^2
+// in place of 0.49. Pelvis with 1: its hips push harder on slopes. Weight 1: its knees lose 0.1
+// degree.
+constexpr SpeedCost kMadeSpeed{1.0, 1.0, 4.8, 2.0, 0.61};
 // The published angles of the built-in walk would move its hips slowest at the strikes, by a
 // quarter of their speed. People's swing as pendulums, fastest about the strikes: by kSurge of the
 // mean speed, kEarly of a cycle before the middle of a strike. At 0 the landing leg is so straight
 // that its knee jerks by 1 degree a tick^2. Its least knee: 2 lets it jerk by 0.85.
-constexpr double kSurge = 0.09, kEarly = 0.08, kLeastMadeKnee = 3.3 * kDegree;
+constexpr double kSurge = 0.115, kEarly = 0.066, kLeastMadeKnee = 3.07 * kDegree;
 constexpr double kLeastStandingKnee = 5.0 * kDegree;  // least bend
 // Share of the data's knee and ankle angles in steps of length 0: the foot still has to leave the
 // floor.
@@ -231,7 +233,7 @@ struct Builder {
       p.own_stride_m = cycle.stride_m;
       p.leg_smoothness = mix(1.0, cost.legs, std::min(1.0, ratio));
       p.pelvis_smoothness = mix(1.0, cost.pelvis, share);
-      p.speed_weight = share;
+      p.speed_weight = cost.weight * share;
     }
     return p;
   }

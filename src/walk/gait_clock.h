@@ -419,7 +419,7 @@ void begin_step(const Tables& tables, const Time<V>& time, const Mask<V>& strike
   // After a flight that the ground has made long, the phase is slow. The roll lasts as long as it
   // takes to become as fast as in the flight. In its own time it would first become faster: at 0.83
   // of the steady rate hips surge and brake by 10 m/s^2.
-  constexpr float kSlow = 0.85f;  // of the phase's steady rate at a strike
+  constexpr float kSlow = 0.84f;  // of the phase's steady rate at a strike
   const V flight_rate = next.flight * tick_s / next.flight_s,
           roll_rate = next.roll * tick_s / next.roll_s;
   const auto is_slow = both(no(led), state.phase_rate < 0.5f * kSlow * (flight_rate + roll_rate));

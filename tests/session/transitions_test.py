@@ -217,8 +217,8 @@ def test_a_walk_stops_softly_for_a_turn_on_the_spot(program, tmp_path, options, 
     for walk, turns_s, before, after in turns_on_the_spot(player, to, np.arange(4.0, 4.6, 0.05)):
         assert walk.root[after, 1].min() > walk.root[before, 1].min() - 0.01
         assert hips_push(walk, after) <= 6.0
-        assert walk.second_differences[after].max() <= 0.82  # asked: 0.8
-        assert turns_s[0] <= 0.87 and turns_s[1] <= 1.83
+        assert walk.second_differences[after].max() <= 0.8
+        assert turns_s[0] <= 0.88 and turns_s[1] <= 1.88
 
 
 @pytest.mark.parametrize("clip, d2", (("cmu_m21_walk.bvh", 0.9), ("cmu_007_01_iclone.bvh", 1.2), ("cmu_07_01.amc", 1.2)))

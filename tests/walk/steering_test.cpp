@@ -235,7 +235,7 @@ TEST(Steering, ANoviceHardlyOvershootsATurnOf30Degrees) {
 TEST(Steering, APlayerWithoutForesightPassesAllGates) {
   EXPECT_EQ(passes(figure_of_eight(), 0.35, 0.7, 0.9), 12);
   EXPECT_EQ(passes(slalom(), 0.25, 0.5, 0.7), 12);
-  // 0.35 m is asked; one of the twelve players is 0.37 m off a corner's path.
+  // 0.35 m is asked; one of the twelve players is 0.379 m off a corner's path.
   EXPECT_EQ(passes(corners(), 0.38, 0.5, 0.7), 12);
   EXPECT_EQ(passes(straight(), 0.25, 1.0, 1.2), 12);
 }

@@ -393,7 +393,7 @@ constexpr int kKnotsOfFlight = kRoomKnots + 1;  // intervals between knots
 // lands and beside one where it lifts off; the height from which on a step of the ground counts.
 constexpr double kRoomAbove_m = 0.025, kRoomBeside_m = 0.005, kRoomAhead_m = 0.016;
 constexpr double kRiser_m = 0.01;
-constexpr double kMostShift_m = 0.25;     // along z
+constexpr double kMostShift_m = 0.30;     // along z
 constexpr double kLeastWanted_m = 0.004;  // smaller shifts and heights are ignored
 constexpr double kOver = 0.685;  // share of a flight down at which it is over its landing's piece
 
@@ -677,13 +677,16 @@ Wanted wanted_raise(const Tables& tables, const Floor& floor, const PlannedFligh
 // sinks to it; it never overshoots and comes back.
 Spline lead_in(const PlannedFlight& flight, Wanted& beside) noexcept {
   Spline knots;
-  double share = 0.0;
+  double share = 0.0, to_m = 0.0;
   for (int k = 1; k < kKnotsOfFlight; ++k) {
     for (int i = kProbes / 2; i < std::min(kProbes, (k + 2) * kProbes / kKnotsOfFlight); ++i) {
-      if (beside[i] * flight.left[i] > 0.0)
-        share = std::max(share, std::min(1.0, beside[i] / flight.left[i]));
+      const double left_m = flight.left[i];
+      if (beside[i] * left_m <= share * left_m * left_m) continue;
+      share = std::min(1.0, beside[i] / left_m), to_m = beside[i];
     }
-    knots[k - 1] = share * flight.left[k * kProbes / kKnotsOfFlight];
+    // Before a flight that goes beyond its landing comes back, its way leads into the riser.
+    const double left_m = flight.left[k * kProbes / kKnotsOfFlight];
+    knots[k - 1] = left_m * to_m > 0.0 ? share * left_m : 0.0;
   }
   for (int i = kProbes / 2; i < kProbes; ++i) {
     if (beside[i] * flight.left[i] > 0.0) beside[i] = 0.0;
@@ -965,9 +968,16 @@ bool goes_over(const Tables& tables, const Floor& floor, bool begins, const Plan
 float depth_of_flight(const Tables& tables, const Block<1>& block) noexcept {
   const Floor floor{*tables.terrain, block.placed[0]};
   const RoomPlan room = room_now(block.footing);
-  return static_cast<float>(depth_of(floor,
-                                     planned_flight(tables, floor, Frame(block.origin[0]), block),
-                                     room, room, block.state.tick / block.state.flight_ticks, 1.0));
+  PlannedFlight flight = planned_flight(tables, floor, Frame(block.origin[0]), block);
+  // Over risers an ankle at its limit points the foot down, as far as to its line.
+  if (block.footing.crosses != 0.0f) {
+    for (int i = 0; i <= kProbes; ++i) {
+      for (std::size_t k = 0; k < flight.sole[i].size(); ++k)
+        flight.sole[i][k].y = std::min(flight.sole[i][k].y, flight.base[i][k].y);
+    }
+  }
+  return static_cast<float>(
+      depth_of(floor, flight, room, room, block.state.tick / block.state.flight_ticks, 1.0));
 }
 
 void plan_room(const Tables& tables, bool begins, Block<1>& block) noexcept {

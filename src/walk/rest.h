@@ -554,8 +554,9 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
     asked_m = moves ? step_m / share : state.length_m[right ? 1 : 0].x;
     if (moves) step_m = foothold_m(tables, asked_m, block);
   }
-  // A landing turned aside may be behind the other foot: that is no step's length.
-  const bool keeps = on_spot && !kIsUneven<F>;
+  // A landing turned aside, or beside a riser, may be behind the other foot: that is no step's
+  // length.
+  const bool keeps = on_spot && (!kIsUneven<F> || planned < 0.0f);
   if (!keeps && from + step_m < need / most_m_s2)
     further_m = least(most(wanted(kToClose_s + kNextStep_s) - step_m, kFurtherStep * next_own_m),
                       next_own_m);

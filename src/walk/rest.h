@@ -590,37 +590,47 @@ float catch_ticks(const Tables& tables, const State<float>& state, const Change<
   const Time<float> time = time_of(tables, state);
   const float tick_s = tables.tick_s, share = flight_cycles<float>(tables, time.right),
               strike_phase = time.stage_end + (time.flies ? 0.0f : share),
-              rate = share / state.flight_ticks;
+              rate = share / state.flight_ticks, aim = aim_ticks(tables), left = time.to_strike;
   const Landing<float> landing =
       landing_over(tables, time, way_at_strike(tables, time, state), change, state, footing);
   const Path<float> path =
       path_to(landing, footprints_of(tables, time, landing.ratio), time.right ? 1.0f : 0.0f);
-  const float sign = time.back ? -1.0f : 1.0f;
-  const auto along = [&](float x, float z) { return sign * landing.way.ahead(x, z); };
-  const float aim = aim_ticks(tables);
-  float m[3];
+  Vec<float> places_m[3];
   for (int k : {0, 1, 2}) {
     const float at = strike_phase + static_cast<float>(k - 1) * aim * rate;
-    m[k] = along(path.x_m + path.per_cycle_x_m * at, path.z_m + path.per_cycle_z_m * at) +
-           sign * read_pelvis(tables, time, at, landing.ratio).z;
+    const Vec<float> off_m = landing.way * read_pelvis(tables, time, at, landing.ratio);
+    places_m[k] = {path.x_m + path.per_cycle_x_m * at + off_m.x, 0.0f,
+                   path.z_m + path.per_cycle_z_m * at + off_m.z};
   }
-  const Off<float> there = middle_of(m, aim);
-  const float goes = there.v, bend = there.a, left = time.to_strike;
-  const Off<float>&x = change.pelvis_x_m, &z = change.pelvis_z_m;
-  const Off<float> begin{along(x.x, z.x) - there.x + left * (goes - 0.5f * left * bend),
-                         along(x.v, z.v) - goes + bend * left, along(x.a, z.a) - bend};
+  // Ahead and to the left: the hips' place there, which moves on, and their difference from it.
+  struct Goal {
+    Off<float> there, off;
+  };
+  const auto goal = [&](const auto& along) {
+    float m[3];
+    for (int k : {0, 1, 2}) m[k] = along(places_m[k].x, places_m[k].z);
+    const Off<float> there = middle_of(m, aim);
+    const Off<float>&x = change.pelvis_x_m, &z = change.pelvis_z_m;
+    return Goal{there,
+                {along(x.x, z.x) - there.x + left * (there.v - 0.5f * left * there.a),
+                 along(x.v, z.v) - there.v + there.a * left, along(x.a, z.a) - there.a}};
+  };
+  const float sign = time.back ? -1.0f : 1.0f;
+  const Goal ahead = goal([&](float x, float z) { return sign * landing.way.ahead(x, z); }),
+             aside = goal([&](float x, float z) { return landing.way.left(x, z); });
   const float longest = most(left, ticks_of(kMostCatch_s * tables.time_scale, tick_s));
   float best = left, least_cost = std::numeric_limits<float>::infinity();
   for (int k = 0; k < kTimes; ++k) {
     const float all = floored(left + (longest - left) * static_cast<float>(k) / (kTimes - 1.0f));
-    Off<float> off = begin;
-    float jerks = 0.0f, back = 0.0f;
+    Off<float> goes = ahead.off, sways = aside.off;
+    float pushes = 0.0f, back = 0.0f;
     for (float n = all; n > 1.0f; n -= 1.0f) {
-      fade(n, off);
-      jerks = most(jerks, size(off.a + bend));
-      back = most(back, -(off.v + goes - bend * (left - (all - n) - 1.0f)));
+      fade(n, goes), fade(n, sways);
+      const float bends = goes.a + ahead.there.a, sways_by = sways.a + aside.there.a;
+      pushes = most(pushes, root(bends * bends + sways_by * sways_by));
+      back = most(back, -(goes.v + ahead.there.v - ahead.there.a * (left - (all - n) - 1.0f)));
     }
-    const float cost = jerks / (tick_s * tick_s) + kBack * back / tick_s + kLate * all * tick_s;
+    const float cost = pushes / (tick_s * tick_s) + kBack * back / tick_s + kLate * all * tick_s;
     if (cost < least_cost) best = all, least_cost = cost;
   }
   return best;

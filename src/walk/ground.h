@@ -102,6 +102,15 @@ Mask<V> goes_on(const Tables& tables, const State<V>& state, const Change<V>& ch
               either(is_to_walk(tables, state, change), change.further != V{}));
 }
 
+// The ratio to the data's of a step on uneven ground that goes `step_m` ahead. A foot that lands
+// behind the other one, as a turn may lead it, makes a step on the spot: the ratio has no kink.
+template <class V>
+V ratio_of_step(const Tables& tables, const Time<V>& time, const V& step_m) noexcept {
+  constexpr float kSoft_m = 0.03f;  // at the reference leg
+  return soft_positive(time.back ? V(-step_m) : step_m, all<V>(kSoft_m * tables.size)) /
+         own_step_m<V>(tables, time.right, time.back);
+}
+
 // Updates the share of the step's length that the ground leaves, and the ratio for which the tables
 // are read. A step that is planned to another tread has another ratio at once; the tables come to
 // it until the flight begins.
@@ -121,8 +130,8 @@ void follow_ground(const Tables& tables, const Time<V>& time, const AskedStep<V>
           left = wanted_m < least_m ? all<V>(1.0f)
                                     : within(V(step_m / most(wanted_m, least_m)), kLeastLeft, 1.0f);
   follow(left, tables.ground, footing.left);
-  const V own_m = own_step_m<V>(tables, time.right, time.back),
-          ratio = stands ? V{} : V(step_m / own_m), jump = ratio - footing.step_ratio,
+  const V ratio = stands ? V{} : ratio_of_step(tables, time, footing.step_m),
+          jump = ratio - footing.step_ratio,
           most_jump = tables.tick_s *
                       chosen<V>(change.starting != V{}, kFirstRatioJump_1_s, kRatioJump_1_s);
   footing.step_ratio = ratio;

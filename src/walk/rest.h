@@ -141,7 +141,7 @@ void plan_landing_anew(const Tables& tables, const Time<float>& time, Block<1>& 
                      goes_on(tables, state, change)},
                     block);
     footing.step_m = asked.to.ahead(state.landing_x_m, state.landing_z_m);
-    footing.step_ratio = size(footing.step_m) / own_step_m<float>(tables, time.right, time.back);
+    footing.step_ratio = ratio_of_step(tables, time, footing.step_m);
     footing.off_ratio = {};
   }
 }

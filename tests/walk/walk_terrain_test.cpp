@@ -529,8 +529,8 @@ TEST_P(ThumbsOnStairs, BreakFewBounds) {
   EXPECT_LE(most.sunk_mm, asked.most_sunk_mm);
 }
 INSTANTIATE_TEST_SUITE_P(OfEveryLeg, ThumbsOnStairs,
-                         testing::Values(ManyWalks{"short", 0.6, 3, 2.5, 4.5},
-                                         ManyWalks{"shorter", 0.8, 3, 2.2, 7.3},
+                         testing::Values(ManyWalks{"short", 0.6, 3, 2.6, 4.5},
+                                         ManyWalks{"shorter", 0.8, 1, 1.5, 7.3},
                                          ManyWalks{"adult", 1.0, 2, 1.5, 6.7}),
                          [](const auto& info) { return std::string(info.param.name); });
 

@@ -102,6 +102,17 @@ template <class V>
 V asked_ratio(const Tables& tables, const State<V>& state) noexcept {
   return longer_ratio(tables, state.asked.length_m, state.backward);
 }
+// The ratio asked for, with the difference that an arc makes to the step of the swing foot, whose
+// own is `ratio`. On uneven ground, without it: there the ground makes more of a difference.
+template <class V>
+V ratio_on_arc(const Tables& tables, const Time<V>& time, const V& ratio,
+               const State<V>& state) noexcept {
+  const V asked = asked_ratio(tables, state),
+          length_m = time.right ? state.length_m[1].x : state.length_m[0].x;
+  return tables.terrain != nullptr
+             ? asked
+             : V(asked + (ratio - length_m / own_step_m<V>(tables, time.right, time.back)));
+}
 // Ratio to the data's stride: shorter steps are those of a turn on the spot.
 inline constexpr float kTiny = 0.2f;
 // True if a turn on the spot is asked for. On level ground one with tiny steps counts, too: where a
@@ -285,16 +296,20 @@ struct Stages {
 };
 template <class V>
 Stages<V> stages_of(const Tables& tables, const Change<V>& change, const State<V>& state,
-                    const Mask<V>& right) noexcept {
+                    const Mask<V>& right, const V& ratio) noexcept {
   constexpr float kLeastRoll = 6.0f, kLeastFlight = 12.0f;  // beats: 0.025 s, 0.05 s
   const Asked<V>& asked = state.asked;
-  const V roll = roll_cycles<V>(tables, right), flight = flight_cycles<V>(tables, right),
-          ratio = asked_ratio(tables, state);
+  const V roll = roll_cycles<V>(tables, right), flight = flight_cycles<V>(tables, right);
   const V rolls = roll_share(roll, ratio), flies = roll + flight - rolls;
   const V lands_s = by_side<V>(no(right), asked.time_s), swings_s = by_side<V>(right, asked.time_s),
           factor = 2.0f * smoothed_times(state) * change.slowness;
   return {roll, flight, whole_beats(V(lands_s * factor * rolls), kLeastRoll),
           whole_beats(V(swings_s * factor * flies), kLeastFlight)};
+}
+template <class V>
+Stages<V> stages_of(const Tables& tables, const Change<V>& change, const State<V>& state,
+                    const Mask<V>& right) noexcept {
+  return stages_of(tables, change, state, right, asked_ratio(tables, state));
 }
 
 // Times a first step, again in each tick of its roll, because the thumb still moves. On uneven
@@ -377,12 +392,13 @@ Time<V> advance_clock(const Tables& tables, const V& least_s, const Change<V>& c
   return time_of(tables, state);
 }
 
-// Begins the flight, where `lifts`: after the last tick of the roll.
+// Begins the flight, where `lifts`: after the last tick of the roll. `ratio`: of its landing.
 template <class V>
-void begin_flight(const Tables& tables, const Time<V>& time, const Mask<V>& lifts,
+void begin_flight(const Tables& tables, const Time<V>& time, const Mask<V>& lifts, const V& ratio,
                   const Change<V>& change, State<V>& state) noexcept {
   const Stages<V> here = stages_of(tables, change, state, time.right),
-                  next = stages_of(tables, change, state, no(time.right));
+                  next = stages_of(tables, change, state, no(time.right),
+                                   ratio_on_arc(tables, time, ratio, state));
   // At the flight's end the phase runs at the mean of both stages' rates, so that it has no kink.
   const V end_rate =
       0.5f * (here.flight / state.flight_ticks + next.roll / ticks_of(next.roll_s, tables.tick_s));
@@ -423,13 +439,21 @@ void begin_step(const Tables& tables, const Time<V>& time, const Mask<V>& strike
   const V flight_rate = next.flight * tick_s / next.flight_s,
           roll_rate = next.roll * tick_s / next.roll_s;
   const auto is_slow = both(no(led), state.phase_rate < 0.5f * kSlow * (flight_rate + roll_rate));
-  V roll_s = next.roll_s;
-  if (tables.terrain != nullptr)
+  V roll_s = next.roll_s, longer_s{};
+  if (tables.terrain == nullptr) {
+    // The roll shows the last step's stride, whose length on an arc is not the asked one. In
+    // another time than its own, its hips would surge and brake, by 10 m/s^2.
+    const Stages<V> shown = stages_of(tables, change, state, no(time.right),
+                                      ratio_on_arc(tables, time, state.ratio_behind, state));
+    roll_s = led ? roll_s : shown.roll_s;
+  } else {
     roll_s = is_slow ? V(tick_s * next.roll * 2.0f / (state.phase_rate + flight_rate)) : roll_s;
+    longer_s = roll_s - next.roll_s;
+  }
   const V late_s = within(short_s, -tick_s, tick_s),
           step_s = both(both(led, change.stops == V{}), state.ratio_behind > all<V>(kWalked))
                        ? least(own_s, longest_s)
-                       : V(own_s + (roll_s - next.roll_s)),
+                       : V(own_s + longer_s),
           own_roll = ticks_of(V(roll_s + late_s), tick_s),
           last_roll = next.roll / most(state.phase_rate, all<V>(1e-4f)),
           led_roll = most(floored(root(V(own_roll * last_roll))), all<V>(2.0f)),

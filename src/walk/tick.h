@@ -793,7 +793,7 @@ void advance_on(const Tables& tables, Block<kWidth>& block, F& footing, const Po
   count_last_roll(tables, strikes, change, block.told);
   if (any(lifts)) {
     plan_limp(tables, time, lifts, state, change);
-    begin_flight(tables, time, lifts, change, state);
+    begin_flight(tables, time, lifts, landing.ratio, change, state);
     if (kUneven && looks_ahead) plan_rooms<kWidth>(tables, lifts, block);
   }
   if (looks_ahead)

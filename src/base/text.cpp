@@ -257,6 +257,7 @@ void put_eight_digits(std::uint64_t number, char* out) noexcept {
   const std::uint64_t twos = hundreds | (fours - 100 * hundreds) << 16;
   const std::uint64_t tens = twos * 103 >> 10 & 0xf'000f'000f'000f;
   const std::uint64_t ones = (tens | (twos - 10 * tens) << 8) + 0x3030'3030'3030'3030;
+#pragma GCC unroll 8
   for (int i = 0; i < 8; ++i) out[i] = static_cast<char>(ones >> 8 * i);
 }
 

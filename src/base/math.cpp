@@ -28,7 +28,7 @@ SinCos sin_cos(double angle_rad) noexcept {
 
 double atan2(double y, double x) noexcept {
   const double ax = std::abs(x), ay = std::abs(y);
-  if (ax == 0.0 && ay == 0.0) return 0.0;
+  if (ay == 0.0) return x < 0.0 ? kPi : 0.0;
   // atan of r = |y / x|, reduced by atan r = atan c + atan((r - c) / (1 + c r)).
   const double r = ay / ax;
   double whole = 0.0, rest = r;

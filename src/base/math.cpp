@@ -28,20 +28,20 @@ SinCos sin_cos(double angle_rad) noexcept {
 
 double atan2(double y, double x) noexcept {
   const double ax = std::abs(x), ay = std::abs(y);
-  if (ax == 0.0 && ay == 0.0) return 0.0;
+  if (ay == 0.0) return x < 0.0 ? kPi : 0.0;
   // atan of r = |y / x|, reduced by atan r = atan c + atan((r - c) / (1 + c r)).
   const double r = ay / ax;
-  double whole = 0.0, above = r, below = 1.0;
+  double whole = 0.0, rest = r;
   if (!(r < 2.4375)) {
-    whole = 1.57079632679489655800e+00, above = -1.0, below = r;
+    whole = 1.57079632679489655800e+00, rest = -1.0 / r;
   } else if (r >= 1.1875) {
-    whole = 9.82793723247329054082e-01, above = r - 1.5, below = 1.0 + 1.5 * r;
+    whole = 9.82793723247329054082e-01, rest = (r - 1.5) / (1.0 + 1.5 * r);
   } else if (r >= 0.6875) {
-    whole = 7.85398163397448278999e-01, above = r - 1.0, below = r + 1.0;
+    whole = 7.85398163397448278999e-01, rest = (r - 1.0) / (r + 1.0);
   } else if (r >= 0.4375) {
-    whole = 4.63647609000806093515e-01, above = 2.0 * r - 1.0, below = 2.0 + r;
+    whole = 4.63647609000806093515e-01, rest = (2.0 * r - 1.0) / (2.0 + r);
   }
-  double a = whole + atan_kernel(above / below);
+  double a = whole + atan_kernel(rest);
   a = ax > 0.0 ? a : kPi / 2.0;
   a = x < 0.0 ? kPi - a : a;
   return y < 0.0 ? -a : a;

@@ -4,9 +4,8 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
-#include <cstdint>
+#include <cstring>
 #include <iterator>
 #include <optional>
 
@@ -449,8 +448,7 @@ namespace {
 // Compares bits, because 0 and -0 are written differently.
 template <class T>
 bool has_same_bits(const T& a, const T& b) noexcept {
-  using Bits = std::array<std::uint64_t, sizeof(T) / sizeof(double)>;
-  return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
+  return std::memcmp(&a, &b, sizeof a) == 0;
 }
 
 }  // namespace

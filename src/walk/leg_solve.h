@@ -206,6 +206,7 @@ inline void solve_both(LegGoal<float> (&goals)[2], Leg<float> (&legs)[2]) noexce
   constexpr int kNumbers = sizeof(LegGoal<float>) / sizeof(float);
   LegGoal<Four> both;
   const float *const a = &goals[0].thigh_m, *const b = &goals[1].thigh_m;
+#pragma GCC unroll 32
   for (int n = 0; n < kNumbers; ++n)
     reinterpret_cast<Four*>(&both)[n] = Four{a[n], b[n], a[n], b[n]};
   const Leg<Four> solved = solve_leg(both);

@@ -242,31 +242,21 @@ template <class V, class NoneOf, class There>
 Mask<V> follow_style(const Filter& filter, const Mask<V>& asked, const Mask<V>& acted,
                      const Mask<V>& where, int count, const V* goals, const NoneOf& none_of,
                      const There& there, Smoothed<V>* numbers) noexcept {
-  // Return early if all numbers have settled, as they have in nearly every tick.
-  auto moves = both(where, acted != asked);
-  for (int n = 0; n < count; ++n) {
-    const V goal = asked ? goals[n] : none_of(n);
-    moves = either(moves, both(where, either(numbers[n].x != goal, numbers[n].v != V{})));
-  }
-  if (!any(moves)) return acted;
   auto acts = asked;
   for (int n = 0; n < count; ++n) {
     Smoothed<V>& in_force = numbers[n];
     const V none = none_of(n), goal = asked ? goals[n] : none;
-    const auto is_none = goal == none,
-               rests = both(either(acted, is_none), both(in_force.x == goal, in_force.v == V{}));
-    if (!any(both(moves, no(rests)))) {  // most numbers of a style are those of none
-      acts = either(acts, no(is_none));
-      continue;
-    }
+    const auto settled = both(in_force.x == goal, in_force.v == V{}),
+               moves = both(where, no(both(settled, either(acted, goal == none))));
+    if (!any(moves)) continue;  // as for nearly every number in nearly every tick
     Smoothed<V> number{acted ? in_force.x : none, acted ? in_force.v : V{}};
     follow(goal, filter, number);
     const auto is_there = there(goal, number);
     const V x = is_there ? goal : number.x, v = is_there ? V{} : number.v;
     in_force = {moves ? x : in_force.x, moves ? v : in_force.v};
-    acts = either(acts, x != none);
+    acts = either(acts, both(moves, x != none));
   }
-  return either(both(moves, acts), both(no(moves), acted));
+  return either(both(where, acts), both(no(where), acted));
 }
 template <class V>
 Mask<V> smooth_weights(const Tables& tables, Weighted<V>& weighted) noexcept {

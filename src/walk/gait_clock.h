@@ -103,15 +103,15 @@ V asked_ratio(const Tables& tables, const State<V>& state) noexcept {
   return longer_ratio(tables, state.asked.length_m, state.backward);
 }
 // The ratio asked for, with the difference that an arc makes to the step of the swing foot, whose
-// own is `ratio`. On uneven ground, without it: there the ground makes more of a difference.
+// own is `ratio`, unless the hips lead.
 template <class V>
-V ratio_on_arc(const Tables& tables, const Time<V>& time, const V& ratio,
+V ratio_on_arc(const Tables& tables, const Time<V>& time, const V& ratio, const Change<V>& change,
                const State<V>& state) noexcept {
+  constexpr float kMostOnArc = 0.06f;  // a greater one comes from a change of plan
   const V asked = asked_ratio(tables, state),
-          length_m = time.right ? state.length_m[1].x : state.length_m[0].x;
-  return tables.terrain != nullptr
-             ? asked
-             : V(asked + (ratio - length_m / own_step_m<V>(tables, time.right, time.back)));
+          length_m = time.right ? state.length_m[1].x : state.length_m[0].x,
+          more = ratio - length_m / own_step_m<V>(tables, time.right, time.back);
+  return change.led != V{} ? asked : V(asked + within(more, -kMostOnArc, kMostOnArc));
 }
 // Ratio to the data's stride: shorter steps are those of a turn on the spot.
 inline constexpr float kTiny = 0.2f;
@@ -398,7 +398,7 @@ void begin_flight(const Tables& tables, const Time<V>& time, const Mask<V>& lift
                   const Change<V>& change, State<V>& state) noexcept {
   const Stages<V> here = stages_of(tables, change, state, time.right),
                   next = stages_of(tables, change, state, no(time.right),
-                                   ratio_on_arc(tables, time, ratio, state));
+                                   ratio_on_arc(tables, time, ratio, change, state));
   // At the flight's end the phase runs at the mean of both stages' rates, so that it has no kink.
   const V end_rate =
       0.5f * (here.flight / state.flight_ticks + next.roll / ticks_of(next.roll_s, tables.tick_s));
@@ -439,16 +439,15 @@ void begin_step(const Tables& tables, const Time<V>& time, const Mask<V>& strike
   const V flight_rate = next.flight * tick_s / next.flight_s,
           roll_rate = next.roll * tick_s / next.roll_s;
   const auto is_slow = both(no(led), state.phase_rate < 0.5f * kSlow * (flight_rate + roll_rate));
-  V roll_s = next.roll_s, longer_s{};
-  if (tables.terrain == nullptr) {
-    // The roll shows the last step's stride, whose length on an arc is not the asked one. In
-    // another time than its own, its hips would surge and brake, by 10 m/s^2.
-    const Stages<V> shown = stages_of(tables, change, state, no(time.right),
-                                      ratio_on_arc(tables, time, state.ratio_behind, state));
-    roll_s = led ? roll_s : shown.roll_s;
-  } else {
-    roll_s = is_slow ? V(tick_s * next.roll * 2.0f / (state.phase_rate + flight_rate)) : roll_s;
-    longer_s = roll_s - next.roll_s;
+  // The roll shows the last step's stride, whose length on an arc is not the asked one. In another
+  // time than its own, its hips would surge and brake, by 10 m/s^2.
+  const Stages<V> shown = stages_of(tables, change, state, no(time.right),
+                                    ratio_on_arc(tables, time, state.ratio_behind, change, state));
+  V roll_s = shown.roll_s, longer_s{};
+  if (tables.terrain != nullptr) {
+    longer_s =
+        is_slow ? V(tick_s * next.roll * 2.0f / (state.phase_rate + flight_rate) - roll_s) : V{};
+    roll_s = roll_s + longer_s;
   }
   const V late_s = within(short_s, -tick_s, tick_s),
           step_s = both(both(led, change.stops == V{}), state.ratio_behind > all<V>(kWalked))

@@ -468,6 +468,9 @@ void plan_rest(const Tables& tables, bool may_move, Block<1>& block, F& footing)
   Change<float> here = change;
   if (change.led == 0.0f) go_on_from_here(tables, true, state, here);
   Off<float>&x = here.pelvis_x_m, &z = here.pelvis_z_m;
+  // Hips may swing back for a moment in a walk whose one foot stays. A plan that goes on from there
+  // leads them away from their feet.
+  if (change.led == 0.0f && !on_spot && along(x.v, z.v) < 0.0f) return;
   // The hips of a limp lurch: they are fast for a moment alone. A plan that goes on from there
   // leads them far beyond their feet. It waits for the end of a roll; in a flight they speed up no
   // more.

@@ -346,7 +346,7 @@ Filters filters_of(double time_scale, double tick_s) noexcept {
   filters.lean = of(0.12);
   filters.posture = of(0.06);
   filters.chest = of(0.10);
-  filters.head = of(0.07);
+  filters.head = of(0.071);
   filters.room = of(0.04);
   filters.ground = of(0.30);
   filters.slope_lean = of(0.30);

@@ -479,6 +479,7 @@ TEST_P(Turns, InPlaceEndSoftly) {
 // are 6 m/s2, or the steady walk's own; what is met.
 TEST_P(Turns, InPlaceBecomeAWalkSoftly) {
   constexpr double kMost_m_s2 = 9.5, kOfSteady = 1.15, kMost_deg = 1.55;
+  double steady_m_s2 = 0.0;  // so far: the first stick is straight ahead
   for (const vec2& stick : {vec2(0.0, 1.0), vec2(-0.4, 0.9), vec2(0.1, 0.5)}) {
     const auto most_m_s2 = [](const ThumbWalk& walk, int from, int until) {
       double most = 0.0;
@@ -488,7 +489,7 @@ TEST_P(Turns, InPlaceBecomeAWalkSoftly) {
       }
       return most;
     };
-    double worst_m_s2 = 0.0, steady_m_s2 = 0.0, jerk = 0.0;
+    double worst_m_s2 = 0.0, jerk = 0.0;
     for (int moment = 0; moment < kMoments; ++moment) {
       ThumbWalk walk(model());
       walk.walk(0.0, 0.0, kBegin);

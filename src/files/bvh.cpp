@@ -4,8 +4,9 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
-#include <cstring>
+#include <cstdint>
 #include <iterator>
 #include <optional>
 
@@ -448,7 +449,8 @@ namespace {
 // Compares bits, because 0 and -0 are written differently.
 template <class T>
 bool has_same_bits(const T& a, const T& b) noexcept {
-  return std::memcmp(&a, &b, sizeof a) == 0;
+  using Bits = std::array<std::uint64_t, sizeof(T) / sizeof(double)>;
+  return std::bit_cast<Bits>(a) == std::bit_cast<Bits>(b);
 }
 
 }  // namespace

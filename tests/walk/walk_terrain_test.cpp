@@ -529,9 +529,9 @@ TEST_P(ThumbsOnStairs, BreakFewBounds) {
   EXPECT_LE(most.sunk_mm, asked.most_sunk_mm);
 }
 INSTANTIATE_TEST_SUITE_P(OfEveryLeg, ThumbsOnStairs,
-                         testing::Values(ManyWalks{"short", 0.6, 3, 2.6, 4.5},
-                                         ManyWalks{"shorter", 0.8, 1, 1.5, 7.3},
-                                         ManyWalks{"adult", 1.0, 2, 1.5, 6.7}),
+                         testing::Values(ManyWalks{"short", 0.6, 4, 2.6, 4.5},
+                                         ManyWalks{"shorter", 0.8, 1, 4.6, 5.5},
+                                         ManyWalks{"adult", 1.0, 4, 1.8, 8.4}),
                          [](const auto& info) { return std::string(info.param.name); });
 
 // Sticks that jump, which no thumb does.
